@@ -1,0 +1,43 @@
+"""Errors of the estimator.
+
+ValueError
+└── SessionError         a session that cannot be used; holds every problem found
+    ├── FormatError      the file is not imu-session/1, or cannot be read at all
+    └── ScheduleError    a well-formed session whose rows cannot support its programme
+
+"Not observable" and "not converged" are results, never exceptions.
+"""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing wrong with a session file: where it is, what it is, and what to do about it."""
+
+    field: str
+    message: str
+    row: int | None = None
+    """Row of the table, counted from 1 as people count; None when the problem is not in one row."""
+
+    def __str__(self) -> str:
+        place = self.field if self.row is None else f"{self.field}, row {self.row}"
+        return f"{place}: {self.message}"
+
+
+class SessionError(ValueError):
+    """A session that cannot be used; ``problems`` holds every fault found, in file order."""
+
+    def __init__(self, problems: "list[Problem] | tuple[Problem, ...]", source: str | None = None) -> None:
+        self.problems = tuple(problems)
+        self.source = source
+        head = f"{source}: " if source else ""
+        super().__init__(head + "; ".join(map(str, self.problems)))
+
+
+class FormatError(SessionError):
+    """The file is not imu-session/1, or cannot be read at all."""
+
+
+class ScheduleError(SessionError):
+    """A well-formed session whose rows cannot support its programme."""

@@ -1,0 +1,205 @@
+"""Result types of calibration; no algorithms. Every estimate carries covariance, residuals, degrees of freedom, names.
+
+The JSON form is ``imu-calibration/1``.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from estimator.session import Array
+
+ARCSEC = np.pi / 180 / 3600
+
+
+def json_numbers(array: Array) -> Any:
+    """Nested lists of an array; what is not finite becomes null."""
+    boxed = np.asarray(array, dtype=object)
+    boxed[~np.isfinite(np.asarray(array, dtype=float))] = None
+    return boxed.tolist()
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A value with its total one-sigma uncertainty; both None when the session does not observe it."""
+
+    value: float | None
+    sigma: float | None
+    repeatability: float | None = None
+    """One sigma of what differs from session to session on one stand (reading noise, bias repeatability, δβ)."""
+
+    def to_dict(self) -> dict[str, Any]:
+        return {"value": self.value, "sigma": self.sigma, "repeatability": self.repeatability}
+
+
+@dataclass(frozen=True)
+class KnownCombination:
+    """A linear combination of parameters that is known although its parts are not: Σ coefficient·parameter."""
+
+    coefficients: dict[str, float]
+    value: float
+    sigma: float
+
+    def to_dict(self) -> dict[str, Any]:
+        return {"coefficients": self.coefficients, "value": self.value, "sigma": self.sigma}
+
+
+@dataclass(frozen=True, eq=False)
+class SensorCalibration:
+    """What the session says of one sensor. Units: see the package page."""
+
+    name: str
+    kind: str
+    scale: Estimate
+    bias: Estimate
+    quadratic: Estimate
+    axis: Array | None
+    """(3,) unit vector, block axes; None when not observable."""
+    axis_tangents: Array
+    """(3, 2) the two unit vectors along which axis_1 and axis_2 of the covariance turn the axis."""
+    axis_covariance: Array
+    """(2, 2) total covariance of (axis_1, axis_2), rad²; NaN when not observable."""
+    observable: dict[str, bool]
+    """Keys scale, bias, quadratic, axis."""
+    known: tuple[KnownCombination, ...] = ()
+    """What is known of the parameters that are not observable one by one."""
+
+    @property
+    def axis_sigma(self) -> float | None:
+        """Root of the trace of the axis' covariance, rad."""
+        return None if self.axis is None else float(np.sqrt(np.trace(self.axis_covariance)))
+
+    def to_dict(self) -> dict[str, Any]:
+        sigma = self.axis_sigma
+        return {
+            "name": self.name,
+            "kind": self.kind,
+            "scale": self.scale.to_dict(),
+            "bias": self.bias.to_dict(),
+            "quadratic": self.quadratic.to_dict(),
+            "axis": {
+                "value": None if self.axis is None else self.axis.tolist(),
+                "sigma_arcsec": None if sigma is None else sigma / ARCSEC,
+                "tangents": self.axis_tangents.tolist(),
+                "covariance": json_numbers(self.axis_covariance),
+            },
+            "observable": dict(self.observable),
+            "known_combinations": [k.to_dict() for k in self.known],
+        }
+
+
+@dataclass(frozen=True)
+class Fit:
+    """How well the model fits the readings."""
+
+    chi2: float
+    dof: int
+    p_value: float | None
+    """Probability of a χ² at least this large under the stated noise; None when no noise was stated."""
+    residual_rms: float
+    """Root mean square of the residuals at the input, m/s² (rad/s)."""
+    noise: str
+    """``stated``, or ``estimated`` when the file gives no standard errors."""
+    covariance_factor: float
+    """χ² per degree of freedom by which the noise was enlarged because the stated one cannot explain the residuals;
+    1 when it can."""
+    rank: int
+    parameters: int
+    weakest: tuple[str, float]
+    """The least known direction: the parameter that leads it and its one sigma, relative to what it could be."""
+    iterations: int
+    converged: bool
+
+    def to_dict(self) -> dict[str, Any]:
+        return {
+            "chi2": self.chi2,
+            "dof": self.dof,
+            "p_value": self.p_value,
+            "residual_rms": self.residual_rms,
+            "noise": self.noise,
+            "covariance_factor": self.covariance_factor,
+            "rank": self.rank,
+            "parameters": self.parameters,
+            "weakest": {"parameter": self.weakest[0], "sigma": self.weakest[1]},
+            "iterations": self.iterations,
+            "converged": self.converged,
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Residuals:
+    """Measured minus modelled, row by row, at the input. R rows of the averaged session, m sensors."""
+
+    value: Array
+    """(R, m), m/s² (rad/s)."""
+    sigma: Array
+    """(R, m) one sigma of the independent noise of each reading at the input."""
+    beta: Array | None
+    """(R,) rad, or None without a stand."""
+    flipped: Any
+    """(R,) bool, or None without a stand."""
+    time: Array | None
+    """(R,) s, or None."""
+    temperature: Array | None
+    """(R,) °C, or None."""
+
+    def to_dict(self) -> dict[str, Any]:
+        def listed(column: Any) -> Any:
+            return None if column is None else json_numbers(column)
+
+        return {
+            "value": json_numbers(self.value),
+            "sigma": json_numbers(self.sigma),
+            "beta_deg": None if self.beta is None else np.degrees(self.beta).tolist(),
+            "run": None if self.flipped is None else ["flipped" if f else "direct" for f in self.flipped],
+            "time_s": listed(self.time),
+            "temperature_c": listed(self.temperature),
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """The calibration of one block: m sensors, P = 5 m parameters with their joint covariance."""
+
+    unit: str
+    method: str
+    """``two-axis-stand/maximum-likelihood`` or ``arbitrary-orientations/maximum-likelihood``."""
+    sensors: tuple[SensorCalibration, ...]
+    names: tuple[str, ...]
+    """(P,) ``A1.scale``, ``A1.bias``, ``A1.quadratic``, ``A1.axis_1``, ``A1.axis_2``, ``A2.scale``, …"""
+    units: tuple[str, ...]
+    """(P,) SI unit of every element."""
+    covariance: Array
+    """(P, P) total covariance, SI; NaN rows and columns for what is not observable."""
+    repeatability: Array
+    """(P, P) the part that differs from session to session on one stand."""
+    fit: Fit
+    residuals: Residuals
+    gauge: str
+    """What holds the block's frame: ``stand``, ``directions`` or ``nominal-axes`` (no net turn of all axes)."""
+
+    def sensor(self, name: str) -> SensorCalibration:
+        """The calibration of the sensor called ``name``; KeyError if there is none."""
+        for sensor in self.sensors:
+            if sensor.name == name:
+                return sensor
+        raise KeyError(name)
+
+    def to_dict(self) -> dict[str, Any]:
+        """``imu-calibration/1``."""
+        return {
+            "format": "imu-calibration/1",
+            "unit": self.unit,
+            "method": self.method,
+            "sensors": [s.to_dict() for s in self.sensors],
+            "fit": self.fit.to_dict(),
+            "gauge": self.gauge,
+            "covariance": {
+                "names": list(self.names),
+                "units": list(self.units),
+                "total": json_numbers(self.covariance),
+                "repeatability": json_numbers(self.repeatability),
+            },
+            "residuals": self.residuals.to_dict(),
+        }

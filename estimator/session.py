@@ -1,0 +1,122 @@
+"""The measured session: what a calibration was done with and what was read. Units and frames: see the package page."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+ACCELEROMETER = "accelerometer"
+GYROSCOPE = "gyroscope"
+
+TWO_AXIS_STAND = "two-axis-stand"
+ARBITRARY_ORIENTATIONS = "arbitrary-orientations"
+ROTATION_ALIGNMENT = "rotation-alignment"
+RATE_TABLE = "rate-table"
+IN_SERVICE = "in-service"
+PROGRAMMES = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, ROTATION_ALIGNMENT, RATE_TABLE, IN_SERVICE)
+
+
+@dataclass(frozen=True, eq=False)
+class Sensor:
+    """One accelerometer or gyro as its maker describes it."""
+
+    name: str
+    kind: str
+    nominal_axis: Array
+    """(3,) unit vector, block axes."""
+    nominal_scale: float
+    """Reading unit per m/s² or rad/s; for a pulse gyro (session.count_time set) pulses per rad."""
+    reading_unit: str
+    bias_repeatability: float = 0.0
+    """One sigma of the zero from position to position, m/s² or rad/s."""
+    nominal_offset: float | None = None
+    """Reading at zero input, reading units; None when not stated."""
+
+
+@dataclass(frozen=True)
+class Site:
+    """Where the session was measured."""
+
+    latitude: float | None = None
+    """Geodetic latitude, rad."""
+    height: float = 0.0
+    """Height above the ellipsoid, m."""
+    gravity: float | None = None
+    """Measured gravity, m/s²; used instead of the formula when stated."""
+
+
+@dataclass(frozen=True)
+class StandErrors:
+    """One-sigma errors of a stand, rad (count_time: s). All but beta are constant over a session."""
+
+    theta_x: float = 0.0
+    theta_y: float = 0.0
+    alpha: float = 0.0
+    beta: float = 0.0
+    """Drawn anew at every row."""
+    latitude: float = 0.0
+    meridian: float = 0.0
+    count_time: float = 0.0
+
+
+@dataclass(frozen=True)
+class Stand:
+    """A two-axis stand and how it was set."""
+
+    id: str
+    alpha: float | None = None
+    """Elevation of the head's axis above the horizon, rad."""
+    chi: float | None = None
+    """Elevation of the head's axis above the plane orthogonal to the Earth's axis, rad (gyros)."""
+    sigma: StandErrors = field(default_factory=StandErrors)
+
+
+@dataclass(frozen=True, eq=False)
+class CalibrationSession:
+    """One calibration session of one block of one unit. R rows in the order measured, m sensors.
+
+    Made by `estimator.read_session` or `estimator.simulate`; what it holds has been checked.
+    """
+
+    unit: str
+    block: str
+    programme: str
+    sensors: tuple[Sensor, ...]
+    readings: Array
+    """(R, m), reading units; pulse counts for a pulse gyro; one sample a row for a raw log."""
+    standard_errors: Array
+    """(R, m), one sigma of the averaged reading, reading units; NaN where the file states none."""
+    site: Site = field(default_factory=Site)
+    stand: Stand | None = None
+    mounting: Array = field(default_factory=lambda: np.eye(3))
+    """(3, 3) rotation, platform → block."""
+    flipped: NDArray[np.bool_] | None = None
+    """(R,) True in the flipped run; two-axis stand only."""
+    beta: Array | None = None
+    """(R,) rad; two-axis stand only."""
+    time: Array | None = None
+    """(R,) s since the start."""
+    temperature: Array | None = None
+    """(R,) °C."""
+    position: NDArray[np.int64] | None = None
+    """(R,) label of the position that a raw sample belongs to; −1 where it belongs to none."""
+    directions: Array | None = None
+    """(R, 3) unit vectors, block axes: roughly known direction of the specific force; NaN rows where unknown."""
+    direction_sigma: float | None = None
+    """One sigma of ``directions`` per axis, rad; None when no directions are stated."""
+    sample_rate: float | None = None
+    """Hz; set for a raw log only."""
+    count_time: float | None = None
+    """s; set when gyro readings are pulse counts over that time."""
+    unit_type: str | None = None
+    started_at: str | None = None
+    """ISO 8601."""
+    operator: str = ""
+    notes: str = ""
+
+    @property
+    def is_raw(self) -> bool:
+        """Whether the rows are samples rather than averaged positions."""
+        return self.sample_rate is not None
