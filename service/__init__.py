@@ -1,0 +1,4 @@
+"""The service: upload → validate → calibrate → history → decisions → pages and reports.
+
+Imports run one way: app, cli → api | pages | reports → flows → ingest | storage → records, errors, settings → estimator.
+"""

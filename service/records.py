@@ -1,0 +1,189 @@
+"""What flows between storage, flows, API and pages: frozen records, complete at birth. SI inside, like the estimator."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from enum import StrEnum
+
+from estimator.results import Calibration
+from estimator.session import CalibrationSession
+
+PARAMETERS = ("scale", "bias", "quadratic", "axis")
+
+
+class Verdict(StrEnum):
+    """The four states of ILAC-G8:2019 with guard band, and the honest fifth. Ordered from good to bad by `severity`."""
+
+    PASS = "pass"
+    CONDITIONAL_PASS = "conditional-pass"
+    UNDECIDABLE = "undecidable"
+    CONDITIONAL_FAIL = "conditional-fail"
+    FAIL = "fail"
+
+    @property
+    def severity(self) -> int:
+        return list(Verdict).index(self)
+
+
+@dataclass(frozen=True)
+class Tolerances:
+    """Largest allowed deviation from the reference, per parameter."""
+
+    scale: float
+    """Relative (1e-6 is 1 ppm)."""
+    bias: float
+    """m/s² (rad/s)."""
+    quadratic: float
+    """s²/m (s/rad)."""
+    axis: float
+    """rad."""
+
+
+@dataclass(frozen=True)
+class UnitType:
+    """A kind of unit: nominal axes and tolerances that all its units share."""
+
+    name: str
+    block: str
+    sensors: tuple[str, ...]
+    nominal_axes: tuple[tuple[float, float, float], ...]
+    nominal_scales: tuple[float, ...]
+    tolerances: Tolerances
+    gyro_tolerances: Tolerances | None
+    """For the gyros of a mixed block; None when the block has one kind of sensor."""
+    revision: int
+    """Counts up with every change of tolerances; decisions name the revision they were made under."""
+
+
+@dataclass(frozen=True)
+class StoredSession:
+    """One uploaded session. ``id`` is made from the content, so the same bytes always have the same id."""
+
+    id: str
+    unit: str
+    sha256: str
+    filename: str
+    size: int
+    programme: str
+    stand: str | None
+    operator: str
+    notes: str
+    started_at: datetime
+    """UTC; the upload's time when the file states none."""
+    uploaded_at: datetime
+    verdict: Verdict
+    reason: str
+    """Why the verdict is what it is, in one sentence a technician understands."""
+    is_reference: bool
+    simulated: bool
+
+
+@dataclass(frozen=True)
+class Decision:
+    """One parameter of one sensor of one session, judged. Everything the decision rests on is here."""
+
+    sensor: str
+    kind: str
+    parameter: str
+    value: float | None
+    """The measured parameter, SI; for the axis the angle from the reference axis, rad."""
+    reference: float | None
+    deviation: float | None
+    """From the reference: relative for scale, else SI."""
+    uncertainty: float | None
+    """Standard uncertainty of the deviation (both sessions)."""
+    expanded: float | None
+    """U = k·u."""
+    coverage_factor: float
+    tolerance: float
+    guard_band: float | None
+    probability_out: float | None
+    """Probability that the true deviation is out of tolerance."""
+    verdict: Verdict
+    rule: str
+    """Name, version and the revision of the tolerances, ``ILAC-G8-four-state/1 (hex-cone rev 2)``."""
+
+
+@dataclass(frozen=True)
+class HistoryPoint:
+    """One parameter of one sensor at one session, ready for drawing a band."""
+
+    session: str
+    at: datetime
+    sensor: str
+    kind: str
+    parameter: str
+    value: float | None
+    """SI; for the axis the angle from the reference axis, rad."""
+    u: float | None
+    """Standard uncertainty of value."""
+    lower: float | None
+    """value − U."""
+    upper: float | None
+    reference: float | None
+    tolerance: float
+    """In the unit of value (for scale: relative tolerance times the reference)."""
+    verdict: Verdict
+    axis: tuple[float, float, float] | None
+
+
+@dataclass(frozen=True)
+class Service:
+    """A known break in a unit's history: adjustment, repair, sensor swap, new reference."""
+
+    id: int
+    unit: str
+    at: datetime
+    kind: str
+    note: str
+
+
+@dataclass(frozen=True)
+class UnitSummary:
+    """One line of the fleet page."""
+
+    serial: str
+    unit_type: str
+    simulated: bool
+    sessions: int
+    last_session: str | None
+    last_at: datetime | None
+    verdict: Verdict | None
+    """Of the latest session; None when the unit has none."""
+    reason: str
+    worst_sensor: str | None
+    worst_parameter: str | None
+    margin: float | None
+    """1 − (|d| + U)/T of the worst parameter: 1 is spotless, 0 the edge of pass, negative beyond."""
+
+
+@dataclass(frozen=True)
+class SessionReport:
+    """Everything a session's page or answer shows."""
+
+    session: StoredSession
+    calibration: Calibration
+    """As computed at upload; `storage` rebuilds it from what it kept."""
+    decisions: tuple[Decision, ...]
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A session on its way into the store."""
+
+    source: CalibrationSession
+    calibration: Calibration
+    decisions: tuple[Decision, ...]
+    verdict: Verdict
+    reason: str
+
+
+@dataclass(frozen=True)
+class Receipt:
+    """The answer to an upload."""
+
+    id: str
+    unit: str
+    verdict: Verdict
+    reason: str
+    created: bool
+    """False when the same bytes were already stored."""
