@@ -40,3 +40,23 @@ Readings are (R, m); reference vectors (R, m, 3), because accelerometers and gyr
 A parameter vector holds five elements a sensor, sensor after sensor: scale, bias, quadratic, axis_1, axis_2; the
 last two are rotations of the axis along the two tangent vectors that the result states.
 """
+
+from estimator.calibration import calibrate, calibrate_many
+from estimator.errors import FormatError, Problem, ScheduleError, SessionError
+from estimator.results import Calibration
+from estimator.session import CalibrationSession, Sensor, Site, Stand, StandErrors
+
+__all__ = [
+    "Calibration",
+    "CalibrationSession",
+    "FormatError",
+    "Problem",
+    "ScheduleError",
+    "Sensor",
+    "SessionError",
+    "Site",
+    "Stand",
+    "StandErrors",
+    "calibrate",
+    "calibrate_many",
+]

@@ -134,7 +134,7 @@ class Residuals:
     value: Array
     """(R, m), m/s² (rad/s)."""
     sigma: Array
-    """(R, m) one sigma of the independent noise of each reading at the input."""
+    """(R, m) one sigma of each residual at the input: the reading's own noise and the row's share of the β error."""
     beta: Array | None
     """(R,) rad, or None without a stand."""
     flipped: Any

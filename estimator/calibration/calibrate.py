@@ -1,0 +1,23 @@
+"""The one door to every calibrator."""
+
+from estimator.calibration.stand import calibrate_stand
+from estimator.errors import Problem, ScheduleError
+from estimator.results import Calibration
+from estimator.session import TWO_AXIS_STAND, CalibrationSession
+
+
+def calibrate(session: CalibrationSession, *, quadratic: bool | None = None) -> Calibration:
+    """Calibrate a block from one session.
+
+    Parameters
+    ----------
+    session : of any programme that calibrates; a raw log is averaged over its positions first.
+    quadratic : whether arbitrary orientations estimate the second-order term; None lets the orientations decide.
+
+    Raises
+    ------
+    ScheduleError : the programme does not calibrate, or its rows cannot support it.
+    """
+    if session.programme == TWO_AXIS_STAND:
+        return calibrate_stand([session])[0]
+    raise ScheduleError([Problem("programme", f"{session.programme} does not calibrate a block")])

@@ -1,0 +1,74 @@
+"""The parameters of a block's sensors and their flat, named, dimensionless vector.
+
+Five elements a sensor: ln K, b/|n|, c·|n|, and the axis' turns along its two tangents. Dimensionless, so that one
+number says for each of them what is small: `PLAUSIBLE`.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimator.arrays import tangents, unit
+from estimator.session import ACCELEROMETER, Array, Sensor
+
+ELEMENTS = ("scale", "bias", "quadratic", "axis_1", "axis_2")
+
+PLAUSIBLE = 0.1
+"""One sigma of what a dimensionless element could be at all: 10 % of scale, 0.1 g, 0.1/g, 0.1 rad."""
+
+
+@dataclass(frozen=True, eq=False)
+class SensorParameters:
+    """K, b, c, e of m sensors; leading axes (sessions) are free. Units: see the package page."""
+
+    scale: Array
+    """(..., m)"""
+    bias: Array
+    """(..., m)"""
+    quadratic: Array
+    """(..., m)"""
+    axis: Array
+    """(..., m, 3)"""
+
+    def stepped(self, step: Array, norm: Array) -> "SensorParameters":
+        """Moved by a dimensionless step (..., m, 5); ``norm`` (m,) is the reference vector's length."""
+        turned = self.axis + (tangents(self.axis) @ step[..., 3:, None])[..., 0]
+        return SensorParameters(
+            scale=self.scale * np.exp(step[..., 0]),
+            bias=self.bias + step[..., 1] * norm,
+            quadratic=self.quadratic + step[..., 2] / norm,
+            axis=unit(turned),
+        )
+
+    def si_factors(self, norm: Array) -> Array:
+        """(..., 5 m) factors from dimensionless elements to SI."""
+        one = np.ones_like(self.scale)
+        factors = np.stack([self.scale, one * norm, one / norm, one, one], axis=-1)
+        return factors.reshape(*self.scale.shape[:-1], -1)
+
+
+def names(sensors: tuple[Sensor, ...]) -> tuple[str, ...]:
+    """(5 m,) ``A1.scale``, ``A1.bias``, … in the order of every parameter vector."""
+    return tuple(f"{s.name}.{element}" for s in sensors for element in ELEMENTS)
+
+
+def units(sensors: tuple[Sensor, ...]) -> tuple[str, ...]:
+    """(5 m,) the SI unit of every element."""
+
+    def of(sensor: Sensor) -> tuple[str, ...]:
+        if sensor.kind == ACCELEROMETER:
+            return (f"{sensor.reading_unit}/(m/s²)", "m/s²", "s²/m", "rad", "rad")
+        return (f"{sensor.reading_unit}/(rad/s)", "rad/s", "s/rad", "rad", "rad")
+
+    return tuple(u for s in sensors for u in of(s))
+
+
+def nominal(sensors: tuple[Sensor, ...]) -> SensorParameters:
+    """What the unit's maker states: nominal scale and axis, no bias, no nonlinearity."""
+    zero = np.zeros(len(sensors))
+    return SensorParameters(
+        scale=np.array([s.nominal_scale for s in sensors]),
+        bias=zero,
+        quadratic=zero,
+        axis=np.stack([s.nominal_axis for s in sensors]),
+    )

@@ -1,0 +1,201 @@
+"""Sessions whose truth is known: the forward model on a stand with errors, and noise from an rng."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from estimator.arrays import tangents, unit
+from estimator.forward import response
+from estimator.parameters import SensorParameters
+from estimator.reference import elevation, magnitude, stand_vector, to_block
+from estimator.session import (
+    ACCELEROMETER,
+    ARBITRARY_ORIENTATIONS,
+    TWO_AXIS_STAND,
+    Array,
+    CalibrationSession,
+    Sensor,
+    Site,
+    Stand,
+    StandErrors,
+)
+
+
+def cone(m: int, half_angle: float, axis: tuple[float, float, float] = (0.0, 1.0, 0.0)) -> Array:
+    """(m, 3) input axes evenly spaced on a cone about ``axis``; half angle in rad."""
+    centre = unit(np.array(axis, dtype=float))
+    side = tangents(centre)
+    turn = 2 * np.pi * np.arange(m) / m
+    around = np.cos(turn)[:, None] * side[:, 0] + np.sin(turn)[:, None] * side[:, 1]
+    return np.asarray(np.cos(half_angle) * centre + np.sin(half_angle) * around)
+
+
+def stand_schedule(
+    sensors: tuple[Sensor, ...],
+    stand: Stand,
+    site: Site,
+    positions: int,
+    *,
+    unit_name: str = "simulated",
+    runs: tuple[bool, ...] = (False, True),
+    period: float = 120.0,
+    mounting: Array | None = None,
+    count_time: float | None = None,
+) -> CalibrationSession:
+    """A two-axis-stand session still to be measured: equal β steps in each run, readings zero.
+
+    ``runs`` lists the runs in order, True for flipped; ``period`` is the time between rows, s.
+    """
+    beta = np.tile(2 * np.pi * np.arange(positions) / positions, len(runs))
+    empty = np.zeros((len(beta), len(sensors)))
+    return CalibrationSession(
+        unit=unit_name,
+        block=sensors[0].kind,
+        programme=TWO_AXIS_STAND,
+        sensors=sensors,
+        readings=empty,
+        standard_errors=empty,
+        site=site,
+        stand=stand,
+        mounting=np.eye(3) if mounting is None else mounting,
+        flipped=np.repeat(np.array(runs), positions),
+        beta=beta,
+        time=period * np.arange(len(beta)),
+        count_time=count_time,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class StandDraw:
+    """The stand's errors of one session as they happened."""
+
+    constant: StandErrors
+    """Errors in rad (s); ``beta`` unused."""
+    beta: Array
+    """(R,) rad."""
+
+
+def draw_stand(session: CalibrationSession, rng: np.random.Generator) -> StandDraw:
+    """Stand errors drawn from the stated sigmas."""
+    assert session.stand is not None
+    assert session.beta is not None
+    s = session.stand.sigma
+    drawn = StandErrors(
+        theta_x=rng.normal(0, s.theta_x),
+        theta_y=rng.normal(0, s.theta_y),
+        alpha=rng.normal(0, s.alpha),
+        latitude=rng.normal(0, s.latitude),
+        meridian=rng.normal(0, s.meridian),
+        count_time=rng.normal(0, s.count_time),
+    )
+    return StandDraw(drawn, rng.normal(0, s.beta, len(session.beta)))
+
+
+def true_vectors(session: CalibrationSession, draw: StandDraw) -> Array:
+    """(R, m, 3) what the stand really applied, exact in its errors, block axes."""
+    assert session.stand is not None
+    assert session.beta is not None
+    phi, e = session.site.latitude or 0.0, draw.constant
+    applied = {}
+    for kind in {s.kind for s in session.sensors}:
+        errors = e
+        if kind != ACCELEROMETER:
+            level = e.theta_y * np.sin(phi) + e.meridian * np.cos(phi)
+            errors = replace(e, theta_y=level, alpha=e.alpha + e.latitude)
+        platform = stand_vector(elevation(session.stand, kind), session.beta + draw.beta, errors)
+        applied[kind] = magnitude(session, kind) * to_block(platform, session)
+    return np.stack([applied[s.kind] for s in session.sensors], axis=1)
+
+
+def simulate(
+    schedule: CalibrationSession,
+    truth: SensorParameters,
+    rng: np.random.Generator,
+    *,
+    noise: Array | float,
+    draw: StandDraw | None = None,
+    state_noise: bool = True,
+) -> CalibrationSession:
+    """A measured session of known truth.
+
+    Parameters
+    ----------
+    schedule : what is to be measured (`stand_schedule`, `orientation_schedule`); its readings are ignored.
+    truth : (m,) the sensors' true parameters.
+    rng : the only source of chance.
+    noise : one sigma of an averaged reading, reading units; scalar or (m,).
+    draw : the stand's errors; drawn from the stated sigmas when None.
+    state_noise : whether the session states ``noise`` as its standard errors.
+
+    Returns
+    -------
+    The session with readings; pulse gyros are counted in whole pulses.
+    """
+    shape = schedule.readings.shape
+    if schedule.programme == TWO_AXIS_STAND:
+        n = true_vectors(schedule, draw or draw_stand(schedule, rng))
+    else:
+        assert schedule.directions is not None
+        n = np.repeat(magnitude(schedule, ACCELEROMETER) * schedule.directions[:, None, :], shape[1], axis=1)
+    clean = response(truth, n)
+    repeatability = np.array([s.bias_repeatability for s in schedule.sensors])
+    wander = truth.scale * repeatability * rng.standard_normal(shape)
+    sigma = np.broadcast_to(np.asarray(noise, dtype=float), shape)
+    readings = clean + wander + sigma * rng.standard_normal(shape)
+    if schedule.count_time is not None:
+        pulsed = np.array([s.kind != ACCELEROMETER for s in schedule.sensors])
+        readings = np.where(
+            pulsed, np.round((clean + wander) * schedule.count_time + (readings - clean - wander)), readings
+        )
+    offset = np.array([s.nominal_offset or 0.0 for s in schedule.sensors])
+    stated = sigma if state_noise else np.full(shape, np.nan)
+    known = schedule.directions if schedule.direction_sigma is not None else None
+    return replace(schedule, readings=readings + offset, standard_errors=np.array(stated), directions=known)
+
+
+def orientation_schedule(
+    sensors: tuple[Sensor, ...],
+    site: Site,
+    directions: Array,
+    *,
+    direction_sigma: float | None = None,
+    unit_name: str = "simulated",
+) -> CalibrationSession:
+    """Still orientations to be measured: directions (R, 3) of the specific force, block axes.
+
+    The directions serve the simulation; the simulated session states them only with a ``direction_sigma`` (rad).
+    """
+    empty = np.zeros((len(directions), len(sensors)))
+    return CalibrationSession(
+        unit=unit_name,
+        block=sensors[0].kind,
+        programme=ARBITRARY_ORIENTATIONS,
+        sensors=sensors,
+        readings=empty,
+        standard_errors=empty,
+        site=site,
+        directions=unit(directions),
+        direction_sigma=direction_sigma,
+    )
+
+
+def scattered(
+    sensors: tuple[Sensor, ...],
+    norm: Array,
+    rng: np.random.Generator,
+    *,
+    scale: float = 1e-3,
+    bias: float = 1e-3,
+    quadratic: float = 1e-5,
+    axis: float = 1e-3,
+) -> SensorParameters:
+    """True parameters scattered about the nominal ones; one sigmas dimensionless (relative, g, 1/g, rad); norm (m,)."""
+    m = len(sensors)
+    base = SensorParameters(
+        scale=np.array([s.nominal_scale for s in sensors]),
+        bias=np.zeros(m),
+        quadratic=np.zeros(m),
+        axis=np.stack([s.nominal_axis for s in sensors]),
+    )
+    step = rng.standard_normal((m, 5)) * np.array([scale, bias, quadratic, axis, axis])
+    return base.stepped(step, norm)
