@@ -99,9 +99,7 @@ def _kind_geometry(session: CalibrationSession, kind: str) -> tuple[Array, Array
     size, angle = magnitude(session, kind), elevation(stand, kind)
     sin, cos = np.sin(beta), np.cos(beta)
     n = size * stand_vector(angle, beta)
-    d_raise = size * np.stack(
-        [np.sin(angle) * sin, np.full_like(beta, np.cos(angle)), -np.sin(angle) * cos], -1
-    )
+    d_raise = size * np.stack([np.sin(angle) * sin, np.full_like(beta, np.cos(angle)), -np.sin(angle) * cos], -1)
     d_beta = size * np.cos(angle) * np.stack([-cos, np.zeros_like(beta), -sin], -1)
     d_level = -d_beta / np.cos(angle)
     none = np.zeros_like(n)

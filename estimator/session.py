@@ -1,11 +1,12 @@
 """The measured session: what a calibration was done with and what was read. Units and frames: see the package page."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 
 ACCELEROMETER = "accelerometer"
 GYROSCOPE = "gyroscope"

@@ -77,9 +77,8 @@ def coefficients(u1: Array, u2: Array, n1: Array, n3: Array) -> Coefficients:
     q1, q2 = inverse1 @ u1, inverse2 @ u2
     v1, v2 = (inverse1**2).sum(axis=1), (inverse2**2).sum(axis=1)
     return Coefficients(
-        *(q1[..., i, :] for i in range(4)),
-        *(q2[..., i, :] for i in range(4)),
-        variance=np.array([v1[1], v1[3], v2[2], v2[3]]),
+        *(q[..., i, :] for q in (q1, q2) for i in range(4)),
+        np.array([v1[1], v1[3], v2[2], v2[3]]),
     )
 
 
@@ -124,9 +123,7 @@ def closed_form(y: Array, session: CalibrationSession) -> SensorParameters | Non
         q = coefficients((u + flipped) / 2, (u - flipped) / 2, n[:, 0], n[:, 2])
         parts.append((kind, solve(q, size, angle)))
     platform = merge(parts, session)
-    return SensorParameters(
-        platform.scale, platform.bias, platform.quadratic, platform.axis @ session.mounting.T
-    )
+    return SensorParameters(platform.scale, platform.bias, platform.quadratic, platform.axis @ session.mounting.T)
 
 
 def merge(parts: list[tuple[str, SensorParameters]], session: CalibrationSession) -> SensorParameters:

@@ -17,9 +17,7 @@ def schedule(session: CalibrationSession) -> Hashable:
     """What two sessions must share to be solved together: everything but the readings."""
     assert session.beta is not None
     assert session.flipped is not None
-    sensors = tuple(
-        (s.kind, s.nominal_axis.tobytes(), s.nominal_scale, s.bias_repeatability) for s in session.sensors
-    )
+    sensors = tuple((s.kind, s.nominal_axis.tobytes(), s.nominal_scale, s.bias_repeatability) for s in session.sensors)
     arrays = (session.beta.tobytes(), session.flipped.tobytes(), session.mounting.tobytes())
     return session.site, session.stand, session.count_time, sensors, arrays
 

@@ -39,11 +39,7 @@ def known_bias_quadratic(information: Array, values: Array, norm: float) -> tupl
     cross = information[np.ix_(others, [1, 2])] @ vectors[:, 1]
     left = values_[1] - cross @ np.linalg.solve(information[np.ix_(others, others)], cross)
     sigma = norm / (np.sqrt(left) * abs(float(vectors[0, 1])))
-    return (
-        KnownCombination(
-            {"bias": 1.0, "quadratic": ratio}, float(values[1] + ratio * values[2]), float(sigma)
-        ),
-    )
+    return (KnownCombination({"bias": 1.0, "quadratic": ratio}, float(values[1] + ratio * values[2]), float(sigma)),)
 
 
 def known_linear(y: Array, variance: Array, n: Array, norm: float) -> tuple[KnownCombination, ...]:
@@ -65,9 +61,7 @@ def known_linear(y: Array, variance: Array, n: Array, norm: float) -> tuple[Know
         )
         for axis in "xyz":
             coefficients[f"sensitivity_{axis}"] *= norm
-        combinations.append(
-            KnownCombination(coefficients, float(u @ (y / np.sqrt(variance)) / s), float(1 / s))
-        )
+        combinations.append(KnownCombination(coefficients, float(u @ (y / np.sqrt(variance)) / s), float(1 / s)))
     return tuple(combinations)
 
 

@@ -140,7 +140,7 @@ def fit(y: Array, variance: Array, geometry: Geometry, start: SensorParameters) 
     geometry : of the schedule.
     start : (S, m) starting values; the closed form where there is one.
     """
-    S, R, m = y.shape
+    S, _, m = y.shape
     P, weight, p = 5 * m, 1.0 / variance, start
     converged, iteration = False, 0
     while True:

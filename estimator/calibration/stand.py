@@ -153,13 +153,10 @@ def _known(
     k: int, session: CalibrationSession, geometry: Geometry, solution: Fitted, y: Array, seen: Array
 ) -> list[tuple[KnownCombination, ...]]:
     """For each sensor the combinations that stand in for what is not observable."""
-    p, found = solution.parameters, []
+    p = solution.parameters
+    found: list[tuple[KnownCombination, ...]] = []
     for i in range(len(session.sensors)):
-        blind = {
-            element
-            for element, s in zip(("scale", "bias", "quadratic", "axis"), seen[i], strict=False)
-            if not s
-        }
+        blind = {element for element, s in zip(("scale", "bias", "quadratic", "axis"), seen[i], strict=False) if not s}
         norm = float(geometry.norm[i])
         if not blind:
             found.append(())
