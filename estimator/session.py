@@ -33,8 +33,8 @@ class Sensor:
     bias_repeatability: float = 0.0
     """One sigma of the zero from position to position, m/s² or rad/s."""
     nominal_offset: float | None = None
-    """Reading that stands for zero, reading units; taken off before the model, so the bias is counted from it. None when
-    not stated: then the bias holds the whole offset."""
+    """Reading that stands for zero, reading units; taken off before the model, so the bias is counted from it.
+    None when not stated: then the bias holds the whole offset."""
 
 
 @dataclass(frozen=True)
