@@ -1,0 +1,167 @@
+"""Arbitrary orientations by maximum likelihood: any three or more accelerometers, gravity of known size.
+
+The block is set down, still, in orientations that nobody needs to know. Each orientation is two unknowns of its own
+(`model`), the sensors' parameters are found by Levenberg–Marquardt with the orientations eliminated (`solve`) from a
+linear start (`start`); what the set does not tell is said (`information`). Directions that the session states to a
+known sigma enter as a prior, which is what makes six labelled positions enough.
+
+The quadratic term. ``quadratic`` True: estimated. False: left out of the model, reported as not observable. None:
+estimated when the set determines every parameter with it and every sensor's c·g to better than 1e-3, else left out.
+Source: multi-parameter optimisation paper, functional (5), in its maximum-likelihood form.
+"""
+
+import numpy as np
+
+from estimator.calibration.free.gyros import GyroBiases, rest_biases
+from estimator.calibration.free.information import information
+from estimator.calibration.free.knowledge import merged, of_accelerometers, of_gyros
+from estimator.calibration.free.model import Rows
+from estimator.calibration.free.report import enlargement, fit_of_accelerometers, fit_of_gyros, report
+from estimator.calibration.free.solve import Solution, search, search_with_noise
+from estimator.calibration.free.start import start
+from estimator.errors import Problem, ScheduleError
+from estimator.forward import measured
+from estimator.parameters import names
+from estimator.reference import gravity
+from estimator.results import Calibration
+from estimator.session import ACCELEROMETER, Array, CalibrationSession
+
+USEFUL_QUADRATIC = 1e-3
+"""Sigma of c·g below which the quadratic term is worth estimating."""
+
+FEWEST = 4
+"""Orientations below which nothing at all can be estimated: a sphere needs four points."""
+
+LEAST_TURN = 0.05
+"""g; rows whose readings vary less than this show one orientation."""
+
+GENERIC = 9
+"""Unlabelled orientations that determine scale, bias and axes of any block: an ellipsoid has nine parameters."""
+
+UNSTATED_NOISE = 1e-4
+"""g; relative weight to begin with where no noise is stated."""
+
+
+def calibrate_free(session: CalibrationSession, *, quadratic: bool | None = None) -> Calibration:
+    """Calibrate a block from still rows in arbitrary orientations.
+
+    Parameters
+    ----------
+    session : averaged rows; raw logs go through `estimator.static` first.
+    quadratic : see the head of this file.
+
+    Raises
+    ------
+    ScheduleError
+        Rows from which nothing can be estimated. Rows that determine only a part are a result.
+    """
+    check(session)
+    is_gyro = np.array([s.kind != ACCELEROMETER for s in session.sensors])
+    scale = np.array([s.nominal_scale for s in session.sensors])
+    axes = np.stack([s.nominal_axis for s in session.sensors])
+    gyros = gyro_biases(session, is_gyro) if is_gyro.any() else None
+    if gyros is not None and is_gyro.all():
+        return report(
+            session, of_gyros(gyros, scale, axes), fit_of_gyros(gyros, names(session.sensors)), "nominal-axes"
+        )
+    g = gravity(session.site)
+    rows, stated = accelerometer_rows(session, ~is_gyro, g)
+    solution = solve(rows, stated, quadratic)
+    factor = enlargement(solution.chi2, solution.dof, stated)
+    known = of_accelerometers(solution, scale[~is_gyro], g, factor)
+    own_names = names(tuple(s for s in session.sensors if s.kind == ACCELEROMETER))
+    fit = fit_of_accelerometers(solution, known, stated, factor, own_names)
+    if gyros is not None:
+        known = merged(known, of_gyros(gyros, scale[is_gyro], axes[is_gyro]), session)
+    return report(session, known, fit, "directions" if rows.held else "nominal-axes")
+
+
+def check(session: CalibrationSession) -> None:
+    """ScheduleError unless something can be estimated."""
+    accelerometers = [s for s in session.sensors if s.kind == ACCELEROMETER]
+    if not accelerometers:
+        return
+    spread = np.linalg.svd(np.stack([s.nominal_axis for s in accelerometers]), compute_uv=False)
+    if len(accelerometers) < 3 or spread[2] < 0.05 * spread[0]:
+        raise ScheduleError(
+            [
+                Problem(
+                    "sensors",
+                    f"{len(accelerometers)} accelerometers whose nominal axes do not span space; arbitrary "
+                    "orientations need three or more axes that do not lie in one plane",
+                )
+            ]
+        )
+    R = len(session.readings)
+    if R < FEWEST:
+        raise ScheduleError([Problem("table", f"{R} orientations are too few to estimate anything; {advice(R)}")])
+    turned = np.array([s.kind == ACCELEROMETER for s in session.sensors])
+    unit = gravity(session.site) * np.array([s.nominal_scale for s in accelerometers])
+    if (measured(session)[0][:, turned] / unit).std(axis=0).max() < LEAST_TURN:
+        raise ScheduleError([Problem("table", f"all {R} rows show the same orientation; {advice(0)}")])
+
+
+def advice(rows: int) -> str:
+    """What to add to ``rows`` orientations."""
+    return (
+        f"add at least {GENERIC - rows} so that there are {GENERIC} or more still orientations spread over the whole "
+        "sphere, tilted about all three axes, or label six positions with their directions"
+    )
+
+
+def accelerometer_rows(session: CalibrationSession, chosen: Array, g: float) -> tuple[Rows, bool]:
+    """Dimensionless rows of the accelerometers, and whether their noise is stated."""
+    sensors = [s for s in session.sensors if s.kind == ACCELEROMETER]
+    readings, errors = measured(session)
+    unit = g * np.array([s.nominal_scale for s in sensors])
+    axes = np.stack([s.nominal_axis for s in sensors])
+    y = readings[:, chosen] / unit
+    directions, prior = stated_directions(session)
+    repeatability = np.array([s.bias_repeatability for s in sensors]) / g
+    rows = Rows(y, np.full(y.shape, UNSTATED_NOISE), directions, prior, axes)
+    gain = np.exp(start(rows).log_scale)
+    sigma = np.hypot(errors[:, chosen] / np.abs(unit), gain * repeatability)
+    if np.all(np.isfinite(sigma) & (sigma > 0)):
+        return rows.weighted(sigma), True
+    usable = np.isfinite(sigma) & (sigma > 0)
+    typical = float(np.median(sigma[usable])) if usable.any() else UNSTATED_NOISE
+    return rows.weighted(np.where(usable, sigma, typical)), False
+
+
+def stated_directions(session: CalibrationSession) -> tuple[Array, Array]:
+    """Directions (R, 3), zeros where unknown, and their inverse variance (R,), 0 where unknown.
+
+    Directions along one line leave the turn about it open: they are then not used, and the nominal axes hold the frame.
+    """
+    R = len(session.readings)
+    if session.directions is None or not session.direction_sigma:
+        return np.zeros((R, 3)), np.zeros(R)
+    stated = np.asarray(np.isfinite(session.directions).all(axis=1))
+    directions = np.where(stated[:, None], session.directions, 0.0)
+    if np.linalg.svd(directions, compute_uv=False)[1] < 0.1:
+        return np.zeros((R, 3)), np.zeros(R)
+    return directions, stated / session.direction_sigma**2
+
+
+def solve(rows: Rows, stated: bool, quadratic: bool | None) -> Solution:
+    """The search, with or without the quadratic term, with or without stated noise."""
+    run = search if stated else search_with_noise
+    solution = run(rows, start(rows), bool(quadratic))
+    if quadratic is None and quadratic_is_useful(solution):
+        return run(solution.rows, solution.state, True)
+    return solution
+
+
+def quadratic_is_useful(solution: Solution) -> bool:
+    """Whether the set determines everything with the quadratic term, and each c·g to `USEFUL_QUADRATIC`."""
+    knowledge = information(solution.rows, solution.state, quadratic=True)
+    return knowledge.full and bool(np.all(np.diagonal(knowledge.covariance)[2::5] < USEFUL_QUADRATIC**2))
+
+
+def gyro_biases(session: CalibrationSession, chosen: Array) -> GyroBiases:
+    """The gyros' biases by their nominal scale."""
+    sensors = [s for s in session.sensors if s.kind != ACCELEROMETER]
+    readings, errors = measured(session)
+    scale = np.array([s.nominal_scale for s in sensors])
+    repeatability = np.array([s.bias_repeatability for s in sensors])
+    return rest_biases(readings[:, chosen] / scale, errors[:, chosen] / np.abs(scale), repeatability)

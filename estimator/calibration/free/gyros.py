@@ -1,0 +1,57 @@
+"""Gyros at rest in unknown orientations: the bias and nothing else.
+
+The Earth's rate Ω acts along an unknown direction in every orientation, so its projection on an input axis is a bounded
+unknown of mean square Ω²/3. From one orientation to the next it is drawn anew; the mean over the rows keeps its share.
+Scale, axis and nonlinearity need rates that a resting block does not see.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimator.reference import EARTH_RATE
+from estimator.session import Array
+
+
+@dataclass(frozen=True, eq=False)
+class GyroBiases:
+    """Biases of k gyros over R rows, at the input, rad/s."""
+
+    bias: Array
+    """(k,)"""
+    sigma: Array
+    """(k,) Earth rate included."""
+    residual: Array
+    """(R, k)"""
+    noise: Array
+    """(R, k) one sigma of the independent noise of each reading."""
+    stated: bool
+    """Whether the noise was stated."""
+
+    @property
+    def chi2(self) -> float:
+        """Squared residuals against noise and Earth rate together."""
+        return float(np.sum(self.residual**2 / (self.noise**2 + EARTH_RATE**2 / 3)))
+
+    @property
+    def dof(self) -> int:
+        return self.residual.size - len(self.bias)
+
+
+def rest_biases(readings: Array, standard_errors: Array, repeatability: Array) -> GyroBiases:
+    """Weighted means over the rows.
+
+    Parameters
+    ----------
+    readings : (R, k) rad/s by the nominal scale, nominal offset taken off.
+    standard_errors : (R, k) rad/s; NaN where not stated: then the scatter of the rows is taken.
+    repeatability : (k,) rad/s.
+    """
+    R = len(readings)
+    scatter = readings.std(axis=0, ddof=1) if R > 1 else np.abs(readings[0])
+    known = np.isfinite(standard_errors)
+    noise = np.where(known, np.hypot(np.where(known, standard_errors, 0.0), repeatability), scatter)
+    variance = noise**2 + EARTH_RATE**2 / 3
+    bias = (readings / variance).sum(axis=0) / (1 / variance).sum(axis=0)
+    sigma = 1 / np.sqrt((1 / variance).sum(axis=0))
+    return GyroBiases(bias, sigma, readings - bias, noise, bool(known.all()))

@@ -1,0 +1,87 @@
+"""What a set of orientations tells: rank, weakest direction, covariance. Needs no readings, so planning can ask too.
+
+Without stated directions every common turn of axes and orientations fits the same, so the frame is held by the nominal
+axes: the estimated axes show no net turn against them, Σ e_nominal,i × e_i = 0 (the condition under which the Kabsch
+rotation of one set to the other is the identity). The covariance obeys that constraint.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimator.arrays import tangents
+from estimator.calibration.free.model import Rows, State, linearise
+from estimator.parameters import PLAUSIBLE
+from estimator.session import Array
+
+ROUNDING = 1e-12
+"""Eigenvalues of the information below this part of the largest are rounding, not knowledge."""
+
+QUADRATIC = 2
+"""Place of the quadratic term among a sensor's five elements."""
+
+
+@dataclass(frozen=True, eq=False)
+class Information:
+    """Knowledge of the free parameters. P = 5 m; fixed elements have zero rows and columns everywhere."""
+
+    basis: Array
+    """(P, F) orthonormal: the directions in which the parameters may move."""
+    seen: Array
+    """(P, rank) eigenvectors that the set determines."""
+    unseen: Array
+    """(P, F − rank) eigenvectors that it does not."""
+    variances: Array
+    """(rank,) of the seen ones."""
+    weakest: tuple[int, float]
+    """Element that leads the least known direction, and that direction's one sigma."""
+
+    @property
+    def rank(self) -> int:
+        return self.seen.shape[1]
+
+    @property
+    def parameters(self) -> int:
+        return self.basis.shape[1]
+
+    @property
+    def full(self) -> bool:
+        return self.rank == self.parameters
+
+    @property
+    def covariance(self) -> Array:
+        """(P, P) of the seen part: elements that an unseen direction moves have more than this."""
+        return (self.seen * self.variances) @ self.seen.T
+
+
+def movable(nominal_axes: Array, axes: Array, held: bool, quadratic: bool) -> Array:
+    """(5 m, F) orthonormal basis of what the search may move: no fixed elements, no net turn of the axes."""
+    m = len(axes)
+    free = np.ones((m, 5), dtype=bool)
+    free[:, QUADRATIC] = quadratic
+    basis = np.eye(5 * m)[:, free.ravel()]
+    if held:
+        return basis
+    constraint = np.zeros((3, m, 5))
+    constraint[:, :, 3:] = np.moveaxis(np.cross(nominal_axes[:, :, None], tangents(axes), axis=1), 0, 1)
+    reduced = constraint.reshape(3, 5 * m) @ basis
+    return basis @ np.linalg.svd(reduced)[2][3:].T
+
+
+def information(rows: Rows, state: State, quadratic: bool) -> Information:
+    """What orientations ``state.directions`` tell of sensors like ``state`` under the noise of ``rows``.
+
+    Only `rows.sigma`, `rows.prior` and `rows.nominal_axes` are used: the readings play no part.
+    """
+    basis = movable(rows.nominal_axes, state.axes, rows.held, quadratic)
+    values, vectors = np.linalg.eigh(basis.T @ linearise(rows, state).schur @ basis)
+    vectors = basis @ vectors
+    known = values > max(PLAUSIBLE**-2, ROUNDING * values[-1])
+    lead = int(np.argmax(np.abs(vectors[:, 0])))
+    return Information(
+        basis=basis,
+        seen=vectors[:, known],
+        unseen=vectors[:, ~known],
+        variances=1.0 / values[known],
+        weakest=(lead, float(1.0 / np.sqrt(max(values[0], 0.0) + 1.0))),
+    )

@@ -1,0 +1,140 @@
+"""From the search's elements to SI: covariance, what is observable, and what is known only together."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import null_space
+
+from estimator.calibration.free.gyros import GyroBiases
+from estimator.calibration.free.model import predicted
+from estimator.calibration.free.solve import Solution
+from estimator.parameters import ELEMENTS, PLAUSIBLE, SensorParameters
+from estimator.results import KnownCombination
+from estimator.session import ACCELEROMETER, Array, CalibrationSession
+
+
+@dataclass(frozen=True, eq=False)
+class Knowledge:
+    """What is known of m sensors. P = 5 m, R rows."""
+
+    parameters: SensorParameters
+    covariance: Array
+    """(P, P) SI; NaN where not observable."""
+    observable: Array
+    """(m, 5) bool"""
+    known: tuple[tuple[KnownCombination, ...], ...]
+    """(m,)"""
+    residual: Array
+    """(R, m) at the input."""
+    noise: Array
+    """(R, m) one sigma at the input."""
+
+
+def of_accelerometers(solution: Solution, scale: Array, g: float, factor: float) -> Knowledge:
+    """The accelerometers' parameters in SI with their covariance.
+
+    Parameters
+    ----------
+    scale : (m,) nominal scales, which the search worked in.
+    g : m/s².
+    factor : by which the covariance is enlarged.
+    """
+    state, rows, m = solution.state, solution.rows, len(scale)
+    gain = np.exp(state.log_scale)
+    parameters = SensorParameters(scale * gain, g * state.offset / gain, state.quadratic / g, state.axes)
+    T = to_bias(state.offset, gain)
+    covariance = factor * (T @ solution.knowledge.covariance @ T.T)
+    unseen = T @ solution.knowledge.unseen
+    observable = observed(covariance, unseen, np.linalg.norm(solution.knowledge.basis, axis=1) > 0)
+    factors = parameters.si_factors(np.full(m, g))
+    known = tuple(combinations(i, parameters, covariance, unseen, observable, factors) for i in range(m))
+    covariance = np.where(np.outer(observable, observable), covariance * np.outer(factors, factors), np.nan)
+    residual = (rows.y - predicted(state)) * (g / gain)
+    return Knowledge(parameters, covariance, observable.reshape(m, 5), known, residual, rows.sigma * (g / gain))
+
+
+def to_bias(offset: Array, gain: Array) -> Array:
+    """(5 m, 5 m) from the search's elements to ln K, b/g, c·g and the axis' turns: b/g = o·exp(−λ)."""
+    T = np.eye(5 * len(offset))
+    bias = 5 * np.arange(len(offset)) + 1
+    T[bias, bias] = 1 / gain
+    T[bias, bias - 1] = -offset / gain
+    return T
+
+
+def observed(covariance: Array, unseen: Array, free: Array) -> Array:
+    """(P,) bool: free, and no unseen direction of plausible size moves it by more than its own sigma.
+
+    An axis is observed with both its turns or not at all.
+    """
+    moved = PLAUSIBLE * np.linalg.norm(unseen, axis=1)
+    found = (free & (moved <= np.sqrt(np.diagonal(covariance)))).reshape(-1, 5)
+    found[:, 3:] = found[:, 3:].all(axis=1, keepdims=True)
+    return found.ravel()
+
+
+def combinations(
+    i: int, p: SensorParameters, covariance: Array, unseen: Array, observable: Array, factors: Array
+) -> tuple[KnownCombination, ...]:
+    """What is known of sensor i's lost scale, bias and quadratic: the combinations that unseen directions leave alone.
+
+    Dimensionless covariance (P, P) and unseen directions (P, k); ``factors`` (P,) take elements to SI.
+    """
+    own = slice(5 * i, 5 * i + 3)
+    lost = 5 * i + np.flatnonzero(~observable[own] & (np.linalg.norm(unseen[own], axis=1) > 0))
+    if len(lost) < 2:
+        return ()
+    values = np.array([p.scale[i], p.bias[i], p.quadratic[i]])[lost % 5]
+    found = []
+    for a in null_space(unseen[lost].T).T:
+        coefficients = a / factors[lost]
+        found.append(
+            KnownCombination(
+                coefficients={ELEMENTS[k % 5]: float(c) for k, c in zip(lost, coefficients, strict=True)},
+                value=float(coefficients @ values),
+                sigma=float(np.sqrt(a @ covariance[np.ix_(lost, lost)] @ a)),
+            )
+        )
+    return tuple(found)
+
+
+def of_gyros(gyros: GyroBiases, scale: Array, axes: Array) -> Knowledge:
+    """Biases, and nothing else, of k gyros."""
+    k = len(gyros.bias)
+    covariance = np.full((k, 5, k, 5), np.nan)
+    covariance[:, 1, :, 1] = np.diag(gyros.sigma**2)
+    observable = np.zeros((k, 5), dtype=bool)
+    observable[:, 1] = True
+    parameters = SensorParameters(scale, gyros.bias, np.zeros(k), axes)
+    square = covariance.reshape(5 * k, 5 * k)
+    return Knowledge(parameters, square, observable, ((),) * k, gyros.residual, gyros.noise)
+
+
+def merged(accelerometers: Knowledge, gyros: Knowledge, session: CalibrationSession) -> Knowledge:
+    """Both kinds in the session's order; the two are independent."""
+    is_gyro = np.array([s.kind != ACCELEROMETER for s in session.sensors])
+    order = np.argsort(np.concatenate([np.flatnonzero(~is_gyro), np.flatnonzero(is_gyro)]))
+    elements = (5 * order[:, None] + np.arange(5)).ravel()
+    a, b = accelerometers, gyros
+    covariance = np.zeros((5 * len(order), 5 * len(order)))
+    split = len(a.covariance)
+    covariance[:split, :split], covariance[split:, split:] = a.covariance, b.covariance
+    observable = np.concatenate([a.observable, b.observable])
+    unknown = ~observable.ravel()
+    covariance[unknown, :] = np.nan
+    covariance[:, unknown] = np.nan
+    p, q = a.parameters, b.parameters
+    known = a.known + b.known
+    return Knowledge(
+        SensorParameters(
+            np.concatenate([p.scale, q.scale])[order],
+            np.concatenate([p.bias, q.bias])[order],
+            np.concatenate([p.quadratic, q.quadratic])[order],
+            np.concatenate([p.axis, q.axis])[order],
+        ),
+        covariance[np.ix_(elements, elements)],
+        observable[order],
+        tuple(known[k] for k in order),
+        np.concatenate([a.residual, b.residual], axis=1)[:, order],
+        np.concatenate([a.noise, b.noise], axis=1)[:, order],
+    )

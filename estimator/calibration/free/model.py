@@ -1,0 +1,172 @@
+"""Readings in unknown orientations: the dimensionless model, its Jacobian, and the orientations eliminated.
+
+Theory
+------
+With readings y = (u − offset)/(K_nominal·g), orientation d_j a unit vector and s = e_i·d_j,
+
+    y_ij = exp(λ_i)·(s + γ_i·s²) + o_i + noise        λ = ln(K/K_nominal), γ = c·g, o = exp(λ)·b/g
+
+The offset o stands in for the bias while solving, so that an offset of half a converter's range stays linear. Each
+d_j has two degrees of freedom of its own (and, where the session states directions, a normal prior about the stated
+one). They touch one orientation only, so the normal matrix of all unknowns is
+
+    [ N   B ]      N (5m, 5m) block diagonal, one block a sensor
+    [ Bᵀ  D ]      D one 2×2 block an orientation
+
+and the Schur complement S = N − B D⁻¹ Bᵀ is the information that the sensors' parameters are left with: the same as
+variable projection of the orientations. R orientations, m sensors.
+Source: multi-parameter optimisation paper, functional (5), in its maximum-likelihood form.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from estimator.arrays import tangents, unit
+from estimator.session import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """What was measured, dimensionless. R orientations, m accelerometers."""
+
+    y: Array
+    """(R, m) readings over nominal scale times g, nominal offset taken off."""
+    sigma: Array
+    """(R, m) one sigma of y."""
+    directions: Array
+    """(R, 3) stated directions; zeros where not stated."""
+    prior: Array
+    """(R,) inverse variance of the stated directions, rad⁻²; 0 where not stated."""
+    nominal_axes: Array
+    """(m, 3)"""
+
+    @property
+    def held(self) -> bool:
+        """Whether stated directions hold the block's frame."""
+        return bool(np.any(self.prior > 0))
+
+    def weighted(self, sigma: Array) -> "Rows":
+        """The same readings under another noise, (R, m) or anything that broadcasts to it."""
+        return replace(self, sigma=np.broadcast_to(sigma, self.y.shape))
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """Where the search stands: parameters of m sensors and R orientations."""
+
+    log_scale: Array
+    """(m,) λ"""
+    offset: Array
+    """(m,) o"""
+    quadratic: Array
+    """(m,) γ"""
+    axes: Array
+    """(m, 3)"""
+    directions: Array
+    """(R, 3)"""
+
+    def stepped(self, parameters: Array, turns: Array) -> "State":
+        """Moved by (5 m,) parameters and (R, 2) turns of the orientations."""
+        step = parameters.reshape(-1, 5)
+        return State(
+            log_scale=self.log_scale + step[:, 0],
+            offset=self.offset + step[:, 1],
+            quadratic=self.quadratic + step[:, 2],
+            axes=unit(self.axes + (tangents(self.axes) @ step[:, 3:, None])[..., 0]),
+            directions=unit(self.directions + (tangents(self.directions) @ turns[..., None])[..., 0]),
+        )
+
+    def turned(self, rotation: Array) -> "State":
+        """The block's frame turned: v → rotation·v for every axis and every orientation."""
+        return replace(self, axes=self.axes @ rotation.T, directions=self.directions @ rotation.T)
+
+
+def predicted(state: State) -> Array:
+    """(R, m) what the sensors should read."""
+    s = state.directions @ state.axes.T
+    return np.exp(state.log_scale) * (s + state.quadratic * s * s) + state.offset
+
+
+def cost(rows: Rows, state: State) -> float:
+    """χ²: squared residuals of the readings and of the stated directions, in their sigmas."""
+    readings = np.sum(((rows.y - predicted(state)) / rows.sigma) ** 2)
+    return float(readings + np.sum(rows.prior[:, None] * (rows.directions - state.directions) ** 2))
+
+
+@dataclass(frozen=True, eq=False)
+class Linear:
+    """One linearisation, in units of the readings' sigmas."""
+
+    residual: Array
+    """(R, m)"""
+    own: Array
+    """(R, m, 5) derivative of each reading by its own sensor's parameters."""
+    shared: Array
+    """(R, m, 2) derivative by the orientation's two turns."""
+    inverse: Array
+    """(R, 2, 2) D⁻¹"""
+    coupling: Array
+    """(R, 5 m, 2) B"""
+    gradient: Array
+    """(5 m,) right-hand side of the parameters alone."""
+    turn_gradient: Array
+    """(R, 2) right-hand side of the orientations."""
+    full: Array
+    """(5 m,) diagonal of N."""
+    schur: Array
+    """(5 m, 5 m) S"""
+
+    @property
+    def reduced(self) -> Array:
+        """(5 m,) right-hand side with the orientations eliminated."""
+        moved = (self.inverse @ self.turn_gradient[..., None])[..., 0]
+        return self.gradient - np.tensordot(self.coupling, moved, axes=([0, 2], [0, 1]))
+
+    def turns(self, step: Array) -> Array:
+        """(R, 2) the orientations' best turns for a step (5 m,) of the parameters."""
+        left = self.turn_gradient - np.tensordot(self.coupling, step, axes=(1, 0))
+        return (self.inverse @ left[..., None])[..., 0]
+
+
+def jacobian(state: State) -> tuple[Array, Array]:
+    """Derivatives of `predicted`: (R, m, 5) by each sensor's parameters, (R, m, 2) by the orientation's turns."""
+    s = state.directions @ state.axes.T
+    gain = np.exp(state.log_scale)
+    slope = gain * (1.0 + 2.0 * state.quadratic * s)
+    own = np.empty((*s.shape, 5))
+    own[..., 0] = gain * (s + state.quadratic * s * s)
+    own[..., 1] = 1.0
+    own[..., 2] = gain * s * s
+    own[..., 3:] = slope[..., None] * np.einsum("rk,mka->rma", state.directions, tangents(state.axes))
+    shared = slope[..., None] * np.einsum("mk,rka->rma", state.axes, tangents(state.directions))
+    return own, shared
+
+
+def linearise(rows: Rows, state: State) -> Linear:
+    """Jacobian, normal equations and Schur complement at a state."""
+    R, m = rows.y.shape
+    own, shared = jacobian(state)
+    own, shared = own / rows.sigma[..., None], shared / rows.sigma[..., None]
+    residual = (rows.y - predicted(state)) / rows.sigma
+    missed = np.einsum("rk,rka->ra", rows.directions - state.directions, tangents(state.directions))
+    D = np.swapaxes(shared, 1, 2) @ shared + rows.prior[:, None, None] * np.eye(2)
+    inverse = np.linalg.inv(D)
+    coupling = (own[..., :, None] * shared[..., None, :]).reshape(R, 5 * m, 2)
+    blocks = np.einsum("rmi,rmj->mij", own, own)
+    spread = np.zeros((m, 5, m, 5))
+    spread[np.arange(m), :, np.arange(m), :] = blocks
+    N = spread.reshape(5 * m, 5 * m)
+    flat = np.swapaxes(coupling @ inverse, 1, 2).reshape(2 * R, 5 * m)
+    schur = N - np.swapaxes(coupling, 1, 2).reshape(2 * R, 5 * m).T @ flat
+    return Linear(
+        residual=residual,
+        own=own,
+        shared=shared,
+        inverse=inverse,
+        coupling=coupling,
+        gradient=np.einsum("rmi,rm->mi", own, residual).ravel(),
+        turn_gradient=np.einsum("rma,rm->ra", shared, residual) + rows.prior[:, None] * missed,
+        full=np.diagonal(N).copy(),
+        schur=(schur + schur.T) / 2,
+    )

@@ -1,0 +1,106 @@
+"""The `Calibration` of a block in unknown orientations, from what is known of its sensors."""
+
+import numpy as np
+from scipy.stats import chi2 as chi_squared
+
+from estimator.arrays import tangents
+from estimator.calibration.free.gyros import GyroBiases
+from estimator.calibration.free.knowledge import Knowledge
+from estimator.calibration.free.solve import Solution
+from estimator.parameters import names, units
+from estimator.results import Calibration, Estimate, Fit, Residuals, SensorCalibration
+from estimator.session import Array, CalibrationSession
+
+METHOD = "arbitrary-orientations/maximum-likelihood"
+
+UNLIKELY = 1e-3
+"""p-value below which the stated noise does not explain the residuals and the covariance is enlarged."""
+
+
+def p_value(chi2: float, dof: int, stated: bool) -> float | None:
+    """Probability of a χ² at least this large; None without stated noise or without degrees of freedom."""
+    return float(chi_squared.sf(chi2, dof)) if stated and dof > 0 else None
+
+
+def enlargement(chi2: float, dof: int, stated: bool) -> float:
+    """Factor that makes the covariance agree with residuals that the stated noise cannot explain."""
+    p = p_value(chi2, dof, stated)
+    return chi2 / dof if p is not None and p < UNLIKELY else 1.0
+
+
+def fit_of_accelerometers(
+    solution: Solution, known: Knowledge, stated: bool, factor: float, element_names: tuple[str, ...]
+) -> Fit:
+    """How well the accelerometers fit; ``element_names`` are theirs."""
+    lead, sigma = solution.knowledge.weakest
+    return Fit(
+        chi2=solution.chi2,
+        dof=solution.dof,
+        p_value=p_value(solution.chi2, solution.dof, stated),
+        residual_rms=float(np.sqrt(np.mean(known.residual**2))),
+        noise="stated" if stated else "estimated",
+        covariance_factor=factor,
+        rank=solution.knowledge.rank,
+        parameters=solution.knowledge.parameters,
+        weakest=(element_names[lead], sigma),
+        iterations=solution.iterations,
+        converged=solution.converged,
+    )
+
+
+def fit_of_gyros(gyros: GyroBiases, element_names: tuple[str, ...]) -> Fit:
+    """How well one bias a gyro fits, the Earth's rate counted as noise; for a block of gyros alone."""
+    worst = int(np.argmax(gyros.sigma))
+    return Fit(
+        chi2=gyros.chi2,
+        dof=gyros.dof,
+        p_value=p_value(gyros.chi2, gyros.dof, gyros.stated),
+        residual_rms=float(np.sqrt(np.mean(gyros.residual**2))),
+        noise="stated" if gyros.stated else "estimated",
+        covariance_factor=1.0,
+        rank=len(gyros.bias),
+        parameters=len(gyros.bias),
+        weakest=(element_names[5 * worst + 1], 1.0),
+        iterations=0,
+        converged=True,
+    )
+
+
+def sensor_result(i: int, known: Knowledge, sigma: Array, session: CalibrationSession) -> SensorCalibration:
+    """What the session says of sensor i; ``sigma`` (m, 5)."""
+    p, sensor, own = known.parameters, session.sensors[i], slice(5 * i + 3, 5 * i + 5)
+    seen = [bool(s) for s in known.observable[i]]
+    values = (p.scale[i], p.bias[i], p.quadratic[i])
+    scale, bias, quadratic = (
+        Estimate(float(v), float(s), float(s)) if ok else Estimate(None, None)
+        for v, s, ok in zip(values, sigma[i, :3], seen[:3], strict=True)
+    )
+    return SensorCalibration(
+        name=sensor.name,
+        kind=sensor.kind,
+        scale=scale,
+        bias=bias,
+        quadratic=quadratic,
+        axis=p.axis[i] if seen[3] else None,
+        axis_tangents=tangents(p.axis[i]),
+        axis_covariance=known.covariance[own, own],
+        observable=dict(zip(("scale", "bias", "quadratic", "axis"), seen, strict=False)),
+        known=known.known[i],
+    )
+
+
+def report(session: CalibrationSession, known: Knowledge, fit: Fit, gauge: str) -> Calibration:
+    """Everything that is known, named."""
+    sigma = np.sqrt(np.diagonal(known.covariance)).reshape(-1, 5)
+    return Calibration(
+        unit=session.unit,
+        method=METHOD,
+        sensors=tuple(sensor_result(i, known, sigma, session) for i in range(len(session.sensors))),
+        names=names(session.sensors),
+        units=units(session.sensors),
+        covariance=known.covariance,
+        repeatability=known.covariance,
+        fit=fit,
+        residuals=Residuals(known.residual, known.noise, None, None, session.time, session.temperature),
+        gauge=gauge,
+    )

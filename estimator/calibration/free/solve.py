@@ -1,0 +1,139 @@
+"""Levenberg–Marquardt on the parameters with the orientations eliminated, and the noise where none is stated.
+
+The damping acts on the parameters alone: given them, the orientations are well determined by every row. Unstated noise
+is one variance a sensor, estimated from the residuals and the redundancy that each sensor's readings have left
+(Förstner's variance components); with little redundancy the sensors share one variance.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from estimator.calibration.free.information import Information, information, movable
+from estimator.calibration.free.model import Linear, Rows, State, cost, linearise
+from estimator.session import Array
+
+MAX_ITERATIONS = 60
+CONVERGED = 1e-10
+"""Expected fall of χ² below which the search has ended: steps of 1e-5 standard errors."""
+
+STILL = 1e-13
+"""Dimensionless steps below this are rounding."""
+
+LEAST_DAMPING = 1e-10
+"""Keeps directions that the set does not determine where they are."""
+
+LONGEST = 0.5
+"""Dimensionless; no element moves further in one step."""
+
+NOISE_ROUNDS = 25
+NOISE_SETTLED = 1e-4
+"""Relative change of the noise between rounds below which it has settled."""
+
+ENOUGH_REDUNDANCY = 10.0
+"""Redundancy that a sensor's readings need to have a noise variance of their own."""
+
+LEAST_NOISE = 1e-12
+"""Dimensionless; readings are not better than rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Where the search ended."""
+
+    rows: Rows
+    """With the noise that was used."""
+    state: State
+    chi2: float
+    knowledge: Information
+    iterations: int
+    converged: bool
+
+    @property
+    def dof(self) -> int:
+        """Readings and stated directions, less what was estimated: parameters seen and two turns an orientation."""
+        stated = 2 * int(np.count_nonzero(self.rows.prior))
+        R, m = self.rows.y.shape
+        return R * m + stated - 2 * R - self.knowledge.rank
+
+
+def held_frame(rows: Rows, state: State) -> State:
+    """The state with its frame turned so that the axes show no net turn against the nominal ones (Kabsch 1976)."""
+    if rows.held:
+        return state
+    U, _, Vt = np.linalg.svd(rows.nominal_axes.T @ state.axes)
+    return state.turned(U @ np.diag([1.0, 1.0, np.linalg.det(U @ Vt)]) @ Vt)
+
+
+def search(rows: Rows, state: State, quadratic: bool) -> Solution:
+    """Least χ² from a start. Not reaching it is a result (`converged` False)."""
+    state = held_frame(rows, state)
+    damping, chi2 = 1e-4, cost(rows, state)
+    linear, iterations, converged = linearise(rows, state), 0, False
+    basis = movable(rows.nominal_axes, state.axes, rows.held, quadratic)
+    while not converged and iterations < MAX_ITERATIONS:
+        iterations += 1
+        step, turns, fall = proposal(linear, basis, damping)
+        trial = held_frame(rows, state.stepped(step, turns))
+        found = cost(rows, trial)
+        small = max(np.abs(step).max(), np.abs(turns).max()) < STILL
+        converged = bool(small or fall < CONVERGED * max(1.0, chi2 * CONVERGED))
+        if found < chi2:
+            state, chi2, damping = trial, found, max(damping / 10, LEAST_DAMPING)
+            linear = linearise(rows, state)
+            basis = movable(rows.nominal_axes, state.axes, rows.held, quadratic)
+        else:
+            damping *= 10
+    return Solution(rows, state, chi2, information(rows, state, quadratic), iterations, converged)
+
+
+def proposal(linear: Linear, basis: Array, damping: float) -> tuple[Array, Array, float]:
+    """Damped step of the parameters (5 m,), of the orientations (R, 2), and the fall of χ² that it promises."""
+    S = basis.T @ linear.schur @ basis
+    scale = basis.T @ (linear.full[:, None] * basis)
+    right = basis.T @ linear.reduced
+    inside = np.linalg.solve(S + damping * scale, right)
+    inside = inside * min(1.0, LONGEST / max(float(np.abs(inside).max()), LONGEST))
+    step = basis @ inside
+    turns = linear.turns(step)
+    turns = turns * min(1.0, LONGEST / max(float(np.abs(turns).max()), LONGEST))
+    direct = np.einsum("ra,rab,rb->", linear.turn_gradient, linear.inverse, linear.turn_gradient)
+    return step, turns, float(right @ inside + direct)
+
+
+def redundancy(rows: Rows, state: State, knowledge: Information) -> Array:
+    """(R, m) part of each reading's variance that the fit leaves in its residual: 1 − leverage."""
+    linear = linearise(rows, state)
+    m = rows.y.shape[1]
+    through = (linear.shared[:, :, None, :] @ linear.inverse[:, None])[:, :, 0, :]
+    direct = (through * linear.shared).sum(axis=-1)
+    root = knowledge.seen * np.sqrt(knowledge.variances)
+    moved = np.einsum("rma,rpa->rmp", through, linear.coupling) @ root
+    own = np.einsum("rmi,mif->rmf", linear.own, root.reshape(m, 5, -1))
+    return np.clip(1.0 - direct - ((own - moved) ** 2).sum(axis=-1), 0.0, 1.0)
+
+
+def noise_variance(solution: Solution) -> Array:
+    """(m,) factors by which the variances used must be multiplied to agree with the residuals."""
+    rows = solution.rows
+    left = redundancy(rows, solution.state, solution.knowledge).sum(axis=0)
+    squares = (linearise(rows, solution.state).residual ** 2).sum(axis=0)
+    common = squares.sum() / max(left.sum(), 1.0)
+    if left.min() < ENOUGH_REDUNDANCY:
+        return np.full(len(left), common)
+    return squares / left
+
+
+def search_with_noise(rows: Rows, state: State, quadratic: bool) -> Solution:
+    """The search with the noise estimated on the way; ``rows.sigma`` gives the relative weights to begin with."""
+    solution = search(rows, state, quadratic)
+    iterations = solution.iterations
+    for _ in range(NOISE_ROUNDS):
+        factor = np.sqrt(noise_variance(solution))
+        sigma = np.maximum(solution.rows.sigma * factor, LEAST_NOISE)
+        change = np.abs(sigma / solution.rows.sigma - 1.0).max()
+        solution = search(rows.weighted(sigma), solution.state, quadratic)
+        iterations += solution.iterations
+        if change < NOISE_SETTLED:
+            break
+    return replace(solution, iterations=iterations)

@@ -1,0 +1,82 @@
+"""Where the search starts: linear estimates, good to a few per cent, from readings alone or with stated directions.
+
+Without directions: the readings lie on an ellipsoid in a three-dimensional affine subspace of the m readings. The
+subspace is found by principal components, the ellipsoid by linear least squares about a sphere (the least change of
+the sphere that explains the readings, so that too few or too plain orientations still give a start), and the rotation
+that is left by orthogonal Procrustes against the nominal axes.
+Source: the ellipsoid fit is the classical multi-position calibration.
+"""
+
+import numpy as np
+
+from estimator.arrays import unit
+from estimator.calibration.free.model import Rows, State
+from estimator.session import Array
+
+PLAIN = 0.02
+"""Singular values below this part of the largest carry noise rather than shape."""
+
+SLIGHT = 0.05
+"""The same for the quadric: below it the sphere's shape is kept."""
+
+
+def start(rows: Rows) -> State:
+    """Parameters and orientations from linear estimates."""
+    sensitivity, offset = with_directions(rows) if rows.held else from_shape(rows)
+    gain = np.linalg.norm(sensitivity, axis=1)
+    directions = unit((rows.y - offset) @ np.linalg.pinv(sensitivity).T)
+    if rows.held:
+        directions = np.where(rows.prior[:, None] > 0, rows.directions, directions)
+    return State(np.log(gain), offset, np.zeros_like(gain), unit(sensitivity), directions)
+
+
+def with_directions(rows: Rows) -> tuple[Array, Array]:
+    """Sensitivity (m, 3) and offset (m,) by least squares on the stated directions, about the nominal values."""
+    stated = rows.prior > 0
+    design = np.column_stack([rows.directions[stated], np.ones(int(stated.sum()))])
+    expected = rows.directions[stated] @ rows.nominal_axes.T
+    change = np.linalg.pinv(design, rcond=PLAIN) @ (rows.y[stated] - expected)
+    return rows.nominal_axes + change[:3].T, change[3]
+
+
+def from_shape(rows: Rows) -> tuple[Array, Array]:
+    """Sensitivity (m, 3) and offset (m,) from the ellipsoid that the readings lie on."""
+    centre = rows.y.mean(axis=0)
+    basis = subspace(rows.y - centre, rows.nominal_axes)
+    inward = np.linalg.pinv(rows.nominal_axes) @ basis
+    points = (rows.y - centre) @ basis @ inward.T
+    middle, root = ellipsoid(points)
+    to_readings = basis @ np.linalg.inv(inward)
+    shaped = to_readings @ root
+    U, _, Vt = np.linalg.svd(shaped.T @ rows.nominal_axes)
+    return shaped @ U @ Vt, centre + to_readings @ middle
+
+
+def subspace(centred: Array, nominal_axes: Array) -> Array:
+    """(m, 3) orthonormal basis of the readings' variation; of the nominal axes where it is plain."""
+    _, spread, Vt = np.linalg.svd(centred, full_matrices=False)
+    if len(spread) >= 3 and spread[2] > PLAIN * spread[0]:
+        return Vt[:3].T
+    return np.linalg.qr(nominal_axes)[0]
+
+
+def ellipsoid(points: Array) -> tuple[Array, Array]:
+    """Centre (3,) and shape L (3, 3) of points ≈ centre + L·d, d unit vectors; L symmetric.
+
+    First the best sphere; then, in its units, vᵀ(I + Q)v + q·v = 1 with the least Q and q.
+    """
+    design = np.column_stack([2 * points, np.ones(len(points))])
+    sphere = np.linalg.pinv(design, rcond=PLAIN) @ (points**2).sum(axis=1)
+    middle = sphere[:3]
+    radius = np.sqrt(max(float(np.mean(((points - middle) ** 2).sum(axis=1))), np.finfo(float).tiny))
+    v = (points - middle) / radius
+    x, y, z = v.T
+    quadric = np.column_stack([x * x, y * y, z * z, 2 * x * y, 2 * x * z, 2 * y * z, v])
+    found = np.linalg.pinv(quadric, rcond=SLIGHT) @ (1.0 - (v**2).sum(axis=1))
+    Q = np.eye(3) + found[[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3)
+    values, vectors = np.linalg.eigh(Q)
+    if values[0] < 0.1:
+        return middle, radius * np.eye(3)
+    offset = -0.5 * np.linalg.solve(Q, found[6:])
+    size = 1.0 + offset @ Q @ offset
+    return middle + radius * offset, radius * (vectors * np.sqrt(size / values)) @ vectors.T
