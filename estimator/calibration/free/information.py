@@ -68,6 +68,11 @@ def movable(nominal_axes: Array, axes: Array, held: bool, quadratic: bool) -> Ar
     return basis @ np.linalg.svd(reduced)[2][3:].T
 
 
+def unseen_below(values: Array) -> float:
+    """Eigenvalue of the information at or below which a direction counts as not determined."""
+    return max(PLAUSIBLE**-2, ROUNDING * float(values[-1]))
+
+
 def information(rows: Rows, state: State, quadratic: bool) -> Information:
     """What orientations ``state.directions`` tell of sensors like ``state`` under the noise of ``rows``.
 
@@ -76,7 +81,7 @@ def information(rows: Rows, state: State, quadratic: bool) -> Information:
     basis = movable(rows.nominal_axes, state.axes, rows.held, quadratic)
     values, vectors = np.linalg.eigh(basis.T @ linearise(rows, state).schur @ basis)
     vectors = basis @ vectors
-    known = values > max(PLAUSIBLE**-2, ROUNDING * values[-1])
+    known = values > unseen_below(values)
     lead = int(np.argmax(np.abs(vectors[:, 0])))
     return Information(
         basis=basis,

@@ -9,19 +9,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from estimator.calibration.free.information import Information, information, movable
+from estimator.calibration.free.information import Information, information, movable, unseen_below
 from estimator.calibration.free.model import Linear, Rows, State, cost, linearise
 from estimator.session import Array
 
-MAX_ITERATIONS = 60
+MAX_ITERATIONS = 200
 CONVERGED = 1e-10
 """Expected fall of χ² below which the search has ended: steps of 1e-5 standard errors."""
 
 STILL = 1e-13
 """Dimensionless steps below this are rounding."""
 
-LEAST_DAMPING = 1e-10
-"""Keeps directions that the set does not determine where they are."""
+LEAST_DAMPING = 1e-12
 
 LONGEST = 0.5
 """Dimensionless; no element moves further in one step."""
@@ -88,13 +87,17 @@ def search(rows: Rows, state: State, quadratic: bool) -> Solution:
 
 
 def proposal(linear: Linear, basis: Array, damping: float) -> tuple[Array, Array, float]:
-    """Damped step of the parameters (5 m,), of the orientations (R, 2), and the fall of χ² that it promises."""
-    S = basis.T @ linear.schur @ basis
-    scale = basis.T @ (linear.full[:, None] * basis)
-    right = basis.T @ linear.reduced
-    inside = np.linalg.solve(S + damping * scale, right)
+    """Damped step of the parameters (5 m,), of the orientations (R, 2), and the fall of χ² that it promises.
+
+    Directions that the set does not determine stay where they are.
+    """
+    values, vectors = np.linalg.eigh(basis.T @ linear.schur @ basis)
+    right = vectors.T @ (basis.T @ linear.reduced)
+    inside = np.where(values > unseen_below(values), right, 0.0) / (
+        np.maximum(values, 0.0) + damping * linear.full.max()
+    )
     inside = inside * min(1.0, LONGEST / max(float(np.abs(inside).max()), LONGEST))
-    step = basis @ inside
+    step = basis @ (vectors @ inside)
     turns = linear.turns(step)
     turns = turns * min(1.0, LONGEST / max(float(np.abs(turns).max()), LONGEST))
     direct = np.einsum("ra,rab,rb->", linear.turn_gradient, linear.inverse, linear.turn_gradient)

@@ -10,19 +10,28 @@ Source: the ellipsoid fit is the classical multi-position calibration.
 import numpy as np
 
 from estimator.arrays import unit
-from estimator.calibration.free.model import Rows, State
+from estimator.calibration.free.model import Rows, State, cost
 from estimator.session import Array
 
 PLAIN = 0.02
 """Singular values below this part of the largest carry noise rather than shape."""
 
-SLIGHT = 0.05
-"""The same for the quadric: below it the sphere's shape is kept."""
+SLIGHT = (0.05, 0.005, 0.0005)
+"""The same for the quadric, tried in turn: below it the sphere's shape is kept. Few orientations need a small one
+when they are precise and a large one when they are plain."""
+
+FLAT = 1e-3
+"""Ratio of the quadric's eigenvalues below which it is no ellipsoid."""
 
 
 def start(rows: Rows) -> State:
-    """Parameters and orientations from linear estimates."""
-    sensitivity, offset = with_directions(rows) if rows.held else from_shape(rows)
+    """Parameters and orientations from linear estimates; of several the one that fits best."""
+    found = [with_directions(rows)] if rows.held else [from_shape(rows, slight) for slight in SLIGHT]
+    return min((oriented(rows, *linear) for linear in found), key=lambda state: cost(rows, state))
+
+
+def oriented(rows: Rows, sensitivity: Array, offset: Array) -> State:
+    """State with sensitivity (m, 3), offset (m,) and the orientations that fit them best."""
     gain = np.linalg.norm(sensitivity, axis=1)
     directions = unit((rows.y - offset) @ np.linalg.pinv(sensitivity).T)
     if rows.held:
@@ -39,13 +48,13 @@ def with_directions(rows: Rows) -> tuple[Array, Array]:
     return rows.nominal_axes + change[:3].T, change[3]
 
 
-def from_shape(rows: Rows) -> tuple[Array, Array]:
+def from_shape(rows: Rows, slight: float) -> tuple[Array, Array]:
     """Sensitivity (m, 3) and offset (m,) from the ellipsoid that the readings lie on."""
     centre = rows.y.mean(axis=0)
     basis = subspace(rows.y - centre, rows.nominal_axes)
     inward = np.linalg.pinv(rows.nominal_axes) @ basis
     points = (rows.y - centre) @ basis @ inward.T
-    middle, root = ellipsoid(points)
+    middle, root = ellipsoid(points, slight)
     to_readings = basis @ np.linalg.inv(inward)
     shaped = to_readings @ root
     U, _, Vt = np.linalg.svd(shaped.T @ rows.nominal_axes)
@@ -60,7 +69,7 @@ def subspace(centred: Array, nominal_axes: Array) -> Array:
     return np.linalg.qr(nominal_axes)[0]
 
 
-def ellipsoid(points: Array) -> tuple[Array, Array]:
+def ellipsoid(points: Array, slight: float) -> tuple[Array, Array]:
     """Centre (3,) and shape L (3, 3) of points ≈ centre + L·d, d unit vectors; L symmetric.
 
     First the best sphere; then, in its units, vᵀ(I + Q)v + q·v = 1 with the least Q and q.
@@ -72,10 +81,10 @@ def ellipsoid(points: Array) -> tuple[Array, Array]:
     v = (points - middle) / radius
     x, y, z = v.T
     quadric = np.column_stack([x * x, y * y, z * z, 2 * x * y, 2 * x * z, 2 * y * z, v])
-    found = np.linalg.pinv(quadric, rcond=SLIGHT) @ (1.0 - (v**2).sum(axis=1))
+    found = np.linalg.pinv(quadric, rcond=slight) @ (1.0 - (v**2).sum(axis=1))
     Q = np.eye(3) + found[[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3)
     values, vectors = np.linalg.eigh(Q)
-    if values[0] < 0.1:
+    if values[0] < FLAT * values[-1]:
         return middle, radius * np.eye(3)
     offset = -0.5 * np.linalg.solve(Q, found[6:])
     size = 1.0 + offset @ Q @ offset
