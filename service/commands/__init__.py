@@ -1,0 +1,1 @@
+"""The commands of `imu-health`, one a file; `service.cli` joins them."""

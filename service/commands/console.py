@@ -1,0 +1,82 @@
+"""What every command shares: where it writes, its exit codes, and one bad file not stopping the others."""
+
+import json
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+from estimator.errors import Problem, SessionError
+from service.errors import RefusedError
+
+DONE = 0
+FAILED = 1
+UNUSABLE = 2
+
+T = TypeVar("T")
+
+Files = Annotated[list[Path], typer.Argument(metavar="FILE...", help="Session files.", show_default=False)]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON: one object; with several files one a line.")]
+Server = Annotated[str, typer.Option(help="Address of the service.", envvar="IMU_HEALTH_SERVER")]
+DEFAULT_SERVER = "http://127.0.0.1:8000"
+
+
+def screen() -> Console:
+    """Standard output for people; wide enough for a table when it is not a terminal."""
+    return Console(width=None if sys.stdout.isatty() else 120)
+
+
+def say(line: str) -> None:
+    """One line on standard error."""
+    typer.echo(" ".join(line.split()), err=True)
+
+
+def print_json(document: Any) -> None:
+    """One JSON document on one line of standard output."""
+    typer.echo(json.dumps(document, ensure_ascii=False, allow_nan=False))
+
+
+def problem_line(file: Path, problems: Iterable[Problem]) -> str:
+    """Everything wrong with a file on one line: the file, then each field, row and what to do."""
+    return f"{file}: " + "; ".join(map(str, problems))
+
+
+def for_each(files: list[Path], work: Callable[[Path], T], show: Callable[[T], None], doing: str) -> None:
+    """Works on every file in order and shows each result; unusable ones get a line, and exit code 2 at the end."""
+    unusable = 0
+    with progress(len(files), doing) as advance:
+        for file in files:
+            try:
+                show(work(file))
+            except (SessionError, RefusedError) as fault:
+                say(problem_line(file, fault.problems))
+                unusable += 1
+            except OSError as fault:
+                say(f"{file}: file: {fault.strerror or fault}; check the name and that it can be read")
+                unusable += 1
+            advance()
+    if unusable:
+        raise typer.Exit(UNUSABLE)
+
+
+@contextmanager
+def progress(total: int, doing: str) -> Iterator[Callable[[], None]]:
+    """A bar on standard error, only on a terminal and only for more than one thing; yields what moves it on."""
+    bar = Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeRemainingColumn(),
+        console=Console(stderr=True),
+        transient=True,
+        disable=total < 2 or not sys.stderr.isatty(),
+        redirect_stdout=sys.stdout.isatty(),
+    )
+    with bar:
+        task = bar.add_task(doing, total=total)
+        yield lambda: bar.advance(task)

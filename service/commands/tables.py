@@ -1,0 +1,86 @@
+"""A calibration as people read it: tables in µg, ppm, arcsec, °/h, and the quality of the fit in words."""
+
+from collections.abc import Iterator
+
+from rich.console import Group, RenderableType
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
+
+from estimator.results import Calibration, Estimate, Fit, SensorCalibration
+from estimator.session import CalibrationSession, Sensor
+from service.pages.units import deviation_unit, measured, number
+
+PARAMETERS = ("scale", "bias", "quadratic", "axis")
+HEADINGS = {"scale": "scale, off nominal", "bias": "bias", "quadratic": "quadratic", "axis": "axis, block axes"}
+UNSEEN = "not observable"
+UNLIKELY = 0.001
+DOUBTFUL = 0.05
+
+
+def calibration_view(session: CalibrationSession, calibration: Calibration) -> RenderableType:
+    """The whole calibration of one session; uncertainties are one sigma, the stand's errors included."""
+    return Group(_heading(session, calibration), _parameters(session, calibration), *_notes(calibration), Text(""))
+
+
+def _heading(session: CalibrationSession, calibration: Calibration) -> Text:
+    method = calibration.method.replace("/", ", ").replace("-", " ")
+    place = f" on {session.stand.id}" if session.stand else ""
+    when = f", {session.started_at}" if session.started_at else ""
+    return Text.assemble((session.unit, "bold"), f"{when}{place}: {method}; ± is one sigma, all sources")
+
+
+def _parameters(session: CalibrationSession, calibration: Calibration) -> Table:
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    table.add_column("sensor", no_wrap=True)
+    for parameter in PARAMETERS:
+        table.add_column(HEADINGS[parameter], justify="right", no_wrap=True)
+    table.add_column("± axis", justify="right", no_wrap=True)
+    for declared, sensor in zip(session.sensors, calibration.sensors, strict=True):
+        table.add_row(escape(sensor.name), *_cells(declared, sensor))
+    return table
+
+
+def _cells(declared: Sensor, sensor: SensorCalibration) -> Iterator[str]:
+    off = _off_nominal(sensor.scale, declared.nominal_scale)
+    for parameter, estimate in (("scale", off), ("bias", sensor.bias), ("quadratic", sensor.quadratic)):
+        unit = deviation_unit(sensor.kind, parameter, estimate.value or 0.0)
+        yield UNSEEN if estimate.value is None else measured(estimate.value, estimate.sigma, unit)
+    yield UNSEEN if sensor.axis is None else " ".join(number(x, 6) for x in sensor.axis)
+    unit = deviation_unit(sensor.kind, "axis", sensor.axis_sigma or 0.0)
+    yield "" if sensor.axis_sigma is None else f"{number(unit.of(sensor.axis_sigma), 1)} {unit.label}"
+
+
+def _off_nominal(scale: Estimate, nominal: float) -> Estimate:
+    """The scale factor relative to the nominal one."""
+    if scale.value is None or scale.sigma is None:
+        return scale
+    return Estimate(scale.value / nominal - 1, scale.sigma / nominal)
+
+
+def _notes(calibration: Calibration) -> Iterator[Text]:
+    """Sentences: how well the model fits, and what this session cannot see."""
+    yield Text(fit_in_words(calibration.fit))
+    for sensor in calibration.sensors:
+        unseen = [name for name in PARAMETERS if not sensor.observable[name]]
+        if unseen:
+            yield Text(f"{sensor.name}: this session does not observe {', '.join(unseen)}.", "yellow")
+
+
+def fit_in_words(fit: Fit) -> str:
+    """What χ² says of the fit, in a sentence."""
+    ratio = number(fit.chi2 / fit.dof, 2) if fit.dof else number(None)
+    detail = f"χ² per degree of freedom {ratio}, {fit.dof} degrees of freedom"
+    if not fit.converged:
+        return f"The fit did not converge: do not use these numbers ({detail})."
+    if fit.p_value is None:
+        return f"The file states no standard errors: the noise was taken from the residuals ({detail})."
+    return f"{_judgement(fit.p_value)} ({detail}, p = {number(fit.p_value)})."
+
+
+def _judgement(p_value: float) -> str:
+    if p_value < UNLIKELY:
+        return "The model does not explain the readings within their stated noise; the uncertainties were enlarged"
+    if p_value < DOUBTFUL:
+        return "The readings fit the model less well than their stated noise suggests"
+    return "The readings fit the model within their stated noise"

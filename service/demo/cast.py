@@ -1,0 +1,96 @@
+"""Who is in the demonstration fleet and what happens to each unit. Amounts: ppm, µg (gyro: °/h), µg/g², arcsec."""
+
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+
+from estimator.session import ACCELEROMETER, GYROSCOPE
+from service.demo.changes import Change
+
+START = datetime(2023, 11, 14, 8, 30, tzinfo=UTC)
+END = datetime(2026, 11, 12, 8, 30, tzinfo=UTC)
+YEARS = 3.0
+
+
+@dataclass(frozen=True)
+class Drift:
+    """A change that grows to its full amount over the three years."""
+
+    change: Change
+    power: float = 1.0
+    """1 grows steadily, 3 slowly at first and fast at the end."""
+    ends: float = YEARS
+    """Years after the start at which it stops growing, because the sensor was replaced."""
+
+
+@dataclass(frozen=True)
+class Intervention:
+    """A service on the unit, and what it changed."""
+
+    at: datetime
+    kind: str
+    note: str
+    changes: tuple[Change, ...]
+
+
+@dataclass(frozen=True)
+class Member:
+    """One unit of the fleet."""
+
+    serial: str
+    kind: str
+    story: str
+    sessions: int = 13
+    joined: float = 0.0
+    """Years after the start at which it was first measured."""
+    drifts: tuple[Drift, ...] = ()
+    services: tuple[Intervention, ...] = ()
+    noise: dict[int, float] = field(default_factory=dict)
+    """Factor on the reading noise of single sessions, by their number from 0; −1 is the last."""
+
+
+def _replaced(sensor: int, at: datetime) -> Intervention:
+    new = (Change(sensor, "scale", 310.0), Change(sensor, "bias", -420.0), Change(sensor, "axis", 140.0))
+    return Intervention(at, "sensor-swap", f"A{sensor + 1} replaced, block aligned again.", new)
+
+
+def _readjusted(at: datetime) -> Intervention:
+    all_scales = tuple(Change(i, "scale", -180.0 + 25.0 * i) for i in range(6))
+    return Intervention(at, "adjustment", "Output amplifiers adjusted to nominal gain.", all_scales)
+
+
+CAST = (
+    Member("BA-101", ACCELEROMETER, "stable", 14),
+    Member("BA-102", ACCELEROMETER, "stable", 12),
+    Member(
+        "BA-103", ACCELEROMETER, "bias of A3 drifts, still within tolerance", 13,
+        drifts=(Drift(Change(2, "bias", 34.0)),),
+    ),
+    Member(
+        "BA-104", ACCELEROMETER, "scale factor of A5 drifts up to its tolerance", 14,
+        drifts=(Drift(Change(4, "scale", 97.0)),),
+    ),
+    Member(
+        "BA-105", ACCELEROMETER, "axis of A2 creeps just over its tolerance", 13,
+        drifts=(Drift(Change(1, "axis", 32.0), power=1.5),),
+    ),
+    Member(
+        "BA-106", ACCELEROMETER, "A6 fails: bias and scale factor run away", 15,
+        drifts=(Drift(Change(5, "bias", 170.0), power=4.0), Drift(Change(5, "scale", -150.0), power=4.0)),
+    ),
+    Member(
+        "BA-107", ACCELEROMETER, "A4 wore out and was replaced; a new reference since", 15,
+        drifts=(Drift(Change(3, "bias", 110.0), power=1.5, ends=1.6),),
+        services=(_replaced(3, datetime(2025, 6, 20, 9, 0, tzinfo=UTC)),),
+    ),
+    Member("BA-108", ACCELEROMETER, "stable; the last session was too noisy to decide", 12, noise={-1: 60.0}),
+    Member(
+        "BA-109", ACCELEROMETER, "stable; amplifiers adjusted half-way", 12,
+        services=(_readjusted(datetime(2025, 2, 11, 9, 0, tzinfo=UTC)),),
+    ),
+    Member("BA-110", ACCELEROMETER, "stable; joined the fleet last year", 6, joined=1.7),
+    Member("BG-201", GYROSCOPE, "stable", 12),
+    Member(
+        "BG-202", GYROSCOPE, "bias of G2 drifts towards its tolerance", 13,
+        drifts=(Drift(Change(1, "bias", 0.024)),),
+    ),
+)  # fmt: skip

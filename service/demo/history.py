@@ -1,0 +1,112 @@
+"""A member's life: when it is measured, what its sensors truly are then, and the session files that come of it."""
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
+
+import numpy as np
+
+from estimator.parameters import SensorParameters
+from estimator.results import ARCSEC
+from estimator.session import ACCELEROMETER, GYROSCOPE, Array, CalibrationSession
+from estimator.simulate import scattered, simulate
+from estimator.writing import session_document
+from service.demo.blocks import norms, schedule_of, sensors_of
+from service.demo.cast import CAST, END, START, YEARS, Member
+from service.demo.changes import DEGREE_PER_HOUR, Change, step_of
+
+SEED = 20261112
+SENSORS = 6
+STANDS = ("ODG-1", "ODG-2", "ODG-3")
+OPERATORS = ("A. Lindqvist", "K. Ito", "M. Okafor", "R. Duarte")
+POSITIONS = (12, 24)
+ELEVATION_DEG = 40.0
+TYPE_NAME = {ACCELEROMETER: "RA-6", GYROSCOPE: "RG-6"}
+NOISE = {ACCELEROMETER: 3e-6, GYROSCOPE: 0.3}
+"""One sigma of an averaged reading: V; pulses."""
+WANDER = {
+    ACCELEROMETER: (3e-6, 1.5e-6, 0.0, ARCSEC, ARCSEC),
+    GYROSCOPE: (60e-6, 0.0008 * DEGREE_PER_HOUR, 0.0, 8 * ARCSEC, 8 * ARCSEC),
+}
+"""One sigma of every sensor's random walk in a year, dimensionless."""
+YEAR = timedelta(days=365.25)
+NOTES = "Simulated session of the demonstration fleet."
+
+
+@dataclass(frozen=True)
+class DemoFile:
+    """One simulated session as a user would upload it."""
+
+    name: str
+    content: bytes
+    at: datetime
+
+
+def files_of(member: Member) -> Iterator[DemoFile]:
+    """The member's sessions in order; the same bytes every time."""
+    rng = np.random.default_rng([SEED, CAST.index(member)])
+    norm = norms(member.kind, SENSORS)
+    dates = _dates(member, rng)
+    start = scattered(sensors_of(member.kind, SENSORS), norm, rng)
+    for number, (at, walked) in enumerate(zip(dates, _walk(member.kind, dates, rng), strict=True)):
+        changed = step_of(_changes(member, at), SENSORS, member.kind)
+        truth = start.stepped(walked + changed, norm)
+        session = _measured(member, at, truth, NOISE[member.kind] * _roughness(member, number), rng)
+        yield DemoFile(f"{member.serial}-{at:%Y-%m-%d}.json", _content(session), at)
+
+
+def _dates(member: Member, rng: np.random.Generator) -> list[datetime]:
+    """Irregular dates from the member's first day to the last, by day, in working hours."""
+    first = START + member.joined * YEAR
+    pace = (END - first) / (member.sessions - 1)
+    jitter = rng.uniform(-0.3, 0.3, member.sessions)
+    jitter[0], jitter[-1] = 0.0, -abs(jitter[-1])
+    days = [(number + shift) * pace.days for number, shift in enumerate(jitter)]
+    hours = rng.integers(0, 8, member.sessions)
+    return [first + timedelta(days=int(day), hours=int(hour)) for day, hour in zip(days, hours, strict=True)]
+
+
+def _walk(kind: str, dates: list[datetime], rng: np.random.Generator) -> Array:
+    """(sessions, m, 5) the random walk since the first session, dimensionless."""
+    years = np.diff([(at - dates[0]) / YEAR for at in dates], prepend=0.0)
+    steps = rng.standard_normal((len(dates), SENSORS, 5)) * np.array(WANDER[kind])
+    return np.asarray(np.cumsum(np.sqrt(years)[:, None, None] * steps, axis=0))
+
+
+def _changes(member: Member, at: datetime) -> tuple[Change, ...]:
+    """What has drifted and what was done to the unit up to a time."""
+    years = (at - START) / YEAR
+    drifted = tuple(
+        replace(drift.change, amount=drift.change.amount * (min(years, drift.ends) / YEARS) ** drift.power)
+        for drift in member.drifts
+    )
+    return drifted + tuple(c for service in member.services if service.at <= at for c in service.changes)
+
+
+def _roughness(member: Member, number: int) -> float:
+    """Factor on the reading noise of one session."""
+    return member.noise.get(number, member.noise.get(number - member.sessions, 1.0))
+
+
+def _measured(
+    member: Member, at: datetime, truth: SensorParameters, noise: float, rng: np.random.Generator
+) -> CalibrationSession:
+    """The member on one of the stands."""
+    stand, positions = STANDS[rng.integers(len(STANDS))], POSITIONS[rng.integers(len(POSITIONS))]
+    schedule = schedule_of(member.kind, SENSORS, stand, ELEVATION_DEG, positions)
+    rows = len(schedule.readings)
+    schedule = replace(
+        schedule,
+        unit=member.serial,
+        unit_type=TYPE_NAME[member.kind],
+        started_at=f"{at:%Y-%m-%dT%H:%M:%SZ}",
+        operator=OPERATORS[rng.integers(len(OPERATORS))],
+        notes=NOTES,
+        temperature=np.round(21.0 + 0.3 * rng.standard_normal() + 0.02 * np.sqrt(np.arange(rows)), 2),
+    )
+    return simulate(schedule, truth, rng, noise=noise)
+
+
+def _content(session: CalibrationSession) -> bytes:
+    return json.dumps(session_document(session)).encode()
