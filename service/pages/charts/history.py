@@ -1,0 +1,141 @@
+"""History of a parameter, a panel a sensor: value with band, tolerance, reference, verdicts, service breaks."""
+
+from collections.abc import Sequence
+from datetime import datetime, timedelta
+from typing import Any
+
+import altair as alt
+
+from service.pages.charts import DATA_FORM, ChartSet, Panel, padded, specification
+from service.pages.tracks import Track, TrackPoint
+from service.pages.verdicts import CONDITIONS
+from service.records import Service
+
+HEIGHT = 150
+
+
+def history_charts(tracks: Sequence[Track], services: Sequence[Service]) -> ChartSet:
+    """The panels of one parameter; every track has the same parameter and unit."""
+    return ChartSet(
+        name=tracks[0].name,
+        heading=tracks[0].parameter,
+        spec=_spec(tracks),
+        panels=tuple(_panel(track, services) for track in tracks),
+    )
+
+
+def _panel(track: Track, services: Sequence[Service]) -> Panel:
+    return Panel(
+        title=track.sensor,
+        description=track.points[-1].text,
+        condition=track.points[-1].condition if track.points[-1].limits else None,
+        datasets={
+            DATA_FORM: [_point(p) for p in track.points if p.shown is not None],
+            "limits": [_limit(p, until) for p, until in track.limits],
+            "services": [{"t": _iso(s.at), "what": s.kind, "note": s.note} for s in services],
+        },
+    )
+
+
+def _point(point: TrackPoint) -> dict[str, Any]:
+    return {
+        "t": _iso(point.at),
+        "y": _short(point.shown),
+        "lo": _short(point.lower),
+        "hi": _short(point.upper),
+        "verdict": point.condition.formal,
+        "epoch": point.epoch,
+        "value": point.text,
+        "date": point.day,
+    }
+
+
+def _limit(point: TrackPoint, until: datetime) -> dict[str, Any]:
+    return {
+        "from": _iso(point.at),
+        "to": _iso(until),
+        "ref": _short(point.reference),
+        "hi": _short(point.limit_upper),
+        "lo": _short(point.limit_lower),
+    }
+
+
+def _iso(at: datetime) -> str:
+    return at.strftime("%Y-%m-%dT%H:%M:%SZ")
+
+
+def _short(value: float | None) -> float | None:
+    """Six digits are more than a screen can show."""
+    return None if value is None else float(f"{value:.6g}")
+
+
+def _spec(tracks: Sequence[Track]) -> dict[str, Any]:
+    unit = tracks[0].unit.label
+    points, limits, services = (alt.NamedData(name=n) for n in (DATA_FORM, "limits", "services"))
+    x = alt.X("t:T", title=None, axis=alt.Axis(tickCount=4), scale=alt.Scale(type="utc", domain=_span(tracks)))
+    y = alt.Y("y:Q", title=unit, axis=alt.Axis(tickCount=5), scale=alt.Scale(domain=_range(tracks), zero=False))
+    base = alt.Chart(points).encode(x=x)
+    bounds = alt.Chart(limits).encode(x=alt.X("from:T"), x2="to:T")
+    return specification(
+        [
+            bounds.mark_rect(color="var(--pass)", opacity=0.06).encode(y=alt.Y("lo:Q"), y2="hi:Q"),
+            bounds.mark_rule(color="var(--tolerance)", strokeDash=[5, 3]).encode(y="hi:Q"),
+            bounds.mark_rule(color="var(--tolerance)", strokeDash=[5, 3]).encode(y="lo:Q"),
+            bounds.mark_rule(color="var(--muted)", strokeWidth=1).encode(y="ref:Q"),
+            _breaks(services),
+            base.mark_area(color="var(--accent)", opacity=0.18).encode(y=y, y2="hi:Q", detail="epoch:N")
+            .encode(y=alt.Y("lo:Q")),
+            base.mark_rule(color="var(--accent)", opacity=0.55).encode(y="lo:Q", y2="hi:Q"),
+            base.mark_line(color="var(--accent)", strokeWidth=1.5).encode(y=y, detail="epoch:N"),
+            _marks(base, y),
+        ],
+        HEIGHT,
+    )  # fmt: skip
+
+
+def _breaks(services: alt.NamedData) -> alt.Chart:
+    return (
+        alt.Chart(services)
+        .mark_rule(color="var(--ink)", strokeWidth=2, strokeDash=[2, 2])
+        .encode(
+            x=alt.X("t:T"),
+            tooltip=[alt.Tooltip("what:N", title="service"), alt.Tooltip("note:N", title="note")],
+        )
+    )
+
+
+def _marks(base: alt.Chart, y: alt.Y) -> alt.Chart:
+    names = [c.formal for c in CONDITIONS]
+    return base.mark_point(filled=True, opacity=1, size=55, stroke="var(--card)", strokeWidth=1).encode(
+        y=y,
+        color=alt.Color(
+            "verdict:N",
+            legend=None,
+            scale=alt.Scale(domain=names, range=[f"var(--{c.key})" for c in CONDITIONS]),
+        ),
+        shape=alt.Shape("verdict:N", legend=None, scale=alt.Scale(domain=names, range=[c.shape for c in CONDITIONS])),
+        tooltip=[
+            alt.Tooltip("date:N", title="date"),
+            alt.Tooltip("value:N", title="value"),
+            alt.Tooltip("verdict:N", title="verdict"),
+        ],
+    )
+
+
+def _span(tracks: Sequence[Track]) -> list[str]:
+    """One stretch of time for all sensors, so that what happened together stands in line."""
+    dates = [p.at for track in tracks for p in track.points]
+    air = max((max(dates) - min(dates)) * 0.04, timedelta(days=1))
+    return [_iso(min(dates) - air), _iso(max(dates) + air)]
+
+
+def _range(tracks: Sequence[Track]) -> list[float]:
+    """One range for all sensors: which of them stands out is then seen at a glance."""
+    edges = [
+        edge
+        for track in tracks
+        for p in track.points
+        for edge in (p.shown, p.lower, p.upper, p.limit_lower, p.limit_upper)
+        if edge is not None
+    ]
+    return padded(min(edges), max(edges)) if edges else [-1.0, 1.0]

@@ -1,0 +1,120 @@
+"""Residuals of a session, a panel a sensor: by β with both runs, and in the order measured, with ±2σ bands."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import altair as alt
+import numpy as np
+from numpy.typing import NDArray
+
+from estimator.results import Calibration, Residuals
+from service.pages.charts import DATA_FORM, ChartSet, Panel, padded, specification
+from service.pages.units import THIN, PeopleUnit, decimals, deviation_unit, number
+
+HEIGHT = 130
+RUNS = ("direct", "flipped")
+
+
+@dataclass(frozen=True)
+class _Across:
+    """What a residual chart is drawn against."""
+
+    name: str
+    heading: str
+    title: str
+    values: NDArray[np.float64]
+
+
+def residual_charts(calibration: Calibration) -> tuple[ChartSet, ...]:
+    """One set a kind of sensor and way of looking: by β where the session had a stand, and in order."""
+    kinds = dict.fromkeys(s.kind for s in calibration.sensors)
+    return tuple(
+        _chart_set(calibration, kind, across, several=len(kinds) > 1)
+        for across in _ways(calibration.residuals)
+        for kind in kinds
+    )
+
+
+def _ways(residuals: Residuals) -> tuple[_Across, ...]:
+    order = _Across("order", "In the order measured", "row", np.arange(1.0, len(residuals.value) + 1))
+    if residuals.beta is None:
+        return (order,)
+    return (_Across("beta", "By the angle β of the head", "β, °", np.degrees(residuals.beta) % 360), order)
+
+
+def _chart_set(calibration: Calibration, kind: str, across: _Across, several: bool) -> ChartSet:
+    columns = [i for i, s in enumerate(calibration.sensors) if s.kind == kind]
+    residuals = calibration.residuals
+    edges = np.abs(np.stack([residuals.value[:, columns], 2 * residuals.sigma[:, columns]]))
+    largest = float(np.max(edges, initial=0.0, where=np.isfinite(edges)))
+    unit = deviation_unit(kind, "bias", largest)
+    return ChartSet(
+        name=f"residuals-{kind}-{across.name}",
+        heading=f"{across.heading}, {kind}s" if several else across.heading,
+        spec=_spec(across, unit, largest * unit.factor),
+        panels=tuple(_panel(calibration, i, across, unit) for i in columns),
+    )
+
+
+def _panel(calibration: Calibration, column: int, across: _Across, unit: PeopleUnit) -> Panel:
+    residuals = calibration.residuals
+    value, sigma = residuals.value[:, column], residuals.sigma[:, column]
+    outside = int(np.sum(np.abs(value) > 2 * sigma))
+    rms = float(np.sqrt(np.nanmean(value**2))) * unit.factor
+    return Panel(
+        title=calibration.sensors[column].name,
+        description=f"rms {number(rms, decimals(rms))}{THIN}{unit.label}, {outside} of {len(value)} outside ±2σ",
+        condition=None,
+        datasets={DATA_FORM: _rows(residuals, column, across, unit)},
+    )
+
+
+def _rows(residuals: Residuals, column: int, across: _Across, unit: PeopleUnit) -> list[dict[str, Any]]:
+    flipped = np.zeros(len(residuals.value), bool) if residuals.flipped is None else residuals.flipped
+    return [
+        {
+            "x": float(f"{x:.6g}"),
+            "y": float(f"{y * unit.factor:.5g}"),
+            "band": float(f"{2 * s * unit.factor:.5g}"),
+            "run": RUNS[int(turned)],
+            "row": row,
+        }
+        for row, (x, y, s, turned) in enumerate(
+            zip(across.values, residuals.value[:, column], residuals.sigma[:, column], flipped, strict=True),
+            1,
+        )
+        if np.isfinite(y) and np.isfinite(s)
+    ]
+
+
+def _spec(across: _Across, unit: PeopleUnit, largest: float) -> dict[str, Any]:
+    ticks = {"tickCount": 5} if across.name == "order" else {"values": [0, 90, 180, 270, 360]}
+    domain = [-12, 372] if across.name == "beta" else [0, len(across.values) + 1]
+    x = alt.X("x:Q", title=across.title, axis=alt.Axis(**ticks), scale=alt.Scale(domain=domain, nice=False))
+    y_scale = alt.Scale(domain=padded(-largest, largest))
+    y = alt.Y("y:Q", title=unit.label, axis=alt.Axis(tickCount=5), scale=y_scale)
+    base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
+    band = base.transform_calculate(low="-datum.band").mark_area(color="var(--accent)", opacity=0.12)
+    zero = alt.Chart(alt.InlineData(values=[{"zero": 0}])).mark_rule(color="var(--muted)").encode(y="zero:Q")
+    return specification(
+        [
+            band.encode(y=alt.Y("low:Q", scale=y_scale), y2="band:Q", detail="run:N"),
+            zero,
+            _marks(base, y, unit),
+        ],
+        HEIGHT,
+    )
+
+
+def _marks(base: alt.Chart, y: alt.Y, unit: PeopleUnit) -> alt.Chart:
+    return base.mark_point(filled=True, opacity=1, size=36, stroke="var(--card)", strokeWidth=0.5).encode(
+        y=y,
+        color=alt.Color("run:N", legend=None, scale=alt.Scale(domain=RUNS, range=["var(--accent)", "var(--second)"])),
+        shape=alt.Shape("run:N", legend=None, scale=alt.Scale(domain=RUNS, range=["circle", "triangle-up"])),
+        tooltip=[
+            alt.Tooltip("row:Q", title="row"),
+            alt.Tooltip("run:N", title="run"),
+            alt.Tooltip("y:Q", title=f"residual, {unit.label}"),
+            alt.Tooltip("band:Q", title=f"2σ, {unit.label}"),
+        ],
+    )

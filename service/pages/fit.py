@@ -1,0 +1,75 @@
+"""What a fit says of itself, in words: how well it explains the readings, and what it cannot tell apart."""
+
+from dataclasses import dataclass
+from math import isfinite, sqrt
+
+from estimator.results import Fit, KnownCombination
+from service.pages.units import PeopleUnit, measured, number, value_unit
+
+COVERAGE = 2.0
+"""k of the uncertainties that are shown where no decision states its own."""
+
+
+@dataclass(frozen=True)
+class FitWords:
+    """How well the model fits, for people."""
+
+    headline: str
+    detail: str
+    warnings: tuple[str, ...]
+
+
+def combination_in_words(known: KnownCombination, kind: str) -> str:
+    """``bias + 0.500 quadratic = 12.3 ± 0.4 µg``, in people's units."""
+    parameters = [name.rpartition(".")[2].partition("_")[0] for name in known.coefficients]
+    units = [value_unit(kind, p, 0.0) for p in parameters]
+    first = units[0].factor / next(iter(known.coefficients.values()))
+    terms = [
+        (coefficient * first / unit.factor, name.rpartition(".")[2])
+        for (name, coefficient), unit in zip(known.coefficients.items(), units, strict=True)
+    ]
+    total = measured(known.value, COVERAGE * known.sigma, PeopleUnit(units[0].label, first))
+    left = " + ".join(name if abs(c - 1) < 1e-9 else f"{number(c)} × {name}" for c, name in terms)
+    return f"{left} = {total}".replace("+ −", "− ")
+
+
+def fit_in_words(fit: Fit) -> FitWords:
+    """What χ² and its probability say, and what to be careful of."""
+    return FitWords(_headline(fit), _detail(fit), tuple(_warnings(fit)))
+
+
+def _headline(fit: Fit) -> str:
+    if fit.p_value is None:
+        return "The file states no standard errors: the noise was estimated from the residuals."
+    if fit.p_value < 0.001:
+        return "The readings scatter more than the stated noise allows."
+    if fit.p_value < 0.05:
+        return "The model fits, but the residuals are larger than usual."
+    if fit.p_value > 0.999:
+        return "The model fits; the stated noise looks too large."
+    return "The model explains the readings within the stated noise."
+
+
+def _detail(fit: Fit) -> str:
+    chance = ""
+    if fit.p_value is not None:
+        share = "less than 0.01 %" if fit.p_value < 1e-4 else f"{number(100 * fit.p_value, 1 + (fit.p_value < 0.01))} %"
+        chance = f"; a sound model would give this much or more in {share} of sessions"
+    return f"χ² = {number(fit.chi2, 1)} for {fit.dof} degrees of freedom{chance}."
+
+
+def _warnings(fit: Fit) -> list[str]:
+    found = []
+    if fit.covariance_factor > 1 and isfinite(fit.covariance_factor):
+        found.append(
+            f"All uncertainties were enlarged {number(sqrt(fit.covariance_factor), 2)} times, because the stated "
+            "noise cannot explain the residuals. Look for structure in them below."
+        )
+    if fit.rank < fit.parameters:
+        found.append(
+            f"The session determines {fit.rank} of {fit.parameters} parameters. The least known is "
+            f"{fit.weakest[0]}; more or other positions would tell it."
+        )
+    if not fit.converged:
+        found.append(f"The fit did not settle within {fit.iterations} iterations: do not rely on these numbers.")
+    return found

@@ -1,0 +1,133 @@
+"""The fleet page: which units are fit, which are not, and which to look at first."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from urllib.parse import urlencode
+
+from service.pages.verdicts import UNDECIDED, Condition, condition_of
+from service.records import FleetCondition, UnitSummary
+
+PAGE_SIZE = 50
+BAR_LIMIT = 1.5
+"""The margin bar ends at one and a half tolerances."""
+
+
+@dataclass(frozen=True)
+class FleetView:
+    """What the visitor asked to see."""
+
+    text: str = ""
+    condition: str = ""
+    page: int = 1
+
+    def url(self, **changes: str | int) -> str:
+        """The address of this view with something changed."""
+        asked = {"q": self.text, "condition": self.condition, "page": self.page, **changes}
+        kept = {k: v for k, v in asked.items() if v and (k, v) != ("page", 1)}
+        return "/?" + urlencode(kept) if kept else "/"
+
+
+@dataclass(frozen=True)
+class Margin:
+    """How much of its tolerance a parameter uses up, as words and as a bar."""
+
+    words: str
+    used: float
+    """Length of the bar: 100 is the tolerance."""
+
+
+@dataclass(frozen=True)
+class FleetRow:
+    """One unit."""
+
+    serial: str
+    unit_type: str
+    condition: Condition
+    reason: str
+    worst: str
+    margin: Margin | None
+    last_at: datetime | None
+    last_session: str | None
+    sessions: int
+    simulated: bool
+
+
+@dataclass(frozen=True)
+class Tile:
+    """How many units are in one condition; a click shows only these."""
+
+    condition: Condition
+    count: int
+    chosen: bool
+    url: str
+
+
+@dataclass(frozen=True)
+class FleetPage:
+    """Everything the fleet page shows."""
+
+    view: FleetView
+    tiles: tuple[Tile, ...]
+    rows: tuple[FleetRow, ...]
+    total: int
+    more: bool
+    """Whether there is a next page."""
+    simulated: int
+
+    @property
+    def first(self) -> int:
+        """Number of the first unit on this page, counted from 1."""
+        return (self.view.page - 1) * PAGE_SIZE + 1
+
+    @property
+    def last(self) -> int:
+        """Number of the last unit on this page, counted from 1."""
+        return self.first + len(self.rows) - 1
+
+
+def fleet_page(condition: FleetCondition, units: Sequence[UnitSummary], view: FleetView) -> FleetPage:
+    """One page of units, worst first; ``units`` has one more than fits when there is a next page."""
+    return FleetPage(
+        view=view,
+        tiles=tuple(_tile(condition_of(v), n, view) for v, n in reversed(condition.verdicts.items())),
+        rows=tuple(map(_row, units[:PAGE_SIZE])),
+        total=condition.units,
+        more=len(units) > PAGE_SIZE,
+        simulated=condition.simulated,
+    )
+
+
+def _tile(condition: Condition, count: int, view: FleetView) -> Tile:
+    chosen = view.condition == condition.key
+    return Tile(condition, count, chosen, view.url(condition="" if chosen else condition.key, page=1))
+
+
+def worst_in_words(unit: UnitSummary) -> str:
+    """``A3 bias``."""
+    return f"{unit.worst_sensor or ''} {unit.worst_parameter or ''}".strip()
+
+
+def _row(unit: UnitSummary) -> FleetRow:
+    condition = condition_of(unit.verdict)
+    return FleetRow(
+        serial=unit.serial,
+        unit_type=unit.unit_type,
+        condition=condition,
+        reason=unit.reason,
+        worst=worst_in_words(unit),
+        margin=None if condition is UNDECIDED else margin_of(unit.margin),
+        last_at=unit.last_at,
+        last_session=unit.last_session,
+        sessions=unit.sessions,
+        simulated=unit.simulated,
+    )
+
+
+def margin_of(margin: float | None) -> Margin | None:
+    """A margin as words and bar; None when nothing was judged."""
+    if margin is None:
+        return None
+    share = round(100 * abs(margin))
+    words = f"{share} % left" if margin >= 0 else f"{share} % over" if margin > -1 else f"{1 - margin:.1f} × limit"
+    return Margin(words, 100 * min(max(1 - margin, 0.0), BAR_LIMIT))

@@ -1,0 +1,168 @@
+"""The page of one session: the verdict and why, the parameters behind it, and how well the model fits."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from estimator.results import Calibration, Estimate, SensorCalibration
+from service.pages.charts import ChartSet
+from service.pages.charts.residuals import residual_charts
+from service.pages.fit import COVERAGE, FitWords, combination_in_words, fit_in_words
+from service.pages.residual_table import ResidualTable, residual_table
+from service.pages.units import (
+    HARD,
+    THIN,
+    PeopleUnit,
+    decimals,
+    deviation_unit,
+    limit,
+    measured,
+    number,
+    signed,
+    size_in_words,
+    value_unit,
+)
+from service.pages.verdicts import Condition, condition_of
+from service.records import PARAMETERS, Decision, SessionReport, StoredSession
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One parameter of one sensor."""
+
+    parameter: str
+    observable: bool
+    value: str
+    deviation: str
+    tolerance: str
+    probability: str
+    condition: Condition | None
+    """None where there is no decision."""
+
+
+@dataclass(frozen=True)
+class SensorRow:
+    """One sensor."""
+
+    name: str
+    kind: str
+    cells: tuple[Cell, ...]
+    known: tuple[str, ...]
+    """What is known of parameters that the session cannot tell apart."""
+
+
+@dataclass(frozen=True)
+class SessionPage:
+    """Everything a session's page shows."""
+
+    session: StoredSession
+    condition: Condition
+    sensors: tuple[SensorRow, ...]
+    fit: FitWords
+    charts: tuple[ChartSet, ...]
+    residuals: ResidualTable
+    method: str
+    rule: str
+    coverage: str
+    size: str
+
+
+def session_page(report: SessionReport) -> SessionPage:
+    """The page of a session."""
+    calibration, decisions = report.calibration, report.decisions
+    judged = {(d.sensor, d.parameter): d for d in decisions}
+    coverage = decisions[0].coverage_factor if decisions else COVERAGE
+    return SessionPage(
+        session=report.session,
+        condition=condition_of(report.session.verdict),
+        sensors=tuple(_sensor(s, judged, coverage) for s in calibration.sensors),
+        fit=fit_in_words(calibration.fit),
+        charts=residual_charts(calibration),
+        residuals=residual_table(calibration),
+        method=_method(calibration),
+        rule=decisions[0].rule if decisions else "",
+        coverage=number(coverage),
+        size=size_in_words(report.session.size),
+    )
+
+
+def _method(calibration: Calibration) -> str:
+    return calibration.method.replace("/", ", ").replace("-", " ")
+
+
+def _sensor(sensor: SensorCalibration, judged: Mapping[tuple[str, str], Decision], coverage: float) -> SensorRow:
+    return SensorRow(
+        name=sensor.name,
+        kind=sensor.kind,
+        cells=tuple(_cell(sensor, p, judged.get((sensor.name, p)), coverage) for p in PARAMETERS),
+        known=tuple(combination_in_words(k, sensor.kind) for k in sensor.known),
+    )
+
+
+def _cell(sensor: SensorCalibration, parameter: str, decision: Decision | None, coverage: float) -> Cell:
+    observable = sensor.observable.get(parameter, False)
+    return Cell(
+        parameter=parameter,
+        observable=observable,
+        value=_value(sensor, parameter, coverage) if observable else "not observable",
+        deviation=_deviation(decision),
+        tolerance=_tolerance(decision),
+        probability=_probability(decision),
+        condition=None if decision is None else condition_of(decision.verdict),
+    )
+
+
+def _value(sensor: SensorCalibration, parameter: str, coverage: float) -> str:
+    if parameter == "axis":
+        return _axis(sensor, coverage)
+    estimate: Estimate = getattr(sensor, parameter)
+    spread = None if estimate.sigma is None else coverage * estimate.sigma
+    if parameter == "scale":
+        return _scale(estimate.value, spread, sensor.kind)
+    largest = max(abs(estimate.value or 0.0), spread or 0.0)
+    return measured(estimate.value, spread, value_unit(sensor.kind, parameter, largest))
+
+
+def _scale(value: float | None, spread: float | None, kind: str) -> str:
+    """A scale factor is read with its relative uncertainty: ``1.1792038 per g ± 4.0 ppm``."""
+    unit = value_unit(kind, "scale", 0.0)
+    if value is None or not spread or not value:
+        return measured(value, None, unit)
+    relative = deviation_unit(kind, "scale", spread / abs(value))
+    share = spread / abs(value) * relative.factor
+    shown = number(unit.of(value), decimals(unit.of(spread)))
+    return f"{shown} {unit.label} ±{HARD}{number(share, decimals(share))}{THIN}{relative.label}"
+
+
+def _axis(sensor: SensorCalibration, coverage: float) -> str:
+    if sensor.axis is None or sensor.axis_sigma is None:
+        return "not observable"
+    vector = ", ".join(number(float(x), 6) for x in sensor.axis)
+    spread = coverage * sensor.axis_sigma
+    unit = deviation_unit(sensor.kind, "axis", spread)
+    share = spread * unit.factor
+    return f"({vector}) ±{HARD}{number(share, decimals(share))}{THIN}{unit.label}"
+
+
+def _decision_unit(decision: Decision) -> PeopleUnit:
+    sizes = (decision.deviation, decision.expanded, decision.tolerance)
+    return deviation_unit(decision.kind, decision.parameter, max(abs(x or 0.0) for x in sizes))
+
+
+def _deviation(decision: Decision | None) -> str:
+    if decision is None or decision.deviation is None:
+        return ""
+    write = measured if decision.parameter == "axis" else signed
+    return write(decision.deviation, decision.expanded, _decision_unit(decision))
+
+
+def _tolerance(decision: Decision | None) -> str:
+    if decision is None or decision.tolerance is None:
+        return ""
+    return limit(decision.tolerance, _decision_unit(decision), decision.parameter == "axis")
+
+
+def _probability(decision: Decision | None) -> str:
+    """Worth a word only where it is in doubt."""
+    if decision is None or decision.probability_out is None or not 0.001 < decision.probability_out < 0.999:
+        return ""
+    return f"{number(100 * decision.probability_out, 1)} % chance of being out of tolerance"

@@ -1,0 +1,100 @@
+"""The page of one unit: its verdict now, and how every parameter of every sensor got there."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from service.pages.charts import ChartSet
+from service.pages.charts.history import history_charts
+from service.pages.tracks import Track, TrackPoint, day_of, tolerance_text, tracks_of
+from service.pages.verdicts import Condition, condition_of
+from service.records import HistoryPoint, Service, StoredSession, UnitReport
+
+HEADINGS = {"scale": "Scale factor", "bias": "Bias", "quadratic": "Quadratic term", "axis": "Axis"}
+MEANINGS = {
+    "scale": "Change of the scale factor from the reference.",
+    "bias": "Change of the zero offset from the reference.",
+    "quadratic": "Change of the second-order nonlinearity from the reference.",
+    "axis": "Angle between the input axis and its reference direction.",
+}
+
+
+@dataclass(frozen=True)
+class TableRow:
+    """One session's values of one parameter, a cell a sensor; None where a sensor was not in the session."""
+
+    session: str
+    day: str
+    iso: str
+    cells: tuple[TrackPoint | None, ...]
+
+
+@dataclass(frozen=True)
+class ParameterSection:
+    """One parameter of all sensors of a kind: charts, and the same as a table."""
+
+    anchor: str
+    heading: str
+    meaning: str
+    unit: str
+    tolerance: str
+    worst: Condition
+    charts: ChartSet
+    sensors: tuple[str, ...]
+    rows: tuple[TableRow, ...]
+
+
+@dataclass(frozen=True)
+class SessionLine:
+    """One session in the list."""
+
+    session: StoredSession
+    condition: Condition
+
+
+@dataclass(frozen=True)
+class UnitPage:
+    """Everything a unit's page shows."""
+
+    report: UnitReport
+    condition: Condition
+    sections: tuple[ParameterSection, ...]
+    sessions: tuple[SessionLine, ...]
+
+
+def unit_page(report: UnitReport, history: Sequence[HistoryPoint]) -> UnitPage:
+    """The page of a unit with its history."""
+    groups = tracks_of(history, report.services)
+    kinds = {point.kind for point in history}
+    return UnitPage(
+        report=report,
+        condition=condition_of(report.summary.verdict),
+        sections=tuple(_section(tracks, report.services, several=len(kinds) > 1) for tracks in groups),
+        sessions=tuple(SessionLine(s, condition_of(s.verdict)) for s in report.sessions),
+    )
+
+
+def _section(tracks: Sequence[Track], services: Sequence[Service], several: bool) -> ParameterSection:
+    parameter = tracks[0].parameter
+    kind = tracks[0].name.rpartition("-")[2]
+    latest = [track.points[-1].condition for track in tracks]
+    return ParameterSection(
+        anchor=tracks[0].name,
+        heading=f"{HEADINGS[parameter]}, {kind}s" if several else HEADINGS[parameter],
+        meaning=MEANINGS[parameter],
+        unit=tracks[0].unit.label,
+        tolerance=tolerance_text(tracks[0]),
+        worst=min(latest, key=lambda c: c.rank),
+        charts=history_charts(tracks, services),
+        sensors=tuple(track.sensor for track in tracks),
+        rows=_rows(tracks),
+    )
+
+
+def _rows(tracks: Sequence[Track]) -> tuple[TableRow, ...]:
+    """Sessions newest first, sensors across."""
+    found = [{p.session: p for p in track.points} for track in tracks]
+    sessions = {p.session: p.at for track in tracks for p in track.points}
+    return tuple(
+        TableRow(session, day_of(at), at.isoformat(), tuple(points.get(session) for points in found))
+        for session, at in sorted(sessions.items(), key=lambda item: item[1], reverse=True)
+    )

@@ -1,0 +1,41 @@
+"""The upload page: what became of each file, or what is wrong with it and what to do."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from estimator.errors import Problem
+from service.pages.verdicts import Condition, condition_of
+from service.records import Receipt
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """One uploaded file: either a receipt or the problems."""
+
+    filename: str
+    receipt: Receipt | None = None
+    refusal: str = ""
+    problems: tuple[Problem, ...] = ()
+
+    @property
+    def condition(self) -> Condition:
+        """Of the stored session; a refused file has none."""
+        return condition_of(self.receipt.verdict if self.receipt else None)
+
+
+@dataclass(frozen=True)
+class UploadPage:
+    """Everything the upload page shows."""
+
+    outcomes: tuple[Outcome, ...]
+    limit: str
+
+    @property
+    def refused(self) -> int:
+        """How many files could not be used."""
+        return sum(o.receipt is None for o in self.outcomes)
+
+
+def upload_page(outcomes: Sequence[Outcome], max_bytes: int) -> UploadPage:
+    """The page before (no outcomes) or after an upload."""
+    return UploadPage(tuple(outcomes), f"{max_bytes // 2**20} MB")
