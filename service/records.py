@@ -1,4 +1,4 @@
-"""What flows between storage, flows, API and pages: frozen records, complete at birth. SI inside, like the estimator."""
+"""What flows between storage, flows, API and pages: frozen records, complete at birth. SI inside."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -26,15 +26,15 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True)
 class Tolerances:
-    """Largest allowed deviation from the reference, per parameter."""
+    """Largest allowed deviation from the reference, per parameter; None where the parameter is not judged."""
 
-    scale: float
+    scale: float | None
     """Relative (1e-6 is 1 ppm)."""
-    bias: float
+    bias: float | None
     """m/s² (rad/s)."""
-    quadratic: float
+    quadratic: float | None
     """s²/m (s/rad)."""
-    axis: float
+    axis: float | None
     """rad."""
 
 
@@ -87,8 +87,9 @@ class Decision:
     value: float | None
     """The measured parameter, SI; for the axis the angle from the reference axis, rad."""
     reference: float | None
+    """SI; 0 for the axis; None while there is no reference."""
     deviation: float | None
-    """From the reference: relative for scale, else SI."""
+    """From the reference: relative for scale, else SI; for the axis the angle freed of the upward pull of noise."""
     uncertainty: float | None
     """Standard uncertainty of the deviation (both sessions)."""
     expanded: float | None
@@ -101,6 +102,33 @@ class Decision:
     verdict: Verdict
     rule: str
     """Name, version and the revision of the tolerances, ``ILAC-G8-four-state/1 (hex-cone rev 2)``."""
+    critical: float | None = None
+    """Smallest deviation that counts as a change at all, at the 1 % level over all judged numbers of the session."""
+
+
+@dataclass(frozen=True)
+class ParameterValue:
+    """One parameter of one sensor as a session measured it."""
+
+    sensor: str
+    sensor_index: int
+    kind: str
+    parameter: str
+    value: float | None
+    """SI; None for the axis, which has components instead."""
+    u: float | None
+    """Standard uncertainty; for the axis the root of the trace of its covariance, rad."""
+    axis: tuple[float, float, float] | None
+
+
+@dataclass(frozen=True)
+class Worst:
+    """The parameter that a session's verdict hangs on; all None when nothing was judged."""
+
+    sensor: str | None
+    parameter: str | None
+    margin: float | None
+    """1 − (|d| + U)/T."""
 
 
 @dataclass(frozen=True)
@@ -120,8 +148,8 @@ class HistoryPoint:
     """value − U."""
     upper: float | None
     reference: float | None
-    tolerance: float
-    """In the unit of value (for scale: relative tolerance times the reference)."""
+    tolerance: float | None
+    """In the unit of value (for scale: relative tolerance times the reference); None where it is not judged."""
     verdict: Verdict
     axis: tuple[float, float, float] | None
 
@@ -157,6 +185,30 @@ class UnitSummary:
 
 
 @dataclass(frozen=True)
+class FleetCondition:
+    """How many units are in which condition."""
+
+    units: int
+    verdicts: dict[Verdict, int]
+    """Every verdict is a key."""
+    simulated: int
+
+
+@dataclass(frozen=True)
+class UnitReport:
+    """Everything a unit's page or answer shows, apart from its history."""
+
+    summary: UnitSummary
+    unit_type: UnitType
+    reference_session: str | None
+    """What the next session will be judged against; None when the next one becomes the reference."""
+    sessions: tuple[StoredSession, ...]
+    """The latest ones, newest first."""
+    services: tuple[Service, ...]
+    """All known breaks, oldest first."""
+
+
+@dataclass(frozen=True)
 class SessionReport:
     """Everything a session's page or answer shows."""
 
@@ -175,6 +227,8 @@ class Judged:
     decisions: tuple[Decision, ...]
     verdict: Verdict
     reason: str
+    worst: Worst
+    is_reference: bool
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,155 @@
+"""A session judged against the unit's reference session: every parameter of every sensor. The rule: see `rule`."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import ndtr
+
+from estimator.health.deviation import Deviation, axis_offset, deviation
+from estimator.health.disc import judge_length
+from estimator.health.rule import SESSION_LEVEL, UNDECIDABLE, critical_factors, state
+from estimator.results import Calibration, SensorCalibration
+
+PARAMETERS = ("scale", "bias", "quadratic", "axis")
+FLOOR = 1e-9
+"""Standard uncertainties below this part of the tolerance are taken as this part of it."""
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """One parameter of one sensor, judged; SI, see the package page. What is not known is None."""
+
+    sensor: str
+    kind: str
+    parameter: str
+    value: float | None
+    """The measured parameter; for the axis the measured angle from the reference axis, rad."""
+    reference: float | None
+    """The reference's value; 0 for the axis."""
+    deviation: float | None
+    """y: relative for scale; for the axis the angle freed of the upward pull of noise."""
+    uncertainty: float | None
+    """u, of both sessions."""
+    expanded: float | None
+    """U = k·u, which is also the guard band."""
+    tolerance: float
+    probability_out: float | None
+    """Probability that the true deviation is out of tolerance."""
+    critical: float | None
+    """Smallest |y| that counts as a change at the level of the session."""
+    verdict: str
+
+
+@dataclass(frozen=True)
+class _Assessed:
+    """A deviation in the numbers that the rule needs."""
+
+    y: float
+    u: float
+    probability_out: float
+    critical_scale: float
+    """What a factor of `critical_factors` is multiplied by to become a deviation."""
+    is_vector: bool
+
+
+def judge(
+    calibration: Calibration,
+    reference: Calibration | None,
+    tolerances: Mapping[tuple[str, str], float],
+    *,
+    coverage_factor: float = 2.0,
+    level: float = SESSION_LEVEL,
+) -> tuple[Judgement, ...]:
+    """Judge every parameter that has a tolerance, sensor after sensor.
+
+    Parameters
+    ----------
+    calibration : what the session found.
+    reference : what it is compared with; None when the session itself becomes the reference.
+    tolerances : T by (kind of sensor, parameter): relative for scale, else SI. A parameter without one is not judged.
+    coverage_factor : k.
+    level : α, chance that a unit exactly at its reference is called out of tolerance in this session.
+    """
+    origins = {sensor.name: sensor for sensor in (reference or calibration).sensors}
+    cases = [
+        (sensor, origins.get(sensor.name), parameter, tolerances[sensor.kind, parameter])
+        for sensor in calibration.sensors
+        for parameter in PARAMETERS
+        if (sensor.kind, parameter) in tolerances
+    ]
+    assessed = [None if reference is None else _assess(*case, coverage_factor) for case in cases]
+    judged = sum(a is not None and coverage_factor * a.u <= case[3] for a, case in zip(assessed, cases, strict=True))
+    factors = critical_factors(judged, _noise_dof(calibration, reference), level)
+    return tuple(_judgement(*case, a, coverage_factor, factors) for case, a in zip(cases, assessed, strict=True))
+
+
+def _noise_dof(calibration: Calibration, reference: Calibration | None) -> float:
+    """Degrees of freedom of the worse known noise; infinite when both files state theirs."""
+    fits = [c.fit for c in (calibration, reference) if c is not None]
+    return min([max(fit.dof, 1) for fit in fits if fit.noise == "estimated"], default=np.inf)
+
+
+def _assess(
+    sensor: SensorCalibration, origin: SensorCalibration | None, parameter: str, tolerance: float, k: float
+) -> _Assessed | None:
+    change = None if origin is None or origin.kind != sensor.kind else deviation(sensor, origin, parameter)
+    if change is None or not (np.isfinite(change.vector).all() and np.isfinite(change.covariance).all()):
+        return None
+    return _assess_scalar(change, tolerance) if change.vector.size == 1 else _assess_axis(change, tolerance, k)
+
+
+def _assess_scalar(change: Deviation, tolerance: float) -> _Assessed:
+    y = float(change.vector[0])
+    u = max(float(np.sqrt(change.covariance[0, 0])), FLOOR * tolerance)
+    out = float(ndtr((y - tolerance) / u) + ndtr((-y - tolerance) / u))
+    return _Assessed(y, u, out, u, is_vector=False)
+
+
+def _assess_axis(change: Deviation, tolerance: float, k: float) -> _Assessed:
+    covariance = change.covariance + (FLOOR * tolerance) ** 2 * np.eye(2)
+    length = judge_length(change.vector, covariance, tolerance, k)
+    mahalanobis = float(np.sqrt(change.vector @ np.linalg.solve(covariance, change.vector)))
+    scale = length.value / mahalanobis if mahalanobis > 0 else 0.0
+    return _Assessed(length.value, length.expanded / k, length.probability_beyond, scale, is_vector=True)
+
+
+def _judgement(
+    sensor: SensorCalibration,
+    origin: SensorCalibration | None,
+    parameter: str,
+    tolerance: float,
+    found: _Assessed | None,
+    k: float,
+    factors: tuple[float, float],
+) -> Judgement:
+    value, reference = _values(sensor, origin, parameter)
+    critical = None if found is None else factors[found.is_vector] * found.critical_scale
+    verdict = UNDECIDABLE
+    if found is not None and critical is not None:
+        verdict = state(abs(found.y), k * found.u, tolerance, critical)
+    return Judgement(
+        sensor=sensor.name,
+        kind=sensor.kind,
+        parameter=parameter,
+        value=value,
+        reference=reference,
+        deviation=None if found is None else found.y,
+        uncertainty=None if found is None else found.u,
+        expanded=None if found is None else k * found.u,
+        tolerance=tolerance,
+        probability_out=None if found is None else found.probability_out,
+        critical=critical,
+        verdict=verdict,
+    )
+
+
+def _values(
+    sensor: SensorCalibration, origin: SensorCalibration | None, parameter: str
+) -> tuple[float | None, float | None]:
+    """Measured and reference value; a session that becomes the reference is its own origin."""
+    if parameter != "axis":
+        return getattr(sensor, parameter).value, None if origin is None else getattr(origin, parameter).value
+    if sensor.axis is None or origin is None or origin.axis is None:
+        return None, None
+    return float(np.hypot(*axis_offset(sensor.axis, origin.axis, origin.axis_tangents))), 0.0

@@ -1,0 +1,61 @@
+"""Deviation of one parameter from the reference session, with the uncertainty of both. Units: see the package page."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimator.results import Estimate, SensorCalibration
+from estimator.session import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Deviation:
+    """A measured change."""
+
+    vector: Array
+    """(1,) for scale (relative), bias, quadratic; (2,) for the axis, along the tangents of the reference axis, rad."""
+    covariance: Array
+    """(1, 1) or (2, 2), of both sessions."""
+
+
+def deviation(current: SensorCalibration, reference: SensorCalibration, parameter: str) -> Deviation | None:
+    """Change of a parameter since the reference; None when one of the sessions does not observe it."""
+    if parameter == "axis":
+        return _axis_deviation(current, reference)
+    now: Estimate = getattr(current, parameter)
+    then: Estimate = getattr(reference, parameter)
+    if now.value is None or then.value is None or now.sigma is None or then.sigma is None:
+        return None
+    if parameter == "scale":
+        ratio = now.value / then.value
+        u = np.hypot(now.sigma / then.value, ratio * then.sigma / then.value)
+        return Deviation(np.array([ratio - 1]), np.array([[u**2]]))
+    return Deviation(np.array([now.value - then.value]), np.array([[now.sigma**2 + then.sigma**2]]))
+
+
+def _axis_deviation(current: SensorCalibration, reference: SensorCalibration) -> Deviation | None:
+    """The current axis seen from the reference axis: angle times direction, with both covariances in one basis.
+
+    The current tangents are projected on the reference's, which is right to second order in the angle between the axes.
+    """
+    if current.axis is None or reference.axis is None:
+        return None
+    basis = reference.axis_tangents
+    turn = basis.T @ current.axis_tangents
+    covariance = reference.axis_covariance + turn @ current.axis_covariance @ turn.T
+    return Deviation(axis_offset(current.axis, reference.axis, basis), covariance)
+
+
+def axis_offset(axis: Array, reference: Array, tangents: Array) -> Array:
+    """(2,) angle from the reference axis times its direction along the reference's tangents, rad.
+
+    Parameters
+    ----------
+    axis, reference : (3,) unit vectors.
+    tangents : (3, 2) orthonormal, orthogonal to the reference.
+    """
+    across = tangents.T @ axis
+    length = float(np.hypot(*across))
+    angle = float(np.arctan2(length, axis @ reference))
+    direction = across / length if length > 0 else np.array([1.0, 0.0])
+    return angle * direction

@@ -1,0 +1,89 @@
+"""The chance that a two-dimensional normal vector falls inside a disc, and limits for the length behind a measured one.
+
+With equal variances s² the length squared over s² of N(c, s²I) is noncentral chi-square with two degrees of freedom and
+noncentrality |c|²/s². With unequal variances it is a weighted sum of two; the integral over the disc is then taken
+exactly along one principal axis (normal distribution function) and by Gauss–Legendre quadrature along the other.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.special import ndtr
+
+from estimator.session import Array
+
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(160)
+REACH = 9.0
+"""Standard deviations beyond which a normal density is left out (1e-18)."""
+
+
+def disc_probability(center: Array, sigma: Array, radius: float) -> float:
+    """P(|x| ≤ radius) for x ~ N(center, diag(sigma²)).
+
+    Parameters
+    ----------
+    center : (2,) mean, any unit.
+    sigma : (2,) standard deviations along the same axes, both positive; the smaller one first resolves best.
+    radius : radius of the disc around the origin.
+
+    Notes
+    -----
+    x₁ = r·sin t turns the square-root ends of the chord h = r·cos t into smooth ones.
+    """
+    low = np.clip((center[0] - REACH * sigma[0]) / radius, -1, 1) if radius > 0 else 0.0
+    high = np.clip((center[0] + REACH * sigma[0]) / radius, -1, 1) if radius > 0 else 0.0
+    start, end = np.arcsin(low), np.arcsin(high)
+    t = (end - start) / 2 * NODES + (end + start) / 2
+    chord = radius * np.cos(t)
+    density = np.exp(-(((radius * np.sin(t) - center[0]) / sigma[0]) ** 2) / 2) / (np.sqrt(2 * np.pi) * sigma[0])
+    inside = ndtr((chord - center[1]) / sigma[1]) - ndtr((-chord - center[1]) / sigma[1])
+    return float(np.clip((end - start) / 2 * np.sum(WEIGHTS * density * inside * chord), 0, 1))
+
+
+@dataclass(frozen=True)
+class Length:
+    """What a measured vector says of the length of the true one."""
+
+    value: float
+    """Median-unbiased: a true length of this would be measured longer as often as shorter; 0 if noise explains all."""
+    expanded: float
+    """U: the true length is at most value + U, and at least value − U, each at the one-sided level of the factor."""
+    probability_beyond: float
+    """Chance that the true length exceeds the limit, the measured vector being what is known of it."""
+
+
+def judge_length(vector: Array, covariance: Array, limit: float, coverage_factor: float) -> Length:
+    """Length of a two-dimensional deviation, freed of the upward pull of noise.
+
+    Parameters
+    ----------
+    vector : (2,) measured deviation.
+    covariance : (2, 2) its covariance, positive definite.
+    limit : the tolerance that the length is compared with, unit of the vector.
+    coverage_factor : k; the one-sided level of the limits is Φ(k).
+
+    Notes
+    -----
+    A true length δ along the axis of largest variance is rejected as too long when P(|x| ≤ |d|; δ) < Φ(−k), as too
+    short when it exceeds Φ(k). That axis is the least favourable direction, so the levels hold for every direction.
+    U is never below k times the largest standard deviation.
+    """
+    variances, axes = np.linalg.eigh(covariance)
+    sigma = np.sqrt(variances)
+    measured = float(np.hypot(*vector))
+    upper, value, lower = (_length_with(p, measured, sigma) for p in ndtr([-coverage_factor, 0.0, coverage_factor]))
+    expanded = max(coverage_factor * float(sigma[1]), upper - value, value - lower)
+    beyond = 1 - disc_probability(axes.T @ vector, sigma, limit)
+    return Length(value, expanded, min(1.0, max(0.0, beyond)))
+
+
+def _length_with(probability: float, measured: float, sigma: Array) -> float:
+    """The true length, along the axis of largest variance, with P(|x| ≤ measured) = probability; 0 if none has it."""
+
+    def excess(length: float) -> float:
+        return disc_probability(np.array([0.0, length]), sigma, measured) - probability
+
+    if measured == 0 or excess(0.0) <= 0:
+        return 0.0
+    return float(brentq(excess, 0.0, measured + REACH * float(sigma[1]), xtol=1e-6 * float(sigma[1])))

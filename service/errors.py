@@ -1,0 +1,64 @@
+"""Errors of the service: one tree; the class is the status, and every answer has one shape (problem+json, RFC 9457).
+
+ServiceError (500)
+├── NotFoundError (404)       no such session, unit or unit type
+├── RefusedError (422)        an upload or a request that cannot be used; holds every problem with its place
+├── TooLargeError (413)       an upload beyond the limit
+├── NoSpaceError (507)        the disk is full; nothing was stored
+└── AwayError (503)           the database does not answer or is not up to date; try again after `retry_after`
+"""
+
+from http import HTTPStatus
+
+from estimator.errors import Problem
+
+
+class ServiceError(Exception):
+    """An error with a status and a sentence for the one who asked."""
+
+    status = HTTPStatus.INTERNAL_SERVER_ERROR
+
+    def __init__(self, detail: str) -> None:
+        self.detail = detail
+        super().__init__(detail)
+
+    @property
+    def title(self) -> str:
+        """The status in words."""
+        return self.status.phrase
+
+
+class NotFoundError(ServiceError):
+    """There is no such session, unit or unit type."""
+
+    status = HTTPStatus.NOT_FOUND
+
+
+class RefusedError(ServiceError):
+    """An upload or a request that cannot be used; ``problems`` holds every fault with its place."""
+
+    status = HTTPStatus.UNPROCESSABLE_ENTITY
+
+    def __init__(self, detail: str, problems: tuple[Problem, ...]) -> None:
+        super().__init__(detail)
+        self.problems = problems
+
+
+class TooLargeError(ServiceError):
+    """An upload beyond the limit."""
+
+    status = HTTPStatus.REQUEST_ENTITY_TOO_LARGE
+
+
+class NoSpaceError(ServiceError):
+    """The disk is full; nothing was stored."""
+
+    status = HTTPStatus.INSUFFICIENT_STORAGE
+
+
+class AwayError(ServiceError):
+    """The database does not answer, or its schema is not up to date."""
+
+    status = HTTPStatus.SERVICE_UNAVAILABLE
+    retry_after = 5
+    """Seconds after which it is worth asking again."""

@@ -1,0 +1,23 @@
+"""Flow: the parameters of one unit through time."""
+
+from datetime import datetime
+
+from service.records import HistoryPoint
+from service.storage.queries.history import HistoryQuery
+from service.storage.store import Store
+
+
+def unit_history(
+    store: Store,
+    serial: str,
+    *,
+    parameter: str | None = None,
+    sensor: str | None = None,
+    since: datetime | None = None,
+    until: datetime | None = None,
+    page: int = 1,
+    limit: int = 10_000,
+) -> tuple[HistoryPoint, ...]:
+    """One page of a unit's history, oldest first: value, uncertainty, band, tolerance and verdict of every point."""
+    unit = store.units.key(serial)
+    return store.history.points(unit, HistoryQuery(parameter, sensor, since, until, (page - 1) * limit, limit))

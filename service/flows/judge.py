@@ -1,0 +1,49 @@
+"""Step: a calibrated session, judged against the unit's reference session."""
+
+from dataclasses import asdict
+
+from estimator.health import Judgement
+from estimator.health import judge as judge_parameters
+from estimator.health.rule import RULE
+from estimator.results import Calibration
+from estimator.session import CalibrationSession
+from service.flows.reason import FIRST_SESSION, NEW_EPOCH, reason, worst_of, worst_record
+from service.flows.tolerances import tolerances_of
+from service.records import Decision, Judged, UnitType, Verdict, Worst
+
+NONE_YET = Worst(None, None, None)
+
+
+def judge(
+    session: CalibrationSession,
+    calibration: Calibration,
+    reference: Calibration | None,
+    unit_type: UnitType,
+    coverage_factor: float,
+    *,
+    after_service: bool = False,
+) -> Judged:
+    """Every parameter judged, and the session by its worst; without a reference it becomes the reference."""
+    found = judge_parameters(calibration, reference, tolerances_of(unit_type), coverage_factor=coverage_factor)
+    decisions = tuple(_decision(judgement, unit_type, coverage_factor) for judgement in found)
+    worst = worst_of(decisions)
+    return Judged(
+        source=session,
+        calibration=calibration,
+        decisions=decisions,
+        verdict=Verdict.UNDECIDABLE if worst is None else worst.verdict,
+        reason=reason(decisions) if reference else NEW_EPOCH if after_service else FIRST_SESSION,
+        worst=NONE_YET if reference is None else worst_record(decisions),
+        is_reference=reference is None,
+    )
+
+
+def _decision(judgement: Judgement, unit_type: UnitType, coverage_factor: float) -> Decision:
+    own = asdict(judgement)
+    own["verdict"] = Verdict(judgement.verdict)
+    return Decision(
+        **own,
+        coverage_factor=coverage_factor,
+        guard_band=judgement.expanded,
+        rule=f"{RULE} ({unit_type.name} rev {unit_type.revision})",
+    )

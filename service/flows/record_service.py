@@ -1,0 +1,20 @@
+"""Flow: a known break in a unit's history; the next session measured after it becomes the new reference."""
+
+from datetime import datetime
+
+from service.records import Service
+from service.storage import Storage
+
+KINDS = ("adjustment", "repair", "sensor swap", "new reference")
+
+
+def record_service(
+    storage: Storage, serial: str, kind: str, at: datetime, note: str, now: datetime, *, who: str = "crew"
+) -> tuple[Service, bool]:
+    """Records a break once, and returns it and whether it is new; a trend never runs across it."""
+    with storage.database.writing() as store:
+        unit = store.units.hold(serial)
+        number, created = store.services.add(unit, kind, at, note, now)
+        if created:
+            store.log.audit(now, who, "service", serial, kind=kind, at=at.isoformat(), note=note)
+        return store.services.get(number), created

@@ -1,0 +1,26 @@
+"""Flow: everything that is known of one unit, apart from its history."""
+
+from datetime import datetime
+
+from service.errors import NotFoundError
+from service.records import UnitReport
+from service.storage.store import Store
+
+LATEST = 50
+
+
+def unit_report(store: Store, serial: str, now: datetime) -> UnitReport:
+    """The unit's condition, type, latest sessions and known breaks."""
+    summary = store.fleet.unit(serial)
+    if summary is None:
+        raise NotFoundError(f"There is no unit {serial!r}.")
+    unit = store.units.key(serial)
+    unit_type = store.unit_types.of_unit(serial)
+    since, until = store.services.around(unit, now)
+    return UnitReport(
+        summary=summary,
+        unit_type=unit_type,
+        reference_session=store.sessions.reference(unit, unit_type.block, since, until),
+        sessions=store.sessions.page(serial, 0, LATEST),
+        services=store.services.of_unit(serial),
+    )

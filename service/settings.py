@@ -1,0 +1,44 @@
+"""What an operator sets, by environment variables that start with IMU_HEALTH_."""
+
+from pathlib import Path
+
+from platformdirs import user_data_dir
+from pydantic import Field
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+
+def default_data_folder() -> Path:
+    """The platform's folder for the data of programs."""
+    return Path(user_data_dir("imu-health", appauthor=False))
+
+
+class Settings(BaseSettings):
+    """Settings of the service; every one has a default that works on a laptop."""
+
+    model_config = SettingsConfigDict(env_prefix="IMU_HEALTH_", frozen=True)
+
+    data_folder: Path = Field(
+        default_factory=default_data_folder,
+        description="Where uploaded files are kept, and the SQLite database unless database_url says otherwise.",
+    )
+    database_url: str | None = Field(
+        default=None,
+        description="SQLAlchemy URL: sqlite:///path or postgresql://user:password@host/name. "
+        "Default: the file imu-health.sqlite in data_folder.",
+    )
+    host: str = Field(default="127.0.0.1", description="Address to listen on.")
+    port: int = Field(default=8000, ge=0, le=65535, description="Port to listen on.")
+    max_upload_bytes: int = Field(default=64 * 1024 * 1024, gt=0, description="Largest upload that is accepted, bytes.")
+    coverage_factor: float = Field(
+        default=2.0, gt=0, le=5, description="k: expanded uncertainty and guard band are k times the standard one."
+    )
+
+    @property
+    def database(self) -> str:
+        """The database's URL."""
+        return self.database_url or f"sqlite:///{self.data_folder / 'imu-health.sqlite'}"
+
+    @property
+    def files(self) -> Path:
+        """The folder of uploaded bytes."""
+        return self.data_folder / "files"

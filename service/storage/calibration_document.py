@@ -1,0 +1,70 @@
+"""imu-calibration/1 back to the object that wrote it."""
+
+from typing import Any
+
+import numpy as np
+
+from estimator.results import (
+    Array,
+    Calibration,
+    Estimate,
+    Fit,
+    KnownCombination,
+    Residuals,
+    SensorCalibration,
+)
+
+
+def calibration_from_dict(document: dict[str, Any]) -> Calibration:
+    """The calibration that `Calibration.to_dict` wrote; null is NaN again."""
+    covariance = document["covariance"]
+    return Calibration(
+        unit=document["unit"],
+        method=document["method"],
+        sensors=tuple(_sensor(entry) for entry in document["sensors"]),
+        names=tuple(covariance["names"]),
+        units=tuple(covariance["units"]),
+        covariance=_numbers(covariance["total"]),
+        repeatability=_numbers(covariance["repeatability"]),
+        fit=_fit(document["fit"]),
+        residuals=_residuals(document["residuals"]),
+        gauge=document["gauge"],
+    )
+
+
+def _numbers(listed: Any) -> Array:
+    """Nested lists with null to an array with NaN."""
+    return np.array(listed, dtype=float)
+
+
+def _sensor(entry: dict[str, Any]) -> SensorCalibration:
+    axis = entry["axis"]
+    return SensorCalibration(
+        name=entry["name"],
+        kind=entry["kind"],
+        scale=Estimate(**entry["scale"]),
+        bias=Estimate(**entry["bias"]),
+        quadratic=Estimate(**entry["quadratic"]),
+        axis=None if axis["value"] is None else _numbers(axis["value"]),
+        axis_tangents=_numbers(axis["tangents"]),
+        axis_covariance=_numbers(axis["covariance"]),
+        observable=dict(entry["observable"]),
+        known=tuple(KnownCombination(**known) for known in entry["known_combinations"]),
+    )
+
+
+def _fit(entry: dict[str, Any]) -> Fit:
+    weakest = entry["weakest"]
+    return Fit(**{**entry, "weakest": (weakest["parameter"], weakest["sigma"])})
+
+
+def _residuals(entry: dict[str, Any]) -> Residuals:
+    run = entry["run"]
+    return Residuals(
+        value=_numbers(entry["value"]),
+        sigma=_numbers(entry["sigma"]),
+        beta=None if entry["beta_deg"] is None else np.radians(_numbers(entry["beta_deg"])),
+        flipped=None if run is None else np.array([name == "flipped" for name in run]),
+        time=None if entry["time_s"] is None else _numbers(entry["time_s"]),
+        temperature=None if entry["temperature_c"] is None else _numbers(entry["temperature_c"]),
+    )

@@ -1,0 +1,49 @@
+"""The database: the only place that commits. One transaction a request."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from sqlalchemy.orm import Session
+
+from service.errors import AwayError
+from service.storage.engine import WRITES, open_engine
+from service.storage.faults import database_faults
+from service.storage.schema import head_revision, stored_revision
+from service.storage.store import Store
+
+
+class Database:
+    """Hands out one transaction at a time."""
+
+    def __init__(self, url: str) -> None:
+        self.url = url
+        self.engine = open_engine(url)
+        self._writing_engine = self.engine.execution_options(**{WRITES: True})
+
+    @contextmanager
+    def reading(self) -> Iterator[Store]:
+        """A consistent view; nothing of it is kept."""
+        with database_faults(), Session(self.engine, autoflush=False) as session:
+            yield Store(session)
+
+    @contextmanager
+    def writing(self) -> Iterator[Store]:
+        """One transaction: committed when the block ends, undone when it raises."""
+        with database_faults(), Session(self._writing_engine) as session:
+            yield Store(session)
+            session.commit()
+
+    def require_ready(self) -> None:
+        """AwayError unless the database answers and its schema is the one this version needs."""
+        with database_faults(), self.engine.connect() as connection:
+            found = stored_revision(connection)
+        needed = head_revision()
+        if found != needed:
+            raise AwayError(
+                f"The database's schema is at {found or 'nothing'}, this version needs {needed}: "
+                "run `imu-health db upgrade`."
+            )
+
+    def close(self) -> None:
+        """Gives back every connection."""
+        self.engine.dispose()

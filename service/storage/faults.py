@@ -1,0 +1,50 @@
+"""Which errors of a database driver or a disk mean "away" and which mean "full"."""
+
+import errno
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError
+from sqlalchemy.exc import TimeoutError as PoolTimeout
+
+from service.errors import AwayError, NoSpaceError
+
+FULL_SQLSTATES = frozenset({"53100"})
+"""PostgreSQL: disk_full."""
+FULL_ERRNOS = frozenset({errno.ENOSPC, errno.EDQUOT})
+NO_SPACE = "The disk is full: nothing was stored. Free some space and send it again."
+AWAY = "The database does not answer. Nothing was lost; try again in a few seconds."
+
+
+@contextmanager
+def database_faults() -> Iterator[None]:
+    """Turns a driver's "cannot connect", "went away", "busy" and "disk full" into errors of the service."""
+    try:
+        yield
+    except PoolTimeout as fault:
+        raise AwayError(AWAY) from fault
+    except DBAPIError as fault:
+        if _is_full(fault):
+            raise NoSpaceError(NO_SPACE) from fault
+        if fault.connection_invalidated or isinstance(fault, OperationalError | InterfaceError):
+            raise AwayError(AWAY) from fault
+        raise
+
+
+@contextmanager
+def disk_faults() -> Iterator[None]:
+    """Turns "no space left on device" into an error of the service."""
+    try:
+        yield
+    except OSError as fault:
+        if fault.errno in FULL_ERRNOS:
+            raise NoSpaceError(NO_SPACE) from fault
+        raise
+
+
+def _is_full(fault: DBAPIError) -> bool:
+    cause = fault.orig
+    if isinstance(cause, sqlite3.Error):
+        return getattr(cause, "sqlite_errorcode", None) == sqlite3.SQLITE_FULL
+    return getattr(cause, "sqlstate", None) in FULL_SQLSTATES

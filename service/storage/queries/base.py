@@ -1,0 +1,24 @@
+"""What all queries share."""
+
+from typing import Any
+
+from sqlalchemy import CursorResult
+from sqlalchemy.dialects import postgresql, sqlite
+from sqlalchemy.orm import Session
+
+from service.storage.tables import Base
+
+
+class Queries:
+    """Queries of one subject within one transaction."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+
+    def insert_once(self, table: type[Base], **values: Any) -> bool:
+        """Inserts a row unless a unique constraint says it is there; waits for a rival that is inserting the same."""
+        dialect = self._session.get_bind().dialect.name
+        insert = postgresql.insert if dialect == "postgresql" else sqlite.insert
+        result = self._session.execute(insert(table).values(**values).on_conflict_do_nothing())
+        assert isinstance(result, CursorResult)
+        return result.rowcount == 1

@@ -1,0 +1,105 @@
+"""Parameters through time, one row a session, sensor and parameter."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from datetime import datetime
+
+from sqlalchemy import Row, select
+
+from service.records import HistoryPoint, ParameterValue, Verdict
+from service.storage.queries.base import Queries
+from service.storage.tables import DecisionRow, ParameterRow
+
+
+@dataclass(frozen=True)
+class HistoryQuery:
+    """Which part of a unit's history is wanted."""
+
+    parameter: str | None = None
+    sensor: str | None = None
+    since: datetime | None = None
+    until: datetime | None = None
+    offset: int = 0
+    limit: int = 10_000
+
+
+class History(Queries):
+    """Parameters through time."""
+
+    def add(self, unit: int, session: str, at: datetime, values: Iterable[ParameterValue]) -> None:
+        """Stores the parameters of a session, sensor after sensor."""
+        self._session.add_all(
+            ParameterRow(
+                session_id=session,
+                unit_id=unit,
+                at=at,
+                sensor=value.sensor,
+                sensor_index=value.sensor_index,
+                kind=value.kind,
+                parameter=value.parameter,
+                value=value.value,
+                u=value.u,
+                axis_x=None if value.axis is None else value.axis[0],
+                axis_y=None if value.axis is None else value.axis[1],
+                axis_z=None if value.axis is None else value.axis[2],
+            )
+            for value in values
+        )
+        self._session.flush()
+
+    def points(self, unit: int, wanted: HistoryQuery) -> tuple[HistoryPoint, ...]:
+        """The wanted part of a unit's history, oldest first, in one query."""
+        same = (
+            (DecisionRow.session_id == ParameterRow.session_id)
+            & (DecisionRow.sensor == ParameterRow.sensor)
+            & (DecisionRow.parameter == ParameterRow.parameter)
+        )
+        query = select(ParameterRow, DecisionRow).outerjoin(DecisionRow, same).where(ParameterRow.unit_id == unit)
+        if wanted.parameter is not None:
+            query = query.where(ParameterRow.parameter == wanted.parameter)
+        if wanted.sensor is not None:
+            query = query.where(ParameterRow.sensor == wanted.sensor)
+        if wanted.since is not None:
+            query = query.where(ParameterRow.at >= wanted.since)
+        if wanted.until is not None:
+            query = query.where(ParameterRow.at < wanted.until)
+        order = (ParameterRow.at, ParameterRow.session_id, ParameterRow.sensor_index, ParameterRow.parameter)
+        found = self._session.execute(query.order_by(*order).offset(wanted.offset).limit(wanted.limit))
+        return tuple(_point(row) for row in found)
+
+
+def _point(row: Row[tuple[ParameterRow, DecisionRow | None]]) -> HistoryPoint:
+    parameter, decision = row
+    is_axis = parameter.parameter == "axis"
+    value = decision.value if is_axis and decision else parameter.value
+    u = decision.uncertainty if is_axis and decision and decision.uncertainty is not None else parameter.u
+    expanded = None if u is None or decision is None else decision.coverage_factor * u
+    known = value is not None and expanded is not None
+    return HistoryPoint(
+        session=parameter.session_id,
+        at=parameter.at,
+        sensor=parameter.sensor,
+        kind=parameter.kind,
+        parameter=parameter.parameter,
+        value=value,
+        u=u,
+        lower=value - expanded if known else None,
+        upper=value + expanded if known else None,
+        reference=None if decision is None else decision.reference,
+        tolerance=None if decision is None else _tolerance(decision),
+        verdict=Verdict.UNDECIDABLE if decision is None else Verdict(decision.verdict),
+        axis=_axis(parameter),
+    )
+
+
+def _tolerance(decision: DecisionRow) -> float | None:
+    """In the unit of the value: a scale's tolerance is relative to its reference."""
+    if decision.parameter != "scale":
+        return decision.tolerance
+    return None if decision.reference is None else decision.tolerance * abs(decision.reference)
+
+
+def _axis(row: ParameterRow) -> tuple[float, float, float] | None:
+    if row.axis_x is None or row.axis_y is None or row.axis_z is None:
+        return None
+    return row.axis_x, row.axis_y, row.axis_z

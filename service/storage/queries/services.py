@@ -1,0 +1,50 @@
+"""Known breaks in units' histories."""
+
+from datetime import datetime
+
+from sqlalchemy import Select, select
+
+from service.records import Service
+from service.storage.queries.base import Queries
+from service.storage.tables import ServiceRow, UnitRow
+
+
+class Services(Queries):
+    """Adjustments, repairs, sensor swaps, new references."""
+
+    def add(self, unit: int, kind: str, at: datetime, note: str, now: datetime) -> tuple[int, bool]:
+        """Records a break and returns its number and whether it is new; the same break twice is one."""
+        created = self.insert_once(
+            ServiceRow, unit_id=unit, kind=kind, at=at, note=note, recorded_at=now
+        )  # fmt: skip
+        row = self._session.scalars(
+            select(ServiceRow).where(ServiceRow.unit_id == unit, ServiceRow.at == at, ServiceRow.kind == kind)
+        ).one()
+        return row.id, created
+
+    def get(self, number: int) -> Service:
+        """One recorded break."""
+        row, serial = self._session.execute(_services().where(ServiceRow.id == number)).one()
+        return _service(row, serial)
+
+    def of_unit(self, serial: str) -> tuple[Service, ...]:
+        """All breaks of a unit, oldest first."""
+        found = self._session.execute(
+            _services().where(UnitRow.serial == serial).order_by(ServiceRow.at, ServiceRow.id)
+        )
+        return tuple(_service(row, owner) for row, owner in found)
+
+    def around(self, unit: int, at: datetime) -> tuple[datetime | None, datetime | None]:
+        """The last break at or before a time and the first one after it: the epoch that the time is in."""
+        times = sorted(self._session.scalars(select(ServiceRow.at).where(ServiceRow.unit_id == unit)))
+        before = [time for time in times if time <= at]
+        after = [time for time in times if time > at]
+        return (before[-1] if before else None), (after[0] if after else None)
+
+
+def _services() -> Select[tuple[ServiceRow, str]]:
+    return select(ServiceRow, UnitRow.serial).join(UnitRow, UnitRow.id == ServiceRow.unit_id)
+
+
+def _service(row: ServiceRow, serial: str) -> Service:
+    return Service(id=row.id, unit=serial, at=row.at, kind=row.kind, note=row.note)

@@ -1,0 +1,89 @@
+"""Sessions and their decisions."""
+
+from dataclasses import asdict, fields
+from datetime import datetime
+
+from sqlalchemy import Select, select
+
+from service.errors import NotFoundError
+from service.records import Decision, StoredSession, Verdict, Worst
+from service.storage.queries.base import Queries
+from service.storage.tables import DecisionRow, SessionRow, StandRow, UnitRow
+
+
+class Sessions(Queries):
+    """Uploaded sessions and their decisions."""
+
+    def by_hash(self, sha256: str) -> StoredSession | None:
+        """The session made of these bytes, if they were uploaded before."""
+        found = self._session.execute(_sessions().where(SessionRow.sha256 == sha256)).one_or_none()
+        return None if found is None else _session_record(*found)
+
+    def get(self, id: str) -> StoredSession:
+        """One session."""
+        found = self._session.execute(_sessions().where(SessionRow.id == id)).one_or_none()
+        if found is None:
+            raise NotFoundError(f"There is no session {id!r}.")
+        return _session_record(*found)
+
+    def page(self, unit: str | None, offset: int, limit: int) -> tuple[StoredSession, ...]:
+        """Sessions, newest measurement first, of one unit or of all."""
+        query = _sessions().order_by(SessionRow.started_at.desc(), SessionRow.id.desc())
+        if unit is not None:
+            query = query.where(UnitRow.serial == unit)
+        return tuple(_session_record(*found) for found in self._session.execute(query.offset(offset).limit(limit)))
+
+    def reference(self, unit: int, block: str, since: datetime | None, until: datetime | None) -> str | None:
+        """The session that others of the block and epoch are judged against: the first stored as a reference."""
+        query = select(SessionRow.id).where(
+            SessionRow.unit_id == unit, SessionRow.block == block, SessionRow.is_reference
+        )
+        if since is not None:
+            query = query.where(SessionRow.started_at >= since)
+        if until is not None:
+            query = query.where(SessionRow.started_at < until)
+        return self._session.scalar(query.order_by(SessionRow.uploaded_at, SessionRow.id).limit(1))
+
+    def add(self, record: StoredSession, unit: int, stand: int | None, block: str, worst: Worst) -> None:
+        """Stores a session; its hash is unique."""
+        values = asdict(record)
+        del values["unit"], values["stand"]
+        self._session.add(SessionRow(unit_id=unit, stand_id=stand, block=block, **values, **_worst_columns(worst)))
+        self._session.flush()
+
+    def add_decisions(self, id: str, decisions: tuple[Decision, ...]) -> None:
+        """Stores what was decided of a session's parameters."""
+        self._session.add_all(
+            DecisionRow(session_id=id, position=position, **asdict(decision))
+            for position, decision in enumerate(decisions)
+        )
+        self._session.flush()
+
+    def decisions(self, id: str) -> tuple[Decision, ...]:
+        """What was decided of a session's parameters, in the order of its sensors."""
+        rows = self._session.scalars(
+            select(DecisionRow).where(DecisionRow.session_id == id).order_by(DecisionRow.position)
+        )
+        return tuple(_decision(row) for row in rows)
+
+
+def _worst_columns(worst: Worst) -> dict[str, str | float | None]:
+    return {"worst_sensor": worst.sensor, "worst_parameter": worst.parameter, "margin": worst.margin}
+
+
+def _sessions() -> Select[tuple[SessionRow, str, str]]:
+    return (
+        select(SessionRow, UnitRow.serial, StandRow.name)
+        .join(UnitRow, UnitRow.id == SessionRow.unit_id)
+        .outerjoin(StandRow, StandRow.id == SessionRow.stand_id)
+    )
+
+
+def _session_record(row: SessionRow, unit: str, stand: str | None) -> StoredSession:
+    own = {f.name: getattr(row, f.name) for f in fields(StoredSession) if f.name not in ("unit", "stand", "verdict")}
+    return StoredSession(unit=unit, stand=stand, verdict=Verdict(row.verdict), **own)
+
+
+def _decision(row: DecisionRow) -> Decision:
+    own = {f.name: getattr(row, f.name) for f in fields(Decision) if f.name != "verdict"}
+    return Decision(verdict=Verdict(row.verdict), **own)

@@ -1,0 +1,109 @@
+"""Unit types and the revisions of their tolerances."""
+
+from dataclasses import asdict
+from datetime import datetime
+
+from sqlalchemy import select
+
+from service.errors import NotFoundError
+from service.records import Tolerances, UnitType
+from service.storage.queries.base import Queries
+from service.storage.tables import ToleranceRow, UnitRow, UnitTypeRow
+
+
+class UnitTypes(Queries):
+    """Kinds of unit and their tolerances."""
+
+    def add_once(self, unit_type: UnitType, now: datetime) -> None:
+        """Stores a new type; one of that name that is there already stays as it is."""
+        added = self.insert_once(
+            UnitTypeRow,
+            name=unit_type.name,
+            block=unit_type.block,
+            sensors=list(unit_type.sensors),
+            nominal_axes=[list(axis) for axis in unit_type.nominal_axes],
+            nominal_scales=list(unit_type.nominal_scales),
+            revision=unit_type.revision,
+        )
+        if added:
+            self._add_tolerances(self._row(unit_type.name), unit_type.tolerances, unit_type.gyro_tolerances, now)
+
+    def get(self, name: str) -> UnitType:
+        """The type with the tolerances that hold now."""
+        return self._record(self._row(name))
+
+    def of_unit(self, serial: str) -> UnitType:
+        """The type of a unit."""
+        row = self._session.scalar(select(UnitTypeRow).join(UnitRow).where(UnitRow.serial == serial))
+        if row is None:
+            raise NotFoundError(f"There is no unit {serial!r}.")
+        return self._record(row)
+
+    def page(self, offset: int, limit: int) -> tuple[UnitType, ...]:
+        """Types by name."""
+        rows = self._session.execute(
+            select(UnitTypeRow, ToleranceRow)
+            .join(
+                ToleranceRow,
+                (ToleranceRow.unit_type_id == UnitTypeRow.id) & (ToleranceRow.revision == UnitTypeRow.revision),
+            )
+            .order_by(UnitTypeRow.name)
+            .offset(offset)
+            .limit(limit)
+        )
+        return tuple(_unit_type(row, tolerances) for row, tolerances in rows)
+
+    def hold(self, name: str) -> UnitType:
+        """The type, held until the transaction ends: its revisions are made one after another."""
+        row = self._session.scalar(select(UnitTypeRow).where(UnitTypeRow.name == name).with_for_update())
+        if row is None:
+            raise _missing(name)
+        return self._record(row)
+
+    def revise(self, name: str, tolerances: Tolerances, gyro_tolerances: Tolerances | None, now: datetime) -> UnitType:
+        """Adds the next revision of a type's tolerances; earlier ones stay."""
+        row = self._row(name)
+        row.revision += 1
+        self._add_tolerances(row, tolerances, gyro_tolerances, now)
+        return self._record(row)
+
+    def _add_tolerances(
+        self, row: UnitTypeRow, tolerances: Tolerances, gyro_tolerances: Tolerances | None, now: datetime
+    ) -> None:
+        self._session.add(
+            ToleranceRow(
+                unit_type_id=row.id,
+                revision=row.revision,
+                since=now,
+                tolerances=asdict(tolerances),
+                gyro_tolerances=None if gyro_tolerances is None else asdict(gyro_tolerances),
+            )
+        )
+        self._session.flush()
+
+    def _row(self, name: str) -> UnitTypeRow:
+        row = self._session.scalar(select(UnitTypeRow).where(UnitTypeRow.name == name))
+        if row is None:
+            raise _missing(name)
+        return row
+
+    def _record(self, row: UnitTypeRow) -> UnitType:
+        return _unit_type(row, self._session.get_one(ToleranceRow, (row.id, row.revision)))
+
+
+def _missing(name: str) -> NotFoundError:
+    return NotFoundError(f"There is no unit type {name!r}.")
+
+
+def _unit_type(row: UnitTypeRow, tolerances: ToleranceRow) -> UnitType:
+    gyro = tolerances.gyro_tolerances
+    return UnitType(
+        name=row.name,
+        block=row.block,
+        sensors=tuple(row.sensors),
+        nominal_axes=tuple(tuple(axis) for axis in row.nominal_axes),
+        nominal_scales=tuple(row.nominal_scales),
+        tolerances=Tolerances(**tolerances.tolerances),
+        gyro_tolerances=None if gyro is None else Tolerances(**gyro),
+        revision=row.revision,
+    )

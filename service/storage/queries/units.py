@@ -1,0 +1,41 @@
+"""Units and stands by name."""
+
+from sqlalchemy import select
+
+from service.errors import NotFoundError
+from service.storage.queries.base import Queries
+from service.storage.tables import StandRow, UnitRow, UnitTypeRow
+
+
+class Units(Queries):
+    """Units by serial number."""
+
+    def exists(self, serial: str) -> bool:
+        """Whether a session of this unit was ever stored."""
+        return self._session.scalar(select(UnitRow.id).where(UnitRow.serial == serial)) is not None
+
+    def add_once(self, serial: str, unit_type: str, simulated: bool) -> None:
+        """Stores a new unit; one of that serial number that is there already stays as it is."""
+        type_id = select(UnitTypeRow.id).where(UnitTypeRow.name == unit_type).scalar_subquery()
+        self.insert_once(UnitRow, serial=serial, unit_type_id=type_id, simulated=simulated)
+
+    def hold(self, serial: str) -> int:
+        """The unit's key, with the unit held until the transaction ends: its sessions are judged one after another."""
+        key = self._session.scalar(select(UnitRow.id).where(UnitRow.serial == serial).with_for_update())
+        if key is None:
+            raise NotFoundError(f"There is no unit {serial!r}.")
+        return key
+
+    def key(self, serial: str) -> int:
+        """The unit's key."""
+        key = self._session.scalar(select(UnitRow.id).where(UnitRow.serial == serial))
+        if key is None:
+            raise NotFoundError(f"There is no unit {serial!r}.")
+        return key
+
+    def stand_key(self, name: str | None) -> int | None:
+        """The key of a stand, stored when it is new; None without a stand."""
+        if name is None:
+            return None
+        self.insert_once(StandRow, name=name)
+        return self._session.scalar(select(StandRow.id).where(StandRow.name == name))

@@ -1,0 +1,61 @@
+"""Every query, by subject, within one transaction. `Database` makes a store and commits it."""
+
+from functools import cached_property
+
+from sqlalchemy.orm import Session
+
+from service.storage.queries.calibrations import Calibrations
+from service.storage.queries.fleet import Fleet
+from service.storage.queries.history import History
+from service.storage.queries.log import Log
+from service.storage.queries.services import Services
+from service.storage.queries.sessions import Sessions
+from service.storage.queries.unit_types import UnitTypes
+from service.storage.queries.units import Units
+
+
+class Store:
+    """The stored fleet as one transaction sees it."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+
+    @cached_property
+    def unit_types(self) -> UnitTypes:
+        """Kinds of unit and their tolerances."""
+        return UnitTypes(self._session)
+
+    @cached_property
+    def units(self) -> Units:
+        """Units by serial number."""
+        return Units(self._session)
+
+    @cached_property
+    def sessions(self) -> Sessions:
+        """Uploaded sessions and their decisions."""
+        return Sessions(self._session)
+
+    @cached_property
+    def calibrations(self) -> Calibrations:
+        """Calibrations as they were computed, covariance included."""
+        return Calibrations(self._session)
+
+    @cached_property
+    def history(self) -> History:
+        """Parameters through time."""
+        return History(self._session)
+
+    @cached_property
+    def services(self) -> Services:
+        """Known breaks of units' histories."""
+        return Services(self._session)
+
+    @cached_property
+    def fleet(self) -> Fleet:
+        """All units at a glance."""
+        return Fleet(self._session)
+
+    @cached_property
+    def log(self) -> Log:
+        """Refused uploads and the audit trail."""
+        return Log(self._session)

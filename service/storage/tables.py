@@ -1,0 +1,205 @@
+"""The tables. A session's rows are written once; only `conditions` (a summary that can be rebuilt) is ever updated.
+
+unit_types ──< tolerance_revisions          stands
+    └──< units ──< services                   │
+           ├──1 conditions                    │
+           └──< sessions >────────────────────┘
+                   ├──1 calibrations          refusals   what was turned away
+                   ├──< parameters            audit      who did what when, append-only
+                   └──< decisions
+"""
+
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import JSON, ForeignKey, Index, LargeBinary, MetaData, String, UniqueConstraint
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
+
+from service.storage.columns import UtcDateTime
+
+
+class Base(DeclarativeBase):
+    """All tables, with constraint names that migrations can rely on."""
+
+    metadata = MetaData(
+        naming_convention={
+            "ix": "ix_%(table_name)s_%(column_0_N_name)s",
+            "uq": "uq_%(table_name)s_%(column_0_N_name)s",
+            "fk": "fk_%(table_name)s_%(column_0_name)s",
+            "pk": "pk_%(table_name)s",
+        }
+    )
+    type_annotation_map = {  # noqa: RUF012 - SQLAlchemy reads it from the class
+        datetime: UtcDateTime(),
+        dict[str, Any]: JSON(),
+        list[Any]: JSON(),
+        bytes: LargeBinary(),
+    }
+
+
+class UnitTypeRow(Base):
+    """A kind of unit; its tolerances are in `ToleranceRow`, the largest revision holds."""
+
+    __tablename__ = "unit_types"
+    id: Mapped[int] = mapped_column(primary_key=True)
+    name: Mapped[str] = mapped_column(String(200), unique=True)
+    block: Mapped[str] = mapped_column(String(40))
+    sensors: Mapped[list[Any]]
+    nominal_axes: Mapped[list[Any]]
+    nominal_scales: Mapped[list[Any]]
+    revision: Mapped[int]
+
+
+class ToleranceRow(Base):
+    """One revision of a type's tolerances; never changed, so that past decisions keep theirs."""
+
+    __tablename__ = "tolerance_revisions"
+    unit_type_id: Mapped[int] = mapped_column(ForeignKey("unit_types.id"), primary_key=True)
+    revision: Mapped[int] = mapped_column(primary_key=True)
+    since: Mapped[datetime]
+    tolerances: Mapped[dict[str, Any]]
+    gyro_tolerances: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
+
+
+class UnitRow(Base):
+    """One physical IMU."""
+
+    __tablename__ = "units"
+    id: Mapped[int] = mapped_column(primary_key=True)
+    serial: Mapped[str] = mapped_column(String(200), unique=True)
+    unit_type_id: Mapped[int] = mapped_column(ForeignKey("unit_types.id"), index=True)
+    simulated: Mapped[bool]
+
+
+class StandRow(Base):
+    """A stand that sessions were measured on."""
+
+    __tablename__ = "stands"
+    id: Mapped[int] = mapped_column(primary_key=True)
+    name: Mapped[str] = mapped_column(String(200), unique=True)
+
+
+class SessionRow(Base):
+    """One uploaded session; the id is the head of the content's hash."""
+
+    __tablename__ = "sessions"
+    __table_args__ = (Index("ix_sessions_unit_id_started_at", "unit_id", "started_at", "id"),)
+    id: Mapped[str] = mapped_column(String(20), primary_key=True)
+    sha256: Mapped[str] = mapped_column(String(64), unique=True)
+    unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"))
+    stand_id: Mapped[int | None] = mapped_column(ForeignKey("stands.id"), index=True)
+    filename: Mapped[str]
+    size: Mapped[int]
+    block: Mapped[str] = mapped_column(String(20))
+    programme: Mapped[str] = mapped_column(String(40))
+    operator: Mapped[str]
+    notes: Mapped[str]
+    started_at: Mapped[datetime] = mapped_column(index=True)
+    uploaded_at: Mapped[datetime]
+    verdict: Mapped[str] = mapped_column(String(20))
+    reason: Mapped[str]
+    worst_sensor: Mapped[str | None]
+    worst_parameter: Mapped[str | None] = mapped_column(String(20))
+    margin: Mapped[float | None]
+    is_reference: Mapped[bool]
+    simulated: Mapped[bool]
+
+
+class CalibrationRow(Base):
+    """The whole imu-calibration/1 of a session, covariance and residuals included: JSON, deflated."""
+
+    __tablename__ = "calibrations"
+    session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), primary_key=True)
+    method: Mapped[str] = mapped_column(String(80))
+    document: Mapped[bytes]
+
+
+class ParameterRow(Base):
+    """One parameter of one sensor at one session; for the axis the components instead of a value."""
+
+    __tablename__ = "parameters"
+    __table_args__ = (Index("ix_parameters_history", "unit_id", "at", "session_id", "sensor_index", "parameter"),)
+    session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), primary_key=True)
+    sensor: Mapped[str] = mapped_column(String(200), primary_key=True)
+    parameter: Mapped[str] = mapped_column(String(20), primary_key=True)
+    unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"))
+    at: Mapped[datetime]
+    sensor_index: Mapped[int]
+    kind: Mapped[str] = mapped_column(String(20))
+    value: Mapped[float | None]
+    u: Mapped[float | None]
+    axis_x: Mapped[float | None]
+    axis_y: Mapped[float | None]
+    axis_z: Mapped[float | None]
+
+
+class DecisionRow(Base):
+    """One parameter of one sensor of one session, judged."""
+
+    __tablename__ = "decisions"
+    session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), primary_key=True)
+    sensor: Mapped[str] = mapped_column(String(200), primary_key=True)
+    parameter: Mapped[str] = mapped_column(String(20), primary_key=True)
+    position: Mapped[int]
+    kind: Mapped[str] = mapped_column(String(20))
+    value: Mapped[float | None]
+    reference: Mapped[float | None]
+    deviation: Mapped[float | None]
+    uncertainty: Mapped[float | None]
+    expanded: Mapped[float | None]
+    coverage_factor: Mapped[float]
+    tolerance: Mapped[float]
+    guard_band: Mapped[float | None]
+    probability_out: Mapped[float | None]
+    verdict: Mapped[str] = mapped_column(String(20))
+    rule: Mapped[str]
+    critical: Mapped[float | None]
+
+
+class ConditionRow(Base):
+    """A unit's line on the fleet page: its latest session in short, rewritten with every upload."""
+
+    __tablename__ = "conditions"
+    __table_args__ = (Index("ix_conditions_worst_first", "severity", "margin", "unit_id"),)
+    unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), primary_key=True, autoincrement=False)
+    sessions: Mapped[int]
+    last_session: Mapped[str] = mapped_column(ForeignKey("sessions.id"))
+    severity: Mapped[int]
+    margin: Mapped[float | None]
+
+
+class ServiceRow(Base):
+    """A known break in a unit's history."""
+
+    __tablename__ = "services"
+    __table_args__ = (UniqueConstraint("unit_id", "at", "kind"),)
+    id: Mapped[int] = mapped_column(primary_key=True)
+    unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"))
+    at: Mapped[datetime]
+    kind: Mapped[str] = mapped_column(String(40))
+    note: Mapped[str]
+    recorded_at: Mapped[datetime]
+
+
+class RefusalRow(Base):
+    """An upload that could not be used; its bytes are not kept."""
+
+    __tablename__ = "refusals"
+    id: Mapped[int] = mapped_column(primary_key=True)
+    at: Mapped[datetime] = mapped_column(index=True)
+    filename: Mapped[str]
+    sha256: Mapped[str] = mapped_column(String(64))
+    size: Mapped[int]
+    problems: Mapped[list[Any]]
+
+
+class AuditRow(Base):
+    """Who did what when; the database itself refuses to change or delete a line."""
+
+    __tablename__ = "audit"
+    id: Mapped[int] = mapped_column(primary_key=True)
+    at: Mapped[datetime] = mapped_column(index=True)
+    who: Mapped[str]
+    action: Mapped[str] = mapped_column(String(40))
+    subject: Mapped[str]
+    details: Mapped[dict[str, Any]]
