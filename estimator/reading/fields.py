@@ -1,0 +1,129 @@
+"""One JSON object of a session file: typed look-ups that record what is wrong and where."""
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimator.reading.problems import Problems, shown
+
+UNSTORABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff]")
+LARGEST = 1e300
+NUMBERS = (int, float, np.integer, np.floating)
+LONGEST_NAME = 200
+LONGEST_NOTE = 100_000
+
+
+@dataclass(frozen=True)
+class Interval:
+    """The numbers a field may hold; ``above`` leaves the lower end itself out."""
+
+    low: float
+    high: float
+    unit: str = ""
+    above: bool = False
+
+    def __contains__(self, value: float) -> bool:
+        return (self.low < value if self.above else self.low <= value) and value <= self.high
+
+    def __str__(self) -> str:
+        unit = f" {self.unit}" if self.unit else ""
+        if self.above:
+            return f"above {self.low:g} and at most {self.high:g}{unit}"
+        return f"from {self.low:g} to {self.high:g}{unit}"
+
+
+@dataclass(frozen=True)
+class Fields:
+    """An object of the file and where it stands in it."""
+
+    values: Mapping[str, object]
+    path: str
+    problems: Problems
+
+    def place(self, key: str) -> str:
+        """Where a key stands, as people write it: ``site.latitude_deg``."""
+        return f"{self.path}.{key}" if self.path else key
+
+    def add(self, key: str, message: str) -> None:
+        """Record a fault of one key."""
+        self.problems.add(self.place(key), message)
+
+    def has(self, key: str) -> bool:
+        """Whether the key is given; null is the same as leaving it out."""
+        return self.values.get(key) is not None
+
+    def text(self, key: str, advice: str) -> str:
+        """A required name: one line, not empty."""
+        if not self.has(key):
+            self.add(key, f"missing; {advice}")
+            return ""
+        text = self._text(key, LONGEST_NAME)
+        if text == "":
+            self.add(key, f"empty; {advice}")
+        elif text is not None and not text.isprintable():
+            self.add(key, "holds line breaks or characters that cannot be shown; write it in one plain line")
+        return text or ""
+
+    def optional_text(self, key: str) -> str | None:
+        """Free text; None when it is not given."""
+        return self._text(key, LONGEST_NOTE) if self.has(key) else None
+
+    def choice(self, key: str, allowed: tuple[str, ...]) -> str:
+        """A required word out of a few."""
+        value = self.values.get(key)
+        if isinstance(value, str) and value in allowed:
+            return value
+        found = f"{shown(value)} is unknown" if self.has(key) else "missing"
+        self.add(key, f"{found}; give one of {', '.join(allowed)}")
+        return allowed[0]
+
+    def number(self, key: str, within: Interval, advice: str) -> float:
+        """A required number; NaN stands in for a bad one."""
+        if not self.has(key):
+            self.add(key, f"missing; {advice}")
+            return math.nan
+        value = self.optional_number(key, within)
+        return math.nan if value is None else value
+
+    def optional_number(self, key: str, within: Interval) -> float | None:
+        """A number, or None when it is not given or bad."""
+        if not self.has(key):
+            return None
+        value, fault = number_in(self.values[key], within)
+        if fault:
+            self.add(key, fault)
+        return value
+
+    def child(self, key: str) -> "Fields | None":
+        """The object under a key; None when it is not given or is something else."""
+        value = self.values.get(key)
+        if isinstance(value, Mapping):
+            return Fields(value, self.place(key), self.problems)
+        if value is not None:
+            self.add(key, f"is {shown(value)}; must be an object in braces")
+        return None
+
+    def _text(self, key: str, longest: int) -> str | None:
+        value = self.values[key]
+        if not isinstance(value, str):
+            self.add(key, f"is {shown(value)}; must be text in quotes")
+            return None
+        if UNSTORABLE.search(value) or len(value) > longest:
+            self.add(key, f"must be at most {longest} characters of ordinary text, without control characters")
+            return None
+        return value.strip()
+
+
+def number_in(value: object, within: Interval) -> tuple[float | None, str]:
+    """The value as a number of the interval, or None and what is wrong with it."""
+    if isinstance(value, str):
+        return None, f"is the text {shown(value)}; write a number, without quotes and with a decimal point"
+    if isinstance(value, bool) or not isinstance(value, NUMBERS):
+        return None, f"is {shown(value)}; must be a number"
+    if not -LARGEST < value < LARGEST:
+        return None, f"is {shown(value)}; must be a finite number of ordinary size"
+    number = float(value)
+    return (number, "") if number in within else (None, f"is {shown(number)}; must be {within}")

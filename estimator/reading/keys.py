@@ -1,0 +1,66 @@
+"""The keys that a session file knows, and which unknown ones are mistakes rather than additions.
+
+A file may carry keys of its own. One that looks like a known key with another unit, like a slip of the pen, or like a
+known key in the wrong place would change the result in silence if it were ignored: it is a problem.
+"""
+
+import re
+from collections.abc import Iterable
+from difflib import get_close_matches
+from itertools import islice
+
+from estimator.reading.fields import Fields
+
+TOP = (
+    "format", "unit", "unit_type", "block", "programme", "started_at", "operator", "notes", "site", "stand",
+    "mounting", "sensors", "table", "count_time_s", "sample_rate_hz", "direction_sigma_deg",
+)  # fmt: skip
+SITE = ("latitude_deg", "height_m", "gravity_m_s2")
+STAND = ("id", "alpha_deg", "chi_deg", "sigma_arcsec", "sigma_count_time_s")
+SIGMA = ("theta_x", "theta_y", "alpha", "beta", "latitude", "meridian")
+SENSOR = (
+    "name", "kind", "nominal_axis", "nominal_scale", "nominal_offset", "reading_unit",
+    "bias_repeatability_m_s2", "bias_repeatability_rad_s",
+)  # fmt: skip
+DIRECTIONS = ("direction_x", "direction_y", "direction_z")
+COLUMNS = ("run", "beta_deg", "time_s", "temperature_c", "position", *DIRECTIONS)
+
+HOME = dict.fromkeys(SITE, "site") | dict.fromkeys(STAND[1:], "stand") | {"nominal_axis": "sensors[]"}
+HOME |= dict.fromkeys((key for key in TOP if "_" in key), "the top level")
+UNITS = (
+    "deg", "degrees", "rad", "mrad", "urad", "arcsec", "arcmin", "s", "sec", "ms", "us", "ns", "min", "h", "hours",
+    "c", "k", "f", "celsius", "kelvin", "m", "km", "cm", "mm", "ft", "m_s2", "g", "mg", "ug", "gal", "mgal",
+    "hz", "khz", "rad_s", "deg_s", "deg_h", "dps",
+)  # fmt: skip
+UNIT_ENDING = re.compile(r"_(deg|m|s|c|hz|m_s2|rad_s|arcsec)$")
+UNKNOWN_LOOKED_AT = 200
+LONGEST_KEY = 40
+
+
+def check_keys(fields: Fields, known: tuple[str, ...]) -> None:
+    """Record unknown keys that look like known ones."""
+    for key in islice((str(key) for key in fields.values if key not in known), UNKNOWN_LOOKED_AT):
+        if meant := meant_key(key, known):
+            fields.add(key, f"is not a key of {fields.path or 'the file'}; {meant}")
+        elif key in HOME and HOME[key] != fields.path:
+            fields.add(key, f"stands in the wrong place; it belongs in {HOME[key]}")
+
+
+def meant_key(key: str, known: Iterable[str]) -> str | None:
+    """What to write instead of an unknown key, when it looks like a known one."""
+    if len(key) > LONGEST_KEY:
+        return None
+    plain = key.strip().lower().replace("-", "_").replace(" ", "_")
+    in_other_unit = [name for name in known if _same_but_unit(plain, name)]
+    if in_other_unit:
+        return f"give the value as {' or '.join(in_other_unit)}, in that unit"
+    close = get_close_matches(plain, list(known), n=1, cutoff=0.8)
+    return f"did you mean {close[0]}? Otherwise give it a name of its own" if close else None
+
+
+def _same_but_unit(key: str, known: str) -> bool:
+    base = UNIT_ENDING.sub("", known)
+    if base == known or not key.startswith(base):
+        return False
+    ending = key[len(base) :].lstrip("_")
+    return ending == "" or ending in UNITS

@@ -1,0 +1,97 @@
+"""Every fault of one session file, collected so that all are reported at once."""
+
+from collections.abc import Callable, Iterable
+from itertools import islice
+
+from estimator.errors import FormatError, Problem, ScheduleError
+
+ROWS_SHOWN = 20
+"""Faulty rows of one column that are named one by one; the others are counted."""
+PROBLEMS_SHOWN = 500
+LONGEST_TEXT = 60
+
+
+class Problems:
+    """Collects the faults of one file.
+
+    A reader that records a fault returns a stand-in value and goes on; no session is built while there are faults.
+    """
+
+    def __init__(self, source: str | None) -> None:
+        self.source = None if source is None else printable(source)
+        self.lines_before_table: int | None = None
+        """Set for CSV: row r of the table is line r + this of the file."""
+        self._found: list[Problem] = []
+        self._unsaid = 0
+        self._only_schedule = True
+
+    def add(self, field: str, message: str, row: int | None = None) -> None:
+        """Record one fault; ``row`` counts from 1."""
+        self._only_schedule = False
+        self._record(field, message, row)
+
+    def add_to_schedule(self, field: str, message: str) -> None:
+        """Record that the rows, though well formed, cannot support the programme."""
+        self._record(field, message, None)
+
+    def add_rows(self, field: str, rows: Iterable[int], message: Callable[[int], str]) -> None:
+        """Record the same kind of fault in several rows; ``rows`` and the message's argument count from 0."""
+        remaining = iter(rows)
+        for index in islice(remaining, ROWS_SHOWN):
+            self.add(field, message(index), index + 1)
+        if more := sum(1 for _ in remaining):
+            self.add(field, f"{more} more rows have such a fault")
+
+    def fail(self, field: str, message: str) -> FormatError:
+        """The error to raise when nothing more can be read; holds what was found before, too."""
+        self.add(field, message)
+        return FormatError(self._all(), self.source)
+
+    def raise_if_any(self) -> None:
+        """Raise what was found, if anything was."""
+        if self._found:
+            raise (ScheduleError if self._only_schedule else FormatError)(self._all(), self.source)
+
+    def _record(self, field: str, message: str, row: int | None) -> None:
+        if len(self._found) >= PROBLEMS_SHOWN:
+            self._unsaid += 1
+            return
+        if row is not None and self.lines_before_table is not None:
+            message = f"{message} (line {row + self.lines_before_table} of the file)"
+        self._found.append(Problem(printable(field), printable(message), row))
+
+    def _all(self) -> list[Problem]:
+        more = [Problem("file", f"{self._unsaid} more problems")] if self._unsaid else []
+        return self._found + more
+
+
+def printable(text: str) -> str:
+    """The text with anything that cannot be shown or stored written as an escape, and cut when very long."""
+    text = text if len(text) <= 1000 else text[:1000] + "…"
+    return text if text.isprintable() else "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
+
+
+def shown(value: object) -> str:
+    """A value as people would write it in a message; never long, whatever the value."""
+    match value:
+        case None:
+            return "null"
+        case bool():
+            return str(value).lower()
+        case str():
+            return f"'{cut(value)}'"
+        case int() if value.bit_length() > 100:
+            return f"an integer of {value.bit_length()} bits"
+        case int() | float():
+            return f"{value:.10g}" if isinstance(value, float) else str(value)
+        case list() | tuple():
+            return f"a list of {len(value)}"
+        case dict():
+            return "an object"
+        case _:
+            return f"a {type(value).__name__}"
+
+
+def cut(text: str) -> str:
+    """The text, or its beginning when it is long."""
+    return text if len(text) <= LONGEST_TEXT else text[:LONGEST_TEXT] + "…"

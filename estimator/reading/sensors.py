@@ -1,0 +1,112 @@
+"""The sensors of a session file, and whether their nominal axes can measure a vector."""
+
+import numpy as np
+
+from estimator.reading.columns import vector
+from estimator.reading.fields import Fields, Interval
+from estimator.reading.keys import COLUMNS, SENSOR, check_keys
+from estimator.reading.problems import Problems, shown
+from estimator.session import ACCELEROMETER, GYROSCOPE, TWO_AXIS_STAND, Array, Sensor
+
+KINDS = (ACCELEROMETER, GYROSCOPE)
+FEWEST = 3
+MOST = 1000
+LENGTH_TOLERANCE = 1e-3
+FLATTEST = 0.01
+"""Smallest ratio of the axes' singular values; below it they lie in one plane, to half a degree."""
+SCALE = Interval(0, 1e18, above=True)
+OFFSET = Interval(-1e18, 1e18)
+REPEATABILITY = {
+    ACCELEROMETER: ("bias_repeatability_m_s2", Interval(0, 100, "m/s²")),
+    GYROSCOPE: ("bias_repeatability_rad_s", Interval(0, 100, "rad/s")),
+}
+PULSES = frozenset({"pulse", "pulses", "count", "counts"})
+
+
+def read_sensors(document: Fields, block: str) -> tuple[Sensor, ...]:
+    """The declared sensors; records every fault of the list and of each sensor."""
+    entries = document.values.get("sensors")
+    if not isinstance(entries, list | tuple):
+        found = "missing" if entries is None else f"is {shown(entries)}"
+        document.add("sensors", f"{found}; give a list with one object per sensor")
+        return ()
+    if len(entries) > MOST:
+        document.add("sensors", f"holds {len(entries)} sensors; a block has at most {MOST}")
+        return ()
+    sensors = []
+    for number, entry in enumerate(entries, start=1):
+        if isinstance(entry, dict):
+            sensors.append(_read_sensor(Fields(entry, f"sensors[{number}]", document.problems), block))
+        else:
+            document.problems.add(f"sensors[{number}]", f"is {shown(entry)}; must be an object in braces")
+    _check_names(sensors, document.problems)
+    _check_axes(sensors, block, document.problems)
+    return tuple(sensors)
+
+
+def check_pulses(document: Fields, sensors: tuple[Sensor, ...], programme: str) -> None:
+    """Pulse gyros need their count time, and a count time needs gyros."""
+    gyros = [s for s in sensors if s.kind == GYROSCOPE]
+    if document.has("count_time_s"):
+        if sensors and not gyros:
+            document.add("count_time_s", "is for gyroscopes and this session has none; give readings as a rate")
+    elif programme == TWO_AXIS_STAND and any(g.reading_unit.lower() in PULSES for g in gyros):
+        document.add("count_time_s", "missing; gyro readings are pulses, so add the time in s they were counted over")
+
+
+def _read_sensor(entry: Fields, block: str) -> Sensor:
+    check_keys(entry, SENSOR)
+    kind = entry.choice("kind", KINDS) if entry.has("kind") else block
+    return Sensor(
+        name=entry.text("name", "give each sensor the name of its column"),
+        kind=kind,
+        nominal_axis=_read_axis(entry),
+        nominal_scale=entry.number("nominal_scale", SCALE, "give the reading units per m/s² or rad/s"),
+        reading_unit=entry.text("reading_unit", "give the unit of the readings, for instance V"),
+        bias_repeatability=_read_repeatability(entry, kind),
+        nominal_offset=entry.optional_number("nominal_offset", OFFSET),
+    )
+
+
+def _read_axis(entry: Fields) -> Array:
+    axis = vector(entry, "nominal_axis", "give the three components of the input axis in block axes")
+    length = float(np.linalg.norm(axis))
+    if length == 0:
+        entry.add("nominal_axis", "has length zero; give a unit vector")
+    elif abs(length - 1) > LENGTH_TOLERANCE:
+        entry.add("nominal_axis", f"has length {length:.6g}; must be a unit vector, so divide it by its length")
+    return axis / length if length else axis
+
+
+def _read_repeatability(entry: Fields, kind: str) -> float:
+    for other, (key, _) in REPEATABILITY.items():
+        if other != kind and entry.has(key):
+            entry.add(key, f"is for a {other}; this sensor is a {kind}, so give {REPEATABILITY[kind][0]}")
+    value = entry.optional_number(*REPEATABILITY[kind])
+    return 0.0 if value is None else value
+
+
+def _check_names(sensors: list[Sensor], problems: Problems) -> None:
+    taken = set(COLUMNS) | {f"{sensor.name}_se" for sensor in sensors}
+    seen: dict[str, int] = {}
+    for number, name in enumerate((sensor.name for sensor in sensors), start=1):
+        field = f"sensors[{number}].name"
+        if name and name in seen:
+            problems.add(field, f"{shown(name)} is also the name of sensors[{seen[name]}]; names must differ")
+        elif name in taken:
+            problems.add(field, f"{shown(name)} is the name of another column of the table; rename the sensor")
+        seen.setdefault(name, number)
+
+
+def _check_axes(sensors: list[Sensor], block: str, problems: Problems) -> None:
+    for kind in sorted({sensor.kind for sensor in sensors} or {block}):
+        axes = np.array([sensor.nominal_axis for sensor in sensors if sensor.kind == kind])
+        if len(axes) < FEWEST:
+            problems.add("sensors", f"{len(axes)} of kind {kind}; a block needs at least {FEWEST}")
+        elif np.isfinite(axes).all() and _flatness(axes) < FLATTEST:
+            problems.add("sensors", f"the nominal axes of kind {kind} lie in one plane; they must span space")
+
+
+def _flatness(axes: Array) -> float:
+    values = np.linalg.svd(axes, compute_uv=False)
+    return float(values[-1] / values[0]) if values[0] else 1.0

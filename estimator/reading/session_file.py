@@ -1,0 +1,87 @@
+"""A session file, part by part. Validation happens here, once; nothing after it looks again."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from estimator.reading.fields import Fields, Interval
+from estimator.reading.keys import TOP, check_keys
+from estimator.reading.problems import Problems, shown
+from estimator.reading.schedule import check_schedule
+from estimator.reading.sensors import KINDS, check_pulses, read_sensors
+from estimator.reading.setting import read_mounting, read_site, read_stand, read_started_at
+from estimator.reading.source import display_name, load
+from estimator.reading.table import read_table
+from estimator.session import PROGRAMMES, CalibrationSession
+
+FORMAT = "imu-session/1"
+SAMPLE_RATE = Interval(0, 1e9, "Hz", above=True)
+COUNT_TIME = Interval(0, 1e6, "s", above=True)
+
+
+def read_session(source: str | Path | Mapping[str, object] | bytes, *, name: str | None = None) -> CalibrationSession:
+    """Read and check one calibration session.
+
+    Parameters
+    ----------
+    source : a path (.json, or .csv with its metadata), a dict with the content of a JSON file, or a file's bytes.
+    name : what messages call the source; the path unless given.
+
+    Returns
+    -------
+    CalibrationSession, in SI; every array has been checked.
+
+    Raises
+    ------
+    FormatError : the source cannot be read, or fields of it are wrong; ``problems`` holds every one with its row.
+    ScheduleError : every field is right, but the rows cannot support the programme.
+    """
+    problems = Problems(name or display_name(source))
+    return _assemble(Fields(load(source, problems), "", problems))
+
+
+def _assemble(document: Fields) -> CalibrationSession:
+    """All parts of the session; raises what any of them recorded."""
+    problems = document.problems
+    _check_format(document)
+    check_keys(document, TOP)
+    unit = document.text("unit", "give the unit's serial number")
+    block = document.choice("block", KINDS)
+    programme = document.choice("programme", PROGRAMMES)
+    started_at = read_started_at(document)
+    sensors = read_sensors(document, block)
+    kinds = {sensor.kind for sensor in sensors} or {block}
+    site = read_site(document, programme, kinds)
+    stand = read_stand(document, programme, kinds)
+    mounting = read_mounting(document)
+    check_pulses(document, sensors, programme)
+    sample_rate = document.optional_number("sample_rate_hz", SAMPLE_RATE)
+    count_time = document.optional_number("count_time_s", COUNT_TIME)
+    texts = {key: document.optional_text(key) for key in ("unit_type", "operator", "notes")}
+    table = read_table(document, programme, sensors)
+    if table is not None:
+        check_schedule(programme, table, raw=document.has("sample_rate_hz"), problems=problems)
+    problems.raise_if_any()
+    assert table is not None, "a session without a table has problems"
+    return CalibrationSession(
+        unit=unit,
+        block=block,
+        programme=programme,
+        sensors=sensors,
+        **vars(table),
+        site=site,
+        stand=stand,
+        mounting=mounting,
+        sample_rate=sample_rate,
+        count_time=count_time,
+        unit_type=texts["unit_type"] or None,
+        started_at=started_at,
+        operator=texts["operator"] or "",
+        notes=texts["notes"] or "",
+    )
+
+
+def _check_format(document: Fields) -> None:
+    found = document.values.get("format")
+    if not (isinstance(found, str) and found == FORMAT):
+        stated = "missing" if found is None else f"is {shown(found)}"
+        document.add("format", f'{stated}; must be "{FORMAT}"')

@@ -1,0 +1,141 @@
+"""Where and how a session was measured: site, stand, mounting, date. Degrees and arcseconds become radians here."""
+
+import math
+from dataclasses import replace
+from datetime import datetime
+
+import numpy as np
+
+from estimator.reading.columns import vector
+from estimator.reading.fields import Fields, Interval
+from estimator.reading.keys import SIGMA, SITE, STAND, check_keys
+from estimator.reading.problems import Problems, shown
+from estimator.session import (
+    ACCELEROMETER,
+    ARBITRARY_ORIENTATIONS,
+    GYROSCOPE,
+    ROTATION_ALIGNMENT,
+    TWO_AXIS_STAND,
+    Array,
+    Site,
+    Stand,
+    StandErrors,
+)
+
+ARCSEC = math.pi / 648_000
+LATITUDE = Interval(-90, 90, "degrees")
+HEIGHT = Interval(-500, 9000, "m")
+GRAVITY = Interval(9.7, 9.9, "m/s²")
+ELEVATION = Interval(-90, 90, "degrees")
+FLATTEST = 0.01
+"""Degrees by which the head's axis must stay clear of 0° and 90°, where bias and scale become inseparable."""
+ANGLE_SIGMA = Interval(0, 36_000, "arcsec")
+TIME_SIGMA = Interval(0, 1000, "s")
+ROTATION_TOLERANCE = 1e-6
+YEARS = Interval(1950, 2200)
+NEEDS_GRAVITY = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, ROTATION_ALIGNMENT)
+NEEDS_LATITUDE = (TWO_AXIS_STAND, ROTATION_ALIGNMENT)
+
+
+def read_site(document: Fields, programme: str, kinds: set[str]) -> Site:
+    """The site; records what the sensors' reference vectors need and it lacks."""
+    site = document.child("site") or Fields({}, "site", document.problems)
+    check_keys(site, SITE)
+    latitude = site.optional_number("latitude_deg", LATITUDE)
+    height = site.optional_number("height_m", HEIGHT)
+    if ACCELEROMETER in kinds and programme in NEEDS_GRAVITY and not _any(site, "latitude_deg", "gravity_m_s2"):
+        site.add("gravity_m_s2", "missing, and latitude_deg too; accelerometers need one of them")
+    if GYROSCOPE in kinds and programme in NEEDS_LATITUDE and not site.has("latitude_deg"):
+        site.add("latitude_deg", "missing; gyroscopes need it for the Earth's rotation")
+    return Site(
+        latitude=None if latitude is None else math.radians(latitude),
+        height=0.0 if height is None else height,
+        gravity=site.optional_number("gravity_m_s2", GRAVITY),
+    )
+
+
+def read_stand(document: Fields, programme: str, kinds: set[str]) -> Stand | None:
+    """The stand; required, with the elevation that each kind of sensor needs, for the two-axis programme."""
+    stand = document.child("stand")
+    if stand is None:
+        if programme == TWO_AXIS_STAND and not document.has("stand"):
+            document.add("stand", f"missing; {TWO_AXIS_STAND} needs id and alpha_deg or chi_deg")
+        return None
+    check_keys(stand, STAND)
+    needed = kinds if programme == TWO_AXIS_STAND else set()
+    return Stand(
+        id=stand.text("id", "give the stand's name or number"),
+        alpha=_read_elevation(stand, "alpha_deg", ACCELEROMETER in needed, programme),
+        chi=_read_elevation(stand, "chi_deg", GYROSCOPE in needed, programme),
+        sigma=_read_sigma(stand),
+    )
+
+
+def read_mounting(document: Fields) -> Array:
+    """(3, 3) rotation platform → block; identity when not given."""
+    value = document.values.get("mounting")
+    if value is None:
+        return np.eye(3)
+    rows = value.tolist() if isinstance(value, np.ndarray) else value
+    if not isinstance(rows, list | tuple) or len(rows) != 3:
+        document.add("mounting", f"is {shown(rows)}; must be three rows of three numbers")
+        return np.eye(3)
+    row_fields = Fields({f"[{i}]": row for i, row in enumerate(rows, 1)}, "", document.problems)
+    matrix = np.array([_mounting_row(row_fields, f"[{i}]", document.problems) for i in (1, 2, 3)])
+    if np.isfinite(matrix).all() and not _is_rotation(matrix):
+        document.add("mounting", "is not a rotation; its rows must be orthogonal unit vectors of a right-handed triad")
+    return matrix
+
+
+def read_started_at(document: Fields) -> str | None:
+    """The start as ISO 8601 with an offset, as written; None when not given."""
+    text = document.optional_text("started_at")
+    if text is None:
+        return None
+    try:
+        moment = datetime.fromisoformat(text)
+    except ValueError:
+        document.add("started_at", f"is {shown(text)}; write it like 2026-03-01T09:00:00Z")
+        return None
+    if moment.tzinfo is None:
+        document.add("started_at", f"{shown(text)} has no offset; end it with Z for UTC or with one like +03:00")
+    elif moment.year not in YEARS:
+        document.add("started_at", f"is in the year {moment.year}; must be {YEARS}")
+    return text
+
+
+def _any(fields: Fields, *keys: str) -> bool:
+    return any(fields.has(key) for key in keys)
+
+
+def _read_elevation(stand: Fields, key: str, required: bool, programme: str) -> float | None:
+    if required and not stand.has(key):
+        stand.add(key, "missing; give the elevation of the head's axis in degrees")
+    degrees = stand.optional_number(key, ELEVATION)
+    if degrees is None:
+        return None
+    if programme == TWO_AXIS_STAND and not FLATTEST <= abs(degrees) <= 90 - FLATTEST:
+        stand.add(
+            key, f"is {degrees:g}; must be strictly between 0 and 90 degrees, else parameters cannot be separated"
+        )
+    return math.radians(degrees)
+
+
+def _read_sigma(stand: Fields) -> StandErrors:
+    count_time = stand.optional_number("sigma_count_time_s", TIME_SIGMA) or 0.0
+    sigma = stand.child("sigma_arcsec")
+    if sigma is None:
+        return StandErrors(count_time=count_time)
+    check_keys(sigma, SIGMA)
+    angles = {name: ARCSEC * (sigma.optional_number(name, ANGLE_SIGMA) or 0.0) for name in SIGMA}
+    return replace(StandErrors(**angles), count_time=count_time)
+
+
+def _mounting_row(rows: Fields, key: str, problems: Problems) -> Array:
+    named = Fields({f"mounting{key}": rows.values[key]}, "", problems)
+    return vector(named, f"mounting{key}", "must be a row of three numbers")
+
+
+def _is_rotation(matrix: Array) -> bool:
+    orthonormal = np.abs(matrix @ matrix.T - np.eye(3)).max() <= ROTATION_TOLERANCE
+    return bool(orthonormal and np.linalg.det(matrix) > 0)

@@ -1,0 +1,75 @@
+"""The shape of the table: which columns it has, that they are equally long, and that none is unknown by mistake."""
+
+import re
+from collections import Counter
+from collections.abc import Mapping
+from itertools import islice
+
+import numpy as np
+
+from estimator.reading.columns import Column, Columns
+from estimator.reading.fields import Fields
+from estimator.reading.keys import COLUMNS, UNKNOWN_LOOKED_AT, meant_key
+from estimator.reading.problems import Problems, shown
+
+MOST_ROWS = 10**7
+MOST_COLUMNS = 10**4
+SENSOR_LIKE = re.compile(r"(a|g|w|acc|accel|gyr|gyro)?[ _]?([xyz]|\d{1,3})", re.IGNORECASE)
+
+
+def read_columns(document: Fields) -> Columns | None:
+    """The columns that hold one value a row; records the others. None when there is no table to speak of."""
+    problems = document.problems
+    table = document.values.get("table")
+    if not isinstance(table, Mapping):
+        found = "missing" if table is None else f"is {shown(table)}"
+        document.add("table", f"{found}; give the columns of readings, each with one value per row")
+        return None
+    if len(table) > MOST_COLUMNS:
+        raise problems.fail("table", f"has {len(table)} columns; at most {MOST_COLUMNS} can be read")
+    given = {str(name): cells for name, cells in table.items() if cells is not None}
+    lists = {name: cells for name, cells in given.items() if _is_column(cells)}
+    for name in (name for name in given if name not in lists):
+        problems.add(name, f"is {shown(given[name])}; must be a list with one value per row")
+    rows = _row_count(lists, problems)
+    if rows == 0:
+        return None
+    good = {name: cells for name, cells in lists.items() if len(cells) == rows}
+    return Columns(good, rows, frozenset(given) - frozenset(good), problems)
+
+
+def check_unknown(columns: Columns, names: list[str]) -> None:
+    """Record columns that look like a known column or like the readings of a sensor that is not declared."""
+    known = {*COLUMNS, *names, *(f"{name}_se" for name in names)}
+    patterns = {_pattern(name) for name in names}
+    unknown = (name for name in columns.values if name not in known)
+    for name in islice(unknown, UNKNOWN_LOOKED_AT):
+        if _pattern(name.removesuffix("_se")) in patterns or SENSOR_LIKE.fullmatch(name) or name.endswith("_se"):
+            columns.problems.add(name, "belongs to no declared sensor; declare it in sensors or take the column out")
+        elif meant := meant_key(name, COLUMNS):
+            columns.problems.add(name, f"is not a column of the table; {meant}")
+
+
+def _row_count(lists: Mapping[str, Column], problems: Problems) -> int:
+    """The number of rows that most columns have; 0 when there are none."""
+    lengths = Counter(map(len, lists.values()))
+    longest = max(lengths, default=0)
+    if longest > MOST_ROWS:
+        raise problems.fail("table", f"has {longest} rows; at most {MOST_ROWS} can be read, so average or split it")
+    rows = max(lengths, key=lambda length: (lengths[length], length), default=0)
+    if rows == 0:
+        problems.add("table", "has no rows; give one row per reading")
+        return 0
+    for name, cells in lists.items():
+        if len(cells) != rows:
+            problems.add(name, f"has {len(cells)} values where the other columns have {rows}; give one per row")
+    return rows
+
+
+def _is_column(cells: object) -> bool:
+    return isinstance(cells, list | tuple) or (isinstance(cells, np.ndarray) and cells.ndim == 1)
+
+
+def _pattern(name: str) -> str:
+    """A name with its digits masked and its case forgotten: A1, a2 and A03 look alike."""
+    return re.sub(r"\d+", "#", name.strip().casefold())

@@ -1,0 +1,147 @@
+"""The columns of a session file → the arrays of a session, in SI."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from estimator.reading.columns import Columns
+from estimator.reading.fields import Fields, Interval
+from estimator.reading.keys import DIRECTIONS
+from estimator.reading.shape import check_unknown, read_columns
+from estimator.session import TWO_AXIS_STAND, Array, Sensor
+
+RUNS = ("direct", "flipped")
+READING = Interval(-1e20, 1e20)
+STANDARD_ERROR = Interval(0, 1e20, above=True)
+BETA = Interval(-360_000, 360_000, "degrees")
+TIME = Interval(-1e12, 1e12, "s")
+TEMPERATURE = Interval(-100, 200, "°C")
+DIRECTION = Interval(-1e6, 1e6)
+SHORTEST_DIRECTION = 1e-3
+DIRECTION_SIGMA = Interval(0, 180, "degrees", above=True)
+
+
+@dataclass(frozen=True)
+class Table:
+    """The table's arrays, as in `CalibrationSession`. R rows, m sensors."""
+
+    readings: Array
+    standard_errors: Array
+    flipped: NDArray[np.bool_] | None
+    beta: Array | None
+    time: Array | None
+    temperature: Array | None
+    position: NDArray[np.int64] | None
+    directions: Array | None
+    direction_sigma: float | None
+
+
+def read_table(document: Fields, programme: str, sensors: tuple[Sensor, ...]) -> Table | None:
+    """Every array of the table; None when there is no usable table at all."""
+    columns = read_columns(document)
+    if columns is None:
+        return None
+    names = [sensor.name for sensor in sensors if sensor.name]
+    check_unknown(columns, names)
+    on_stand = programme == TWO_AXIS_STAND
+    directions = _directions(columns)
+    return Table(
+        readings=_stack([_required(columns, name, READING) for name in names], columns.rows),
+        standard_errors=_standard_errors(columns, names, raw=document.has("sample_rate_hz")),
+        flipped=_flipped(columns) if on_stand else None,
+        beta=np.radians(_required(columns, "beta_deg", BETA)) if on_stand else None,
+        time=_time(columns),
+        temperature=_optional(columns, "temperature_c", TEMPERATURE),
+        position=columns.labels("position") if columns.has("position") else None,
+        directions=directions,
+        direction_sigma=_direction_sigma(document, columns),
+    )
+
+
+def _required(columns: Columns, name: str, within: Interval) -> Array:
+    if columns.has(name):
+        return columns.numbers(name, within)
+    columns.report_missing(name)
+    return np.full(columns.rows, np.nan)
+
+
+def _optional(columns: Columns, name: str, within: Interval) -> Array | None:
+    return columns.numbers(name, within) if columns.has(name) else None
+
+
+def _stack(arrays: list[Array], rows: int) -> Array:
+    """(R, m)."""
+    return np.column_stack(arrays) if arrays else np.empty((rows, 0))
+
+
+def _standard_errors(columns: Columns, names: list[str], *, raw: bool) -> Array:
+    """(R, m), NaN where none is stated."""
+    stated = [f"{name}_se" for name in names if columns.has(f"{name}_se")]
+    if raw and stated:
+        columns.problems.add(
+            stated[0], "standard errors belong to averaged readings; a raw log has none, take them out"
+        )
+    empty = np.full(columns.rows, np.nan)
+    return _stack(
+        [
+            columns.numbers(f"{name}_se", STANDARD_ERROR, holes=True) if f"{name}_se" in stated else empty
+            for name in names
+        ],
+        columns.rows,
+    )
+
+
+def _flipped(columns: Columns) -> NDArray[np.bool_]:
+    if not columns.has("run"):
+        columns.report_missing("run")
+        return np.zeros(columns.rows, dtype=bool)
+    return columns.words("run", RUNS) == RUNS.index("flipped")
+
+
+def _time(columns: Columns) -> Array | None:
+    time = _optional(columns, "time_s", TIME)
+    if time is not None:
+        back = np.flatnonzero(np.diff(time) < 0) + 1
+        columns.problems.add_rows(
+            "time_s", back.tolist(), lambda j: f"{time[j]:.10g} is earlier than the row before; keep the order measured"
+        )
+    return time
+
+
+def _directions(columns: Columns) -> Array | None:
+    """(R, 3) unit vectors; NaN rows where a direction is unknown."""
+    given = [name for name in DIRECTIONS if columns.has(name)]
+    if not given:
+        return None
+    for name in DIRECTIONS:
+        if name not in given:
+            columns.report_missing(name)
+    stated = [columns.numbers(name, DIRECTION, holes=True) for name in given]
+    if len(given) < 3 or any(np.isnan(component).all() for component in stated):
+        return None
+    vectors = np.column_stack(stated)
+    length = np.linalg.norm(vectors, axis=1)
+    torn = np.isnan(vectors).any(axis=1) & ~np.isnan(vectors).all(axis=1)
+    columns.problems.add_rows(
+        DIRECTIONS[0], np.flatnonzero(torn).tolist(), lambda _: "give all three components of a direction, or none"
+    )
+    columns.problems.add_rows(
+        DIRECTIONS[0],
+        np.flatnonzero(length < SHORTEST_DIRECTION).tolist(),
+        lambda _: "the direction has length zero; give a unit vector, or leave it empty where unknown",
+    )
+    with np.errstate(divide="ignore", invalid="ignore"):
+        unit: Array = vectors / length[:, None]
+    return unit
+
+
+def _direction_sigma(document: Fields, columns: Columns) -> float | None:
+    """rad."""
+    key = "direction_sigma_deg"
+    if any(columns.has(name) for name in DIRECTIONS):
+        return math.radians(document.number(key, DIRECTION_SIGMA, "give how well the stated directions are known"))
+    if document.has(key):
+        document.add(key, f"is given without directions; add the columns {', '.join(DIRECTIONS)} or take it out")
+    return None
