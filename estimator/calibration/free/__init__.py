@@ -76,6 +76,19 @@ def calibrate_free(session: CalibrationSession, *, quadratic: bool | None = None
     return report(session, known, fit, "directions" if rows.held else "nominal-axes")
 
 
+def residual_per_freedom(session: CalibrationSession) -> float:
+    """Root of the squared residuals per degree of freedom, m/s², and one standard error of that on top.
+
+    What the still stretches of a raw log are chosen by; infinite where the rows do not determine everything.
+    """
+    result = calibrate_free(session, quadratic=False)
+    dof = result.fit.dof
+    if result.fit.rank < result.fit.parameters or dof < 1:
+        return float("inf")
+    spread = result.fit.residual_rms * np.sqrt(result.residuals.value.size / dof)
+    return float(spread * (1 + 1 / np.sqrt(2 * dof)))
+
+
 def check(session: CalibrationSession) -> None:
     """ScheduleError unless something can be estimated."""
     accelerometers = [s for s in session.sensors if s.kind == ACCELEROMETER]

@@ -1,0 +1,245 @@
+"""Raw log → averaged positions: where the block stood still, the means there, and how good they are.
+
+Positions come from the log's own labels, from a stand's settings, or are found: windows of about a second whose
+variance, in units of each channel's noise floor, stays below a threshold. The threshold is not set by hand: each of a
+grid is tried, and the one whose positions calibrate with the least residual per degree of freedom is kept (Tedaldi,
+Pretto and Menegatti, ICRA 2014, choose it the same way).
+
+The standard error of a mean allows for correlated noise: it is taken from the scatter of block means within the
+positions, pooled over all positions, and not from the scatter of samples.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from estimator.errors import Problem, ScheduleError
+from estimator.session import ACCELEROMETER, Array, CalibrationSession
+
+Indices = NDArray[np.intp]
+
+WINDOW = 1.0
+"""s over which the variance is taken."""
+
+BLOCKS = 4
+"""Blocks a window: the resolution of the ends of an interval, and what is trimmed from each."""
+
+SHORTEST = 1.0
+"""s of standing still, after trimming, that make a position."""
+
+FLOOR = 0.05
+"""Part of all windows that is taken to be still; its upper end is the noise floor of a channel."""
+
+THRESHOLDS = (1.5, 2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0, 40.0, 70.0)
+"""Variances, in noise floors averaged over the channels, below which a window may count as still."""
+
+FEWEST = 4
+"""Positions below which a threshold is not considered."""
+
+TRIM = 0.05
+"""Part cut off each end of a labelled position."""
+
+POOLED = 20
+"""Degrees of freedom that the scatter of block means must have."""
+
+MOST_BLOCKS = 1.0
+"""s; longest block whose mean is taken for independent of the next."""
+
+
+@dataclass(frozen=True, eq=False)
+class Intervals:
+    """Stretches of a log in which the block stood still, in order, not touching."""
+
+    start: Indices
+    """(n,) first sample."""
+    stop: Indices
+    """(n,) one past the last sample."""
+
+    def __len__(self) -> int:
+        return len(self.start)
+
+    @property
+    def samples(self) -> Indices:
+        """(n,) number of samples."""
+        return self.stop - self.start
+
+    def sums(self, values: Array) -> Array:
+        """(n, ...) sums of values (R, ...) over each interval."""
+        edges = np.stack([self.start, self.stop], axis=1).ravel()
+        padded = np.concatenate([values, np.zeros_like(values[:1])])
+        return np.asarray(np.add.reduceat(padded, edges, axis=0)[::2])
+
+    def means(self, values: Array) -> Array:
+        """(n, ...) means of values (R, ...) over each interval."""
+        sums = self.sums(values)
+        return sums / self.samples.reshape(-1, *[1] * (sums.ndim - 1))
+
+    def cut(self, length: int) -> "tuple[Intervals, Indices]":
+        """Each interval cut into whole blocks of ``length`` samples, and the interval that each block is of."""
+        count = self.samples // length
+        owner = np.repeat(np.arange(len(self)), count)
+        first = np.concatenate([[0], np.cumsum(count)[:-1]])
+        start = self.start[owner] + length * (np.arange(count.sum()) - first[owner])
+        return Intervals(start, start + length), owner
+
+
+def average(session: CalibrationSession, residual: Callable[[CalibrationSession], float]) -> CalibrationSession:
+    """The averaged session of a raw log: one row a position, with standard errors.
+
+    Parameters
+    ----------
+    session : a raw log (`is_raw`).
+    residual : residual per degree of freedom of an averaged session, by which the threshold is chosen; infinite
+        where the positions do not determine the calibration.
+
+    Raises
+    ------
+    ScheduleError
+        The log holds no position, or too few that stand still.
+    """
+    if session.position is not None:
+        return averaged(session, labelled(session.position))
+    if session.beta is not None and session.flipped is not None:
+        setting = np.column_stack([session.beta, session.flipped])
+        changed = np.any(np.diff(setting, axis=0) != 0, axis=1)
+        return averaged(session, labelled(np.concatenate([[0], np.cumsum(changed)])))
+    return chosen(session, residual)
+
+
+def labelled(position: NDArray[np.int64]) -> Intervals:
+    """Stretches of one label ≥ 0, trimmed at both ends."""
+    change = np.flatnonzero(np.diff(position)) + 1
+    start = np.concatenate([[0], change])
+    stop = np.concatenate([change, [len(position)]])
+    named = position[start] >= 0
+    start, stop = start[named], stop[named]
+    if not len(start):
+        raise ScheduleError([Problem("position", "no sample belongs to a position; label the still stretches 0, 1, …")])
+    trim = (TRIM * (stop - start)).astype(np.intp)
+    return Intervals(start + trim, stop - trim)
+
+
+@dataclass(frozen=True, eq=False)
+class Quietness:
+    """How still each window of a log is."""
+
+    block: int
+    """Samples a block; windows start at every block and are `BLOCKS` long."""
+    ratio: Array
+    """(W,) variance in noise floors, averaged over the channels."""
+
+
+def quietness(readings: Array, rate: float) -> Quietness:
+    """Variance of every window of readings (R, m) sampled at ``rate`` Hz, in noise floors."""
+    block = max(round(WINDOW * rate / BLOCKS), 2)
+    count = len(readings) // block
+    if count < BLOCKS:
+        return Quietness(block, np.empty(0))
+    total = np.zeros(count - BLOCKS + 1)
+    for channel in readings[: count * block].T:
+        blocks = channel.reshape(count, block)
+        mean = blocks.mean(axis=1)
+        within = blocks.var(axis=1)
+        view = np.lib.stride_tricks.sliding_window_view
+        variance = view(within, BLOCKS).mean(axis=1) + view(mean, BLOCKS).var(axis=1)
+        total += variance / noise_floor(variance, channel)
+    return Quietness(block, total / readings.shape[1])
+
+
+def noise_floor(variance: Array, channel: Array) -> float:
+    """Variance of a channel at rest: that of its stillest windows, and not below its quantisation."""
+    steps = np.abs(np.diff(channel))
+    steps = steps[steps > 0]
+    if not len(steps):
+        return 1.0
+    return max(float(np.quantile(variance, FLOOR)), float(steps.min()) ** 2 / 12)
+
+
+def still(quiet: Quietness, threshold: float, rate: float) -> Intervals:
+    """Stretches whose windows stay below the threshold, a block trimmed at both ends.
+
+    A motion raises every window that it touches, `BLOCKS` or more; fewer above the threshold are noise.
+    """
+    below = np.concatenate([[False], quiet.ratio < threshold, [False]])
+    edges = np.flatnonzero(np.diff(below.astype(np.int8)))
+    first, end = edges[::2], edges[1::2]
+    moved = first[1:] - end[:-1] >= BLOCKS
+    first, end = first[np.r_[True, moved][: len(first)]], end[np.r_[moved, True][: len(end)]]
+    start = (first + 1) * quiet.block
+    stop = (end + BLOCKS - 2) * quiet.block
+    enough = stop - start >= SHORTEST * rate
+    return Intervals(start[enough], stop[enough])
+
+
+def chosen(session: CalibrationSession, residual: Callable[[CalibrationSession], float]) -> CalibrationSession:
+    """The averaged session under the threshold that calibrates best."""
+    assert session.sample_rate is not None
+    watched = [s.kind == ACCELEROMETER for s in session.sensors]
+    readings = session.readings[:, watched] if any(watched) else session.readings
+    quiet = quietness(readings, session.sample_rate)
+    tried: dict[tuple[int, ...], tuple[float, CalibrationSession]] = {}
+    for threshold in THRESHOLDS:
+        found = still(quiet, threshold, session.sample_rate)
+        key = (*found.start.tolist(), *found.stop.tolist())
+        if len(found) >= FEWEST and key not in tried:
+            candidate = averaged(session, found)
+            tried[key] = (residual(candidate), candidate)
+    if not tried:
+        raise ScheduleError([Problem("table", none_found(session))])
+    return min(tried.values(), key=lambda pair: pair[0])[1]
+
+
+def none_found(session: CalibrationSession) -> str:
+    """What to tell the person whose log never stands still."""
+    return (
+        f"found fewer than {FEWEST} stretches of {len(session.readings)} samples in which the block stands still for "
+        f"{WINDOW + SHORTEST:g} s; rest longer in each orientation, check sample_rate_hz, or label the still samples "
+        "in a position column"
+    )
+
+
+def averaged(session: CalibrationSession, found: Intervals) -> CalibrationSession:
+    """One row an interval. What is set rather than read (run, β, directions) is taken from its first sample."""
+    assert session.sample_rate is not None
+    start = found.start
+    middle = (found.start + found.stop - 1) / 2 / session.sample_rate
+    return replace(
+        session,
+        readings=found.means(session.readings),
+        standard_errors=mean_errors(session.readings, found, session.sample_rate),
+        time=middle if session.time is None else found.means(session.time),
+        temperature=None if session.temperature is None else found.means(session.temperature),
+        flipped=None if session.flipped is None else session.flipped[start],
+        beta=None if session.beta is None else session.beta[start],
+        directions=None if session.directions is None else session.directions[start],
+        position=None if session.position is None else session.position[start],
+        sample_rate=None,
+    )
+
+
+def mean_errors(readings: Array, found: Intervals, rate: float) -> Array:
+    """(n, m) standard errors of the means, from the scatter of block means pooled over the intervals.
+
+    Blocks grow to `MOST_BLOCKS` seconds as long as `POOLED` degrees of freedom are left; NaN where every interval is a
+    single sample.
+    """
+    length = max(int(MOST_BLOCKS * rate), 1)
+    while length > 1 and freedom(found, length) < POOLED:
+        length //= 2
+    if freedom(found, length) < 1:
+        return np.full((len(found), readings.shape[1]), np.nan)
+    blocks, owner = found.cut(length)
+    means = blocks.means(readings)
+    count = np.bincount(owner, minlength=len(found))
+    centre = np.zeros((len(found), readings.shape[1]))
+    np.add.at(centre, owner, means)
+    scatter = means - (centre / np.maximum(count, 1)[:, None])[owner]
+    variance = (scatter**2).sum(axis=0) / freedom(found, length)
+    return np.sqrt(variance * length / found.samples[:, None])
+
+
+def freedom(found: Intervals, length: int) -> int:
+    """Degrees of freedom of block means of ``length`` samples about the means of their intervals."""
+    return int(np.maximum(found.samples // length - 1, 0).sum())
