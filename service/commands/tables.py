@@ -9,7 +9,7 @@ from rich.text import Text
 
 from estimator.results import Calibration, Estimate, Fit, SensorCalibration
 from estimator.session import CalibrationSession, Sensor
-from service.pages.units import deviation_unit, measured, number
+from service.pages.units import deviation_unit, in_unit, measured, number
 
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
 HEADINGS = {"scale": "scale, off nominal", "bias": "bias", "quadratic": "quadratic", "axis": "axis, block axes"}
@@ -48,7 +48,7 @@ def _cells(declared: Sensor, sensor: SensorCalibration) -> Iterator[str]:
         yield UNSEEN if estimate.value is None else measured(estimate.value, estimate.sigma, unit)
     yield UNSEEN if sensor.axis is None else " ".join(number(x, 6) for x in sensor.axis)
     unit = deviation_unit(sensor.kind, "axis", sensor.axis_sigma or 0.0)
-    yield "" if sensor.axis_sigma is None else f"{number(unit.of(sensor.axis_sigma), 1)} {unit.label}"
+    yield "" if sensor.axis_sigma is None else f"{number(in_unit(sensor.axis_sigma, unit), 1)} {unit.label}"
 
 
 def _off_nominal(scale: Estimate, nominal: float) -> Estimate:

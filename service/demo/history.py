@@ -15,14 +15,13 @@ from estimator.writing import session_document
 from service.demo.blocks import norms, schedule_of, sensors_of
 from service.demo.cast import CAST, END, START, YEARS, Member
 from service.demo.changes import DEGREE_PER_HOUR, Change, step_of
+from service.demo.types import SENSORS, TYPE_NAME
 
 SEED = 20261112
-SENSORS = 6
 STANDS = ("ODG-1", "ODG-2", "ODG-3")
 OPERATORS = ("A. Lindqvist", "K. Ito", "M. Okafor", "R. Duarte")
 POSITIONS = (12, 24)
 ELEVATION_DEG = 40.0
-TYPE_NAME = {ACCELEROMETER: "RA-6", GYROSCOPE: "RG-6"}
 NOISE = {ACCELEROMETER: 3e-6, GYROSCOPE: 0.3}
 """One sigma of an averaged reading: V; pulses."""
 WANDER = {
