@@ -43,6 +43,7 @@ last two are rotations of the axis along the two tangent vectors that the result
 
 from estimator.calibration import calibrate, calibrate_many
 from estimator.errors import FormatError, Problem, ScheduleError, SessionError
+from estimator.reading import read_session
 from estimator.results import Calibration
 from estimator.session import CalibrationSession, Sensor, Site, Stand, StandErrors
 
@@ -59,4 +60,5 @@ __all__ = [
     "StandErrors",
     "calibrate",
     "calibrate_many",
+    "read_session",
 ]
