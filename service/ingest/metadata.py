@@ -1,0 +1,19 @@
+"""The JSON text that accompanies the columns of a binary file."""
+
+from collections.abc import Mapping
+
+from estimator.reading.json_text import parse_json
+from estimator.reading.problems import Problems
+from service.ingest.limits import refusal
+
+KEY = "imu-session"
+
+
+def with_metadata(text: str, columns: Mapping[str, object], filename: str) -> dict[str, object]:
+    """The document of a session: the JSON metadata, and the columns as its table."""
+    problems = Problems(filename)
+    document = parse_json(text, problems)
+    problems.raise_if_any()
+    if "table" in document:
+        raise refusal(filename, f"stands in the {KEY} metadata; keep the readings in the columns only", "table")
+    return document | {"table": dict(columns)}

@@ -1,0 +1,44 @@
+"""Parquet: one column a column of the table, the metadata as JSON in the key-value entry `imu-session`."""
+
+from io import BytesIO
+
+import polars as pl
+
+from service.ingest.limits import MOST_TEXT, check_cells, refusal
+from service.ingest.metadata import KEY, with_metadata
+
+MAGIC = b"PAR1"
+
+
+def read_parquet(content: bytes, filename: str) -> dict[str, object]:
+    """The document that a Parquet file holds."""
+    try:
+        metadata = pl.read_parquet_metadata(BytesIO(content)).get(KEY)
+        scan = pl.scan_parquet(BytesIO(content))
+        rows = scan.select(pl.len()).collect().item()
+        check_cells(filename, rows, len(scan.collect_schema()))
+        frame = scan.collect()
+    except (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError) as error:
+        raise refusal(filename, "is damaged or not a readable Parquet file; write it again") from error
+    if metadata is None:
+        raise refusal(filename, f"has no key-value entry {KEY}; put the session's JSON without its table there")
+    return with_metadata(metadata, columns_of(frame, filename), filename)
+
+
+def columns_of(frame: pl.DataFrame, filename: str) -> dict[str, object]:
+    """Column name → numbers as an array where none is missing, else a list with None."""
+    return {series.name: _cells(series, filename) for series in frame}
+
+
+def _cells(series: pl.Series, filename: str) -> object:
+    if series.dtype.is_numeric() and not series.has_nulls():
+        return series.to_numpy()
+    if series.dtype.is_numeric() or series.dtype == pl.Boolean:
+        return series.to_list()
+    if series.dtype in (pl.Categorical, pl.Enum):
+        series = series.cast(pl.String)
+    if series.dtype != pl.String:
+        raise refusal(filename, f"is of type {series.dtype}; a column holds numbers or text", series.name)
+    if (series.str.len_bytes().sum() or 0) > MOST_TEXT:
+        raise refusal(filename, "holds far too much text; labels should be short", series.name)
+    return series.to_list()
