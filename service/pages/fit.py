@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from math import isfinite, sqrt
 
 from estimator.results import Fit, KnownCombination
-from service.pages.units import PeopleUnit, measured, number, value_unit
+from service.pages.units import measured, number, value_unit
+from service.units import DeviationUnit
 
 COVERAGE = 2.0
 """k of the uncertainties that are shown where no decision states its own."""
@@ -28,7 +29,7 @@ def combination_in_words(known: KnownCombination, kind: str) -> str:
         (coefficient * first / unit.factor, name.rpartition(".")[2])
         for (name, coefficient), unit in zip(known.coefficients.items(), units, strict=True)
     ]
-    total = measured(known.value, COVERAGE * known.sigma, PeopleUnit(units[0].label, first))
+    total = measured(known.value, COVERAGE * known.sigma, DeviationUnit(units[0].label, first))
     left = " + ".join(name if abs(c - 1) < 1e-9 else f"{number(c)} × {name}" for c, name in terms)
     return f"{left} = {total}".replace("+ −", "− ")
 

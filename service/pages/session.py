@@ -11,9 +11,9 @@ from service.pages.residual_table import ResidualTable, residual_table
 from service.pages.units import (
     HARD,
     THIN,
-    PeopleUnit,
     decimals,
     deviation_unit,
+    in_unit,
     limit,
     measured,
     number,
@@ -23,6 +23,7 @@ from service.pages.units import (
 )
 from service.pages.verdicts import Condition, condition_of
 from service.records import PARAMETERS, Decision, SessionReport, StoredSession
+from service.units import DeviationUnit
 
 
 @dataclass(frozen=True)
@@ -129,7 +130,7 @@ def _scale(value: float | None, spread: float | None, kind: str) -> str:
         return measured(value, None, unit)
     relative = deviation_unit(kind, "scale", spread / abs(value))
     share = spread / abs(value) * relative.factor
-    shown = number(unit.of(value), decimals(unit.of(spread)))
+    shown = number(in_unit(value, unit), decimals(in_unit(spread, unit)))
     return f"{shown} {unit.label} ±{HARD}{number(share, decimals(share))}{THIN}{relative.label}"
 
 
@@ -143,7 +144,7 @@ def _axis(sensor: SensorCalibration, coverage: float) -> str:
     return f"({vector}) ±{HARD}{number(share, decimals(share))}{THIN}{unit.label}"
 
 
-def _decision_unit(decision: Decision) -> PeopleUnit:
+def _decision_unit(decision: Decision) -> DeviationUnit:
     sizes = (decision.deviation, decision.expanded, decision.tolerance)
     return deviation_unit(decision.kind, decision.parameter, max(abs(x or 0.0) for x in sizes))
 
@@ -156,7 +157,7 @@ def _deviation(decision: Decision | None) -> str:
 
 
 def _tolerance(decision: Decision | None) -> str:
-    if decision is None or decision.tolerance is None:
+    if decision is None:
         return ""
     return limit(decision.tolerance, _decision_unit(decision), decision.parameter == "axis")
 

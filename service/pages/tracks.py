@@ -4,9 +4,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
-from service.pages.units import PeopleUnit, deviation_unit, limit, measured, signed
+from service.pages.units import deviation_unit, limit, measured, signed
 from service.pages.verdicts import Condition, condition_of
 from service.records import PARAMETERS, HistoryPoint, Service
+from service.units import DeviationUnit
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ class Track:
     """Parameter and kind: tracks of one name share a unit and a chart."""
     sensor: str
     parameter: str
-    unit: PeopleUnit
+    unit: DeviationUnit
     points: tuple[TrackPoint, ...]
 
     @property
@@ -104,7 +105,7 @@ def _extent(points: Sequence[HistoryPoint]) -> float:
     return max([*values, (points[-1].tolerance or 0.0) / one])
 
 
-def _points(points: Sequence[HistoryPoint], unit: PeopleUnit, services: Sequence[Service]) -> tuple[TrackPoint, ...]:
+def _points(points: Sequence[HistoryPoint], unit: DeviationUnit, services: Sequence[Service]) -> tuple[TrackPoint, ...]:
     origin, one = _origin(points)
     is_angle = points[0].parameter == "axis"
 
@@ -142,7 +143,7 @@ def _floor(point: HistoryPoint) -> float | None:
     return max(0.0, point.lower)
 
 
-def _text(point: HistoryPoint, origin: float, one: float, unit: PeopleUnit) -> str:
+def _text(point: HistoryPoint, origin: float, one: float, unit: DeviationUnit) -> str:
     if point.value is None:
         return "not observable"
     spread = None if point.upper is None else (point.upper - point.value) / one

@@ -94,7 +94,7 @@ def _spec(tracks: Sequence[Track]) -> dict[str, Any]:
 
 
 def _breaks(services: alt.NamedData) -> alt.Chart:
-    return (
+    chart: alt.Chart = (
         alt.Chart(services)
         .mark_rule(color="var(--ink)", strokeWidth=2, strokeDash=[2, 2])
         .encode(
@@ -102,11 +102,12 @@ def _breaks(services: alt.NamedData) -> alt.Chart:
             tooltip=[alt.Tooltip("what:N", title="service"), alt.Tooltip("note:N", title="note")],
         )
     )
+    return chart
 
 
 def _marks(base: alt.Chart, y: alt.Y) -> alt.Chart:
     names = [c.formal for c in CONDITIONS]
-    return base.mark_point(filled=True, opacity=1, size=55, stroke="var(--card)", strokeWidth=1).encode(
+    chart: alt.Chart = base.mark_point(filled=True, opacity=1, size=55, stroke="var(--card)", strokeWidth=1).encode(
         y=y,
         color=alt.Color(
             "verdict:N",
@@ -120,6 +121,7 @@ def _marks(base: alt.Chart, y: alt.Y) -> alt.Chart:
             alt.Tooltip("verdict:N", title="verdict"),
         ],
     )
+    return chart
 
 
 def _span(tracks: Sequence[Track]) -> list[str]:

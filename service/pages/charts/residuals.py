@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from estimator.results import Calibration, Residuals
 from service.pages.charts import DATA_FORM, ChartSet, Panel, padded, specification
-from service.pages.units import THIN, PeopleUnit, decimals, deviation_unit, number
+from service.pages.units import THIN, decimals, deviation_unit, number
+from service.units import DeviationUnit
 
 HEIGHT = 130
 RUNS = ("direct", "flipped")
@@ -56,7 +57,7 @@ def _chart_set(calibration: Calibration, kind: str, across: _Across, several: bo
     )
 
 
-def _panel(calibration: Calibration, column: int, across: _Across, unit: PeopleUnit) -> Panel:
+def _panel(calibration: Calibration, column: int, across: _Across, unit: DeviationUnit) -> Panel:
     residuals = calibration.residuals
     value, sigma = residuals.value[:, column], residuals.sigma[:, column]
     outside = int(np.sum(np.abs(value) > 2 * sigma))
@@ -69,7 +70,7 @@ def _panel(calibration: Calibration, column: int, across: _Across, unit: PeopleU
     )
 
 
-def _rows(residuals: Residuals, column: int, across: _Across, unit: PeopleUnit) -> list[dict[str, Any]]:
+def _rows(residuals: Residuals, column: int, across: _Across, unit: DeviationUnit) -> list[dict[str, Any]]:
     flipped = np.zeros(len(residuals.value), bool) if residuals.flipped is None else residuals.flipped
     return [
         {
@@ -87,7 +88,7 @@ def _rows(residuals: Residuals, column: int, across: _Across, unit: PeopleUnit) 
     ]
 
 
-def _spec(across: _Across, unit: PeopleUnit, largest: float) -> dict[str, Any]:
+def _spec(across: _Across, unit: DeviationUnit, largest: float) -> dict[str, Any]:
     ticks = {"tickCount": 5} if across.name == "order" else {"values": [0, 90, 180, 270, 360]}
     domain = [-12, 372] if across.name == "beta" else [0, len(across.values) + 1]
     x = alt.X("x:Q", title=across.title, axis=alt.Axis(**ticks), scale=alt.Scale(domain=domain, nice=False))
@@ -106,8 +107,8 @@ def _spec(across: _Across, unit: PeopleUnit, largest: float) -> dict[str, Any]:
     )
 
 
-def _marks(base: alt.Chart, y: alt.Y, unit: PeopleUnit) -> alt.Chart:
-    return base.mark_point(filled=True, opacity=1, size=36, stroke="var(--card)", strokeWidth=0.5).encode(
+def _marks(base: alt.Chart, y: alt.Y, unit: DeviationUnit) -> alt.Chart:
+    chart: alt.Chart = base.mark_point(filled=True, opacity=1, size=36, stroke="var(--card)", strokeWidth=0.5).encode(
         y=y,
         color=alt.Color("run:N", legend=None, scale=alt.Scale(domain=RUNS, range=["var(--accent)", "var(--second)"])),
         shape=alt.Shape("run:N", legend=None, scale=alt.Scale(domain=RUNS, range=["circle", "triangle-up"])),
@@ -118,3 +119,4 @@ def _marks(base: alt.Chart, y: alt.Y, unit: PeopleUnit) -> alt.Chart:
             alt.Tooltip("band:Q", title=f"2σ, {unit.label}"),
         ],
     )
+    return chart

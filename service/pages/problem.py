@@ -1,0 +1,97 @@
+"""Error pages: the service's one problem shape, shown to people who came with a browser."""
+
+import json
+from dataclasses import dataclass
+from typing import Any
+
+from fastapi import Request
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from estimator.errors import Problem
+from service.pages.render import render
+
+PROBLEM = b"application/problem+json"
+ADVICE = {
+    403: "Open the page from this service itself and try again.",
+    404: "The address may be mistyped, or the link is older than the data.",
+    413: "Split the recording, or average it before the upload.",
+    422: "Correct what is listed and try again.",
+    503: "Nothing was lost. The page works again as soon as the database answers: try again in a few seconds.",
+    507: "Nothing was lost. Ask whoever runs this service to make room.",
+}
+OTHERWISE = "Nothing was lost. Try again; if it happens again, tell whoever runs this service."
+
+
+@dataclass(frozen=True)
+class ProblemPage:
+    """Everything an error page shows."""
+
+    status: int
+    title: str
+    detail: str
+    problems: tuple[Problem, ...]
+    advice: str
+
+
+def problem_page(problem: dict[str, Any]) -> ProblemPage:
+    """The page of a problem+json document."""
+    status = int(problem["status"])
+    return ProblemPage(
+        status=status,
+        title=str(problem.get("title", "Error")),
+        detail=str(problem.get("detail", "")),
+        problems=tuple(
+            Problem(str(p.get("field", "")), str(p.get("message", "")), p.get("row"))
+            for p in problem.get("problems", ())
+        ),
+        advice=ADVICE.get(status, OTHERWISE),
+    )
+
+
+class ProblemPages:
+    """Turns problem+json answers to page requests into error pages; the API's own answers stay as they are."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Passes everything through but problems on their way to a browser."""
+        if scope["type"] != "http" or not _wants_page(scope):
+            await self.app(scope, receive, send)
+            return
+        await self.app(scope, receive, _Turner(scope, receive, send))
+
+
+def _wants_page(scope: Scope) -> bool:
+    accepted = dict(scope["headers"]).get(b"accept", b"")
+    return not scope["path"].startswith("/api/") and b"text/html" in accepted
+
+
+class _Turner:
+    """Holds back a problem until it is complete, then sends the page in its place."""
+
+    def __init__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        self.scope, self.receive, self.send = scope, receive, send
+        self.start: Message | None = None
+        self.body = b""
+
+    async def __call__(self, message: Message) -> None:
+        if message["type"] == "http.response.start" and _is_problem(message):
+            self.start = message
+        elif self.start is None:
+            await self.send(message)
+        else:
+            self.body += message.get("body", b"")
+            if not message.get("more_body", False):
+                await self._send_page(self.start)
+
+    async def _send_page(self, start: Message) -> None:
+        page = problem_page(json.loads(self.body))
+        response = render(Request(self.scope), "problem.html", page, page.status)
+        kept = [(k, v) for k, v in start["headers"] if k.lower() in (b"retry-after", b"allow")]
+        response.raw_headers.extend(kept)
+        await response(self.scope, self.receive, self.send)
+
+
+def _is_problem(start: Message) -> bool:
+    return any(k.lower() == b"content-type" and v.startswith(PROBLEM) for k, v in start["headers"])

@@ -1,0 +1,120 @@
+"""A service with a small fleet, and a Chromium to look at it with."""
+
+import json
+import os
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from threading import Thread
+from time import sleep
+
+import httpx
+import pytest
+import uvicorn
+from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
+from service.app import create_app
+
+from service.settings import Settings
+from tests.builders import Document, accelerometer_block, arbitrary_orientations, gyro_block, true_sensors
+
+NAMES = ("chromium", "chromium-browser", "google-chrome")
+FLAGS = (
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+)
+MICRO_G = 9.80665e-6
+
+
+@dataclass(frozen=True)
+class Site:
+    """Where the service is, and what it holds."""
+
+    url: str
+    unfit_session: str
+    loose_session: str
+
+
+def drifting(step: int) -> Document:
+    """Session ``step`` of a unit whose A3 loses 14 µg of bias from each to the next."""
+    sensors = true_sensors(6, bias=1e-3, quadratic=1e-6, tilt=1e-4)
+    sensors[2] = replace(sensors[2], bias=sensors[2].bias - 14 * MICRO_G * step)
+    document = accelerometer_block(positions=24, sensors=sensors, seed=10 + step)
+    return document | {"started_at": f"202{4 + step // 4}-{1 + 3 * (step % 4):02}-15T09:00:00Z"}
+
+
+def upload(url: str, document: Document) -> str:
+    """Uploads a session and returns its id."""
+    answer = httpx.post(f"{url}/api/v1/sessions", content=json.dumps(document), timeout=60)
+    assert answer.status_code == 201, answer.text
+    return str(answer.json()["id"])
+
+
+@contextmanager
+def serving(folder: Path) -> Iterator[str]:
+    """A running service with an empty store in ``folder``."""
+    app = create_app(Settings(data_folder=folder))
+    server = uvicorn.Server(uvicorn.Config(app, port=0, log_level="warning"))
+    thread = Thread(target=server.run, daemon=True)
+    thread.start()
+    while not server.started:
+        assert thread.is_alive(), "the service did not start"
+        sleep(0.02)
+    port = server.servers[0].sockets[0].getsockname()[1]
+    yield f"http://127.0.0.1:{port}"
+    server.should_exit = True
+    thread.join()
+
+
+@pytest.fixture(scope="session")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
+    """A service with four units: one that drifted out of tolerance, two fit, one measured by hand."""
+    with serving(tmp_path_factory.mktemp("service")) as url:
+        unfit = [upload(url, drifting(step)) for step in range(7)][-1]
+        for seed in (1, 2):
+            upload(url, accelerometer_block(unit="BA-018", seed=seed) | {"started_at": f"2026-0{seed}-01T08:00:00Z"})
+        upload(url, gyro_block(unit="GB-004"))
+        loose = upload(url, arbitrary_orientations(unit="HAND-1"))
+        yield Site(url, unfit, loose)
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Iterator[Browser]:
+    """An installed Chromium; without one the browser tests are skipped, but not where CI is set."""
+    found = next(filter(None, map(shutil.which, NAMES)), None)
+    if found is None:
+        missing = pytest.fail if os.environ.get("CI") else pytest.skip
+        missing("No Chromium is installed (looked for " + ", ".join(NAMES) + "): pages cannot be opened.")
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=found, args=list(FLAGS))
+        yield browser
+        browser.close()
+
+
+@dataclass
+class Witness:
+    """What went on while pages were open."""
+
+    complaints: list[str] = field(default_factory=list)
+    """Errors and warnings of the console, failed requests."""
+    addresses: list[str] = field(default_factory=list)
+
+    def watch(self, page: Page) -> None:
+        """Listens to a page from now on."""
+        page.on("console", lambda m: m.type in ("error", "warning") and self.complaints.append(m.text))
+        page.on("pageerror", lambda fault: self.complaints.append(str(fault)))
+        page.on("requestfailed", lambda request: self.complaints.append(f"failed: {request.url}"))
+        page.on("request", lambda request: self.addresses.append(request.url))
+
+
+@contextmanager
+def opened(browser: Browser, width: int = 1280, **options: object) -> Iterator[tuple[BrowserContext, Page]]:
+    """A fresh browser context with one page."""
+    context = browser.new_context(viewport={"width": width, "height": 900}, **options)  # type: ignore[arg-type]
+    yield context, context.new_page()
+    context.close()

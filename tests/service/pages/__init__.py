@@ -1,0 +1,1 @@
+"""Pages: contexts made of records, and what they say."""

@@ -1,0 +1,47 @@
+"""Records for page tests: real calibrations of built sessions, judged by the real rule."""
+
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+
+from estimator.calibration import calibrate
+from estimator.reading import read_session
+from estimator.results import Calibration
+from service.flows.judge import judge
+from service.flows.tolerances import type_of
+from service.records import HistoryPoint, SessionReport, StoredSession, UnitSummary, Verdict
+from tests.builders import Document, accelerometer_block
+
+NOON = datetime(2026, 3, 1, 12, tzinfo=UTC)
+
+
+def session_report(
+    document: Document | None = None, reference: Calibration | None = None, **changes: object
+) -> SessionReport:
+    """The report of a session as the service would store it."""
+    session = read_session(document or accelerometer_block())
+    calibration = calibrate(session)
+    judged = judge(session, calibration, reference, type_of(session, calibration), 2.0)
+    stored = StoredSession(
+        id="5e55", unit=session.unit, sha256="5e55" * 16, filename="BA-017.json", size=12_345,
+        programme=session.programme, stand="ODG-1", operator="K. Ito", notes="", started_at=NOON, uploaded_at=NOON,
+        verdict=judged.verdict, reason=judged.reason, is_reference=reference is None, simulated=False,
+    )  # fmt: skip
+    return SessionReport(replace(stored, **changes), calibration, judged.decisions)  # type: ignore[arg-type]
+
+
+def bias_point(day: int, value: float | None, *, reference: float | None = 0.0, sensor: str = "A1") -> HistoryPoint:
+    """One bias of one session, m/s²; tolerance 5e-4, U 1e-4."""
+    return HistoryPoint(
+        session=f"s{day}", at=NOON + timedelta(days=day), sensor=sensor, kind="accelerometer", parameter="bias",
+        value=value, u=5e-5, lower=None if value is None else value - 1e-4,
+        upper=None if value is None else value + 1e-4, reference=reference,
+        tolerance=None if reference is None else 5e-4, verdict=Verdict.PASS, axis=None,
+    )  # fmt: skip
+
+
+def unit_summary(serial: str = "BA-017", verdict: Verdict = Verdict.PASS, margin: float | None = 0.4) -> UnitSummary:
+    """One line of the fleet."""
+    return UnitSummary(
+        serial=serial, unit_type="hex-cone", simulated=False, sessions=3, last_session="5e55", last_at=NOON,
+        verdict=verdict, reason="why", worst_sensor="A3", worst_parameter="bias", margin=margin,
+    )  # fmt: skip

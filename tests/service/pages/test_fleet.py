@@ -1,0 +1,45 @@
+"""The fleet page's context."""
+
+from service.pages.fleet import PAGE_SIZE, FleetView, fleet_page, margin_of
+from service.records import FleetCondition, Verdict
+from tests.service.pages.records import unit_summary
+
+CONDITION = FleetCondition(units=120, verdicts={v: 20 + 2 * v.severity for v in Verdict}, simulated=0)
+
+
+def test_tiles_count_every_condition_worst_first() -> None:
+    tiles = fleet_page(CONDITION, (), FleetView()).tiles
+    assert [(t.condition.word, t.count) for t in tiles] == [
+        ("Unfit", 28), ("Probably unfit", 26), ("Undecided", 24), ("Probably fit", 22), ("Fit", 20),
+    ]  # fmt: skip
+
+
+def test_one_unit_more_than_fits_means_a_next_page() -> None:
+    units = [unit_summary(f"U{i}") for i in range(PAGE_SIZE + 1)]
+    page = fleet_page(CONDITION, units, FleetView(page=2))
+    assert (page.more, page.first, page.last) == (True, PAGE_SIZE + 1, 2 * PAGE_SIZE)
+
+
+def test_changing_the_filter_goes_back_to_the_first_page() -> None:
+    view = FleetView(text="BA 1", condition="fail", page=3)
+    assert view.url() == "/?q=BA+1&condition=fail&page=3"
+    assert view.url(condition="pass", page=1) == "/?q=BA+1&condition=pass"
+    assert FleetView().url() == "/"
+
+
+def test_chosen_tile_leads_back_to_all() -> None:
+    tiles = {t.condition.key: t for t in fleet_page(CONDITION, (), FleetView(condition="fail")).tiles}
+    assert tiles["fail"].chosen
+    assert tiles["fail"].url == "/"
+
+
+def test_margin_in_words_and_as_a_bar() -> None:
+    found = [margin_of(m) for m in (0.4, 0.0, -0.12, -3.0, None)]
+    assert [m and m.words for m in found] == ["40 % left", "0 % left", "12 % over", "4.0 × limit", None]
+    assert [m and round(m.used) for m in found] == [60, 100, 112, 150, None]
+
+
+def test_margin_of_an_undecided_unit_is_not_claimed() -> None:
+    rows = fleet_page(CONDITION, [unit_summary(verdict=Verdict.UNDECIDABLE)], FleetView()).rows
+    assert rows[0].margin is None
+    assert rows[0].worst == "A3 bias"

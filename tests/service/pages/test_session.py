@@ -1,0 +1,60 @@
+"""The session page's context."""
+
+from dataclasses import replace
+
+import pytest
+
+from estimator.results import KnownCombination
+from service.pages.fit import combination_in_words, fit_in_words
+from service.pages.session import session_page
+from tests.builders import accelerometer_block
+from tests.service.pages.records import session_report
+
+
+def test_cell_shows_value_deviation_tolerance_and_verdict() -> None:
+    reference = session_report().calibration
+    page = session_page(session_report(accelerometer_block(seed=2), reference))
+    bias = page.sensors[0].cells[1]
+    assert bias.value.endswith("µg")
+    assert "±" in bias.deviation
+    assert bias.tolerance == "±50\u202fµg"
+    assert bias.condition is not None
+
+
+def test_scale_is_written_with_its_relative_uncertainty() -> None:
+    scale = session_page(session_report()).sensors[0].cells[0]
+    assert "per g ±" in scale.value
+    assert scale.value.endswith("ppm")
+
+
+def test_what_is_not_observable_is_said_with_what_is_known() -> None:
+    page = session_page(session_report(accelerometer_block(runs=("direct",), positions=3)))
+    unseen = [c.parameter for s in page.sensors for c in s.cells if not c.observable]
+    assert unseen
+    assert any(s.known for s in page.sensors)
+
+
+def test_known_combination_is_written_in_peoples_units() -> None:
+    g = 9.80665
+    known = KnownCombination({"bias": 2.0, "quadratic": -g * g}, value=20e-6 * g, sigma=1e-6 * g)
+    assert combination_in_words(known, "accelerometer") == "bias − 0.5 × quadratic = 10.0\u00a0±\u00a01.0\u202fµg"
+
+
+@pytest.mark.parametrize(
+    ("p", "says"), [(0.6, "explains"), (0.01, "larger than usual"), (1e-6, "more than"), (None, "no standard errors")]
+)
+def test_fit_is_judged_in_words(p: float | None, says: str) -> None:
+    fit = replace(session_report().calibration.fit, p_value=p)
+    assert says in fit_in_words(fit).headline
+
+
+def test_enlarged_uncertainties_are_a_warning() -> None:
+    fit = replace(session_report().calibration.fit, covariance_factor=4.0)
+    assert any("2.00 times" in w for w in fit_in_words(fit).warnings)
+
+
+def test_residuals_are_charted_by_angle_and_in_order() -> None:
+    page = session_page(session_report())
+    assert [c.heading for c in page.charts] == ["By the angle β of the head", "In the order measured"]
+    assert [len(c.panels) for c in page.charts] == [6, 6]
+    assert len(page.residuals.rows) == 24
