@@ -57,7 +57,7 @@ def mutated(draw):
             parent = parent[key]
         change = draw(st.sampled_from(["put", "put", "drop", "repeat"]))
         if change == "put":
-            parent[way[-1]] = draw(JSON)
+            parent[way[-1]] = copy.deepcopy(draw(JSON))
         elif change == "drop":
             del parent[way[-1]]
         elif isinstance(parent, dict):
