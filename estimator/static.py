@@ -47,6 +47,9 @@ POOLED = 20
 MOST_BLOCKS = 1.0
 """s; longest block whose mean is taken for independent of the next."""
 
+RESTLESS = 3.0
+"""Scatter of an interval's block means, in usual ones, from which the interval has a standard error of its own."""
+
 
 @dataclass(frozen=True, eq=False)
 class Intervals:
@@ -223,7 +226,7 @@ def mean_errors(readings: Array, found: Intervals, rate: float) -> Array:
     """(n, m) standard errors of the means, from the scatter of block means pooled over the intervals.
 
     Blocks grow to `MOST_BLOCKS` seconds as long as `POOLED` degrees of freedom are left; NaN where every interval is a
-    single sample.
+    single sample. An interval whose scatter stands out keeps its own instead of spoiling the others'.
     """
     length = max(int(MOST_BLOCKS * rate), 1)
     while length > 1 and freedom(found, length) < POOLED:
@@ -231,13 +234,25 @@ def mean_errors(readings: Array, found: Intervals, rate: float) -> Array:
     if freedom(found, length) < 1:
         return np.full((len(found), readings.shape[1]), np.nan)
     blocks, owner = found.cut(length)
-    means = blocks.means(readings)
-    count = np.bincount(owner, minlength=len(found))
-    centre = np.zeros((len(found), readings.shape[1]))
-    np.add.at(centre, owner, means)
-    scatter = means - (centre / np.maximum(count, 1)[:, None])[owner]
-    variance = (scatter**2).sum(axis=0) / freedom(found, length)
+    scatter, left = within(blocks.means(readings), owner, len(found))
+    own = scatter / np.maximum(left, 1)[:, None]
+    usual = np.median(own[left > 0], axis=0)
+    unrest = (own / np.where(usual > 0, usual, 1.0)).mean(axis=1)
+    calm = unrest < RESTLESS
+    pooled = scatter[calm].sum(axis=0) / max(int(left[calm].sum()), 1)
+    variance = np.where(calm[:, None], pooled, np.maximum(own, pooled))
     return np.sqrt(variance * length / found.samples[:, None])
+
+
+def within(means: Array, owner: Indices, n: int) -> tuple[Array, Indices]:
+    """Squared scatter (n, m) of block means (B, m) about the mean of their interval, and its freedom (n,)."""
+    count = np.bincount(owner, minlength=n)
+    total = np.zeros((n, means.shape[1]))
+    np.add.at(total, owner, means)
+    apart = means - (total / np.maximum(count, 1)[:, None])[owner]
+    squares = np.zeros_like(total)
+    np.add.at(squares, owner, apart**2)
+    return squares, np.maximum(count - 1, 0)
 
 
 def freedom(found: Intervals, length: int) -> int:

@@ -1,0 +1,25 @@
+"""Converters of public recordings to session files. A new format is one file and one entry of `FORMATS`."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from estimator.errors import FormatError, Problem
+from service.ingest.convert.contract import Converter, Document
+from service.ingest.convert.ctu_mat import CTU_MAT
+from service.ingest.convert.ferraris_csv import FERRARIS_CSV
+from service.ingest.convert.imu_tk import IMU_TK
+from service.ingest.convert.kth_mimu import KTH_MIMU
+from service.ingest.convert.mpu9150_five import MPU9150_FIVE
+
+__all__ = ["FORMATS", "Converter", "Document", "convert"]
+
+FORMATS: tuple[Converter, ...] = (IMU_TK, MPU9150_FIVE, KTH_MIMU, CTU_MAT, FERRARIS_CSV)
+
+
+def convert(format_name: str, paths: Sequence[Path]) -> list[tuple[str, Document]]:
+    """Suggested file name and session of everything that the files hold; `FormatError` when they cannot be used."""
+    for converter in FORMATS:
+        if converter.name == format_name:
+            return converter.convert(list(paths))
+    known = ", ".join(converter.name for converter in FORMATS)
+    raise FormatError([Problem("format", f"{format_name!r} is not known; choose one of {known}")])

@@ -1,0 +1,43 @@
+"""Czech Technical University (Šipoš, Roháč, Šimánek): means of 49 still orientations of one triad, in g."""
+
+import zlib
+from pathlib import Path
+
+import numpy as np
+from scipy.io import loadmat
+from scipy.io.matlab import MatReadError
+
+from service.ingest.convert.contract import Converter, Document
+from service.ingest.convert.documents import STANDARD_GRAVITY, columns, session, triad
+from service.ingest.convert.files import expect_count, refuse
+
+FILES = "the MAT file that holds `ACC_meas`, three rows of orientation means in g"
+
+
+def convert(paths: list[Path]) -> list[tuple[str, Document]]:
+    """One MAT file → one averaged session without standard errors."""
+    expect_count(paths, 1, FILES)
+    path = paths[0]
+    try:
+        held = loadmat(path, appendmat=False, variable_names=["ACC_meas"])
+    except (OSError, ValueError, TypeError, NotImplementedError, MatReadError, zlib.error) as fault:
+        raise refuse(path, "file", f"cannot be read as a MAT file of version 5: {fault}") from fault
+    values = held.get("ACC_meas")
+    if values is None or values.ndim != 2 or values.shape[0] != 3 or values.dtype.kind not in "fiu":
+        raise refuse(path, "ACC_meas", "must be an array of three rows of numbers")
+    means = values.T.astype(np.float64)
+    unusable = np.flatnonzero(~np.isfinite(means).all(axis=1))
+    if len(unusable):
+        raise refuse(path, "ACC_meas", "holds a value that is not a finite number", row=int(unusable[0]) + 1)
+    sensors = triad("A", 1 / STANDARD_GRAVITY, "g")
+    notes = "CTU Prague recording, orientation means of 1000 samples in g; the local g is not published"
+    document = session("ctu-triad", sensors, columns(sensors, means), gravity=STANDARD_GRAVITY, notes=notes)
+    return [("ctu-orientations.json", document)]
+
+
+CTU_MAT = Converter(
+    name="ctu-mat",
+    description="Means of one triad in still orientations on three great circles.",
+    files=FILES,
+    convert=convert,
+)
