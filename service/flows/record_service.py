@@ -16,5 +16,5 @@ def record_service(
         unit = store.units.hold(serial)
         number, created = store.services.add(unit, kind, at, note, now)
         if created:
-            store.log.audit(now, who, "service", serial, kind=kind, at=at.isoformat(), note=note)
+            store.log.audit(now, who, "service", serial, {"kind": kind, "at": at.isoformat(), "note": note})
         return store.services.get(number), created

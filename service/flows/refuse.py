@@ -20,7 +20,7 @@ def refuse(
     listed = tuple(Problem(_text(p.field), _text(p.message), p.row) for p in problems)
     with storage.database.writing() as store:
         store.log.refusal(now, name, digest, len(content), listed)
-        store.log.audit(now, who, "refuse", digest, filename=name, problems=len(listed))
+        store.log.audit(now, who, "refuse", digest, {"filename": name, "problems": len(listed)})
     count = "one problem" if len(listed) == 1 else f"{len(listed)} problems"
     return RefusedError(f"{name} cannot be used: {count}. Nothing was stored.", listed)
 

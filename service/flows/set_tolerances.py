@@ -22,6 +22,5 @@ def set_tolerances(
         if (current.tolerances, current.gyro_tolerances) == (tolerances, gyro_tolerances):
             return current
         revised = store.unit_types.revise(name, tolerances, gyro_tolerances, now)
-        given = {"tolerances": asdict(tolerances), "gyro": gyro_tolerances and asdict(gyro_tolerances)}
-        store.log.audit(now, who, "tolerances", name, revision=revised.revision, **given)
+        store.log.audit(now, who, "tolerances", name, asdict(revised))
         return revised

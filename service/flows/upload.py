@@ -81,7 +81,7 @@ def _store(store: Store, new: Upload, coverage_factor: float) -> Receipt:
     store.history.add(unit, record.id, record.started_at, parameter_values(new.calibration))
     store.sessions.add_decisions(record.id, judged.decisions)
     store.fleet.refresh(unit)
-    store.log.audit(new.at, new.who, "upload", record.id, unit=record.unit, verdict=record.verdict.value)
+    store.log.audit(new.at, new.who, "upload", record.id, {"unit": record.unit, "verdict": record.verdict.value})
     return _receipt(record, created=True)
 
 

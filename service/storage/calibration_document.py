@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 
 from estimator.results import (
-    Array,
     Calibration,
     Estimate,
     Fit,
@@ -13,6 +12,7 @@ from estimator.results import (
     Residuals,
     SensorCalibration,
 )
+from estimator.session import Array
 
 
 def calibration_from_dict(document: dict[str, Any]) -> Calibration:

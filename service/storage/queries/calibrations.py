@@ -2,7 +2,6 @@
 
 import json
 import zlib
-from typing import Any
 
 from sqlalchemy import select
 
@@ -24,14 +23,13 @@ class Calibrations(Queries):
         )
         self._session.flush()
 
-    def document(self, session: str) -> dict[str, Any]:
-        """imu-calibration/1 of a session."""
+    def json(self, session: str) -> bytes:
+        """imu-calibration/1 of a session, as it was written."""
         deflated = self._session.scalar(select(CalibrationRow.document).where(CalibrationRow.session_id == session))
         if deflated is None:
             raise NotFoundError(f"There is no calibration of session {session!r}.")
-        document: dict[str, Any] = json.loads(zlib.decompress(deflated))
-        return document
+        return zlib.decompress(deflated)
 
     def get(self, session: str) -> Calibration:
         """The calibration of a session, as it was computed."""
-        return calibration_from_dict(self.document(session))
+        return calibration_from_dict(json.loads(self.json(session)))

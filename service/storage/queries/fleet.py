@@ -1,7 +1,6 @@
 """All units at a glance: one short row a unit, rewritten when a session of it is stored."""
 
 from dataclasses import dataclass
-from typing import Any
 
 from sqlalchemy import Row, Select, func, select
 
@@ -71,10 +70,7 @@ class Fleet(Queries):
         return FleetCondition(units=sum(verdicts.values()), verdicts=verdicts, simulated=simulated)
 
 
-Summary = tuple[UnitRow, str, ConditionRow, SessionRow]
-
-
-def _summaries() -> Select[Summary]:
+def _summaries() -> Select[UnitRow, str, ConditionRow, SessionRow]:
     return (
         select(UnitRow, UnitTypeRow.name, ConditionRow, SessionRow)
         .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
@@ -83,7 +79,9 @@ def _summaries() -> Select[Summary]:
     )
 
 
-def _matching(query: Select[Any], wanted: FleetQuery) -> Select[Any]:
+def _matching(
+    query: Select[UnitRow, str, ConditionRow, SessionRow], wanted: FleetQuery
+) -> Select[UnitRow, str, ConditionRow, SessionRow]:
     if wanted.verdict is not None:
         query = query.where(ConditionRow.severity == wanted.verdict.severity)
     if wanted.text:
@@ -94,7 +92,7 @@ def _matching(query: Select[Any], wanted: FleetQuery) -> Select[Any]:
     return query
 
 
-def _summary(row: Row[Summary]) -> UnitSummary:
+def _summary(row: Row[UnitRow, str, ConditionRow, SessionRow]) -> UnitSummary:
     unit, type_name, condition, last = row
     return UnitSummary(
         serial=unit.serial,

@@ -68,13 +68,13 @@ class History(Queries):
         return tuple(_point(row) for row in found)
 
 
-def _point(row: Row[tuple[ParameterRow, DecisionRow | None]]) -> HistoryPoint:
-    parameter, decision = row
+def _point(row: Row[ParameterRow, DecisionRow]) -> HistoryPoint:
+    parameter: ParameterRow = row[0]
+    decision: DecisionRow | None = row[1]
     is_axis = parameter.parameter == "axis"
     value = decision.value if is_axis and decision else parameter.value
     u = decision.uncertainty if is_axis and decision and decision.uncertainty is not None else parameter.u
     expanded = None if u is None or decision is None else decision.coverage_factor * u
-    known = value is not None and expanded is not None
     return HistoryPoint(
         session=parameter.session_id,
         at=parameter.at,
@@ -83,8 +83,8 @@ def _point(row: Row[tuple[ParameterRow, DecisionRow | None]]) -> HistoryPoint:
         parameter=parameter.parameter,
         value=value,
         u=u,
-        lower=value - expanded if known else None,
-        upper=value + expanded if known else None,
+        lower=None if value is None or expanded is None else value - expanded,
+        upper=None if value is None or expanded is None else value + expanded,
         reference=None if decision is None else decision.reference,
         tolerance=None if decision is None else _tolerance(decision),
         verdict=Verdict.UNDECIDABLE if decision is None else Verdict(decision.verdict),

@@ -18,6 +18,6 @@ class Log(Queries):
         listed = [asdict(problem) for problem in problems]
         self._session.add(RefusalRow(at=at, filename=filename, sha256=sha256, size=size, problems=listed))
 
-    def audit(self, at: datetime, who: str, action: str, subject: str, **details: Any) -> None:
+    def audit(self, at: datetime, who: str, action: str, subject: str, details: dict[str, Any]) -> None:
         """Records who did what; never changed afterwards."""
         self._session.add(AuditRow(at=at, who=who, action=action, subject=subject, details=details))

@@ -42,7 +42,7 @@ class Services(Queries):
         return (before[-1] if before else None), (after[0] if after else None)
 
 
-def _services() -> Select[tuple[ServiceRow, str]]:
+def _services() -> Select[ServiceRow, str]:
     return select(ServiceRow, UnitRow.serial).join(UnitRow, UnitRow.id == ServiceRow.unit_id)
 
 

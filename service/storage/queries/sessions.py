@@ -71,7 +71,7 @@ def _worst_columns(worst: Worst) -> dict[str, str | float | None]:
     return {"worst_sensor": worst.sensor, "worst_parameter": worst.parameter, "margin": worst.margin}
 
 
-def _sessions() -> Select[tuple[SessionRow, str, str]]:
+def _sessions() -> Select[SessionRow, str, str]:
     return (
         select(SessionRow, UnitRow.serial, StandRow.name)
         .join(UnitRow, UnitRow.id == SessionRow.unit_id)

@@ -1,0 +1,23 @@
+"""The HTTP API, /api/v1: one route file a resource, one shape for every error."""
+
+from fastapi import APIRouter, FastAPI
+
+from service.api import fleet, operations, sessions, unit_types, units
+from service.api.metrics import Measured, Metrics
+from service.api.openapi import describe
+from service.api.problems import add_problem_handlers
+
+PREFIX = "/api/v1"
+
+
+def mount(app: FastAPI) -> None:
+    """Adds every route of the API, its error shape, its description and its figures to the application."""
+    api = APIRouter(prefix=PREFIX)
+    for resource in (sessions, units, unit_types, fleet):
+        api.include_router(resource.router)
+    app.include_router(api)
+    app.include_router(operations.router)
+    app.state.metrics = Metrics()
+    app.add_middleware(Measured, metrics=app.state.metrics)
+    add_problem_handlers(app)
+    describe(app)

@@ -1,0 +1,35 @@
+"""What those who run the service ask: is it alive, is it ready, what are its figures."""
+
+from fastapi import APIRouter, Request, Response
+from prometheus_client import CONTENT_TYPE_LATEST
+from pydantic import BaseModel, Field
+
+from service.api.schemas.problem import errors
+from service.dependencies import StorageOf
+
+router = APIRouter(tags=["operations"])
+
+
+class State(BaseModel):
+    """The state of the service."""
+
+    status: str = Field(description="`ok` when it is alive, `ready` when it can answer.")
+
+
+@router.get("/healthz")
+def health() -> State:
+    """Liveness: the process answers."""
+    return State(status="ok")
+
+
+@router.get("/readyz", responses=errors())
+def readiness(storage: StorageOf) -> State:
+    """Readiness: the database answers and its schema is the one this version needs."""
+    storage.database.require_ready()
+    return State(status="ready")
+
+
+@router.get("/metrics", responses={200: {"content": {"text/plain": {}}}}, response_class=Response)
+def metrics(request: Request) -> Response:
+    """Figures for Prometheus."""
+    return Response(request.app.state.metrics.text(), media_type=CONTENT_TYPE_LATEST)

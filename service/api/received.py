@@ -1,0 +1,80 @@
+"""What came with an upload: the bytes unchanged, however they were sent, and never more than the limit."""
+
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from fastapi import Depends, Request
+from starlette.datastructures import UploadFile
+from starlette.types import Message, Receive
+
+from estimator.errors import Problem
+from service.api.schemas.sessions import SessionFile
+from service.dependencies import SettingsOf
+from service.errors import RefusedError, TooLargeError
+
+ENVELOPE = 64 * 1024
+"""Bytes that a multipart envelope may add to the file."""
+NO_FILE = "The form holds no file. Send the session as the body, or as the form's part `file`."
+
+
+@dataclass(frozen=True)
+class ReceivedFile:
+    """An uploaded file."""
+
+    content: bytes
+    filename: str
+
+
+async def _received(request: Request, settings: SettingsOf) -> ReceivedFile:
+    """The file, from the body or from the part `file` of a form."""
+    longest = settings.max_upload_bytes
+    is_form = request.headers.get("content-type", "").lower().startswith("multipart/form-data")
+    limited = Request(request.scope, _limited(request.receive, longest + (ENVELOPE if is_form else 0), longest))
+    if is_form:
+        return await _from_form(limited)
+    return ReceivedFile(await limited.body(), "the request's body")
+
+
+async def _from_form(request: Request) -> ReceivedFile:
+    async with request.form(max_files=1, max_fields=10) as form:
+        file = form.get("file")
+        if not isinstance(file, UploadFile):
+            raise RefusedError(NO_FILE, (Problem("file", "is missing from the form"),))
+        return ReceivedFile(await file.read(), file.filename or "upload")
+
+
+def _limited(receive: Receive, most: int, limit: int) -> Receive:
+    """Stops a body that grows beyond the limit, whatever length it announced."""
+    seen = 0
+
+    async def counted() -> Message:
+        nonlocal seen
+        message = await receive()
+        seen += len(message.get("body", b""))
+        if seen > most:
+            raise TooLargeError(f"The upload is larger than {limit:,} bytes. Average or split it and send it again.")
+        return message
+
+    return counted
+
+
+Received = Annotated[ReceivedFile, Depends(_received)]
+
+REQUEST_BODY: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "description": "A session file, as the body or as the part `file` of a form.",
+        "content": {
+            "application/json": {"schema": SessionFile.model_json_schema()},
+            "text/csv": {"schema": {"type": "string", "description": "imu-session/1 as CSV with metadata."}},
+            "multipart/form-data": {
+                "schema": {
+                    "type": "object",
+                    "required": ["file"],
+                    "properties": {"file": {"type": "string", "format": "binary", "description": "The session file."}},
+                }
+            },
+        },
+    }
+}
+"""OpenAPI has no way to say this through a parameter, because the bytes must be kept unchanged."""

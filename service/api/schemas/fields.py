@@ -1,0 +1,52 @@
+"""Kinds of value that requests share."""
+
+from datetime import UTC, datetime
+from typing import Annotated
+
+from fastapi import Path, Query
+from pydantic import AfterValidator, StringConstraints
+
+from service.records import Verdict
+
+TEXT = r"^[^\x00]*$"
+"""PostgreSQL keeps any character but NUL."""
+EARLIEST, LATEST = datetime(1900, 1, 1, tzinfo=UTC), datetime(2200, 1, 1, tzinfo=UTC)
+
+
+def _in_utc(moment: datetime) -> datetime:
+    aware = moment if moment.tzinfo else moment.replace(tzinfo=UTC)
+    if not EARLIEST <= aware < LATEST:
+        raise ValueError("must lie between 1900 and 2200")
+    return aware.astimezone(UTC)
+
+
+Moment = Annotated[datetime, AfterValidator(_in_utc)]
+"""A time; without a zone it is UTC."""
+Text = Annotated[str, StringConstraints(pattern=TEXT, max_length=200)]
+LongText = Annotated[str, StringConstraints(pattern=TEXT, max_length=2000)]
+
+SessionId = Annotated[
+    str,
+    Path(
+        pattern=TEXT,
+        max_length=200,
+        description="The session's id: the first 20 digits of its file's SHA-256.",
+        examples=["3f9a0c5be1d24786aa10"],
+    ),
+]
+Serial = Annotated[
+    str,
+    Path(pattern=TEXT, max_length=200, description="The unit's serial number.", examples=["BA-017"]),
+]
+TypeName = Annotated[
+    str, Path(pattern=TEXT, max_length=200, description="The unit type's name.", examples=["hex-cone"])
+]
+Page = Annotated[int, Query(ge=1, le=1_000_000, description="Which page, from 1.")]
+Limit = Annotated[int, Query(ge=1, le=1000, description="How many on a page.")]
+WantedVerdict = Annotated[Verdict | None, Query(description="Only units whose latest session has this verdict.")]
+WantedText = Annotated[Text | None, Query(alias="q", description="Part of a serial number or of a unit type's name.")]
+
+
+def next_page(page: int, limit: int, found: int) -> int | None:
+    """The number of the next page; None after one that is not full."""
+    return page + 1 if found == limit else None

@@ -1,0 +1,40 @@
+"""The one shape of every error: application/problem+json (RFC 9457)."""
+
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+
+class Fault(BaseModel):
+    """One thing that is wrong with what was sent."""
+
+    field: str = Field(description="Where: a field of the file, a column, or a part of the request.")
+    row: int | None = Field(description="Row of the table, counted from 1; null when it is not in one row.")
+    message: str = Field(description="What is wrong, and what to do.")
+
+
+class ProblemDocument(BaseModel):
+    """Why a request was not carried out."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "example": {
+                "type": "about:blank",
+                "title": "Unprocessable Entity",
+                "status": 422,
+                "detail": "BA-017.json cannot be used: one problem. Nothing was stored.",
+                "problems": [{"field": "A3", "row": 7, "message": "is not a number"}],
+            }
+        }
+    )
+
+    type: str = Field(description="`about:blank`: the status says what kind of problem it is.")
+    title: str = Field(description="The status in words.")
+    status: int = Field(description="The HTTP status.")
+    detail: str = Field(description="What happened, in a sentence for people.")
+    problems: list[Fault] | None = Field(default=None, description="With 422: every fault with its place.")
+
+
+def errors(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """OpenAPI entries of the problems that a route can answer with; any route can find the database away."""
+    return {status: {"model": ProblemDocument} for status in (*statuses, 503)}

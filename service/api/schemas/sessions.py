@@ -1,0 +1,120 @@
+"""Sessions, receipts, decisions."""
+
+from datetime import datetime
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field
+from pydantic.config import JsonDict
+
+from service.records import Verdict
+
+RECEIPT_EXAMPLE: JsonDict = {
+    "id": "3f9a0c5be1d24786aa10",
+    "unit": "BA-017",
+    "verdict": "fail",
+    "reason": "A3 bias moved +62 µg (U 8.1 µg) beyond the tolerance of 50 µg.",
+    "created": True,
+    "url": "http://127.0.0.1:8000/api/v1/sessions/3f9a0c5be1d24786aa10",
+}
+
+
+class ReceiptSchema(BaseModel):
+    """The answer to an upload."""
+
+    model_config = ConfigDict(from_attributes=True, json_schema_extra={"example": RECEIPT_EXAMPLE})
+
+    id: str = Field(description="The session's id, made from the content: the same bytes have the same id.")
+    unit: str = Field(description="Serial number of the unit.")
+    verdict: Verdict = Field(description="Of the session: the worst of its parameters.")
+    reason: str = Field(description="Why, in one sentence.")
+    created: bool = Field(description="False when the same bytes were already stored.")
+    url: str = Field(description="Where the session can be read.")
+
+
+class SessionSchema(BaseModel):
+    """One stored session."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    id: str = Field(description="The first 20 digits of the content's SHA-256.")
+    unit: str = Field(description="Serial number of the unit.")
+    sha256: str = Field(description="SHA-256 of the uploaded bytes.")
+    filename: str = Field(description="What the file was called when it was uploaded.")
+    size: int = Field(description="Bytes.")
+    programme: str = Field(description="How it was measured.", examples=["two-axis-stand"])
+    stand: str | None = Field(description="The stand, if one was used.")
+    operator: str = Field(description="Who measured, as the file says.")
+    notes: str = Field(description="Notes of the file.")
+    started_at: datetime = Field(description="When it was measured, UTC; the upload's time if the file does not say.")
+    uploaded_at: datetime = Field(description="When it was uploaded, UTC.")
+    verdict: Verdict = Field(description="The worst of the session's parameters.")
+    reason: str = Field(description="Why the verdict is what it is, in one sentence.")
+    is_reference: bool = Field(description="Whether later sessions are judged against this one.")
+    simulated: bool = Field(description="Whether it belongs to the demonstration fleet.")
+
+
+class DecisionSchema(BaseModel):
+    """One parameter of one sensor, judged."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    sensor: str = Field(description="Name of the sensor.")
+    kind: str = Field(description="`accelerometer` or `gyroscope`.")
+    parameter: str = Field(description="`scale`, `bias`, `quadratic` or `axis`.")
+    value: float | None = Field(description="Measured, SI; for the axis the angle from the reference axis, rad.")
+    reference: float | None = Field(description="The reference session's value, SI; 0 for the axis.")
+    deviation: float | None = Field(description="y, from the reference: relative for scale, else SI.")
+    uncertainty: float | None = Field(description="u, standard uncertainty of the deviation, of both sessions.")
+    expanded: float | None = Field(description="U = k·u.")
+    coverage_factor: float = Field(description="k.")
+    tolerance: float = Field(description="T, in the unit of the deviation.")
+    guard_band: float | None = Field(description="w = U.")
+    probability_out: float | None = Field(description="Probability that the true deviation is out of tolerance.")
+    critical: float | None = Field(
+        description="Smallest deviation that counts as a change, at 1 % over all judged numbers of the session."
+    )
+    verdict: Verdict = Field(description="The state of this parameter.")
+    rule: str = Field(description="Name and version of the rule, and the type and revision of its tolerances.")
+
+
+class SessionReportSchema(SessionSchema):
+    """One stored session with its decisions."""
+
+    decisions: list[DecisionSchema] = Field(description="Every judged parameter, sensor after sensor.")
+
+
+class SessionPage(BaseModel):
+    """One page of sessions, newest measurement first."""
+
+    sessions: list[SessionSchema] = Field(description="The sessions of this page.")
+    page: int = Field(description="Which page this is, from 1.")
+    limit: int = Field(description="How many fit on a page.")
+    next_page: int | None = Field(description="The next page; null after the last.")
+
+
+class CalibrationDocument(BaseModel):
+    """imu-calibration/1: parameters in SI with their full covariance."""
+
+    format: str = Field(description="`imu-calibration/1`.")
+    unit: str = Field(description="Serial number of the unit.")
+    method: str = Field(description="How the parameters were estimated.")
+    sensors: list[dict[str, Any]] = Field(
+        description="Scale, bias, quadratic term and axis of every sensor, with total one-sigma uncertainties."
+    )
+    fit: dict[str, Any] = Field(description="χ², degrees of freedom, p-value, rank, weakest direction.")
+    gauge: str = Field(description="What holds the block's frame.")
+    covariance: dict[str, Any] = Field(description="Names and units of all elements; total and repeatability.")
+    residuals: dict[str, Any] = Field(description="Measured minus modelled, row by row, at the input.")
+
+
+class SessionFile(BaseModel):
+    """imu-session/1: one calibration session. The convention of fields is in the documentation."""
+
+    model_config = ConfigDict(extra="allow")
+
+    format: str = Field(description="`imu-session/1`.")
+    unit: str = Field(description="Serial number of the unit.")
+    block: str = Field(description="`accelerometer` or `gyroscope`.")
+    programme: str = Field(description="`two-axis-stand`, `arbitrary-orientations`, …")
+    sensors: list[dict[str, Any]] = Field(description="Name, nominal axis, nominal scale and reading unit of each.")
+    table: dict[str, Any] = Field(description="Columns of equal length: one row a reading, in the order measured.")

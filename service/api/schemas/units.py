@@ -1,0 +1,171 @@
+"""Units, unit types, tolerances, services, history, fleet."""
+
+from datetime import datetime
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from service.api.schemas.fields import LongText, Moment
+from service.api.schemas.sessions import SessionSchema
+from service.records import Verdict
+
+Tolerance = Annotated[float, Field(ge=1e-15, le=1e6, allow_inf_nan=False)]
+
+
+class TolerancesSchema(BaseModel):
+    """Largest allowed deviations from the reference; null where a parameter is not judged."""
+
+    model_config = ConfigDict(from_attributes=True, extra="forbid")
+
+    scale: Tolerance | None = Field(description="Relative: 1e-6 is 1 ppm.", examples=[1e-4])
+    bias: Tolerance | None = Field(description="m/s² (rad/s).", examples=[4.9e-4])
+    quadratic: Tolerance | None = Field(description="s²/m (s/rad).", examples=[2.04e-6])
+    axis: Tolerance | None = Field(description="rad.", examples=[9.7e-5])
+
+
+class NewTolerances(BaseModel):
+    """Other tolerances for a unit type, from the next session on."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    tolerances: TolerancesSchema = Field(description="Of the sensors of the block's own kind.")
+    gyro_tolerances: TolerancesSchema | None = Field(
+        default=None, description="Of the gyros of a block of accelerometers; null for the default ones."
+    )
+
+
+class UnitTypeSchema(BaseModel):
+    """A kind of unit: nominal axes and tolerances that all its units share."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    name: str = Field(description="Name of the type.")
+    block: str = Field(description="`accelerometer` or `gyroscope`.")
+    sensors: list[str] = Field(description="Names of the sensors.")
+    nominal_axes: list[tuple[float, float, float]] = Field(description="Unit vectors in block axes.")
+    nominal_scales: list[float] = Field(description="Reading unit per m/s² (rad/s).")
+    tolerances: TolerancesSchema = Field(description="Of the sensors of the block's own kind.")
+    gyro_tolerances: TolerancesSchema | None = Field(description="Of the gyros of a block of accelerometers.")
+    revision: int = Field(description="Counts up with every change of tolerances; decisions name theirs.")
+
+
+class UnitTypePage(BaseModel):
+    """One page of unit types, by name."""
+
+    unit_types: list[UnitTypeSchema] = Field(description="The types of this page.")
+    page: int = Field(description="Which page this is, from 1.")
+    limit: int = Field(description="How many fit on a page.")
+    next_page: int | None = Field(description="The next page; null after the last.")
+
+
+class UnitSummarySchema(BaseModel):
+    """One unit in short."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    serial: str = Field(description="Serial number.")
+    unit_type: str = Field(description="Name of its type.")
+    simulated: bool = Field(description="Whether it belongs to the demonstration fleet.")
+    sessions: int = Field(description="How many sessions are stored.")
+    last_session: str | None = Field(description="Id of the latest session.")
+    last_at: datetime | None = Field(description="When it was measured, UTC.")
+    verdict: Verdict | None = Field(description="Of the latest session.")
+    reason: str = Field(description="Why, in one sentence.")
+    worst_sensor: str | None = Field(description="The sensor that the verdict hangs on.")
+    worst_parameter: str | None = Field(description="The parameter that the verdict hangs on.")
+    margin: float | None = Field(
+        description="1 − (|d| + U)/T of it: 1 is spotless, 0 the edge of pass, negative beyond."
+    )
+
+
+class UnitPage(BaseModel):
+    """One page of units, worst first."""
+
+    units: list[UnitSummarySchema] = Field(description="The units of this page.")
+    page: int = Field(description="Which page this is, from 1.")
+    limit: int = Field(description="How many fit on a page.")
+    next_page: int | None = Field(description="The next page; null after the last.")
+
+
+class FleetSchema(BaseModel):
+    """The condition of the whole fleet."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    units: int = Field(description="How many units there are.")
+    verdicts: dict[Verdict, int] = Field(description="How many of them have each verdict.")
+    simulated: int = Field(description="How many of them belong to the demonstration fleet.")
+
+
+ServiceKind = Literal["adjustment", "repair", "sensor swap", "new reference"]
+
+
+class NewService(BaseModel):
+    """A known break in a unit's history; the next session measured after it is the new reference."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        json_schema_extra={
+            "example": {"kind": "repair", "at": "2026-02-10T12:00:00Z", "note": "A3 replaced after a fall"}
+        },
+    )
+
+    kind: ServiceKind = Field(description="What was done.")
+    at: Moment | None = Field(default=None, description="When; now if not given. Without a zone it is UTC.")
+    note: LongText = Field(default="", description="By whom, why, what exactly.")
+
+
+class ServiceSchema(BaseModel):
+    """A known break in a unit's history."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    id: int = Field(description="Number of the entry.")
+    unit: str = Field(description="Serial number of the unit.")
+    at: datetime = Field(description="When it was done, UTC.")
+    kind: str = Field(description="What was done.")
+    note: str = Field(description="By whom, why, what exactly.")
+
+
+class UnitReportSchema(BaseModel):
+    """Everything that is known of one unit, apart from its history."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    summary: UnitSummarySchema = Field(description="Its condition.")
+    unit_type: UnitTypeSchema = Field(description="Its type, with the tolerances that hold now.")
+    reference_session: str | None = Field(
+        description="What the next session will be judged against; null when that one becomes the reference."
+    )
+    sessions: list[SessionSchema] = Field(description="The latest sessions, newest first.")
+    services: list[ServiceSchema] = Field(description="All known breaks, oldest first.")
+
+
+class HistoryPointSchema(BaseModel):
+    """One parameter of one sensor at one session, ready for drawing a band."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    session: str = Field(description="Id of the session.")
+    at: datetime = Field(description="When it was measured, UTC.")
+    sensor: str = Field(description="Name of the sensor.")
+    kind: str = Field(description="`accelerometer` or `gyroscope`.")
+    parameter: str = Field(description="`scale`, `bias`, `quadratic` or `axis`.")
+    value: float | None = Field(description="SI; for the axis the angle from the reference axis, rad.")
+    u: float | None = Field(description="Standard uncertainty of the value.")
+    lower: float | None = Field(description="Value minus expanded uncertainty.")
+    upper: float | None = Field(description="Value plus expanded uncertainty.")
+    reference: float | None = Field(description="The value that it is judged against.")
+    tolerance: float | None = Field(description="In the unit of the value; null where it is not judged.")
+    verdict: Verdict = Field(description="The state of this parameter at this session.")
+    axis: tuple[float, float, float] | None = Field(description="For the axis: its components in block axes.")
+
+
+class HistoryPage(BaseModel):
+    """One page of a unit's history, oldest first."""
+
+    unit: str = Field(description="Serial number of the unit.")
+    points: list[HistoryPointSchema] = Field(description="One a session, sensor and parameter.")
+    page: int = Field(description="Which page this is, from 1.")
+    limit: int = Field(description="How many points fit on a page.")
+    next_page: int | None = Field(description="The next page; null after the last.")

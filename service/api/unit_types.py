@@ -1,0 +1,39 @@
+"""Unit types and their tolerances."""
+
+from dataclasses import fields
+
+from fastapi import APIRouter
+
+from service.api.schemas.fields import Limit, Page, TypeName, next_page
+from service.api.schemas.problem import errors
+from service.api.schemas.units import NewTolerances, TolerancesSchema, UnitTypePage, UnitTypeSchema
+from service.dependencies import Now, Reading, StorageOf
+from service.flows.set_tolerances import set_tolerances
+from service.flows.unit_types import unit_type, unit_types
+from service.records import Tolerances
+
+router = APIRouter(prefix="/unit-types", tags=["unit types"])
+
+
+@router.get("", responses=errors(422))
+def list_unit_types(store: Reading, page: Page = 1, limit: Limit = 100) -> UnitTypePage:
+    """Unit types, by name."""
+    listed = [UnitTypeSchema.model_validate(found) for found in unit_types(store, page=page, limit=limit)]
+    return UnitTypePage(unit_types=listed, page=page, limit=limit, next_page=next_page(page, limit, len(listed)))
+
+
+@router.get("/{name:path}", responses=errors(404, 422))
+def read_unit_type(name: TypeName, store: Reading) -> UnitTypeSchema:
+    """One unit type with the tolerances that hold now."""
+    return UnitTypeSchema.model_validate(unit_type(store, name))
+
+
+@router.put("/{name:path}", responses=errors(400, 404, 422))
+def change_tolerances(name: TypeName, new: NewTolerances, storage: StorageOf, now: Now) -> UnitTypeSchema:
+    """Other tolerances, from the next session on. Past decisions keep theirs; the revision counts up."""
+    gyro = None if new.gyro_tolerances is None else _record(new.gyro_tolerances)
+    return UnitTypeSchema.model_validate(set_tolerances(storage, name, _record(new.tolerances), gyro, now))
+
+
+def _record(given: TolerancesSchema) -> Tolerances:
+    return Tolerances(**{field.name: getattr(given, field.name) for field in fields(Tolerances)})

@@ -1,0 +1,84 @@
+"""Units: their condition, history and known breaks."""
+
+from datetime import datetime
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Query, Response
+
+from service.api.exports import as_csv, as_parquet, history_table
+from service.api.schemas.fields import Limit, Moment, Page, Serial, Text, WantedText, WantedVerdict, next_page
+from service.api.schemas.problem import errors
+from service.api.schemas.units import (
+    HistoryPage,
+    HistoryPointSchema,
+    NewService,
+    ServiceSchema,
+    UnitPage,
+    UnitReportSchema,
+    UnitSummarySchema,
+)
+from service.dependencies import Now, Reading, StorageOf
+from service.flows.fleet import fleet_overview
+from service.flows.history import unit_history
+from service.flows.record_service import record_service
+from service.flows.unit_report import unit_report
+
+router = APIRouter(prefix="/units", tags=["units"])
+TABLE = {"type": "string", "format": "binary"}
+HISTORY_FORMATS = {"text/csv": {"schema": TABLE}, "application/vnd.apache.parquet": {"schema": TABLE}}
+Parameter = Literal["scale", "bias", "quadratic", "axis"]
+
+
+@router.get("", responses=errors(422))
+def list_units(
+    store: Reading, verdict: WantedVerdict = None, text: WantedText = None, page: Page = 1, limit: Limit = 100
+) -> UnitPage:
+    """Units, worst first."""
+    found = fleet_overview(store, verdict=verdict, text=text, page=page, limit=limit)
+    listed = [UnitSummarySchema.model_validate(unit) for unit in found]
+    return UnitPage(units=listed, page=page, limit=limit, next_page=next_page(page, limit, len(listed)))
+
+
+@router.get(
+    "/{serial:path}/history",
+    responses={200: {"content": HISTORY_FORMATS}, **errors(404, 422)},
+    response_model=HistoryPage,
+)
+def read_history(
+    serial: Serial,
+    store: Reading,
+    parameter: Annotated[Parameter | None, Query(description="Only this parameter.")] = None,
+    sensor: Annotated[Text | None, Query(description="Only this sensor.")] = None,
+    since: Annotated[Moment | None, Query(description="Measured at or after this time.")] = None,
+    until: Annotated[Moment | None, Query(description="Measured before this time.")] = None,
+    format: Annotated[Literal["json", "csv", "parquet"], Query(description="Form of the answer.")] = "json",
+    page: Page = 1,
+    limit: Annotated[int, Query(ge=1, le=50_000, description="How many points on a page.")] = 10_000,
+) -> Response:
+    """The parameters through time, oldest first: value, uncertainty, band, tolerance and verdict of every point."""
+    found = unit_history(
+        store, serial, parameter=parameter, sensor=sensor, since=since, until=until, page=page, limit=limit
+    )
+    if format == "csv":
+        return as_csv(history_table(found), f"{serial}-history.csv")
+    if format == "parquet":
+        return as_parquet(history_table(found), f"{serial}-history.parquet")
+    points = [HistoryPointSchema.model_validate(point) for point in found]
+    answer = HistoryPage(
+        unit=serial, points=points, page=page, limit=limit, next_page=next_page(page, limit, len(points))
+    )
+    return Response(answer.model_dump_json(), media_type="application/json")
+
+
+@router.post("/{serial:path}/services", status_code=201, responses=errors(400, 404, 422))
+def add_service(serial: Serial, new: NewService, response: Response, storage: StorageOf, now: Now) -> ServiceSchema:
+    """Record a known break; the next session measured after it becomes the unit's new reference."""
+    at: datetime = new.at or now
+    service, _ = record_service(storage, serial, new.kind, at, new.note, now)
+    return ServiceSchema.model_validate(service)
+
+
+@router.get("/{serial:path}", responses=errors(404, 422))
+def read_unit(serial: Serial, store: Reading, now: Now) -> UnitReportSchema:
+    """One unit: condition, type, reference, latest sessions, known breaks."""
+    return UnitReportSchema.model_validate(unit_report(store, serial, now))

