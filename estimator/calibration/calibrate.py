@@ -1,9 +1,11 @@
 """The one door to every calibrator."""
 
+from estimator.calibration.free import calibrate_free, residual_per_freedom
 from estimator.calibration.stand import calibrate_stand
 from estimator.errors import Problem, ScheduleError
 from estimator.results import Calibration
-from estimator.session import TWO_AXIS_STAND, CalibrationSession
+from estimator.session import ARBITRARY_ORIENTATIONS, TWO_AXIS_STAND, CalibrationSession
+from estimator.static import average
 
 
 def calibrate(session: CalibrationSession, *, quadratic: bool | None = None) -> Calibration:
@@ -18,6 +20,9 @@ def calibrate(session: CalibrationSession, *, quadratic: bool | None = None) -> 
     ------
     ScheduleError : the programme does not calibrate, or its rows cannot support it.
     """
+    if session.programme not in (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS):
+        raise ScheduleError([Problem("programme", f"{session.programme} does not calibrate a block")])
+    rows = average(session, residual_per_freedom) if session.is_raw else session
     if session.programme == TWO_AXIS_STAND:
-        return calibrate_stand([session])[0]
-    raise ScheduleError([Problem("programme", f"{session.programme} does not calibrate a block")])
+        return calibrate_stand([rows])[0]
+    return calibrate_free(rows, quadratic=quadratic)

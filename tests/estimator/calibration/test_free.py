@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from free_sessions import errors, session, sphere, truth
 
 from estimator.calibration.free import calibrate_free
 from estimator.calibration.free.model import Rows, State, jacobian, linearise, predicted
+from tests.estimator.calibration.free_sessions import errors, session, sphere, truth
 
 
 @pytest.mark.parametrize("m", [3, 4, 6, 24])

@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from free_sessions import errors, session, sphere, truth
 
 from estimator.calibration.free import calibrate_free
 from estimator.calibration.free.information import information
 from estimator.calibration.free.model import Rows, State
 from estimator.errors import ScheduleError
+from tests.estimator.calibration.free_sessions import errors, session, sphere, truth
 
 
 def known(m, directions, quadratic=False):
