@@ -3,6 +3,7 @@
     u = K·(a + b + c·a²),  a = e·n        (analytic alignment paper, equations (12)–(14))
 
 Residuals and Jacobians are taken at the input (divided by K), where noise, biases and stand errors live.
+Arrays are indexed (..., R, m); in memory the rows of one sensor lie together, which is what the solver works on.
 """
 
 import numpy as np
@@ -14,7 +15,12 @@ from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
 def projected(axis: Array, vectors: Array) -> Array:
     """a = e·n: axis (..., m, 3) and vectors (R, m, 3) give (..., R, m)."""
-    return (axis[..., None, :, :] * vectors).sum(axis=-1)
+    return _by_sensor(axis[..., None], vectors)[..., 0].swapaxes(-1, -2)
+
+
+def _by_sensor(directions: Array, vectors: Array) -> Array:
+    """Vectors (R, m, 3) along the columns of directions (..., m, 3, d): (..., m, R, d)."""
+    return vectors.swapaxes(0, 1) @ directions
 
 
 def input_of(p: SensorParameters, n: Array) -> Array:
@@ -34,16 +40,18 @@ def slope(p: SensorParameters, n: Array) -> Array:
 
 
 def jacobian(p: SensorParameters, n: Array, norm: Array) -> Array:
-    """Derivative of the input by the dimensionless elements: (..., R, m, 5); ``norm`` (m,)."""
-    a = projected(p.axis, n)
-    c = p.quadratic[..., None, :]
-    turned = (tangents(p.axis)[..., None, :, :, :] * n[..., None]).sum(axis=-2)
+    """Derivative of reading/K by the dimensionless elements of `estimator.parameters`, K of the divisor held.
+
+    n (R, m, 3) of lengths ``norm`` (m,); the result is (..., R, m, 5).
+    """
+    along = _by_sensor(np.concatenate([p.axis[..., None], tangents(p.axis)], axis=-1), n)
+    a, c, size = along[..., 0], p.quadratic[..., None], norm[:, None]
     columns = np.empty((*a.shape, 5))
-    columns[..., 0] = a + p.bias[..., None, :] + c * a * a
-    columns[..., 1] = norm
-    columns[..., 2] = a * a / norm
-    columns[..., 3:] = (1.0 + 2.0 * c * a)[..., None] * turned
-    return columns
+    columns[..., 0] = a + p.bias[..., None] + c * a * a
+    columns[..., 1] = size
+    columns[..., 2] = a * a / size
+    columns[..., 3:] = (1.0 + 2.0 * c * a)[..., None] * along[..., 1:]
+    return columns.swapaxes(-3, -2)
 
 
 def measured(session: CalibrationSession) -> tuple[Array, Array]:
@@ -52,8 +60,9 @@ def measured(session: CalibrationSession) -> tuple[Array, Array]:
     The stated nominal offset is taken off; pulse counts become pulses per second, with the quantisation of the count
     (one pulse, uniform) in the standard error.
     """
-    offset = np.array([s.nominal_offset or 0.0 for s in session.sensors])
-    readings, errors = session.readings - offset, session.standard_errors
+    readings, errors = session.readings, session.standard_errors
+    if any(s.nominal_offset for s in session.sensors):
+        readings = readings - np.array([s.nominal_offset or 0.0 for s in session.sensors])
     if session.count_time is None:
         return readings, errors
     gyro = np.array([s.kind != ACCELEROMETER for s in session.sensors])

@@ -30,6 +30,12 @@ class SensorParameters:
     axis: Array
     """(..., m, 3)"""
 
+    def at(self, sessions: Array | int) -> "SensorParameters":
+        """Those of one session, or of several, by their place on the first axis."""
+        return SensorParameters(
+            self.scale[sessions], self.bias[sessions], self.quadratic[sessions], self.axis[sessions]
+        )
+
     def stepped(self, step: Array, norm: Array) -> "SensorParameters":
         """Moved by a dimensionless step (..., m, 5); ``norm`` (m,) is the reference vector's length."""
         turned = self.axis + (tangents(self.axis) @ step[..., 3:, None])[..., 0]

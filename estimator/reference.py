@@ -13,8 +13,8 @@ from estimator.session import ACCELEROMETER, Array, CalibrationSession, Site, St
 EARTH_RATE = 7.292115e-5
 """rad/s."""
 
-FLIP = np.diag([-1.0, -1.0, 1.0])
-"""The block turned 180° about Z, as the turn of the reference vector that gives the same products."""
+FLIP = np.array([-1.0, -1.0, 1.0])
+"""The block turned 180° about Z, as the signs of the reference vector that give the same products."""
 
 CONSTANT_ERRORS = ("theta_x", "theta_y", "alpha", "latitude", "meridian", "count_time")
 """Stand errors that last a whole session, in the order of `Geometry.constant`."""
@@ -73,10 +73,9 @@ def stand_vector(elevation: float, beta: Array, errors: StandErrors | None = Non
 
 
 def to_block(platform: Array, session: CalibrationSession) -> Array:
-    """(R, 3) platform vectors as the block meets them: flipped runs turned, then the mounting applied."""
+    """(..., R, 3) platform vectors as the block meets them: flipped runs turned, then the mounting applied."""
     assert session.flipped is not None
-    met = np.where(session.flipped[:, None], platform @ FLIP, platform)
-    return met @ session.mounting.T
+    return np.where(session.flipped[:, None], platform * FLIP, platform) @ session.mounting.T
 
 
 def elevation(stand: Stand, kind: str) -> float:
@@ -91,43 +90,54 @@ def magnitude(session: CalibrationSession, kind: str) -> float:
     return gravity(session.site) if kind == ACCELEROMETER else EARTH_RATE
 
 
-def _kind_geometry(session: CalibrationSession, kind: str) -> tuple[Array, Array, Array]:
-    """n (R, 3), dn/d(constant errors) (6, R, 3) and dn/dβ (R, 3) for one kind of sensor."""
+def _constant_weights(session: CalibrationSession, kind: str) -> Array:
+    """(6, 3) how each constant error acts: as a raise of the head, as a tilt across it, as a stretch of the vector.
+
+    Gyros by the paper's (31): the latitude raises; levelling and meridian tilt by their share of the Earth's rate.
+    """
+    phi = session.site.latitude or 0.0
+    gyro = kind != ACCELEROMETER
+    stretch = 1.0 / session.count_time if gyro and session.count_time else 0.0
+    across = (np.sin(phi), np.cos(phi)) if gyro else (1.0, 0.0)
+    return np.array(
+        [[1, 0, 0], [0, across[0], 0], [1, 0, 0], [float(gyro), 0, 0], [0, across[1], 0], [0, 0, stretch]], dtype=float
+    )
+
+
+def _kind_geometry(session: CalibrationSession, kind: str) -> Array:
+    """(8, R, 3) for one kind of sensor: n, dn/d(each constant error), dn/dβ."""
     stand, beta = session.stand, session.beta
     assert stand is not None
     assert beta is not None
     size, angle = magnitude(session, kind), elevation(stand, kind)
-    sin, cos = np.sin(beta), np.cos(beta)
-    n = size * stand_vector(angle, beta)
-    d_raise = size * np.stack([np.sin(angle) * sin, np.full_like(beta, np.cos(angle)), -np.sin(angle) * cos], -1)
-    d_beta = size * np.cos(angle) * np.stack([-cos, np.zeros_like(beta), -sin], -1)
-    d_level = -d_beta / np.cos(angle)
-    none = np.zeros_like(n)
-    if kind == ACCELEROMETER:
-        constant = [d_raise, d_level, d_raise, none, none, none]
-    else:
-        phi = session.site.latitude or 0.0
-        d_time = n / session.count_time if session.count_time else none
-        constant = [d_raise, d_level * np.sin(phi), d_raise, d_raise, d_level * np.cos(phi), d_time]
-    turned = [to_block(v, session) for v in (n, *constant, d_beta)]
-    return turned[0], np.stack(turned[1:-1]), turned[-1]
+    sin, cos, level = np.sin(beta), np.cos(beta), np.ones_like(beta)
+    lift, reach = np.sin(angle), np.cos(angle)
+    platform = np.empty((4, len(beta), 3))
+    platform[0] = np.stack([-reach * sin, lift * level, reach * cos], axis=-1)
+    platform[1] = np.stack([lift * sin, reach * level, -lift * cos], axis=-1)
+    platform[2] = np.stack([cos, 0 * level, sin], axis=-1)
+    platform[3] = -reach * platform[2]
+    n, raised, tilted, turned = size * to_block(platform, session)
+    constant = np.tensordot(_constant_weights(session, kind), np.stack([raised, tilted, n]), axes=1)
+    return np.concatenate([n[None], constant, turned[None]])
 
 
 def stand_geometry(session: CalibrationSession) -> Geometry:
     """The reference vectors of a two-axis-stand session and how the stand's errors move them."""
     assert session.stand is not None
     kinds = [s.kind for s in session.sensors]
-    found = {kind: _kind_geometry(session, kind) for kind in dict.fromkeys(kinds)}
+    different = list(dict.fromkeys(kinds))
+    own = np.stack([_kind_geometry(session, kind) for kind in different], axis=2)
+    of_sensor = own[:, :, [different.index(kind) for kind in kinds]]
     sigma = session.stand.sigma
     sigmas = np.array([getattr(sigma, name) for name in CONSTANT_ERRORS])
-    constant = np.stack([found[k][1] for k in kinds], axis=2)
-    acts = (sigmas > 0) & (np.abs(constant).max(axis=(1, 2, 3)) > 0)
+    acts = (sigmas > 0) & of_sensor[1:-1].any(axis=(1, 2, 3))
     return Geometry(
-        n=np.stack([found[k][0] for k in kinds], axis=1),
-        norm=np.array([magnitude(session, k) for k in kinds]),
-        constant=constant[acts],
+        n=of_sensor[0],
+        norm=np.array([magnitude(session, k) for k in different])[[different.index(kind) for kind in kinds]],
+        constant=of_sensor[1:-1][acts],
         constant_sigma=sigmas[acts],
         constant_names=tuple(n for n, a in zip(CONSTANT_ERRORS, acts, strict=True) if a),
-        beta=np.stack([found[k][2] for k in kinds], axis=1),
+        beta=of_sensor[-1],
         beta_sigma=sigma.beta,
     )

@@ -1,13 +1,17 @@
 """The closed form of the analytic alignment paper, with the rank defect of its matrix (26) resolved.
 
-Half sums and half differences of the direct and flipped readings at the same β are linear in known functions of β:
+Half sums and half differences of the direct and flipped readings at one β are linear in known functions of β:
 
     U1 = p0 + q12·n1 + q13·n3 + p4·(n1² − n3²)          (18), one second-order column instead of two
     U2 = q21 + q22·n1 + q23·n3 + q24·n1·n3              (20)
 
 n1² + n3² = C² = g²cos²α at every position, so the paper's columns 1, 4, 5 are dependent and its C₁ is singular.
-Then K, e by (22), (23), and c from all four second-order coefficients by weighted least squares, where the paper's
-(25) divides by e1². Platform axes inside; S sessions, N positions of each run, m sensors.
+Here both are one regression, u = U1 ± U2 with the sign of the run, which on paired runs is the same estimate and needs
+no pairs: unequal steps, missing and repeated positions enter as they are. Then K, e by (22), (23), and c from all four
+second-order coefficients by weighted least squares, where the paper's (25) divides by e1².
+
+Platform axes, and n in units of g·cos α (n1, n3) or g (n2), so that gyros condition as well as accelerometers.
+S sessions, R rows, m sensors.
 """
 
 from dataclasses import dataclass
@@ -16,144 +20,139 @@ import numpy as np
 
 from estimator.arrays import unit
 from estimator.parameters import SensorParameters
-from estimator.reference import elevation, magnitude, stand_vector
-from estimator.session import ACCELEROMETER, Array, CalibrationSession
+from estimator.reference import elevation
+from estimator.session import Array, CalibrationSession
 
-SAME_ANGLE = 1e-9
-"""rad; two settings of β closer than this are one position."""
+VANISHES = 1e-6
+"""Root mean square below which a column of the design has no trace in the schedule (n1·n3 on four faces)."""
 
+DEPENDENT = 1e-8
+"""Relative singular value below which the schedule does not determine all columns."""
 
-@dataclass(frozen=True, eq=False)
-class Pairing:
-    """Which rows of the direct and the flipped run belong to one β. N positions, R rows."""
+DEAD = 1e-12
+"""Relative size of the answer to the reference vector below which a reading is constant."""
 
-    beta: Array
-    """(N,) rad."""
-    direct: Array
-    """(N, R) averages the direct rows of each position."""
-    flipped: Array
-    """(N, R)"""
-
-
-def pair_runs(session: CalibrationSession) -> Pairing | None:
-    """Match the two runs by β (modulo a turn); None unless both runs visit at least four common positions."""
-    assert session.beta is not None
-    assert session.flipped is not None
-    key = np.round(np.mod(session.beta + SAME_ANGLE / 2, 2 * np.pi) / SAME_ANGLE).astype(np.int64)
-    common = np.intersect1d(key[session.flipped], key[~session.flipped])
-    if len(common) < 4:
-        return None
-    belongs = common[:, None] == key
-    direct, flipped = belongs & ~session.flipped, belongs & session.flipped
-    return Pairing(
-        beta=common * SAME_ANGLE,
-        direct=direct / direct.sum(axis=1, keepdims=True),
-        flipped=flipped / flipped.sum(axis=1, keepdims=True),
-    )
+SECOND_ORDER = [1, 3, 6, 7]
+"""Places of q12, p4, q23, q24 among the eight coefficients."""
 
 
 @dataclass(frozen=True, eq=False)
 class Coefficients:
-    """The eight linear coefficients, each (..., m), and the variance factors of the four second-order ones."""
+    """The linear coefficients p0, q12, q13, p4, q21, q22, q23, q24 of (18) and (20)."""
 
-    p0: Array
-    q12: Array
-    q13: Array
-    p4: Array
-    q21: Array
-    q22: Array
-    q23: Array
-    q24: Array
+    value: Array
+    """(..., 8, m) reading units."""
     variance: Array
-    """(4,) of q12, p4, q23, q24, per unit variance of U1, U2."""
+    """(8,) per unit variance of a reading; infinite where the schedule leaves no trace of a coefficient."""
 
 
-def coefficients(u1: Array, u2: Array, n1: Array, n3: Array) -> Coefficients:
-    """Least squares for (18) and (20): u1, u2 (..., N, m); n1, n3 (N,)."""
-    one = np.ones_like(n1)
-    b1 = np.stack([one, n1, n3, n1 * n1 - n3 * n3], axis=-1)
-    b2 = np.stack([one, n1, n3, n1 * n3], axis=-1)
-    inverse1, inverse2 = np.linalg.pinv(b1), np.linalg.pinv(b2)
-    q1, q2 = inverse1 @ u1, inverse2 @ u2
-    v1, v2 = (inverse1**2).sum(axis=1), (inverse2**2).sum(axis=1)
-    return Coefficients(
-        *(q[..., i, :] for q in (q1, q2) for i in range(4)),
-        np.array([v1[1], v1[3], v2[2], v2[3]]),
-    )
+def design(beta: Array, flipped: Array) -> Array:
+    """(R, 8) functions of β that (18) and (20) are linear in; the flipped run takes U2 with the other sign."""
+    one, x, z = np.ones_like(beta), -np.sin(beta), np.cos(beta)
+    run = np.where(flipped, -1.0, 1.0)
+    return np.stack([one, x, z, x * x - z * z, run, run * x, run * z, run * x * z], axis=-1)
 
 
-def solve(q: Coefficients, size: float, angle: float) -> SensorParameters:
-    """K, b, c and e in platform axes from the coefficients; ``size`` is g (Ω), ``angle`` α (χ)."""
-    n2, C2 = size * np.sin(angle), (size * np.cos(angle)) ** 2
-    sensitivity = np.stack([q.q22, q.q21 / n2, q.q13], axis=-1)
-    K, e = np.linalg.norm(sensitivity, axis=-1), unit(sensitivity)
-    e1, e2, e3 = e[..., 0], e[..., 1], e[..., 2]
-    seen = np.stack([q.q12, q.p4, q.q23, q.q24])
-    per_c = K * np.stack([2 * e1 * e2 * n2, (e1**2 - e3**2) / 2, 2 * e2 * e3 * n2, 2 * e1 * e3])
-    weight = 1.0 / q.variance.reshape(4, *[1] * K.ndim)
-    known = (weight * per_c**2).sum(axis=0)
-    blind = known * size**2 < 1e-12 * (K**2 * weight.max())
-    c = np.where(blind, 0.0, (weight * per_c * seen).sum(axis=0) / np.where(blind, 1.0, known))
-    b = q.p0 / K - c * (e2**2 * n2**2 + (e1**2 + e3**2) * C2 / 2)
-    return SensorParameters(K, b, c, e)
+def coefficients(y: Array, beta: Array, flipped: Array) -> Coefficients | None:
+    """Least squares for (18) and (20) together; None where the rows do not determine them.
+
+    y (..., R, m) readings; beta, flipped (R,).
+    """
+    columns = design(beta, flipped)
+    live = np.sqrt((columns**2).mean(axis=0)) > VANISHES
+    if len(beta) < live.sum():
+        return None
+    left, size, right = np.linalg.svd(columns[:, live], full_matrices=False)
+    if size[-1] < DEPENDENT * size[0]:
+        return None
+    inverse = np.zeros((8, len(beta)))
+    inverse[live] = (right.T / size) @ left.T
+    return Coefficients(inverse @ y, np.where(live, (inverse**2).sum(axis=1), np.inf))
 
 
-def closed_form(y: Array, session: CalibrationSession) -> SensorParameters | None:
-    """The paper's estimate, or None where the runs do not pair.
+def solve(q: Coefficients, size: Array, angle: Array) -> SensorParameters:
+    """K, b, c and e in platform axes by (22)–(25) in their corrected form.
+
+    Parameters
+    ----------
+    q : (..., 8, m).
+    size : (m,) g, or the Earth rate.
+    angle : (m,) α, or χ.
+
+    Returns
+    -------
+    (..., m); where the second-order term leaves no trace (e = (0, ±1, 0)) c is zero, where a reading is constant K is.
+    """
+    lift, reach = np.sin(angle), np.cos(angle)
+    p0, _, q13, _, q21, q22, _, _ = np.moveaxis(q.value, -2, 0)
+    sensitivity = np.stack([q22 / reach, q21 / lift, q13 / reach], axis=-1)
+    gain = np.linalg.norm(sensitivity, axis=-1)
+    some = np.where(gain > 0, gain, 1.0)
+    e1, e2, e3 = np.moveaxis(sensitivity / some[..., None], -1, 0)
+    per_c = np.stack([2 * e1 * e2 * lift, reach * (e1**2 - e3**2) / 2, 2 * e2 * e3 * lift, 2 * reach * e1 * e3]) * reach
+    weight = 1.0 / q.variance[SECOND_ORDER]
+    trace = np.tensordot(weight, per_c**2, axes=1)
+    blind = trace < DEAD * weight.max()
+    seen = np.moveaxis(q.value[..., SECOND_ORDER, :], -2, 0) / some
+    c = np.where(blind, 0.0, np.tensordot(weight, per_c * seen, axes=1) / np.where(blind, 1.0, trace))
+    b = p0 / some - c * (e2**2 * lift**2 + (e1**2 + e3**2) * reach**2 / 2)
+    return SensorParameters(gain / size, b * size, c / size, np.stack([e1, e2, e3], axis=-1))
+
+
+def closed_form(
+    y: Array, session: CalibrationSession, nominal: SensorParameters, size: Array
+) -> SensorParameters | None:
+    """The paper's estimate, or None where the rows do not determine it (one run, too few positions).
 
     Parameters
     ----------
     y : (..., R, m) readings with the offset taken off.
     session : gives the schedule, stand and mounting.
+    nominal : (m,) what a sensor with a constant reading is put at.
+    size : (m,) length of the reference vectors.
 
     Returns
     -------
-    Parameters (..., m) with the axes in block axes. Where the second-order term leaves no trace (e = (0, ±1, 0)),
-    c is put at zero; the refinement reports it as not observable.
+    Parameters (..., m) with the axes in block axes. What leaves no trace is reported by the refinement.
     """
-    pairing = pair_runs(session)
-    if pairing is None:
-        return None
+    assert session.beta is not None
+    assert session.flipped is not None
     assert session.stand is not None
-    u, flipped = pairing.direct @ y, pairing.flipped @ y
-    parts = []
-    for kind in dict.fromkeys(s.kind for s in session.sensors):
-        size, angle = magnitude(session, kind), elevation(session.stand, kind)
-        n = size * stand_vector(angle, pairing.beta)
-        q = coefficients((u + flipped) / 2, (u - flipped) / 2, n[:, 0], n[:, 2])
-        parts.append((kind, solve(q, size, angle)))
-    platform = merge(parts, session)
-    return SensorParameters(platform.scale, platform.bias, platform.quadratic, platform.axis @ session.mounting.T)
-
-
-def merge(parts: list[tuple[str, SensorParameters]], session: CalibrationSession) -> SensorParameters:
-    """Each sensor's parameters from the solution made with its own kind's reference vector."""
-    if len(parts) == 1:
-        return parts[0][1]
-    (_, a), (_, g) = parts if parts[0][0] == ACCELEROMETER else parts[::-1]
-    accelerometer = np.array([s.kind == ACCELEROMETER for s in session.sensors])
+    q = coefficients(y, session.beta, session.flipped)
+    if q is None:
+        return None
+    of_kind = {kind: elevation(session.stand, kind) for kind in {s.kind for s in session.sensors}}
+    p = solve(q, size, np.array([of_kind[s.kind] for s in session.sensors]))
+    alive = p.scale * size > DEAD * np.abs(y).max(axis=-2)
     return SensorParameters(
-        np.where(accelerometer, a.scale, g.scale),
-        np.where(accelerometer, a.bias, g.bias),
-        np.where(accelerometer, a.quadratic, g.quadratic),
-        np.where(accelerometer[:, None], a.axis, g.axis),
+        np.where(alive, p.scale, nominal.scale),
+        np.where(alive, p.bias, 0.0),
+        np.where(alive, p.quadratic, 0.0),
+        np.where(alive[..., None], p.axis @ session.mounting.T, nominal.axis),
     )
 
 
-def linear_start(y: Array, n: Array, nominal: SensorParameters) -> SensorParameters:
-    """Start where the runs do not pair: u = K·b + K·e·n by least squares about the nominal values.
+TO_BIAS = 1e3
+"""How much rather what the rows cannot tell from a bias is put to the bias than to scale and axis."""
 
-    y (..., R, m), n (R, m, 3); what the rows do not determine stays at its nominal value.
+
+def linear_start(y: Array, n: Array, size: Array, nominal: SensorParameters) -> SensorParameters:
+    """Start where there is no closed form: u = K·b + K·e·n by least squares about the nominal values.
+
+    Parameters
+    ----------
+    y : (..., R, m) readings with the offset taken off.
+    n : (R, m, 3) reference vectors of lengths ``size`` (m,).
+
+    Returns
+    -------
+    (..., m), c = 0; what the rows do not determine stays at its nominal value.
     """
-    m = y.shape[-1]
-    size = np.linalg.norm(n[0, :, :], axis=-1)
-    sensitivity = nominal.scale[:, None] * nominal.axis
-    expected = nominal.scale * nominal.bias + (n * sensitivity).sum(axis=-1)
-    found = []
-    for i in range(m):
-        design = np.concatenate([np.full((len(n), 1), size[i]), n[:, i, :]], axis=1)
-        found.append((y[..., i] - expected[:, i]) @ np.linalg.pinv(design, rcond=1e-6).T)
-    delta = np.stack(found, axis=-2)
-    s = sensitivity + delta[..., 1:]
-    K = np.linalg.norm(s, axis=-1)
-    return SensorParameters(K, nominal.bias + delta[..., 0] * size / K, np.zeros_like(K), unit(s))
+    direction = np.swapaxes(n, 0, 1) / size[:, None, None]
+    sensitivity = (nominal.scale * size)[:, None] * nominal.axis
+    expected = (direction @ sensitivity[..., None])[..., 0].T
+    columns = np.concatenate([np.full((*direction.shape[:2], 1), TO_BIAS), direction], axis=-1)
+    change = np.einsum("mfr,...rm->...mf", np.linalg.pinv(columns, rcond=DEPENDENT / TO_BIAS), y - expected)
+    found = sensitivity + change[..., 1:]
+    gain = np.linalg.norm(found, axis=-1)
+    return SensorParameters(gain / size, TO_BIAS * change[..., 0] * size / gain, np.zeros_like(gain), unit(found))

@@ -1,20 +1,26 @@
-"""Many sessions at once: sessions of one schedule are calibrated in one vectorised call."""
+"""Many sessions at once: two-axis-stand sessions of one schedule are calibrated in one vectorised call."""
 
 from collections import defaultdict
 from collections.abc import Hashable, Sequence
 
 import numpy as np
 
+from estimator.calibration.calibrate import calibrate
 from estimator.calibration.stand import calibrate_stand
 from estimator.results import Calibration
-from estimator.session import CalibrationSession
+from estimator.session import TWO_AXIS_STAND, CalibrationSession
 
-CHUNK = 500
-"""Sessions solved together; bounds the memory of the normal matrices."""
+CHUNK_READINGS = 10_000
+"""Readings solved together: few enough for the arrays to stay in the processor's cache."""
+
+
+def together(session: CalibrationSession) -> bool:
+    """Whether a session can be solved with others of its schedule."""
+    return session.programme == TWO_AXIS_STAND and not session.is_raw
 
 
 def schedule(session: CalibrationSession) -> Hashable:
-    """What two sessions must share to be solved together: everything but the readings."""
+    """What two sessions must share to be solved together: everything but the readings, their errors and names."""
     assert session.beta is not None
     assert session.flipped is not None
     sensors = tuple((s.kind, s.nominal_axis.tobytes(), s.nominal_scale, s.bias_repeatability) for s in session.sensors)
@@ -23,16 +29,21 @@ def schedule(session: CalibrationSession) -> Hashable:
 
 
 def calibrate_many(sessions: Sequence[CalibrationSession]) -> list[Calibration]:
-    """Calibrations of averaged two-axis-stand sessions, one a session, in order.
+    """Calibrations of sessions, one a session, in order; the same as `calibrate` of each.
 
-    Sessions that share a schedule are solved together, `CHUNK` at a time.
+    Two-axis-stand sessions that share a schedule are solved together, `CHUNK_READINGS` at a time. A session that does
+    not calibrate raises as `calibrate` does.
     """
+    found: dict[int, Calibration] = {}
     groups: defaultdict[Hashable, list[int]] = defaultdict(list)
     for k, session in enumerate(sessions):
-        groups[schedule(session)].append(k)
-    found: dict[int, Calibration] = {}
+        if together(session):
+            groups[schedule(session)].append(k)
+        else:
+            found[k] = calibrate(session)
     for members in groups.values():
-        for chunk in np.array_split(members, -(-len(members) // CHUNK)):
+        size = max(1, CHUNK_READINGS // sessions[members[0]].readings.size)
+        for chunk in np.array_split(members, -(-len(members) // size)):
             results = calibrate_stand([sessions[k] for k in chunk])
             found.update(zip(map(int, chunk), results, strict=True))
     return [found[k] for k in range(len(sessions))]

@@ -1,74 +1,110 @@
 """What a session determines of each sensor, and what it determines only in combination."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from estimator.parameters import ELEMENTS, PLAUSIBLE
+from estimator.forward import projected, slope
+from estimator.parameters import ELEMENTS, PLAUSIBLE, SensorParameters
+from estimator.reference import Geometry
 from estimator.results import KnownCombination
 from estimator.session import Array
 
 LIMIT = 0.3 * PLAUSIBLE
 """An element counts as observed when its dimensionless one sigma is below this share of what it could be at all."""
 
-ONLY_TOGETHER = {"bias", "quadratic"}
+ROUNDING = 1e-14
+"""Eigenvalues of the information below this part of the largest are rounding, not knowledge."""
+
+DEPENDENT = 1e-4
+"""Relative singular value below which a combination of readings tells nothing."""
+
+LINEAR = ("zero_reading", "sensitivity_x", "sensitivity_y", "sensitivity_z", "quadratic_reading")
+"""K·b, K·e (block axes) and K·c: what a reading is linear in."""
 
 
-def observed(information: Array) -> Array:
-    """(..., 5) bool from each sensor's own information (..., 5, 5); the axis needs both of its elements."""
-    bounded = information + np.eye(5) * PLAUSIBLE**-2
-    sigma = np.sqrt(np.diagonal(np.linalg.inv(bounded), axis1=-2, axis2=-1))
-    seen = sigma < LIMIT
-    seen[..., 3:] = seen[..., 3:].all(axis=-1, keepdims=True)
-    return seen
+@dataclass(frozen=True, eq=False)
+class Spectrum:
+    """Each sensor's own information, stand perfect, by its principal directions; leading axes are free."""
+
+    values: Array
+    """(..., m, 5) rising."""
+    vectors: Array
+    """(..., m, 5, 5), columns."""
+
+    @property
+    def observed(self) -> Array:
+        """(..., m, 5) bool; the axis needs both of its elements."""
+        variance = (self.vectors**2 / (self.values + PLAUSIBLE**-2)[..., None, :]).sum(axis=-1)
+        seen = variance < LIMIT**2
+        seen[..., 3:] = seen[..., 3:].all(axis=-1, keepdims=True)
+        return seen
+
+    @property
+    def rank(self) -> Array:
+        """(...) number of parameter directions that the readings determine."""
+        return (self.values > LIMIT**-2).sum(axis=(-1, -2))
+
+    @property
+    def weakest(self) -> tuple[Array, Array, Array]:
+        """(...) sensor and element that lead the least known direction, and its one sigma in plausible ranges."""
+        sensor = self.values[..., 0].argmin(axis=-1)
+        least = np.take_along_axis(self.values[..., 0], sensor[..., None], axis=-1)[..., 0]
+        lead = np.take_along_axis(np.abs(self.vectors[..., 0]).argmax(axis=-1), sensor[..., None], axis=-1)[..., 0]
+        return sensor, lead, 1.0 / (PLAUSIBLE * np.sqrt(np.maximum(least, 1e-12)))
 
 
-def known_bias_quadratic(information: Array, values: Array, norm: float) -> tuple[KnownCombination, ...]:
-    """The known mixture of bias and quadratic where the two cannot be told apart: b + ratio·c.
+def spectrum(information: Array) -> Spectrum:
+    """Principal directions of (..., m, 5, 5)."""
+    values, vectors = np.linalg.eigh(information)
+    return Spectrum(np.where(values < ROUNDING * values[..., -1:], 0.0, values), vectors)
+
+
+def known_bias_quadratic(information: Array, bias: float, quadratic: float, norm: float) -> KnownCombination | None:
+    """The known mixture b + ratio·c where the two cannot be told apart; None where that is not known either.
 
     Parameters
     ----------
     information : (5, 5) of the sensor, dimensionless.
-    values : (5,) SI values at the solution (axis elements unused).
+    bias, quadratic : SI, at the solution.
     norm : length of the reference vector.
     """
-    values_, vectors = np.linalg.eigh(information[1:3, 1:3])
-    if values_[1] < LIMIT**-2:
-        return ()
-    strong = vectors[:, 1] / vectors[0, 1]
-    ratio = float(strong[1]) * norm**2
-    others = [0, 3, 4]
-    cross = information[np.ix_(others, [1, 2])] @ vectors[:, 1]
-    left = values_[1] - cross @ np.linalg.solve(information[np.ix_(others, others)], cross)
-    sigma = norm / (np.sqrt(left) * abs(float(vectors[0, 1])))
-    return (KnownCombination({"bias": 1.0, "quadratic": ratio}, float(values[1] + ratio * values[2]), float(sigma)),)
+    values, vectors = np.linalg.eigh(information[1:3, 1:3])
+    if values[1] < LIMIT**-2:
+        return None
+    strong, others = vectors[:, 1], [0, 3, 4]
+    cross = information[np.ix_(others, [1, 2])] @ strong
+    left = values[1] - cross @ np.linalg.solve(information[np.ix_(others, others)], cross)
+    ratio = float(strong[1] / strong[0]) * norm**2
+    sigma = norm / (np.sqrt(left) * abs(float(strong[0])))
+    return KnownCombination({ELEMENTS[1]: 1.0, ELEMENTS[2]: ratio}, bias + ratio * quadratic, float(sigma))
 
 
-def known_linear(y: Array, variance: Array, n: Array, norm: float) -> tuple[KnownCombination, ...]:
-    """Combinations of zero reading K·b and sensitivity K·e that the rows determine, quadratic term apart.
+def known_linear(
+    y: Array, variance: Array, p: SensorParameters, geometry: Geometry, sensor: int
+) -> tuple[KnownCombination, ...]:
+    """Combinations of the `LINEAR` quantities that one sensor's rows determine; sigma counts the stand's errors.
 
-    y (R,) readings, variance (R,) of them, n (R, 3).
+    Parameters
+    ----------
+    y : (R,) readings, offset taken off.
+    variance : (R,) of the independent noise at the input.
+    p : (m,) parameters at the solution: scale for the noise, axis for the column of the quadratic term.
     """
-    design = np.concatenate([np.ones((len(n), 1)), n / norm], axis=1) / np.sqrt(variance)[:, None]
-    left, size, right = np.linalg.svd(design, full_matrices=False)
-    kept = size > 1e-6 * size[0]
-    combinations = []
-    for u, s, v in zip(left.T[kept], size[kept], right[kept], strict=True):
-        coefficients = dict(
-            zip(
-                ("zero_reading", "sensitivity_x", "sensitivity_y", "sensitivity_z"),
-                map(float, v),
-                strict=True,
-            )
-        )
-        for axis in "xyz":
-            coefficients[f"sensitivity_{axis}"] *= norm
-        combinations.append(KnownCombination(coefficients, float(u @ (y / np.sqrt(variance)) / s), float(1 / s)))
-    return tuple(combinations)
-
-
-def weakest(information: Array, names: tuple[str, ...]) -> tuple[str, float]:
-    """The least known direction of a block: leading parameter and one sigma in units of the plausible range."""
-    values, vectors = np.linalg.eigh(information)
-    sensor = int(np.argmin(values[:, 0]))
-    lead = ELEMENTS[int(np.abs(vectors[sensor, :, 0]).argmax())]
-    least = max(float(values[sensor, 0]), 1e-300)
-    return f"{names[sensor]}.{lead}", float(min(1 / np.sqrt(least), 1e6) / PLAUSIBLE)
+    K, norm, n = p.scale[sensor], geometry.norm[sensor], geometry.n[:, sensor]
+    steep = (slope(p, geometry.n) * K)[:, sensor]
+    swing = steep * projected(p.axis, geometry.beta)[:, sensor] * geometry.beta_sigma
+    root = 1.0 / np.sqrt(K**2 * variance + swing**2)
+    one, a = np.ones_like(y), n @ p.axis[sensor]
+    left, size, right = np.linalg.svd(
+        np.column_stack([one, n / norm, (a / norm) ** 2]) * root[:, None], full_matrices=False
+    )
+    kept = size > DEPENDENT * size[0]
+    sums = left.T[kept] * root / size[kept, None]
+    common = (geometry.constant[:, :, sensor] @ p.axis[sensor]) * steep * geometry.constant_sigma[:, None]
+    sigma = np.sqrt(size[kept] ** -2.0 + ((sums @ common.T) ** 2).sum(axis=1))
+    weights = right[kept] * np.array([1.0, norm, norm, norm, norm**2])
+    return tuple(
+        KnownCombination(dict(zip(LINEAR, map(float, w), strict=True)), float(v), float(s))
+        for w, v, s in zip(weights, sums @ y, sigma, strict=True)
+    )

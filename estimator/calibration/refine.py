@@ -12,10 +12,11 @@ the s_k are carried as unknowns with their prior. The inverse of the normal matr
 the estimate is the minimum-variance one: six sensors see the same δβ_j and mostly cancel it.
 
 S sessions of one schedule are solved in one call; R rows, m sensors, k constant errors, P = 5 m.
-Source: analytic alignment paper (14), (15); spec'd noise model of the package page.
+Source: analytic alignment paper (14), (15), with the noise and stand errors of the package page.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 
@@ -27,9 +28,15 @@ from estimator.session import Array
 RIDGE = PLAUSIBLE**-2
 """Information of the plausible range: keeps what a session does not observe where it started."""
 
+FINEST = 1e-8
+"""Least one sigma of a reading, as part of the reference vector: no reading is believed beyond it."""
+
+LONGEST = np.array([1.0, np.inf, np.inf, 1.0, 1.0])
+"""Longest step of each element; biases may be many g (raw counts without a stated offset)."""
+
 MAX_ITERATIONS = 20
 CONVERGED = 1e-8
-"""Squared length of a step, in standard errors, below which the iteration has ended."""
+"""Squared length of the step still to come, in standard errors and per parameter, that ends the iteration."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,12 +59,10 @@ class Fitted:
     """(S,)"""
     constant: Array
     """(S, k) estimated constant stand errors."""
-    iterations: int
-    converged: bool
-
-    def with_chi2(self, chi2: Array) -> "Fitted":
-        """The same solution carrying another fit's χ² (S,)."""
-        return replace(self, chi2=chi2)
+    iterations: Array
+    """(S,)"""
+    converged: Array
+    """(S,) bool"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,12 +79,6 @@ class Normal:
     """(S, m, 5, 5) information of each sensor alone."""
 
 
-def gram_positions(m: int) -> tuple[Array, Array]:
-    """Row and column indices, (m, 5, 5) each, of the sensors' own blocks in the normal matrix."""
-    base = 5 * np.arange(m)[:, None] + np.arange(5)
-    return base[:, :, None], base[:, None, :]
-
-
 def assemble(design: Array, weight: Array, beta: Array, beta_sigma: float, prior: Array) -> Normal:
     """Normal matrix of all sensors with the row errors marginalised.
 
@@ -93,18 +92,21 @@ def assemble(design: Array, weight: Array, beta: Array, beta_sigma: float, prior
     """
     S, R, m, width = design.shape
     P, tail = 5 * m, width - 5
-    weighted = design * weight[..., None]
-    gram = np.swapaxes(weighted, 1, 2).swapaxes(-1, -2) @ np.swapaxes(design, 1, 2)
+    root = np.sqrt(weight).swapaxes(1, 2)
+    white = design.swapaxes(1, 2) * root[..., None]
+    gram = white.swapaxes(-1, -2) @ white
     full = np.zeros((S, P + tail, P + tail))
-    rows, columns = gram_positions(m)
-    full[:, rows, columns] = gram[..., :5, :5]
-    full[:, P:, :P] = np.moveaxis(gram[..., 5:, :5], 1, 2).reshape(S, tail, P)
+    one = np.arange(m)
+    full[:, :P, :P].reshape(S, m, 5, m, 5)[:, one, :, one] = gram[..., :5, :5].swapaxes(0, 1)
+    full[:, P:, :P] = gram[..., 5:, :5].swapaxes(1, 2).reshape(S, tail, P)
     full[:, P:, P:] = gram[..., 5:, 5:].sum(axis=1)
     if beta_sigma > 0:
-        touched = weighted * beta[..., None]
-        per_row = np.concatenate([touched[..., :5].reshape(S, R, P), touched[..., 5:].sum(axis=2)], axis=-1)
-        total = beta_sigma**-2 + (weight * beta * beta).sum(axis=-1)
-        full -= per_row.swapaxes(-1, -2) @ (per_row / total[..., None])
+        swing = beta.swapaxes(1, 2) * root
+        touched = white * (swing / np.sqrt(beta_sigma**-2 + (swing * swing).sum(axis=1, keepdims=True)))[..., None]
+        per_row = np.empty((S, R, P + tail))
+        per_row[..., :P].reshape(S, R, m, 5)[...] = touched[..., :5].swapaxes(1, 2)
+        touched[..., 5:].sum(axis=1, out=per_row[..., P:])
+        full -= per_row.swapaxes(-1, -2) @ per_row
     full[:, :P, P:] = full[:, P:, :P].swapaxes(-1, -2)
     matrix = full[:, :-1, :-1].copy()
     diagonal = np.arange(P + tail - 1)
@@ -114,15 +116,17 @@ def assemble(design: Array, weight: Array, beta: Array, beta_sigma: float, prior
 
 def linearise(y: Array, p: SensorParameters, geometry: Geometry, weight: Array) -> tuple[Normal, Array]:
     """Normal equations at p and the residual there (S, R, m)."""
+    k = len(geometry.constant)
+    S, R, m = y.shape
     residual = y / p.scale[:, None, :] - input_of(p, geometry.n)
     steep = slope(p, geometry.n)
-    constant = [steep * projected(p.axis, d) for d in geometry.constant]
-    design = np.concatenate(
-        [jacobian(p, geometry.n, geometry.norm), *(c[..., None] for c in (*constant, residual))], axis=-1
-    )
+    design = np.empty((S, m, R, 6 + k)).swapaxes(1, 2)
+    design[..., :5] = jacobian(p, geometry.n, geometry.norm)
+    for i, change in enumerate(geometry.constant, start=5):
+        design[..., i] = steep * projected(p.axis, change)
+    design[..., -1] = residual
     beta = steep * projected(p.axis, geometry.beta)
-    prior = geometry.constant_sigma**-2.0
-    return assemble(design, weight, beta, geometry.beta_sigma, prior), residual
+    return assemble(design, weight, beta, geometry.beta_sigma, geometry.constant_sigma**-2.0), residual
 
 
 def input_variance(p: SensorParameters, standard_errors: Array, repeatability: Array) -> Array:
@@ -130,8 +134,38 @@ def input_variance(p: SensorParameters, standard_errors: Array, repeatability: A
     return (standard_errors / p.scale[:, None, :]) ** 2 + repeatability**2
 
 
+def gauss_newton(y: Array, variance: Array, geometry: Geometry, p: SensorParameters, iteration: int) -> Fitted:
+    """One step from p, the ``iteration``-th; arrays as in `fit`.
+
+    A session has converged when the step still to come, which a step of relative size δ leaves to the order of δ times
+    itself, is negligible in standard errors. The covariance is that of the linearisation that gave the step.
+    """
+    S, _, m = y.shape
+    P = 5 * m
+    normal, _ = linearise(y, p, geometry, 1.0 / variance)
+    inverse = np.linalg.inv(normal.matrix)
+    step = (inverse @ normal.rhs[..., None])[..., 0]
+    change, total = step[:, :P], inverse[:, :P, :P]
+    length = (change**2 / np.diagonal(total, axis1=1, axis2=2)).max(axis=-1)
+    to_come = length * np.minimum(1.0, 4.0 * (change**2).max(axis=-1))
+    moved = p.stepped(np.clip(change.reshape(S, m, 5), -LONGEST, LONGEST), geometry.norm)
+    cross = inverse[:, :P, P:] / geometry.constant_sigma
+    return Fitted(
+        parameters=moved,
+        covariance=total,
+        repeatability=total - cross @ cross.swapaxes(-1, -2),
+        information=normal.own,
+        residual=y / moved.scale[:, None, :] - input_of(moved, geometry.n),
+        variance=variance,
+        chi2=normal.weighted_square - (normal.rhs * step).sum(axis=-1),
+        constant=step[:, P:],
+        iterations=np.full(S, iteration),
+        converged=to_come < CONVERGED,
+    )
+
+
 def fit(y: Array, variance: Array, geometry: Geometry, start: SensorParameters) -> Fitted:
-    """Maximum-likelihood parameters of S sessions of one schedule.
+    """Maximum-likelihood parameters of S sessions of one schedule; each iterates until it has converged itself.
 
     Parameters
     ----------
@@ -140,31 +174,22 @@ def fit(y: Array, variance: Array, geometry: Geometry, start: SensorParameters) 
     geometry : of the schedule.
     start : (S, m) starting values; the closed form where there is one.
     """
-    S, _, m = y.shape
-    P, weight, p = 5 * m, 1.0 / variance, start
-    converged, iteration = False, 0
-    while True:
-        normal, residual = linearise(y, p, geometry, weight)
-        inverse = np.linalg.inv(normal.matrix)
-        step = (inverse @ normal.rhs[..., None])[..., 0]
-        length = (step[:, :P] * normal.rhs[:, :P]).sum(axis=-1)
-        converged = bool(np.all(np.abs(length) < CONVERGED * max(P, 1)))
-        if converged or iteration == MAX_ITERATIONS:
+    variance = np.maximum(variance, (FINEST * geometry.norm) ** 2)
+    found = gauss_newton(y, variance, geometry, start, 1)
+    for iteration in range(2, MAX_ITERATIONS + 1):
+        waiting = np.flatnonzero(~found.converged)
+        if len(waiting) == 0:
             break
-        p = p.stepped(step[:, :P].reshape(S, m, 5), geometry.norm)
-        iteration += 1
-    prior = geometry.constant_sigma**-2.0
-    cross = inverse[:, :P, P:] * np.sqrt(prior)
-    total = inverse[:, :P, :P]
-    return Fitted(
-        parameters=p,
-        covariance=total,
-        repeatability=total - cross @ cross.swapaxes(-1, -2),
-        information=normal.own,
-        residual=residual,
-        variance=variance,
-        chi2=normal.weighted_square - (normal.rhs * step).sum(axis=-1),
-        constant=step[:, P:],
-        iterations=iteration,
-        converged=converged,
-    )
+        again = gauss_newton(y[waiting], variance[waiting], geometry, found.parameters.at(waiting), iteration)
+        found = replaced(found, waiting, again)
+    return found
+
+
+def replaced(found: Any, at: Array, again: Any) -> Any:
+    """The same result with the sessions ``at`` of every array taken from another one."""
+    if isinstance(found, np.ndarray):
+        found = found.copy()
+        found[at] = again
+        return found
+    names = [f.name for f in fields(found)]
+    return type(found)(**{n: replaced(getattr(found, n), at, getattr(again, n)) for n in names})
