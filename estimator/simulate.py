@@ -6,8 +6,8 @@ import numpy as np
 
 from estimator.arrays import tangents, unit
 from estimator.forward import response
-from estimator.parameters import SensorParameters
-from estimator.reference import elevation, magnitude, stand_vector, to_block
+from estimator.parameters import SensorParameters, nominal
+from estimator.reference import EARTH_RATE, elevation, magnitude, stand_vector, to_block
 from estimator.session import (
     ACCELEROMETER,
     ARBITRARY_ORIENTATIONS,
@@ -133,24 +133,40 @@ def simulate(
     """
     shape = schedule.readings.shape
     if schedule.programme == TWO_AXIS_STAND:
-        n = true_vectors(schedule, draw or draw_stand(schedule, rng))
+        drawn = draw or draw_stand(schedule, rng)
+        n, lasted = true_vectors(schedule, drawn), drawn.constant.count_time
     else:
-        assert schedule.directions is not None
-        n = np.repeat(magnitude(schedule, ACCELEROMETER) * schedule.directions[:, None, :], shape[1], axis=1)
-    clean = response(truth, n)
+        n, lasted = orientation_vectors(schedule, rng), 0.0
     repeatability = np.array([s.bias_repeatability for s in schedule.sensors])
-    wander = truth.scale * repeatability * rng.standard_normal(shape)
+    clean = response(truth, n) + truth.scale * repeatability * rng.standard_normal(shape)
     sigma = np.broadcast_to(np.asarray(noise, dtype=float), shape)
-    readings = clean + wander + sigma * rng.standard_normal(shape)
-    if schedule.count_time is not None:
-        pulsed = np.array([s.kind != ACCELEROMETER for s in schedule.sensors])
-        readings = np.where(
-            pulsed, np.round((clean + wander) * schedule.count_time + (readings - clean - wander)), readings
-        )
+    readings = counted(clean, schedule, lasted, sigma * rng.standard_normal(shape))
     offset = np.array([s.nominal_offset or 0.0 for s in schedule.sensors])
     stated = sigma if state_noise else np.full(shape, np.nan)
     known = schedule.directions if schedule.direction_sigma is not None else None
     return replace(schedule, readings=readings + offset, standard_errors=np.array(stated), directions=known)
+
+
+def counted(clean: Array, schedule: CalibrationSession, lasted: float, error: Array) -> Array:
+    """(R, m) readings from noiseless ones and their errors: pulse gyros in whole pulses, the rest as they are.
+
+    ``lasted`` is by how much the count time exceeds the stated one, s.
+    """
+    if schedule.count_time is None:
+        return clean + error
+    pulses = np.round(clean * (schedule.count_time + lasted) + error)
+    return np.where([s.kind != ACCELEROMETER for s in schedule.sensors], pulses, clean + error)
+
+
+def orientation_vectors(schedule: CalibrationSession, rng: np.random.Generator) -> Array:
+    """(R, m, 3) what still orientations apply: specific force, and to gyros the Earth's rate at a random heading."""
+    assert schedule.directions is not None
+    up, phi = schedule.directions, schedule.site.latitude or 0.0
+    heading = rng.uniform(0, 2 * np.pi, len(up))
+    north = (tangents(up) @ np.stack([np.cos(heading), np.sin(heading)], axis=-1)[..., None])[..., 0]
+    force = magnitude(schedule, ACCELEROMETER) * up
+    rate = EARTH_RATE * (np.sin(phi) * up + np.cos(phi) * north)
+    return np.stack([force if s.kind == ACCELEROMETER else rate for s in schedule.sensors], axis=1)
 
 
 def orientation_schedule(
@@ -190,12 +206,5 @@ def scattered(
     axis: float = 1e-3,
 ) -> SensorParameters:
     """True parameters scattered about the nominal ones; one sigmas dimensionless (relative, g, 1/g, rad); norm (m,)."""
-    m = len(sensors)
-    base = SensorParameters(
-        scale=np.array([s.nominal_scale for s in sensors]),
-        bias=np.zeros(m),
-        quadratic=np.zeros(m),
-        axis=np.stack([s.nominal_axis for s in sensors]),
-    )
-    step = rng.standard_normal((m, 5)) * np.array([scale, bias, quadratic, axis, axis])
-    return base.stepped(step, norm)
+    step = rng.standard_normal((len(sensors), 5)) * np.array([scale, bias, quadratic, axis, axis])
+    return nominal(sensors).stepped(step, norm)
