@@ -1,14 +1,10 @@
-"""What a fit says of itself, in words: how well it explains the readings, and what it cannot tell apart."""
+"""How well the model explains the readings, in words."""
 
 from dataclasses import dataclass
 from math import isfinite, sqrt
 
-from estimator.results import Fit, KnownCombination
-from service.pages.units import measured, number, value_unit
-from service.units import DeviationUnit
-
-COVERAGE = 2.0
-"""k of the uncertainties that are shown where no decision states its own."""
+from estimator.results import Fit
+from service.pages.units import number
 
 
 @dataclass(frozen=True)
@@ -18,20 +14,6 @@ class FitWords:
     headline: str
     detail: str
     warnings: tuple[str, ...]
-
-
-def combination_in_words(known: KnownCombination, kind: str) -> str:
-    """``bias + 0.500 quadratic = 12.3 ± 0.4 µg``, in people's units."""
-    parameters = [name.rpartition(".")[2].partition("_")[0] for name in known.coefficients]
-    units = [value_unit(kind, p, 0.0) for p in parameters]
-    first = units[0].factor / next(iter(known.coefficients.values()))
-    terms = [
-        (coefficient * first / unit.factor, name.rpartition(".")[2])
-        for (name, coefficient), unit in zip(known.coefficients.items(), units, strict=True)
-    ]
-    total = measured(known.value, COVERAGE * known.sigma, DeviationUnit(units[0].label, first))
-    left = " + ".join(name if abs(c - 1) < 1e-9 else f"{number(c)} × {name}" for c, name in terms)
-    return f"{left} = {total}".replace("+ −", "− ")
 
 
 def fit_in_words(fit: Fit) -> FitWords:

@@ -86,14 +86,14 @@ class FleetPage:
         return self.first + len(self.rows) - 1
 
 
-def fleet_page(condition: FleetCondition, units: Sequence[UnitSummary], view: FleetView) -> FleetPage:
-    """One page of units, worst first; ``units`` has one more than fits when there is a next page."""
+def fleet_page(condition: FleetCondition, units: Sequence[UnitSummary], more: bool, view: FleetView) -> FleetPage:
+    """One page of units, worst first; ``more`` when there is a next one."""
     return FleetPage(
         view=view,
         tiles=tuple(_tile(condition_of(v), n, view) for v, n in reversed(condition.verdicts.items())),
-        rows=tuple(map(_row, units[:PAGE_SIZE])),
+        rows=tuple(map(_row, units)),
         total=condition.units,
-        more=len(units) > PAGE_SIZE,
+        more=more,
         simulated=condition.simulated,
     )
 

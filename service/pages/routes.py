@@ -1,11 +1,12 @@
 """The addresses of the pages: each route asks the flows and renders a frozen context."""
 
+from datetime import datetime
 from typing import Annotated
 
-from fastapi import APIRouter, HTTPException, Query, Request, UploadFile
+from fastapi import APIRouter, Path, Query, Request
 from fastapi.responses import HTMLResponse
 
-from service.dependencies import Moment, Reading, Stores, TheSettings
+from service.dependencies import Now, Reading, SettingsOf, StorageOf
 from service.errors import RefusedError
 from service.flows.fleet import fleet_overview
 from service.flows.fleet_condition import fleet_condition
@@ -14,13 +15,72 @@ from service.flows.session_report import session_report
 from service.flows.unit_report import unit_report
 from service.flows.upload import upload
 from service.pages.fleet import PAGE_SIZE, FleetView, fleet_page
-from service.pages.headers import sent_by_this_site
+from service.pages.received import FormFile, FormFiles
 from service.pages.render import render
 from service.pages.session import session_page
 from service.pages.unit import unit_page
 from service.pages.upload import Outcome, upload_page
 from service.records import Verdict
+from service.settings import Settings
 
-HISTORY_LIMIT = 100_000
+HISTORY_LIMIT = 200_000
+"""Points of one unit's history that a page draws."""
+
+Key = Annotated[str, Path(max_length=200, pattern=r"^[^\x00]+$")]
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
+
+
+@router.get("/")
+def show_fleet(
+    request: Request,
+    store: Reading,
+    q: Annotated[str, Query(max_length=200, pattern=r"^[^\x00]*$")] = "",
+    condition: str = "",
+    page: Annotated[int, Query(ge=1, le=1_000_000)] = 1,
+) -> HTMLResponse:
+    """The fleet, worst unit first."""
+    verdict = Verdict(condition) if condition in set(Verdict) else None
+    view = FleetView(q.strip(), verdict or "", page)
+    units = fleet_overview(store, verdict=verdict, text=view.text or None, page=page, limit=PAGE_SIZE)
+    after = fleet_overview(store, verdict=verdict, text=view.text or None, page=page * PAGE_SIZE + 1, limit=1)
+    return render(request, "fleet.html", fleet_page(fleet_condition(store), units, bool(after), view))
+
+
+@router.get("/units/{serial:path}")
+def show_unit(request: Request, store: Reading, now: Now, serial: Key) -> HTMLResponse:
+    """One unit with the history of its parameters."""
+    report = unit_report(store, serial, now)
+    return render(request, "unit.html", unit_page(report, unit_history(store, serial, limit=HISTORY_LIMIT)))
+
+
+@router.get("/sessions/{id}")
+def show_session(request: Request, store: Reading, id: Key) -> HTMLResponse:
+    """One session with its parameters and residuals."""
+    return render(request, "session.html", session_page(session_report(store, id)))
+
+
+@router.get("/upload")
+def show_upload(request: Request, settings: SettingsOf) -> HTMLResponse:
+    """The form."""
+    return render(request, "upload.html", upload_page((), settings.max_upload_bytes))
+
+
+@router.post("/upload")
+def take_uploads(
+    request: Request, files: FormFiles, storage: StorageOf, settings: SettingsOf, now: Now
+) -> HTMLResponse:
+    """The form with the verdict on each file, or what is wrong with it; 422 when a file cannot be used."""
+    outcomes = [_outcome(file, storage, settings, now) for file in files]
+    for receipt in (o.receipt for o in outcomes if o.receipt is not None):
+        request.app.state.metrics.count_upload(receipt)
+    page = upload_page(outcomes, settings.max_upload_bytes)
+    return render(request, "upload.html", page, 422 if page.refused else 200)
+
+
+def _outcome(file: FormFile, storage: StorageOf, settings: Settings, now: datetime) -> Outcome:
+    try:
+        receipt = upload(storage, file.content, file.filename, now, coverage_factor=settings.coverage_factor)
+    except RefusedError as refusal:
+        return Outcome(file.filename, problems=refusal.problems)
+    return Outcome(file.filename, receipt)

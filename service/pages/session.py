@@ -6,9 +6,11 @@ from dataclasses import dataclass
 from estimator.results import Calibration, Estimate, SensorCalibration
 from service.pages.charts import ChartSet
 from service.pages.charts.residuals import residual_charts
-from service.pages.fit import COVERAGE, FitWords, combination_in_words, fit_in_words
+from service.pages.fit import FitWords, fit_in_words
+from service.pages.known import combination_in_words
 from service.pages.residual_table import ResidualTable, residual_table
 from service.pages.units import (
+    COVERAGE,
     HARD,
     THIN,
     decimals,

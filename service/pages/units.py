@@ -10,6 +10,8 @@ HARD = "\u00a0"
 """A space that does not break the line."""
 MINUS = "\u2212"
 UNKNOWN = "\u2013"
+COVERAGE = 2.0
+"""k of the uncertainties that are shown where no decision states its own."""
 
 COARSE_UNITS = {
     ("accelerometer", "scale"): DeviationUnit("%", 1e2),
@@ -40,8 +42,13 @@ def deviation_unit(kind: str, parameter: str, largest: float) -> DeviationUnit:
 def value_unit(kind: str, parameter: str, largest: float) -> DeviationUnit:
     """The unit for values up to ``largest``; scale factors are read per g or per degree a second."""
     if parameter == "scale":
-        return PER_RATE if kind == GYROSCOPE else PER_G
+        return reading_unit(kind)
     return deviation_unit(kind, parameter, largest)
+
+
+def reading_unit(kind: str) -> DeviationUnit:
+    """What scale factors are counted per."""
+    return PER_RATE if kind == GYROSCOPE else PER_G
 
 
 def decimals(uncertainty: float | None) -> int | None:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from estimator.errors import Problem
+from service.pages.units import size_in_words
 from service.pages.verdicts import Condition, condition_of
 from service.records import Receipt
 
@@ -14,7 +15,6 @@ class Outcome:
 
     filename: str
     receipt: Receipt | None = None
-    refusal: str = ""
     problems: tuple[Problem, ...] = ()
 
     @property
@@ -38,4 +38,4 @@ class UploadPage:
 
 def upload_page(outcomes: Sequence[Outcome], max_bytes: int) -> UploadPage:
     """The page before (no outcomes) or after an upload."""
-    return UploadPage(tuple(outcomes), f"{max_bytes // 2**20} MB")
+    return UploadPage(tuple(outcomes), size_in_words(max_bytes))

@@ -17,6 +17,7 @@ from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
 from service.app import create_app
 
 from service.settings import Settings
+from service.storage.schema import upgrade
 from tests.builders import Document, accelerometer_block, arbitrary_orientations, gyro_block, true_sensors
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
@@ -58,7 +59,9 @@ def upload(url: str, document: Document) -> str:
 @contextmanager
 def serving(folder: Path) -> Iterator[str]:
     """A running service with an empty store in ``folder``."""
-    app = create_app(Settings(data_folder=folder))
+    settings = Settings(data_folder=folder)
+    upgrade(settings.database)
+    app = create_app(settings)
     server = uvicorn.Server(uvicorn.Config(app, port=0, log_level="warning"))
     thread = Thread(target=server.run, daemon=True)
     thread.start()
@@ -78,8 +81,8 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
         unfit = [upload(url, drifting(step)) for step in range(7)][-1]
         for seed in (1, 2):
             upload(url, accelerometer_block(unit="BA-018", seed=seed) | {"started_at": f"2026-0{seed}-01T08:00:00Z"})
-        upload(url, gyro_block(unit="GB-004"))
-        loose = upload(url, arbitrary_orientations(unit="HAND-1"))
+        upload(url, gyro_block() | {"unit": "GB-004"})
+        loose = upload(url, arbitrary_orientations() | {"unit": "HAND-1"})
         yield Site(url, unfit, loose)
 
 

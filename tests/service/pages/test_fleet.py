@@ -8,16 +8,16 @@ CONDITION = FleetCondition(units=120, verdicts={v: 20 + 2 * v.severity for v in 
 
 
 def test_tiles_count_every_condition_worst_first() -> None:
-    tiles = fleet_page(CONDITION, (), FleetView()).tiles
+    tiles = fleet_page(CONDITION, (), False, FleetView()).tiles
     assert [(t.condition.word, t.count) for t in tiles] == [
         ("Unfit", 28), ("Probably unfit", 26), ("Undecided", 24), ("Probably fit", 22), ("Fit", 20),
     ]  # fmt: skip
 
 
-def test_one_unit_more_than_fits_means_a_next_page() -> None:
-    units = [unit_summary(f"U{i}") for i in range(PAGE_SIZE + 1)]
-    page = fleet_page(CONDITION, units, FleetView(page=2))
-    assert (page.more, page.first, page.last) == (True, PAGE_SIZE + 1, 2 * PAGE_SIZE)
+def test_units_are_numbered_through_the_pages() -> None:
+    units = [unit_summary(f"U{i}") for i in range(PAGE_SIZE)]
+    page = fleet_page(CONDITION, units, True, FleetView(page=2))
+    assert (page.first, page.last) == (PAGE_SIZE + 1, 2 * PAGE_SIZE)
 
 
 def test_changing_the_filter_goes_back_to_the_first_page() -> None:
@@ -28,7 +28,7 @@ def test_changing_the_filter_goes_back_to_the_first_page() -> None:
 
 
 def test_chosen_tile_leads_back_to_all() -> None:
-    tiles = {t.condition.key: t for t in fleet_page(CONDITION, (), FleetView(condition="fail")).tiles}
+    tiles = {t.condition.key: t for t in fleet_page(CONDITION, (), False, FleetView(condition="fail")).tiles}
     assert tiles["fail"].chosen
     assert tiles["fail"].url == "/"
 
@@ -40,6 +40,6 @@ def test_margin_in_words_and_as_a_bar() -> None:
 
 
 def test_margin_of_an_undecided_unit_is_not_claimed() -> None:
-    rows = fleet_page(CONDITION, [unit_summary(verdict=Verdict.UNDECIDABLE)], FleetView()).rows
+    rows = fleet_page(CONDITION, [unit_summary(verdict=Verdict.UNDECIDABLE)], False, FleetView()).rows
     assert rows[0].margin is None
     assert rows[0].worst == "A3 bias"

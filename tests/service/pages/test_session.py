@@ -5,7 +5,8 @@ from dataclasses import replace
 import pytest
 
 from estimator.results import KnownCombination
-from service.pages.fit import combination_in_words, fit_in_words
+from service.pages.fit import fit_in_words
+from service.pages.known import combination_in_words
 from service.pages.session import session_page
 from tests.builders import accelerometer_block
 from tests.service.pages.records import session_report
@@ -38,6 +39,12 @@ def test_known_combination_is_written_in_peoples_units() -> None:
     g = 9.80665
     known = KnownCombination({"bias": 2.0, "quadratic": -g * g}, value=20e-6 * g, sigma=1e-6 * g)
     assert combination_in_words(known, "accelerometer") == "bias − 0.5 × quadratic = 10.0\u00a0±\u00a01.0\u202fµg"
+
+
+def test_known_readings_are_written_per_g() -> None:
+    g = 9.80665
+    known = KnownCombination({"zero_reading": 0.5, "sensitivity_y": g, "quadratic_reading": 0.0}, 2.0, 0.005)
+    assert combination_in_words(known, "accelerometer") == "0.5 × K·b + K·e_y = 2.000\u00a0±\u00a00.010"
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,20 @@
+"""Pages for people: a frozen context each, made of records by pure functions, and a template.
+
+`mount` joins them to the service. Pages ask the flows; they know nothing of the store's tables.
+"""
+
+from fastapi import FastAPI
+from starlette.middleware.gzip import GZipMiddleware
+
+from service.pages import assets, routes
+from service.pages.headers import SecurityHeaders
+from service.pages.problem import ProblemPages
+
+
+def mount(app: FastAPI) -> None:
+    """Adds the pages, their static files, error pages, compression and the security headers of every answer."""
+    app.include_router(routes.router)
+    app.include_router(assets.router)
+    app.add_middleware(ProblemPages)
+    app.add_middleware(GZipMiddleware, minimum_size=1000, compresslevel=6)
+    app.add_middleware(SecurityHeaders)
