@@ -7,8 +7,12 @@ from typer.exceptions import TyperException
 
 from service.commands.calibrate import calibrate_files
 from service.commands.console import FAILED, say
+from service.commands.convert import convert_files
 from service.commands.database import database
+from service.commands.report import fleet, report
+from service.commands.serve import serve
 from service.commands.simulate import simulate_files
+from service.commands.upload import upload_files
 from service.errors import ServiceError
 
 app = typer.Typer(
@@ -19,7 +23,12 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode="markdown",
 )
+app.command("serve")(serve)
 app.command("calibrate")(calibrate_files)
+app.command("upload")(upload_files)
+app.command("convert")(convert_files)
+app.command("fleet")(fleet)
+app.command("report")(report)
 app.command("simulate")(simulate_files)
 app.add_typer(database, name="db")
 

@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from estimator import Calibration, CalibrationSession, calibrate
-from estimator.reading import read_session
 from service.commands.console import AsJson, Files, for_each, print_json, screen
 from service.commands.tables import calibration_view
+from service.ingest import read_upload
 
 Result = tuple[CalibrationSession, Calibration]
 
@@ -16,7 +16,7 @@ def calibrate_files(files: Files, as_json: AsJson = False) -> None:
 
 
 def _calibrated(file: Path) -> Result:
-    session = read_session(file)
+    session = read_upload(file.read_bytes(), str(file))
     return session, calibrate(session)
 
 

@@ -20,7 +20,7 @@ UNUSABLE = 2
 
 T = TypeVar("T")
 
-Files = Annotated[list[Path], typer.Argument(metavar="FILE...", help="Session files.", show_default=False)]
+Files = Annotated[list[Path], typer.Argument(metavar="FILE", help="Session files.", show_default=False)]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON: one object; with several files one a line.")]
 Server = Annotated[str, typer.Option(help="Address of the service.", envvar="IMU_HEALTH_SERVER")]
 DEFAULT_SERVER = "http://127.0.0.1:8000"

@@ -1,0 +1,53 @@
+"""Talking to a running service over HTTP; its refusals become the errors that commands already understand."""
+
+from http import HTTPStatus
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+from estimator.errors import Problem
+from service.errors import RefusedError, ServiceError
+
+TIMEOUT = httpx.Timeout(60.0, connect=5.0)
+
+
+class Client:
+    """One connection to a service."""
+
+    def __init__(self, server: str) -> None:
+        self.server = server.rstrip("/")
+        self._http = httpx.Client(base_url=f"{self.server}/api/v1", timeout=TIMEOUT)
+
+    def upload(self, file: Path) -> dict[str, Any]:
+        """Sends a session file; RefusedError with its problems when the service cannot use it."""
+        response = self._answer("POST", "/sessions", files={"file": (file.name, file.read_bytes())})
+        answer: dict[str, Any] = response.json()
+        return answer
+
+    def get(self, path: str, **query: str) -> httpx.Response:
+        """Reads a resource below /api/v1."""
+        return self._answer("GET", path, params=query)
+
+    def _answer(self, method: str, path: str, **request: Any) -> httpx.Response:
+        """The answer, or the error that it states."""
+        try:
+            response = self._http.request(method, path, **request)
+        except httpx.InvalidURL as fault:
+            raise ServiceError(f"{self.server} is not an address: {fault}") from fault
+        except httpx.HTTPError as fault:
+            raise ServiceError(f"{self.server} does not answer: {fault}") from fault
+        if response.is_success:
+            return response
+        raise _error(response)
+
+
+def _error(response: httpx.Response) -> ServiceError:
+    """The service's problem+json as an error; anything else by its status."""
+    if not response.headers.get("content-type", "").startswith("application/problem+json"):
+        return ServiceError(f"{response.url} answered {response.status_code} {response.reason_phrase}")
+    problem = response.json()
+    if response.status_code != HTTPStatus.UNPROCESSABLE_ENTITY:
+        return ServiceError(problem["detail"])
+    found = (Problem(p["field"], p["message"], p.get("row")) for p in problem.get("problems") or ())
+    return RefusedError(problem["detail"], tuple(found))

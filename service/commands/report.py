@@ -1,0 +1,70 @@
+"""`imu-health fleet` and `imu-health report`: the fleet's condition from a running service."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.markup import escape
+from rich.table import Table
+
+from service.commands.client import Client
+from service.commands.console import DEFAULT_SERVER, AsJson, Server, print_json, screen
+from service.commands.upload import coloured
+from service.pages.units import number
+from service.records import Verdict
+
+
+class Format(StrEnum):
+    """What a report can be written as."""
+
+    JSON = "json"
+    CSV = "csv"
+
+
+def fleet(server: Server = DEFAULT_SERVER, as_json: AsJson = False) -> None:
+    """Show every unit with its condition, the worst first; --json prints how many units are in which."""
+    client = Client(server)
+    condition = client.get("/fleet").json()
+    if as_json:
+        print_json(condition)
+        return
+    screen().print(_summary(condition), _table(client.get("/fleet/report").json()["units"]))
+
+
+def report(
+    server: Server = DEFAULT_SERVER,
+    format: Annotated[Format, typer.Option("--format", help="json or csv.")] = Format.CSV,
+    out: Annotated[Path | None, typer.Option(help="File to write.", show_default="standard output")] = None,
+) -> None:
+    """Write the fleet's condition as a file for other programs."""
+    content = Client(server).get("/fleet/report", format=format.value).content
+    if out is None:
+        typer.echo(content, nl=False)
+    else:
+        out.write_bytes(content)
+
+
+def _summary(condition: dict[str, Any]) -> str:
+    """``12 units, 12 of them simulated: 1 Unfit, …``"""
+    counts = {Verdict(name): count for name, count in condition["verdicts"].items() if count}
+    found = (f"{counts[verdict]} {coloured(verdict)}" for verdict in reversed(Verdict) if verdict in counts)
+    simulated = f", {condition['simulated']} of them simulated" if condition["simulated"] else ""
+    return f"{condition['units']} units{simulated}: {', '.join(found)}\n"
+
+
+def _table(units: list[dict[str, Any]]) -> Table:
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    for heading in ("unit", "type", "condition", "margin", "last session", "sessions", "why"):
+        table.add_column(heading, justify="right" if heading in ("margin", "sessions") else "left")
+    for unit in units:
+        table.add_row(
+            escape(unit["serial"]) + (" [dim](simulated)[/]" if unit["simulated"] else ""),
+            escape(unit["unit_type"]),
+            coloured(unit["verdict"]) if unit["verdict"] else "",
+            number(unit["margin"], 2),
+            (unit["last_at"] or "")[:10],
+            str(unit["sessions"]),
+            escape(unit["reason"]),
+        )
+    return table

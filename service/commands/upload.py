@@ -1,0 +1,38 @@
+"""`imu-health upload`: session files to a running service."""
+
+from collections.abc import Callable
+from typing import Any
+
+from rich.markup import escape
+
+from service.commands.client import Client
+from service.commands.console import DEFAULT_SERVER, AsJson, Files, Server, for_each, print_json, screen
+from service.pages.verdicts import Condition, condition_of
+from service.records import Verdict
+
+COLOURS = {
+    Verdict.PASS: "green",
+    Verdict.CONDITIONAL_PASS: "green",
+    Verdict.UNDECIDABLE: "blue",
+    Verdict.CONDITIONAL_FAIL: "dark_orange",
+    Verdict.FAIL: "red",
+}
+
+
+def upload_files(files: Files, server: Server = DEFAULT_SERVER, as_json: AsJson = False) -> None:
+    """Upload session files and print the verdict of each; a file that is already there is stored once."""
+    client = Client(server)
+    show: Callable[[dict[str, Any]], None] = print_json if as_json else _print_line
+    for_each(files, client.upload, show, "uploading")
+
+
+def _print_line(answer: dict[str, Any]) -> None:
+    """``BA-017  Fit  …``"""
+    screen().print(f"[bold]{escape(answer['unit'])}[/]  {coloured(answer['verdict'])}  {escape(answer['reason'])}")
+
+
+def coloured(word: str) -> str:
+    """A verdict as the pages word it, with their colour."""
+    verdict = Verdict(word)
+    shown: Condition = condition_of(verdict)
+    return f"[{COLOURS[verdict]}]{shown.word}[/]"

@@ -1,0 +1,67 @@
+"""The command line as a user runs it, in this process."""
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from service.cli import main
+from tests.builders import Document, accelerometer_block
+
+
+@dataclass(frozen=True)
+class Ran:
+    """What a command left behind."""
+
+    code: int
+    out: str
+    err: str
+
+    @property
+    def documents(self) -> list[Any]:
+        """The JSON documents of standard output, one a line."""
+        return [json.loads(line) for line in self.out.splitlines()]
+
+
+Run = Callable[..., Ran]
+
+
+@pytest.fixture
+def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
+    """Runs `imu-health` with arguments."""
+
+    def run_command(*arguments: object) -> Ran:
+        monkeypatch.setattr("sys.argv", ["imu-health", *map(str, arguments)])
+        with pytest.raises(SystemExit) as left:
+            main()
+        written = capsys.readouterr()
+        assert isinstance(left.value.code, int)
+        return Ran(left.value.code, written.out, written.err)
+
+    return run_command
+
+
+def write(folder: Path, name: str, document: Document) -> Path:
+    """A session file."""
+    file = folder / name
+    file.write_text(json.dumps(document), encoding="utf-8")
+    return file
+
+
+@pytest.fixture
+def good_file(tmp_path: Path) -> Path:
+    """A session that can be used."""
+    return write(tmp_path, "good.json", accelerometer_block())
+
+
+@pytest.fixture
+def bad_file(tmp_path: Path) -> Path:
+    """A session with three faults: NaN in row 3, α of 90°, a negative standard error in row 5."""
+    document = accelerometer_block()
+    document["table"]["A2"][2] = float("nan")
+    document["stand"]["alpha_deg"] = 90.0
+    document["table"]["A4_se"][4] = -1e-6
+    return write(tmp_path, "bad.json", document)

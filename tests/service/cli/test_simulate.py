@@ -1,0 +1,55 @@
+"""`imu-health simulate`: files that say the truth when they are calibrated."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from estimator import calibrate
+from estimator.reading import read_session
+from tests.service.cli.conftest import Run
+
+
+def test_a_calibration_finds_the_printed_truth(run: Run, tmp_path: Path) -> None:
+    ran = run("simulate", "--out", tmp_path, "--positions", 24, "--seed", 5, "--json")
+    [truth] = ran.documents
+    found = calibrate(read_session(truth["file"]))
+    pulls = [
+        (getattr(sensor, name).value - true[name]) / getattr(sensor, name).sigma
+        for sensor, true in zip(found.sensors, truth["sensors"], strict=True)
+        for name in ("scale", "bias", "quadratic")
+    ]
+    assert np.abs(pulls).max() < 4
+
+
+def test_the_same_seed_gives_the_same_bytes_and_another_seed_others(run: Run, tmp_path: Path) -> None:
+    for folder, seed in (("a", 1), ("b", 1), ("c", 2)):
+        run("simulate", "--out", tmp_path / folder, "--seed", seed)
+    first, again, other = ((tmp_path / folder / "SIM-001-001.json").read_bytes() for folder in "abc")
+    assert first == again != other
+
+
+def test_the_options_shape_the_session(run: Run, tmp_path: Path) -> None:
+    run("simulate", "--out", tmp_path, "-m", 4, "--alpha", 35, "-n", 10, "--noise", 5, "--unit", "X/1")
+    document = json.loads((tmp_path / "X_1-001.json").read_text())
+    assert document["unit"] == "X/1"
+    assert document["stand"]["alpha_deg"] == 35
+    assert len(document["sensors"]) == 4
+    assert document["table"]["beta_deg"][:3] == [0.0, 36.0, 72.0]
+    assert document["table"]["A1_se"][0] == pytest.approx(5 * 9.80665e-6 * 0.12)
+
+
+def test_a_drift_moves_the_truth_from_session_to_session(run: Run, tmp_path: Path) -> None:
+    ran = run("simulate", "--out", tmp_path, "--sessions", 3, "--drift", "A3.bias=20", "--json")
+    biases = [document["sensors"][2]["bias"] for document in ran.documents]
+    assert np.diff(biases) == pytest.approx([20e-6 * 9.815] * 2, rel=1e-3)
+    assert len({document["sensors"][1]["bias"] for document in ran.documents}) == 1
+
+
+@pytest.mark.parametrize("drift", ["A3.bias", "A3.colour=1", "A0.bias=1", "A7.bias=1"])
+def test_a_drift_that_makes_no_sense_is_refused(run: Run, tmp_path: Path, drift: str) -> None:
+    ran = run("simulate", "--out", tmp_path / "none", "--drift", drift)
+    assert ran.code == 1
+    assert "A3.bias=20" in ran.err or "A1 to A6" in ran.err
+    assert not (tmp_path / "none").exists()
