@@ -2,6 +2,7 @@
 
 import zlib
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.io import loadmat
@@ -9,20 +10,39 @@ from scipy.io.matlab import MatReadError
 
 from service.ingest.convert.contract import Converter, Document
 from service.ingest.convert.documents import STANDARD_GRAVITY, columns, session, triad
-from service.ingest.convert.files import expect_count, refuse
+from service.ingest.convert.files import expect_count, read_bytes, refuse
 
+BYTE_ORDER = slice(126, 128)
+DAMAGED = (
+    OSError,
+    ValueError,
+    TypeError,
+    LookupError,
+    ArithmeticError,
+    NotImplementedError,
+    MemoryError,
+    MatReadError,
+    zlib.error,
+)
+"""What scipy raises on files cut off or written over at various places."""
 FILES = "the MAT file that holds `ACC_meas`, three rows of orientation means in g"
+
+
+def array(path: Path) -> Any:
+    """What the file holds as ``ACC_meas``; None when it holds nothing of that name."""
+    if read_bytes(path)[BYTE_ORDER] not in (b"IM", b"MI"):
+        raise refuse(path, "file", "is no MAT file of version 5")
+    try:
+        return loadmat(path, appendmat=False, variable_names=["ACC_meas"]).get("ACC_meas")
+    except DAMAGED as fault:
+        raise refuse(path, "file", f"is a damaged MAT file: {fault}") from fault
 
 
 def convert(paths: list[Path]) -> list[tuple[str, Document]]:
     """One MAT file → one averaged session without standard errors."""
     expect_count(paths, 1, FILES)
     path = paths[0]
-    try:
-        held = loadmat(path, appendmat=False, variable_names=["ACC_meas"])
-    except (OSError, ValueError, TypeError, NotImplementedError, MatReadError, zlib.error) as fault:
-        raise refuse(path, "file", f"cannot be read as a MAT file of version 5: {fault}") from fault
-    values = held.get("ACC_meas")
+    values = array(path)
     if values is None or values.ndim != 2 or values.shape[0] != 3 or values.dtype.kind not in "fiu":
         raise refuse(path, "ACC_meas", "must be an array of three rows of numbers")
     means = values.T.astype(np.float64)

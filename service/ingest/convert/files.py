@@ -24,11 +24,13 @@ def read_bytes(path: Path) -> bytes:
 def read_numbers(path: Path, width: int) -> NDArray[np.float64]:
     """Lines of ``width`` numbers separated by blanks: (rows, width)."""
     text = read_bytes(path).decode("ascii", errors="replace")
+    if not text.strip():
+        raise refuse(path, "text", f"is empty; must hold {width} numbers a line")
     try:
-        values = np.loadtxt(text.splitlines(), ndmin=2)
+        values = np.loadtxt(text.splitlines(), ndmin=2, comments=None)
     except ValueError as fault:
         raise refuse(path, "text", f"{fault}; every line must hold {width} numbers separated by blanks") from fault
-    if values.shape[1] != width or not len(values):
+    if values.shape[1] != width:
         raise refuse(path, "text", f"holds {len(values)} lines of {values.shape[1]} numbers; must hold {width} a line")
     unusable = np.flatnonzero(~np.isfinite(values).all(axis=1))
     if len(unusable):
