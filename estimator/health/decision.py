@@ -110,7 +110,8 @@ def _assess_axis(change: Deviation, tolerance: float, k: float) -> _Assessed:
     covariance = change.covariance + (FLOOR * tolerance) ** 2 * np.eye(2)
     length = judge_length(change.vector, covariance, tolerance, k)
     mahalanobis = float(np.sqrt(change.vector @ np.linalg.solve(covariance, change.vector)))
-    scale = length.value / mahalanobis if mahalanobis > 0 else 0.0
+    largest = float(np.sqrt(np.linalg.eigvalsh(covariance)[-1]))
+    scale = length.value / mahalanobis if length.value > 0 else largest
     return _Assessed(length.value, length.expanded / k, length.probability_beyond, scale, is_vector=True)
 
 

@@ -31,14 +31,26 @@ def disc_probability(center: Array, sigma: Array, radius: float) -> float:
     -----
     x₁ = r·sin t turns the square-root ends of the chord h = r·cos t into smooth ones.
     """
-    low = np.clip((center[0] - REACH * sigma[0]) / radius, -1, 1) if radius > 0 else 0.0
-    high = np.clip((center[0] + REACH * sigma[0]) / radius, -1, 1) if radius > 0 else 0.0
-    start, end = np.arcsin(low), np.arcsin(high)
+    chord, weight = _chords(center[0], sigma[0], radius)
+    return _share(chord, weight, center[1], sigma[1])
+
+
+def _chords(center: float, sigma: float, radius: float) -> tuple[Array, Array]:
+    """(160,) half chords of the disc across the first axis, and the weight of the density at each."""
+    if radius <= 0:
+        return np.zeros(1), np.zeros(1)
+    reach = (np.array([-REACH, REACH]) * sigma + center) / radius
+    start, end = np.arcsin(np.minimum(np.maximum(reach, -1), 1))
     t = (end - start) / 2 * NODES + (end + start) / 2
     chord = radius * np.cos(t)
-    density = np.exp(-(((radius * np.sin(t) - center[0]) / sigma[0]) ** 2) / 2) / (np.sqrt(2 * np.pi) * sigma[0])
-    inside = ndtr((chord - center[1]) / sigma[1]) - ndtr((-chord - center[1]) / sigma[1])
-    return float(np.clip((end - start) / 2 * np.sum(WEIGHTS * density * inside * chord), 0, 1))
+    density = np.exp(-(((radius * np.sin(t) - center) / sigma) ** 2) / 2) / (np.sqrt(2 * np.pi) * sigma)
+    return chord, (end - start) / 2 * WEIGHTS * density * chord
+
+
+def _share(chord: Array, weight: Array, center: float, sigma: float) -> float:
+    """The weights times what the second axis leaves inside each chord."""
+    inside = ndtr((chord - center) / sigma) - ndtr((-chord - center) / sigma)
+    return float(min(max(weight @ inside, 0.0), 1.0))
 
 
 @dataclass(frozen=True)
@@ -80,10 +92,11 @@ def judge_length(vector: Array, covariance: Array, limit: float, coverage_factor
 
 def _length_with(probability: float, measured: float, sigma: Array) -> float:
     """The true length, along the axis of largest variance, with P(|x| ≤ measured) = probability; 0 if none has it."""
+    chord, weight = _chords(0.0, sigma[0], measured)
 
     def excess(length: float) -> float:
-        return disc_probability(np.array([0.0, length]), sigma, measured) - probability
+        return _share(chord, weight, length, sigma[1]) - probability
 
-    if measured == 0 or excess(0.0) <= 0:
+    if excess(0.0) <= 0:
         return 0.0
-    return float(brentq(excess, 0.0, measured + REACH * float(sigma[1]), xtol=1e-6 * float(sigma[1])))
+    return float(brentq(excess, 0.0, measured + REACH * float(sigma[1]), xtol=1e-5 * float(sigma[1])))

@@ -1,0 +1,129 @@
+"""A session judged against its reference: deviations, states, and how often a healthy unit is called unfit."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from estimator.health import Judgement, judge
+from estimator.session import ACCELEROMETER
+from tests.estimator.health.cases import TOLERANCES, calibration, sensor
+
+PARAMETERS = ("scale", "bias", "quadratic", "axis")
+SPREAD = {"scale": 0.12 * 1e-5, "bias": 2e-5, "quadratic": 1e-7}
+TIGHT = np.eye(2) * 1e-6**2
+
+
+def judged(current: dict[str, object], reference: dict[str, object] | None = None) -> dict[str, Judgement]:
+    """Judgements of one sensor by parameter."""
+    then = calibration(sensor(**(reference or {}), covariance=TIGHT))  # type: ignore[arg-type]
+    now = calibration(sensor(**({"covariance": TIGHT} | current)))  # type: ignore[arg-type]
+    return {j.parameter: j for j in judge(now, then, TOLERANCES)}
+
+
+def test_a_scale_deviates_relative_to_the_reference() -> None:
+    found = judged({"scale": (0.12 * 1.0003, 6e-7)}, {"scale": (0.12, 8e-7)})["scale"]
+    assert found.deviation == pytest.approx(3e-4)
+    assert found.uncertainty == pytest.approx(1e-6 / 0.12, rel=1e-3)  # 6 and 8 in quadrature are 10
+    assert found.verdict == "fail"
+
+
+def test_uncertainties_of_both_sessions_add_in_quadrature() -> None:
+    found = judged({"bias": (1e-4, 3e-5)}, {"bias": (0.0, 4e-5)})["bias"]
+    assert (found.deviation, found.uncertainty) == pytest.approx((1e-4, 5e-5))
+    assert found.expanded == pytest.approx(1e-4)
+    assert found.verdict == "pass"
+
+
+def test_the_probability_of_being_out_is_that_of_both_tails() -> None:
+    found = judged({"bias": (4e-4, 1e-4)})["bias"]
+    assert found.probability_out == pytest.approx(stats.norm.sf(1.0) + stats.norm.sf(9.0))
+
+
+def test_an_axis_is_judged_by_its_angle() -> None:
+    found = judged({"offset": (3e-4, 4e-4)})["axis"]
+    assert (found.value, found.reference) == pytest.approx((5e-4, 0.0))
+    assert found.deviation == pytest.approx(5e-4, rel=1e-4)
+    assert found.uncertainty == pytest.approx(1e-6 * 2**0.5, rel=1e-3)
+    assert found.verdict == "fail"
+
+
+def test_a_reversed_axis_is_half_a_turn_away() -> None:
+    found = judged({"offset": (np.pi, 0.0)})["axis"]
+    assert found.value == pytest.approx(np.pi)
+    assert found.verdict == "fail"
+
+
+def test_what_a_session_does_not_observe_is_undecidable() -> None:
+    found = judged({"bias": (None, None)})["bias"]
+    assert (found.verdict, found.value, found.deviation) == ("undecidable", None, None)
+
+
+def test_what_the_reference_did_not_observe_is_undecidable() -> None:
+    found = judged({"quadratic": (1e-7, 1e-8)}, {"quadratic": (None, None)})["quadratic"]
+    assert (found.verdict, found.value, found.reference) == ("undecidable", 1e-7, None)
+
+
+def test_a_sensor_that_the_reference_lacks_is_undecidable() -> None:
+    then, now = calibration(sensor("A1")), calibration(sensor("A9"))
+    assert {j.verdict for j in judge(now, then, TOLERANCES)} == {"undecidable"}
+
+
+def test_the_reference_itself_is_undecidable_and_its_own_origin() -> None:
+    found = judge(calibration(sensor(bias=(1e-3, 1e-5))), None, TOLERANCES)
+    assert {j.verdict for j in found} == {"undecidable"}
+    assert [j.reference for j in found] == [0.12, 1e-3, 0.0, 0.0]
+
+
+def test_a_parameter_without_a_tolerance_is_not_judged() -> None:
+    only = {(ACCELEROMETER, "bias"): 5e-4}
+    assert [j.parameter for j in judge(calibration(sensor()), calibration(sensor()), only)] == ["bias"]
+
+
+def test_a_measurement_without_noise_is_judged_too() -> None:
+    current, same = calibration(sensor(offset=(5e-4, 0.0))), calibration(sensor())
+    assert [j.verdict for j in judge(current, same, TOLERANCES)] == ["pass", "pass", "pass", "fail"]
+
+
+def healthy(rng: np.random.Generator, common: float) -> tuple[Judgement, ...]:
+    """Six sensors that did not move, their errors correlated; every tolerance equals U, the hardest case."""
+    shared = rng.standard_normal(5)
+    draws = np.sqrt(common) * shared + np.sqrt(1 - common) * rng.standard_normal((6, 5))
+    moved = [
+        sensor(
+            f"A{i}",
+            scale=(0.12 * (1 + 4e-5 * z[0]), 0.12 * 4e-5),
+            bias=(2e-4 * z[1], 2e-4),
+            quadratic=(8e-7 * z[2], 8e-7),
+            offset=(3e-5 * z[3], 3e-5 * z[4]),
+            covariance=np.eye(2) * 3e-5**2,
+        )
+        for i, z in enumerate(draws)
+    ]
+    origin = [sensor(f"A{i}") for i in range(6)]
+    return judge(calibration(*moved), calibration(*origin), TOLERANCES)
+
+
+@pytest.mark.parametrize("common", [0.0, 0.8])
+def test_a_unit_at_its_reference_is_called_out_of_tolerance_in_less_than_one_percent(common: float) -> None:
+    rng = np.random.default_rng(11)
+    bad = {"fail", "conditional-fail"}
+    sessions = [healthy(rng, common) for _ in range(600)]
+    alarms = sum(any(j.verdict in bad for j in session) for session in sessions)
+    beyond = sum(any(abs(j.deviation or 0) > j.tolerance for j in session) for session in sessions)
+    assert alarms <= 12  # 600 sessions at 1 %: 6 expected at most, 12 is 2.4 sigma above
+    assert beyond > 60  # without the level over the session, these would have been alarms
+
+
+@pytest.mark.parametrize(("u", "true"), [(5e-5, 5e-4), (1.2e-4, 5e-4)])
+def test_the_guard_band_keeps_its_meaning_at_the_edge_of_tolerance(u: float, true: float) -> None:
+    """A bias exactly at its tolerance passes, and fails, with probability Φ(−2) at most."""
+    rng = np.random.default_rng(12)
+    only = {(ACCELEROMETER, "bias"): 5e-4}
+    origin = calibration(sensor())
+    verdicts = [
+        judge(calibration(sensor(bias=(true + u * z, u))), origin, only)[0].verdict for z in rng.standard_normal(3000)
+    ]
+    allowed = 0.0228 * 3000 + 3 * (0.0228 * 3000) ** 0.5
+    assert verdicts.count("pass") <= allowed
+    assert verdicts.count("fail") <= allowed
+    assert verdicts.count("conditional-pass") > 1000
