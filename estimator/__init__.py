@@ -42,6 +42,7 @@ last two are rotations of the axis along the two tangent vectors that the result
 """
 
 from estimator.calibration import calibrate, calibrate_many
+from estimator.diagnosis import Diagnosis, diagnose
 from estimator.errors import FormatError, Problem, ScheduleError, SessionError
 from estimator.reading import read_session
 from estimator.results import Calibration
@@ -50,6 +51,7 @@ from estimator.session import CalibrationSession, Sensor, Site, Stand, StandErro
 __all__ = [
     "Calibration",
     "CalibrationSession",
+    "Diagnosis",
     "FormatError",
     "Problem",
     "ScheduleError",
@@ -60,5 +62,6 @@ __all__ = [
     "StandErrors",
     "calibrate",
     "calibrate_many",
+    "diagnose",
     "read_session",
 ]

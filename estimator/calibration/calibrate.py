@@ -20,9 +20,14 @@ def calibrate(session: CalibrationSession, *, quadratic: bool | None = None) -> 
     ------
     ScheduleError : the programme does not calibrate, or its rows cannot support it.
     """
-    if session.programme not in (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS):
-        raise ScheduleError([Problem("programme", f"{session.programme} does not calibrate a block")])
-    rows = average(session, residual_per_freedom) if session.is_raw else session
+    rows = averaged(session)
     if session.programme == TWO_AXIS_STAND:
         return calibrate_stand([rows])[0]
     return calibrate_free(rows, quadratic=quadratic)
+
+
+def averaged(session: CalibrationSession) -> CalibrationSession:
+    """The session with one row a position; ScheduleError where its programme does not calibrate."""
+    if session.programme not in (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS):
+        raise ScheduleError([Problem("programme", f"{session.programme} does not calibrate a block")])
+    return average(session, residual_per_freedom) if session.is_raw else session

@@ -1,0 +1,17 @@
+"""The catalogue of causes: the physical effects that the baseline simulation lacks, each one small class."""
+
+from estimator.causes.catalogue import CATALOGUE, UNEXPLAINED, cause
+from estimator.causes.contract import Cause, CommonCause, Correction, SensorCause, Setting, Shape, Signature
+
+__all__ = [
+    "CATALOGUE",
+    "UNEXPLAINED",
+    "Cause",
+    "CommonCause",
+    "Correction",
+    "SensorCause",
+    "Setting",
+    "Shape",
+    "Signature",
+    "cause",
+]

@@ -1,0 +1,54 @@
+"""The catalogue: every cause the diagnosis knows. Adding a cause is one class and one line here."""
+
+from estimator.causes import environment, fixture, gyro, record, sensor, stand
+from estimator.causes.contract import Cause
+from estimator.causes.noise import ExcessNoise
+
+CATALOGUE: tuple[Cause, ...] = (
+    sensor.CubicNonlinearity(),
+    sensor.ScaleAsymmetry(),
+    sensor.CrossCoupling(),
+    environment.BiasTemperature(),
+    environment.ScaleTemperature(),
+    environment.BiasRamp(),
+    environment.WarmUp(),
+    environment.BiasJump(),
+    sensor.Hysteresis(),
+    sensor.Saturation(),
+    sensor.OddQuadratic(),
+    sensor.BiasAsymmetry(),
+    sensor.CrossAxisQuadratic(),
+    environment.ScaleRamp(),
+    environment.AxisCreep(),
+    environment.TemperatureRate(),
+    sensor.BiasPerPosition(),
+    sensor.ReadingOutlier(),
+    ExcessNoise(),
+    stand.BetaEccentricity(),
+    stand.BetaSecondHarmonic(),
+    stand.BetaScale(),
+    stand.AxisWobble(),
+    stand.LevellingY(),
+    stand.AlphaShift(),
+    fixture.FlipMisalignment(),
+    stand.StandDrift(),
+    record.PositionsSwapped(),
+    record.ChannelsSwapped(),
+    record.SignReversed(),
+    record.RunsSwapped(),
+    record.BetaReversed(),
+    record.AlphaEntry(),
+    record.GravityEntry(),
+    record.SensorDrift(),
+    fixture.RemountRotation(),
+    gyro.GSensitivity(),
+    gyro.LatitudeEntry(),
+    gyro.MeridianError(),
+)
+
+UNEXPLAINED = "unexplained"
+
+
+def cause(identifier: str) -> Cause:
+    """The cause called ``identifier``; KeyError if the catalogue holds none."""
+    return {c.identifier: c for c in CATALOGUE}[identifier]

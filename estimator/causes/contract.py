@@ -1,0 +1,177 @@
+"""What every cause is: one physical effect that the baseline simulation lacks, and what it leaves in the readings.
+
+A cause names itself, states its equation, what the session must provide, whom it acts on and what to do about it,
+and yields its *shapes*: signature columns at the input, one for every place and nonlinear parameter it could have.
+The simulation, the diagnosis, the extended fit, the detection limits and the documentation read it from here.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from estimator.forward import projected, slope
+from estimator.parameters import SensorParameters
+from estimator.session import Array, CalibrationSession
+
+
+@dataclass(frozen=True, eq=False)
+class Setting:
+    """What a cause may look at: the applied vectors, the sensors and what was recorded. R rows, m sensors."""
+
+    kinds: tuple[str, ...]
+    parameters: SensorParameters
+    """(m,) at which the signatures are taken."""
+    n: Array
+    """(R, m, 3) applied vectors, block axes."""
+    norm: Array
+    """(m,) length of the applied vector."""
+    beta: Array | None
+    """(R,) rad; None without a stand."""
+    flipped: Array | None
+    """(R,) bool; None without a stand."""
+    d_alpha: Array | None
+    """(R, m, 3) change of n per rad of elevation; None without a stand."""
+    d_beta: Array | None
+    """(R, m, 3) change of n per rad of β; None without a stand."""
+    time: Array | None
+    """(R,) s."""
+    temperature: Array | None
+    """(R,) °C."""
+    force: Array | None
+    """(R, 3) specific force that gyros feel, block axes, m/s²; None where unknown."""
+    latitude: float
+    """rad."""
+
+    @property
+    def rows(self) -> int:
+        return self.n.shape[0]
+
+    @property
+    def a(self) -> Array:
+        """(R, m) component along each input axis."""
+        return projected(self.parameters.axis, self.n)
+
+    @property
+    def first_of_run(self) -> Array:
+        """(R,) bool: rows that no row of the same run precedes."""
+        first = np.zeros(self.rows, dtype=bool)
+        first[0] = True
+        if self.flipped is not None:
+            first[1:] = self.flipped[1:] != self.flipped[:-1]
+        return first
+
+    def through(self, change: Array) -> Array:
+        """Input change (R, m, q) of changes of the applied vector (R, m, 3, q)."""
+        along = (self.parameters.axis[:, :, None] * change).sum(axis=-2)
+        return slope(self.parameters, self.n)[..., None] * along
+
+    def has(self, need: str) -> bool:
+        """Whether the session provides what a cause needs."""
+        match need:
+            case "time":
+                return self.time is not None
+            case "temperature":
+                return self.temperature is not None and float(np.ptp(self.temperature)) > 0
+            case "stand":
+                return self.beta is not None
+            case "both runs":
+                return self.flipped is not None and 0 < int(self.flipped.sum()) < self.rows
+            case "gravity":
+                return self.force is not None
+            case _:
+                return True
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """One signature: what a unit amplitude adds at the input."""
+
+    sensors: tuple[int, ...]
+    """The sensors it is blamed on; empty for a cause of stand, fixture or record."""
+    columns: Array
+    """(R, m, q) input change per unit of each amplitude."""
+    nonlinear: tuple[float, ...] = ()
+    """Values of the nonlinear parameters, in the order of `Cause.nonlinear_units`."""
+
+
+class Cause(ABC):
+    """One cause of the catalogue."""
+
+    identifier: ClassVar[str]
+    scope: ClassVar[str]
+    """``sensor``, ``environment``, ``stand``, ``fixture``, ``record`` or ``gyro``."""
+    equation: ClassVar[str]
+    units: ClassVar[tuple[str, ...]]
+    """SI unit of every amplitude, for an accelerometer; with m/s² read as rad/s for a gyro."""
+    sentence: ClassVar[str]
+    """What is wrong, for a maintenance engineer; ``{sensors}`` is filled in."""
+    advice: ClassVar[str]
+    needs: ClassVar[frozenset[str]] = frozenset()
+    """Of ``time``, ``temperature``, ``stand``, ``both runs``, ``gravity``, ``nominal or history``, ``history``."""
+    nonlinear_units: ClassVar[tuple[str, ...]] = ()
+    kind: ClassVar[str | None] = None
+    """Kind of sensor it acts on; None for both."""
+    between: ClassVar[bool] = False
+    """Whether it is told by what moved since the history (or from nominal), not by what is left in the session."""
+
+    def available(self, setting: Setting) -> bool:
+        """Whether the session provides what the cause needs within itself (history is judged elsewhere)."""
+        return all(setting.has(need) for need in self.needs)
+
+
+class Signature(Cause):
+    """A cause whose effect is a linear combination of known columns."""
+
+    @abstractmethod
+    def shapes(self, setting: Setting) -> Iterator[Shape]:
+        """Every signature the cause could leave in this session."""
+
+
+class Correction(Cause):
+    """A slip in the record that can be undone: the corrected session is tried instead of a signature."""
+
+    @abstractmethod
+    def corrected(self, session: CalibrationSession) -> Iterator[tuple[tuple[int, ...], CalibrationSession]]:
+        """Every way to undo it: the sensors (or, for rows, the rows) concerned and the session put right."""
+
+
+class SensorCause(Signature):
+    """A cause that acts on one sensor: `term` gives its columns, placed on every sensor in turn."""
+
+    def grid(self, setting: Setting) -> Iterator[tuple[float, ...]]:
+        """Values of the nonlinear parameters to try; one empty tuple for a linear cause."""
+        yield ()
+
+    @abstractmethod
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, q) what a unit amplitude adds inside the bracket of sensor i."""
+
+    def shapes(self, setting: Setting) -> Iterator[Shape]:
+        m = len(setting.kinds)
+        for i in range(m):
+            if self.kind is not None and setting.kinds[i] != self.kind:
+                continue
+            for nonlinear in self.grid(setting):
+                term = self.term(setting, i, nonlinear)
+                columns = np.zeros((setting.rows, m, term.shape[1]))
+                columns[:, i, :] = term
+                yield Shape((i,), columns, nonlinear)
+
+
+class CommonCause(Signature):
+    """A cause that acts on the applied vector, hence on all sensors: `change` gives how the vector moves."""
+
+    @abstractmethod
+    def change(self, setting: Setting) -> Array:
+        """(R, m, 3, q) change of the applied vector per unit amplitude."""
+
+    def shapes(self, setting: Setting) -> Iterator[Shape]:
+        yield Shape((), setting.through(self.change(setting)))
+
+
+def column(*terms: Array) -> Array:
+    """Stack (R,) terms as columns (R, q)."""
+    return np.stack(terms, axis=-1)

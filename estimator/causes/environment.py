@@ -1,0 +1,150 @@
+"""Causes that follow time and temperature. A bar means the session's mean."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from estimator.causes.contract import SensorCause, Setting, column
+from estimator.causes.sensor import across
+from estimator.session import Array
+
+
+def elapsed(setting: Setting) -> Array:
+    """t − t̄, s."""
+    assert setting.time is not None
+    return setting.time - setting.time.mean()
+
+
+def warmth(setting: Setting) -> Array:
+    """T − T̄, K."""
+    assert setting.temperature is not None
+    return setting.temperature - setting.temperature.mean()
+
+
+class BiasTemperature(SensorCause):
+    identifier = "bias-temperature"
+    scope = "environment"
+    equation = "k·(T − T̄)"
+    units = ("m/s²/K",)
+    needs = frozenset({"temperature"})
+    sentence = "The zero of {sensors} follows the temperature."
+    advice = "Model the temperature coefficient of the bias, or hold the temperature during the session."
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        return column(warmth(setting))
+
+
+class ScaleTemperature(SensorCause):
+    identifier = "scale-temperature"
+    scope = "environment"
+    equation = "k·(T − T̄)·a"
+    units = ("1/K",)
+    needs = frozenset({"temperature"})
+    sentence = "The scale factor of {sensors} follows the temperature."
+    advice = "Model the temperature coefficient of the scale factor, or hold the temperature during the session."
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        return column(warmth(setting) * setting.a[:, i])
+
+
+class TemperatureRate(SensorCause):
+    identifier = "temperature-rate"
+    scope = "environment"
+    equation = "k·dT/dt"
+    units = ("m/s²/(K/s)",)
+    needs = frozenset({"temperature", "time"})
+    sentence = "The zero of {sensors} follows how fast the temperature changes."
+    advice = "Let the unit soak until the temperature stands still before measuring; shield it from draughts."
+
+    def available(self, setting: Setting) -> bool:
+        return super().available(setting) and setting.time is not None and bool(np.all(np.diff(setting.time) > 0))
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        assert setting.temperature is not None
+        assert setting.time is not None
+        return column(np.gradient(setting.temperature, setting.time))
+
+
+class BiasRamp(SensorCause):
+    identifier = "bias-ramp"
+    scope = "environment"
+    equation = "k·(t − t̄)"
+    units = ("m/s²/s",)
+    needs = frozenset({"time"})
+    sentence = "The zero of {sensors} drifts steadily through the session."
+    advice = "Repeat the first position at the end; let the unit warm up longer; watch this sensor."
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        return column(elapsed(setting))
+
+
+class ScaleRamp(SensorCause):
+    identifier = "scale-ramp"
+    scope = "environment"
+    equation = "k·(t − t̄)·a"
+    units = ("1/s",)
+    needs = frozenset({"time"})
+    sentence = "The scale factor of {sensors} drifts steadily through the session."
+    advice = "Let the unit warm up longer; check the voltage reference and the loop current of this sensor."
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        return column(elapsed(setting) * setting.a[:, i])
+
+
+class AxisCreep(SensorCause):
+    identifier = "axis-creep"
+    scope = "environment"
+    equation = "(k1·(p·n) + k2·(o·n))·(t − t̄)"
+    units = ("rad/s", "rad/s")
+    needs = frozenset({"time"})
+    sentence = "The input axis of {sensors} turns slowly through the session."
+    advice = "Check the sensor's fastening and adhesive; repeat after a thermal soak."
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        p, o = across(setting, i)
+        return column(p * elapsed(setting), o * elapsed(setting))
+
+
+class WarmUp(SensorCause):
+    """The nonlinear parameter is τ, s."""
+
+    identifier = "warm-up"
+    scope = "environment"
+    equation = "k·exp(−t/τ), τ free"
+    units = ("m/s²",)
+    needs = frozenset({"time"})
+    nonlinear_units = ("s",)
+    sentence = "The zero of {sensors} settles after switching on."
+    advice = "Switch the unit on earlier and wait for several time constants before the first position."
+    steps = 10
+
+    def grid(self, setting: Setting) -> Iterator[tuple[float, ...]]:
+        assert setting.time is not None
+        span = float(np.ptp(setting.time))
+        if span <= 0:
+            return
+        for tau in np.geomspace(span / max(setting.rows, 2), span, self.steps):
+            yield (float(tau),)
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        assert setting.time is not None
+        return column(np.exp(-setting.time / nonlinear[0]))
+
+
+class BiasJump(SensorCause):
+    """The nonlinear parameter is the first row after the jump, counted from 0."""
+
+    identifier = "bias-jump"
+    scope = "environment"
+    equation = "k from position j0 on, j0 free"
+    units = ("m/s²",)
+    nonlinear_units = ("row",)
+    sentence = "The zero of {sensors} jumps once and stays."
+    advice = "Look for what happened then: a shock, a supply switch, a particle in the sensor. Repeat the session."
+
+    def grid(self, setting: Setting) -> Iterator[tuple[float, ...]]:
+        for row in range(1, setting.rows):
+            yield (float(row),)
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        return column((np.arange(setting.rows) >= nonlinear[0]).astype(float))

@@ -1,0 +1,41 @@
+"""Causes in how the block sits in its fixture."""
+
+import numpy as np
+
+from estimator.causes.contract import CommonCause, Setting
+from estimator.session import Array
+
+
+def turned(n: Array) -> Array:
+    """(R, m, 3, 3) change −k×n of the applied vector per unit of each component of a small rotation vector k."""
+    basis = np.eye(3)
+    return np.stack([-np.cross(basis[q], n) for q in range(3)], axis=-1)
+
+
+class FlipMisalignment(CommonCause):
+    identifier = "flip-misalignment"
+    scope = "fixture"
+    equation = "n → n − k×n in the flipped run"
+    units = ("rad", "rad", "rad")
+    needs = frozenset({"stand", "both runs"})
+    sentence = "The block did not sit the same way after it was turned over in its fixture."
+    advice = "Clean the mounting faces, seat the block against its stops and repeat the flipped run."
+
+    def change(self, setting: Setting) -> Array:
+        assert setting.flipped is not None
+        return turned(setting.n) * setting.flipped.astype(float)[:, None, None, None]
+
+
+class RemountRotation(CommonCause):
+    identifier = "remount-rotation"
+    scope = "fixture"
+    equation = "all axes of the block turn together: e → e + k×e since the history"
+    units = ("rad", "rad", "rad")
+    needs = frozenset({"history"})
+    between = True
+    sentence = "The whole block sits turned in its fixture compared with earlier sessions; no sensor moved by itself."
+    advice = "Reseat the block and repeat, or take the rotation into the mounting; the sensors need no attention."
+
+    def change(self, setting: Setting) -> Array:
+        """e·(n − k×n) = (e + k×e)·n."""
+        return turned(setting.n)

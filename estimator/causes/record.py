@@ -1,0 +1,153 @@
+"""Causes in the record: what was written down is not what was done."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+
+from estimator.causes.contract import CommonCause, Correction, SensorCause, Setting
+from estimator.forward import jacobian
+from estimator.session import ACCELEROMETER, Array, CalibrationSession
+
+
+class AlphaEntry(CommonCause):
+    identifier = "alpha-entry"
+    scope = "record"
+    equation = "true α = α + k"
+    units = ("rad",)
+    needs = frozenset({"stand", "nominal or history"})
+    between = True
+    sentence = "The elevation α written in the record is not the one the head was set to."
+    advice = "Read the elevation off the stand again, correct the record and upload it anew."
+
+    def change(self, setting: Setting) -> Array:
+        assert setting.d_alpha is not None
+        return setting.d_alpha[..., None]
+
+
+class GravityEntry(CommonCause):
+    identifier = "gravity-entry"
+    scope = "record"
+    equation = "true g = g·(1 + k): all K change by one factor"
+    units = ("1",)
+    needs = frozenset({"history"})
+    kind = ACCELEROMETER
+    between = True
+    sentence = "All scale factors moved by one factor: latitude, height or gravity is written down wrong."
+    advice = "Check the site's latitude, height and gravity in the record; the sensors need no attention."
+
+    def change(self, setting: Setting) -> Array:
+        acts = np.array([kind == ACCELEROMETER for kind in setting.kinds], dtype=float)
+        return (setting.n * acts[None, :, None])[..., None]
+
+
+class SensorDrift(SensorCause):
+    """Amplitudes: relative scale, bias, and the axis' turn along its two tangents."""
+
+    identifier = "sensor-drift"
+    scope = "sensor"
+    equation = "K, bias or axis of this sensor alone moved since the history"
+    units = ("1", "m/s²", "rad", "rad")
+    needs = frozenset({"history"})
+    between = True
+    sentence = "{sensors} itself moved since the earlier sessions; stand and fixture do not explain it."
+    advice = "Watch this sensor: repeat the session to confirm, and plan its adjustment or replacement."
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        columns = jacobian(setting.parameters, setting.n, setting.norm)[:, i, :]
+        columns[:, 1] = 1.0
+        return columns[:, [0, 1, 3, 4]]
+
+
+class RunsSwapped(Correction):
+    identifier = "runs-swapped"
+    scope = "record"
+    equation = "direct and flipped labels exchanged"
+    units = ()
+    needs = frozenset({"stand", "both runs", "nominal or history"})
+    between = True
+    sentence = "The direct and the flipped run are exchanged in the record."
+    advice = "Exchange the run labels and upload the session anew."
+
+    def corrected(self, session: CalibrationSession) -> Iterator[tuple[tuple[int, ...], CalibrationSession]]:
+        assert session.flipped is not None
+        yield (), replace(session, flipped=~session.flipped)
+
+
+class BetaReversed(Correction):
+    identifier = "beta-reversed"
+    scope = "record"
+    equation = "β counted the wrong way"
+    units = ()
+    needs = frozenset({"stand", "nominal or history"})
+    between = True
+    sentence = "The head's angle was counted the wrong way round."
+    advice = "Change the sign of β and upload the session anew."
+
+    def corrected(self, session: CalibrationSession) -> Iterator[tuple[tuple[int, ...], CalibrationSession]]:
+        assert session.beta is not None
+        yield (), replace(session, beta=-session.beta)
+
+
+class SignReversed(Correction):
+    identifier = "sign-reversed"
+    scope = "record"
+    equation = "u → −u"
+    units = ()
+    needs = frozenset({"nominal or history"})
+    between = True
+    sentence = "The reading of {sensors} has the wrong sign."
+    advice = "Check the polarity of this channel's wires and upload the session anew."
+
+    def corrected(self, session: CalibrationSession) -> Iterator[tuple[tuple[int, ...], CalibrationSession]]:
+        for i, sensor in enumerate(session.sensors):
+            readings = session.readings.copy()
+            readings[:, i] = 2 * (sensor.nominal_offset or 0.0) - readings[:, i]
+            yield (i,), replace(session, readings=readings)
+
+
+class ChannelsSwapped(Correction):
+    identifier = "channels-swapped"
+    scope = "record"
+    equation = "two sensors' columns exchanged"
+    units = ()
+    needs = frozenset({"nominal or history"})
+    between = True
+    sentence = "The channels of {sensors} are exchanged."
+    advice = "Check the wiring or the column headings of these two channels and upload the session anew."
+
+    def corrected(self, session: CalibrationSession) -> Iterator[tuple[tuple[int, ...], CalibrationSession]]:
+        for i, k in combinations(range(len(session.sensors)), 2):
+            if session.sensors[i].kind != session.sensors[k].kind:
+                continue
+            order = np.arange(len(session.sensors))
+            order[[i, k]] = k, i
+            yield (
+                (i, k),
+                replace(
+                    session,
+                    readings=session.readings[:, order],
+                    standard_errors=session.standard_errors[:, order],
+                ),
+            )
+
+
+class PositionsSwapped(Correction):
+    identifier = "positions-swapped"
+    scope = "record"
+    equation = "two rows exchanged"
+    units = ()
+    sentence = "The readings of two positions are exchanged in the record."
+    advice = "Exchange the readings of these two rows and upload the session anew."
+
+    def corrected(self, session: CalibrationSession) -> Iterator[tuple[tuple[int, ...], CalibrationSession]]:
+        for j, k in combinations(range(len(session.readings)), 2):
+            yield (j, k), exchange_rows(session, j, k)
+
+
+def exchange_rows(session: CalibrationSession, j: int, k: int) -> CalibrationSession:
+    """The session with the readings of rows j and k exchanged."""
+    order = np.arange(len(session.readings))
+    order[[j, k]] = k, j
+    return replace(session, readings=session.readings[order], standard_errors=session.standard_errors[order])

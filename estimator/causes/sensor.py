@@ -1,0 +1,165 @@
+"""Causes inside one sensor. Model equation terms after IEEE Std 1293 where it names them."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from estimator.arrays import tangents
+from estimator.causes.contract import SensorCause, Setting, column
+from estimator.forward import input_of
+from estimator.session import Array
+
+
+def across(setting: Setting, i: int) -> tuple[Array, Array]:
+    """p·n and o·n (R,) of sensor i: the components across its input axis."""
+    frame = tangents(setting.parameters.axis[i])
+    both = setting.n[:, i, :] @ frame
+    return both[:, 0], both[:, 1]
+
+
+class CubicNonlinearity(SensorCause):
+    identifier = "cubic-nonlinearity"
+    scope = "sensor"
+    equation = "k·a³"
+    units = ("(m/s²)⁻²",)
+    sentence = "{sensors} bends with the cube of the input."
+    advice = (
+        "Model the cubic term for this sensor; a rise since earlier sessions points to its suspension or electronics."
+    )
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        return column(setting.a[:, i] ** 3)
+
+
+class OddQuadratic(SensorCause):
+    identifier = "odd-quadratic"
+    scope = "sensor"
+    equation = "k·a·|a|"
+    units = ("(m/s²)⁻¹",)
+    sentence = "{sensors} bends with the square of the input, oppositely for the two signs (K_oq)."
+    advice = "Model the odd quadratic term for this sensor; inputs beyond 1 g tell it from a cubic term."
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        a = setting.a[:, i]
+        return column(a * np.abs(a))
+
+
+class ScaleAsymmetry(SensorCause):
+    identifier = "scale-asymmetry"
+    scope = "sensor"
+    equation = "k·|a|"
+    units = ("1",)
+    sentence = "{sensors} has a different scale factor for positive and negative input."
+    advice = "Check the sensor's loop electronics for unequal gains; model the asymmetry until then."
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        return column(np.abs(setting.a[:, i]))
+
+
+class BiasAsymmetry(SensorCause):
+    identifier = "bias-asymmetry"
+    scope = "sensor"
+    equation = "k·sign(a)"
+    units = ("m/s²",)
+    sentence = "{sensors} has a different zero for positive and negative input (K_0′, a dead zone)."
+    advice = "Check for friction, a dead zone or crossover distortion in the sensor's output stage."
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        return column(np.sign(setting.a[:, i]))
+
+
+class CrossCoupling(SensorCause):
+    identifier = "cross-coupling"
+    scope = "sensor"
+    equation = "a·(k1·(p·n) + k2·(o·n))"
+    units = ("(m/s²)⁻¹", "(m/s²)⁻¹")
+    sentence = "{sensors} mixes its input with the acceleration across its axis (K_ip, K_io)."
+    advice = "Model the cross-coupling of this sensor; a pendulum hung off its plane is the usual origin."
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        p, o = across(setting, i)
+        a = setting.a[:, i]
+        return column(a * p, a * o)
+
+
+class CrossAxisQuadratic(SensorCause):
+    identifier = "cross-axis-quadratic"
+    scope = "sensor"
+    equation = "k1·(p·n)² + k2·(p·n)(o·n)"
+    units = ("(m/s²)⁻¹", "(m/s²)⁻¹")
+    sentence = "{sensors} answers to the square of the acceleration across its axis (K_pp, K_po)."
+    advice = "Model the cross-axis quadratic terms of this sensor; check its mounting for stress."
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        p, o = across(setting, i)
+        return column(p * p, p * o)
+
+
+class Hysteresis(SensorCause):
+    identifier = "hysteresis"
+    scope = "sensor"
+    equation = "k·sign(a_j − a_{j−1}), 0 at the first position of a run"
+    units = ("m/s²",)
+    sentence = "{sensors} reads differently when the input was rising than when it was falling."
+    advice = "Approach each position from both sides and average; check the suspension for friction."
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        a = setting.a[:, i]
+        rise = np.diff(a, prepend=a[0])
+        rise = np.where(np.abs(rise) < 1e-9 * setting.norm[i], 0.0, np.sign(rise))
+        return column(np.where(setting.first_of_run, 0.0, rise))
+
+
+class BiasPerPosition(SensorCause):
+    identifier = "bias-per-position"
+    scope = "sensor"
+    equation = "k1·sin β + k2·cos β"
+    units = ("m/s²", "m/s²")
+    needs = frozenset({"stand", "both runs"})
+    sentence = "{sensors} shifts with the head's angle, not with gravity: cable, supply or a magnetic field."
+    advice = "Secure the cables, look for magnets and ferrous parts near the head, check the slip rings' supply."
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        assert setting.beta is not None
+        return column(np.sin(setting.beta), np.cos(setting.beta))
+
+
+class Saturation(SensorCause):
+    """The nonlinear parameter is the limit at the input, m/s²; the amplitude of its signature is one by nature."""
+
+    identifier = "saturation"
+    scope = "sensor"
+    equation = "reading clipped beyond a limit"
+    units = ("1",)
+    nonlinear_units = ("m/s²",)
+    sentence = "{sensors} is clipped: its reading stops at a limit."
+    advice = "Lower the converter's gain or use a range that holds the largest input, and repeat the session."
+    levels = 10
+
+    def grid(self, setting: Setting) -> Iterator[tuple[float, ...]]:
+        for share in np.linspace(0.02, 0.6, self.levels):
+            yield (float(share),)
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        h = input_of(setting.parameters, setting.n)[:, i]
+        limit = np.quantile(np.abs(h), 1 - nonlinear[0])
+        return column(-np.sign(h) * np.maximum(np.abs(h) - limit, 0.0))
+
+
+class ReadingOutlier(SensorCause):
+    identifier = "reading-outlier"
+    scope = "sensor"
+    equation = "k at one position"
+    units = ("m/s²",)
+    nonlinear_units = ("row",)
+    sentence = "{sensors} has one reading that does not belong to the rest."
+    advice = "Repeat that position; leave the reading out of the calibration."
+
+    def grid(self, setting: Setting) -> Iterator[tuple[float, ...]]:
+        for row in range(setting.rows):
+            yield (float(row),)
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        spike = np.zeros(setting.rows)
+        spike[int(nonlinear[0])] = 1.0
+        return column(spike)

@@ -1,0 +1,6 @@
+"""Diagnosis: measured session → baseline simulation → what is left → causes → extended model → gain."""
+
+from estimator.diagnosis.diagnose import diagnose
+from estimator.diagnosis.results import Diagnosis, Finding
+
+__all__ = ["Diagnosis", "Finding", "diagnose"]

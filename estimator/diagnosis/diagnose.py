@@ -1,0 +1,72 @@
+"""Show what the simulation gets wrong, name the cause, extend the model, measure the gain.
+
+measured session → baseline simulation → what is left → causes → extended model → gain
+"""
+
+from collections.abc import Sequence
+
+from estimator.calibration.calibrate import averaged, calibrate
+from estimator.causes import CATALOGUE, Cause, Correction
+from estimator.diagnosis.baseline import Baseline
+from estimator.diagnosis.between import between_sessions
+from estimator.diagnosis.extend import amplitudes, extended_calibration
+from estimator.diagnosis.gain import gain
+from estimator.diagnosis.limits import limits
+from estimator.diagnosis.measured import baseline_of
+from estimator.diagnosis.report import findings, slip_finding, structures
+from estimator.diagnosis.results import Diagnosis
+from estimator.diagnosis.search import begin, search
+from estimator.diagnosis.slips import Slip, exchanged_rows, expected_axes, turned_record, weighted_square
+from estimator.session import CalibrationSession
+
+
+def diagnose(
+    session: CalibrationSession,
+    history: Sequence[CalibrationSession] = (),
+    *,
+    catalogue: Sequence[Cause] = CATALOGUE,
+) -> Diagnosis:
+    """What the simulation gets wrong about a session.
+
+    Parameters
+    ----------
+    session : of a programme that calibrates a block.
+    history : earlier sessions of the unit, oldest first.
+    catalogue : the causes to consider.
+
+    Raises
+    ------
+    ScheduleError : the session cannot be calibrated at all.
+    """
+    rows = averaged(session)
+    earlier = [baseline_of(averaged(h)) for h in history]
+    slips, right, baseline = undo_slips(rows, earlier, catalogue)
+    state = search(begin(baseline, between_sessions(baseline, earlier), catalogue))
+    fitted = amplitudes(state)
+    return Diagnosis(
+        unit=session.unit,
+        findings=(*(slip_finding(s, right) for s in slips), *findings(state, fitted)),
+        structures=structures(state),
+        gain=gain(state),
+        limits=limits(state, catalogue),
+        baseline=calibrate(rows),
+        calibration=extended_calibration(state, fitted),
+    )
+
+
+def undo_slips(
+    session: CalibrationSession, history: Sequence[Baseline], catalogue: Sequence[Cause]
+) -> tuple[list[Slip], CalibrationSession, Baseline]:
+    """Put the record right where it is plainly wrong: the slips, the session put right, its baseline."""
+    known = [c for c in catalogue if isinstance(c, Correction)]
+    slips: list[Slip] = []
+    baseline = baseline_of(session)
+    for _ in range(3):
+        slip = turned_record(session, baseline, expected_axes(history, session), known)
+        slip = slip or exchanged_rows(baseline, weighted_square(baseline), baseline.residual.size)
+        if slip is None:
+            break
+        slips.append(slip)
+        session = slip.session
+        baseline = baseline_of(session)
+    return slips, session, baseline

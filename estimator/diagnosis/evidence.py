@@ -1,0 +1,130 @@
+"""What is left of a session after the baseline, whitened: where causes leave their traces.
+
+Theory
+------
+Residuals of one row share the row's nuisances: D + H S H' with D diagonal. `Whitener` multiplies by the inverse root
+(D in each sensor's own sigma, then shrinking the nuisance directions by 1/√(1 + s²), to zero where s is infinite).
+Constant nuisances enter as columns with prior rows. Everything that the baseline can absorb is an orthonormal basis;
+what a signature leaves outside it is its trace, whose norm is the effect's strength in standard errors.
+
+With history, rows are appended: the whitened deviation of the parameters from the history, and how each cause would
+have moved them. A fit's left-over and its parameters are independent, so both kinds of rows stand side by side.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimator.diagnosis.baseline import Baseline, spread
+from estimator.session import Array
+
+NOTHING = 1e-9
+"""Relative singular value below which a direction of the baseline is no direction."""
+
+
+@dataclass(frozen=True, eq=False)
+class Whitener:
+    """Inverse root of the noise covariance of every row."""
+
+    weight: Array
+    """(R, m) inverse sigma of the independent noise."""
+    direction: Array
+    """(R, m, r) orthonormal nuisance directions in units of the independent noise."""
+    removed: Array
+    """(R, r) share of each direction that is taken away, 1 − 1/√(1 + s²)."""
+
+    @classmethod
+    def of(cls, baseline: Baseline) -> "Whitener":
+        weight = 1.0 / np.sqrt(baseline.variance)
+        open_ended = np.isinf(baseline.row_sigma)
+        sigma = np.where(open_ended, 1.0, baseline.row_sigma)
+        scaled = baseline.row * weight[..., None] * sigma[:, None, :]
+        direction, size, _ = np.linalg.svd(scaled, full_matrices=False)
+        removed = 1 - 1 / np.sqrt(1 + size**2)
+        return cls(weight, direction, np.where(open_ended.any(axis=1, keepdims=True), 1.0, removed))
+
+    def __call__(self, columns: Array) -> Array:
+        """(R, m, q) columns whitened and laid out as (R·m, q)."""
+        x = columns * self.weight[..., None]
+        along = np.swapaxes(self.direction, -1, -2) @ x
+        x = x - self.direction @ (along * self.removed[..., None])
+        return x.reshape(-1, columns.shape[-1])
+
+
+@dataclass(frozen=True, eq=False)
+class Between:
+    """What moved since the history, whitened. P = 5 m parameters."""
+
+    deviation: Array
+    """(P,) whitened deviation of this session's parameters from the history."""
+    response: Array
+    """(P, P) whitens a parameter change."""
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """Whitened left-overs of one session. Data rows: R·m readings, k priors, then P parameters with history."""
+
+    baseline: Baseline
+    whiten: Whitener
+    basis: Array
+    """(R·m + k, p) orthonormal: what the baseline and the findings so far absorb."""
+    absorb: Array
+    """(5 m, R·m + k) the parameters' answer to a whitened change of the readings."""
+    z: Array
+    """(R·m + k [+ P],) whitened left-over."""
+    between: Between | None
+    freedom: int
+    """Degrees of freedom of the left-over readings."""
+
+    @classmethod
+    def of(cls, baseline: Baseline, between: Between | None = None) -> "Evidence":
+        whiten = Whitener.of(baseline)
+        P, k = 5 * baseline.residual.shape[1], len(baseline.constant_sigma)
+        design = whiten(np.concatenate([spread(baseline.design), baseline.constant], axis=-1))
+        prior = np.concatenate([np.zeros((k, P)), np.diag(1 / baseline.constant_sigma)], axis=1)
+        full = np.concatenate([design, prior])
+        scale = np.maximum(np.linalg.norm(full, axis=0), 1e-300)
+        left, size, right = np.linalg.svd(full / scale, full_matrices=False)
+        kept = size > NOTHING * size[0]
+        absorb = (right[kept].T / size[kept]) @ left[:, kept].T / scale[:, None]
+        data = np.concatenate([whiten(baseline.residual[..., None])[:, 0], np.zeros(k)])
+        basis = left[:, kept]
+        z = data - basis @ (basis.T @ data)
+        open_rows = int(np.isinf(baseline.row_sigma).sum())
+        if between is not None:
+            z = np.concatenate([z, between.deviation])
+        freedom = baseline.residual.size - open_rows - (int(kept.sum()) - k)
+        return cls(baseline, whiten, basis, absorb[:P], z, between, freedom)
+
+    @property
+    def readings(self) -> int:
+        """Number of reading and prior rows."""
+        return self.basis.shape[0]
+
+    def raw(self, columns: Array) -> Array:
+        """(R·m + k, q) whitened signature before the baseline absorbs its share."""
+        white = self.whiten(columns)
+        return np.concatenate([white, np.zeros((self.readings - len(white), white.shape[1]))])
+
+    def trace(self, columns: Array, *, lasting: bool = True) -> Array:
+        """What a signature (R, m, q) leaves: (data rows, q).
+
+        ``lasting``: the effect was there in the history too, so the parameters did not move for it; otherwise the
+        share that the baseline absorbs shows as a move of the parameters.
+        """
+        white = self.raw(columns)
+        inside = white - self.basis @ (self.basis.T @ white)
+        if self.between is None:
+            return inside
+        moved = np.zeros((len(self.between.deviation), white.shape[1]))
+        if not lasting:
+            moved = self.between.response @ (self.absorb @ white)
+        return np.concatenate([inside, moved])
+
+    def owner(self) -> Array:
+        """(data rows,) index of the sensor a row belongs to; −1 for priors and history rows."""
+        R, m = self.baseline.residual.shape
+        owner = np.full(len(self.z), -1)
+        owner[: R * m] = np.tile(np.arange(m), R)
+        return owner

@@ -1,0 +1,163 @@
+"""From the search to findings that people read."""
+
+import numpy as np
+
+from estimator.causes.noise import ExcessNoise
+from estimator.diagnosis.extend import Amplitudes
+from estimator.diagnosis.parity import parity_split
+from estimator.diagnosis.results import Finding, Rival, Structure
+from estimator.diagnosis.rivals import CREDIBLE, alternatives, ranking, separations
+from estimator.diagnosis.search import Excess, Found, Search
+from estimator.diagnosis.slips import Slip, posterior
+from estimator.diagnosis.structures import Structure as Pattern
+from estimator.session import ACCELEROMETER, CalibrationSession
+
+
+def findings(state: Search, fitted: Amplitudes) -> tuple[Finding, ...]:
+    """Named causes in the order found; the same cause on several sensors is one finding that lists them all."""
+    named = [finding(state, f, fitted, k) for k, f in enumerate(state.found)]
+    return (*merged(named), *(excess_finding(state, e) for e in state.excess))
+
+
+def finding(state: Search, found: Found, fitted: Amplitudes, k: int) -> Finding:
+    """One named cause."""
+    best, names = found.best, [s.name for s in state.baseline.session.sensors]
+    sensors = tuple(names[i] for i in best.shape.sensors)
+    part = fitted.slices[k]
+    sigma = np.sqrt(np.diagonal(fitted.covariance)[part])
+    others = alternatives(state, found)
+    gyro = any(state.baseline.setting.kinds[i] != ACCELEROMETER for i in best.shape.sensors)
+    return Finding(
+        cause=best.cause.identifier,
+        sensors=sensors,
+        amplitude=tuple(map(float, fitted.value[part])),
+        sigma=tuple(map(float, sigma)),
+        units=tuple(u.replace("m/s²", "rad/s") if gyro else u for u in best.cause.units),
+        nonlinear=nonlinear(state, found),
+        p_value=found.p_family,
+        strength=best.strength,
+        alternatives=tuple(r.cause.identifier for r in others),
+        separations=separations(state, found, others),
+        ranking=ranking(state, found),
+        sentence=best.cause.sentence.format(sensors=spoken(sensors)),
+        advice=best.cause.advice,
+        parity=parity_split(state, found),
+        new=None if state.between is None or best.cause.between else not best.lasting,
+    )
+
+
+def spoken(sensors: tuple[str, ...]) -> str:
+    """``A1``, ``A1 and A2``, ``A1, A2 and A3``."""
+    return " and ".join([", ".join(sensors[:-1]), sensors[-1]] if len(sensors) > 1 else sensors)
+
+
+def nonlinear(state: Search, found: Found) -> dict[str, float]:
+    """The shape parameters by unit; rows counted from 1, a saturation limit at the input."""
+    cause, values = found.best.cause, found.best.shape.nonlinear
+    shown = {}
+    for unit, value in zip(cause.nonlinear_units, values, strict=True):
+        shown[unit] = value + 1 if unit == "row" else value
+    return shown
+
+
+def merged(named: list[Finding]) -> list[Finding]:
+    """Findings of one cause on several sensors put together."""
+    kept: dict[str, Finding] = {}
+    for f in named:
+        old = kept.get(f.cause)
+        kept[f.cause] = f if old is None else joined(old, f)
+    return list(kept.values())
+
+
+def joined(a: Finding, b: Finding) -> Finding:
+    """Two findings of one cause as one."""
+    sensors = a.sensors + b.sensors
+    both = set(a.alternatives) & set(b.alternatives)
+    return Finding(
+        cause=a.cause,
+        sensors=sensors,
+        amplitude=a.amplitude + b.amplitude,
+        sigma=a.sigma + b.sigma,
+        units=a.units + b.units,
+        nonlinear=a.nonlinear,
+        p_value=max(a.p_value, b.p_value),
+        strength=float(np.hypot(a.strength, b.strength)),
+        alternatives=tuple(x for x in a.alternatives if x in both),
+        separations=a.separations,
+        ranking=a.ranking,
+        sentence=a.sentence.replace(spoken(a.sensors), spoken(sensors)),
+        advice=a.advice,
+        parity=a.parity,
+        new=a.new if a.new == b.new else None,
+    )
+
+
+def excess_finding(state: Search, excess: Excess) -> Finding:
+    """A sensor noisier than stated: the amplitude is the extra standard deviation of a reading at the input."""
+    sensor = state.baseline.session.sensors[excess.sensor]
+    stated = float(np.mean(state.baseline.variance[:, excess.sensor])) / excess.ratio
+    extra = float(np.sqrt(stated * (excess.ratio - 1)))
+    sigma = stated * excess.ratio * float(np.sqrt(2 / excess.freedom)) / (2 * extra)
+    cause = ExcessNoise()
+    return Finding(
+        cause=cause.identifier,
+        sensors=(sensor.name,),
+        amplitude=(extra,),
+        sigma=(sigma,),
+        units=("m/s²" if sensor.kind == ACCELEROMETER else "rad/s",),
+        nonlinear={},
+        p_value=excess.p_family,
+        strength=float(np.sqrt(2 * max(excess.evidence, 0.0))),
+        alternatives=(),
+        separations=(),
+        ranking=(),
+        sentence=cause.sentence.format(sensors=sensor.name),
+        advice=cause.advice,
+        parity=None,
+        new=None,
+    )
+
+
+def slip_finding(slip: Slip, session: CalibrationSession) -> Finding:
+    """A slip in the record, with the other ways to put it right that do as well."""
+    names = [s.name for s in session.sensors]
+    rows = slip.cause.identifier == "positions-swapped"
+    sensors = () if rows else tuple(names[i] for i in slip.places)
+    reached, alternatives_, ranking_ = 0.0, [], []
+    for name, places, share in posterior(slip):
+        own = () if rows else tuple(names[i] for i in places)
+        ranking_.append(Rival(name, own, share, float(np.sqrt(2 * slip.evidence))))
+        if reached < CREDIBLE and name != slip.cause.identifier and name not in alternatives_:
+            alternatives_.append(name)
+        reached += share
+    return Finding(
+        cause=slip.cause.identifier,
+        sensors=sensors,
+        amplitude=(),
+        sigma=(),
+        units=(),
+        nonlinear={f"row {k}": float(p + 1) for k, p in enumerate(slip.places, 1)} if rows else {},
+        p_value=float(np.exp(-slip.evidence)),
+        strength=float(np.sqrt(2 * slip.evidence)),
+        alternatives=tuple(alternatives_),
+        separations=(),
+        ranking=tuple(ranking_[:8]),
+        sentence=slip.cause.sentence.format(sensors=spoken(sensors)),
+        advice=slip.cause.advice,
+        parity=None,
+        new=None,
+    )
+
+
+def structures(state: Search) -> tuple[Structure, ...]:
+    """Unexplained structure and where it lives."""
+    names = [s.name for s in state.baseline.session.sensors]
+    return tuple(
+        Structure(
+            where=f.best.cause.where(f.best.shape) if isinstance(f.best.cause, Pattern) else "",
+            sensors=tuple(names[i] for i in f.best.shape.sensors),
+            p_value=f.p_family,
+            strength=f.best.strength,
+        )
+        for f in state.structures
+    )

@@ -1,0 +1,196 @@
+"""Result types of the diagnosis; no algorithms. The JSON form is ``imu-diagnosis/1``."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from estimator.results import Calibration
+
+
+@dataclass(frozen=True)
+class Separation:
+    """How far a rival cause is from the named one, and what would tell them apart."""
+
+    cause: str
+    sensors: tuple[str, ...]
+    now: float
+    """Separation in this session, standard errors of a reading."""
+    measurement: str
+    """What to add, in words; empty when nothing that the planner knows would do."""
+    then: float | None
+    """Expected separation with that measurement."""
+
+    def to_dict(self) -> dict[str, Any]:
+        return {
+            "cause": self.cause,
+            "sensors": list(self.sensors),
+            "separation": self.now,
+            "measurement": self.measurement,
+            "expected_separation": self.then,
+        }
+
+
+@dataclass(frozen=True)
+class Rival:
+    """One line of the ranking of causes."""
+
+    cause: str
+    sensors: tuple[str, ...]
+    probability: float
+    """Share among all causes of the catalogue, given that one of them acts."""
+    strength: float
+    """Norm of the fitted signature in standard errors of a reading."""
+
+    def to_dict(self) -> dict[str, Any]:
+        return {
+            "cause": self.cause,
+            "sensors": list(self.sensors),
+            "probability": self.probability,
+            "strength": self.strength,
+        }
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One named cause with its evidence."""
+
+    cause: str
+    sensors: tuple[str, ...]
+    amplitude: tuple[float, ...]
+    sigma: tuple[float, ...]
+    units: tuple[str, ...]
+    nonlinear: dict[str, float]
+    """Shape parameters, such as τ or the row of a jump (counted from 1)."""
+    p_value: float
+    """Of this or anything as strong anywhere in the catalogue, were there no effect (family-wise)."""
+    strength: float
+    alternatives: tuple[str, ...]
+    separations: tuple[Separation, ...]
+    ranking: tuple[Rival, ...]
+    sentence: str
+    advice: str
+    parity: dict[str, float] | None
+    """χ² that the cause explains in parity space and in the range of the axes: where stand and sensor differ."""
+    new: bool | None
+    """Whether it came since the history; None without history or where the session cannot tell."""
+
+    def to_dict(self) -> dict[str, Any]:
+        return {
+            "cause": self.cause,
+            "sensors": list(self.sensors),
+            "amplitude": list(self.amplitude),
+            "sigma": list(self.sigma),
+            "units": list(self.units),
+            "nonlinear": self.nonlinear,
+            "p_value": self.p_value,
+            "strength": self.strength,
+            "alternatives": list(self.alternatives),
+            "separations": [s.to_dict() for s in self.separations],
+            "ranking": [r.to_dict() for r in self.ranking],
+            "sentence": self.sentence,
+            "advice": self.advice,
+            "parity": self.parity,
+            "new": self.new,
+        }
+
+
+@dataclass(frozen=True)
+class Structure:
+    """Structure that no cause of the catalogue explains, and where it lives."""
+
+    where: str
+    """In words: which sensors, harmonic of β, time, temperature; common or not."""
+    sensors: tuple[str, ...]
+    p_value: float
+    strength: float
+
+    def to_dict(self) -> dict[str, Any]:
+        return {
+            "where": self.where,
+            "sensors": list(self.sensors),
+            "p_value": self.p_value,
+            "strength": self.strength,
+        }
+
+
+@dataclass(frozen=True)
+class Score:
+    """How well a model predicts readings it has not seen."""
+
+    rms: float
+    """m/s² (rad/s)."""
+    chi2_per_dof: float
+    log_score: float
+    """Mean log predictive density of a reading, in units of its own sigma."""
+
+    def to_dict(self) -> dict[str, float]:
+        return {"rms": self.rms, "chi2_per_dof": self.chi2_per_dof, "log_score": self.log_score}
+
+
+@dataclass(frozen=True)
+class Gain:
+    """Prediction of held-out readings without and with the named causes, and what moved."""
+
+    before: Score
+    after: Score
+    held_out: str
+    """``positions`` or ``session``."""
+
+    def to_dict(self) -> dict[str, Any]:
+        return {"before": self.before.to_dict(), "after": self.after.to_dict(), "held_out": self.held_out}
+
+
+@dataclass(frozen=True)
+class Limit:
+    """The smallest effect that this session would have found, or why it cannot see the cause."""
+
+    cause: str
+    amplitude: tuple[float, ...] | None
+    """Per amplitude element, alone, at the sensor where it is seen worst; None when the session cannot see it."""
+    units: tuple[str, ...]
+    reason: str
+    """Why not visible; empty when visible."""
+
+    def to_dict(self) -> dict[str, Any]:
+        return {
+            "cause": self.cause,
+            "amplitude": None if self.amplitude is None else list(self.amplitude),
+            "units": list(self.units),
+            "visible": self.amplitude is not None,
+            "reason": self.reason,
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """What the simulation gets wrong about a session."""
+
+    unit: str
+    findings: tuple[Finding, ...]
+    structures: tuple[Structure, ...]
+    gain: Gain
+    limits: tuple[Limit, ...]
+    baseline: Calibration
+    """Under the baseline model."""
+    calibration: Calibration
+    """Under the extended model."""
+    notes: tuple[str, ...] = field(default=())
+
+    @property
+    def unexplained(self) -> bool:
+        """Whether there is structure that no cause explains."""
+        return bool(self.structures)
+
+    def to_dict(self) -> dict[str, Any]:
+        """``imu-diagnosis/1``."""
+        return {
+            "format": "imu-diagnosis/1",
+            "unit": self.unit,
+            "findings": [f.to_dict() for f in self.findings],
+            "unexplained": self.unexplained,
+            "structures": [s.to_dict() for s in self.structures],
+            "gain": self.gain.to_dict(),
+            "limits": [limit.to_dict() for limit in self.limits],
+            "calibration": self.calibration.to_dict(),
+            "residuals_before": self.baseline.residuals.to_dict(),
+            "notes": list(self.notes),
+        }

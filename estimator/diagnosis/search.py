@@ -1,0 +1,206 @@
+"""The search for causes: one after another, each weighed against all others, confirmed together.
+
+Rules: the family-wise level is held over the whole catalogue (Bonferroni over causes and over the places and shapes
+of each); a cause found later may change what was named earlier, so every finding is chosen anew given the others
+until nothing changes; what causes leave is searched for structure, and a name that structure explains better is
+withdrawn.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from scipy import stats
+
+from estimator.causes import CATALOGUE, Cause, Signature
+from estimator.diagnosis.baseline import Baseline
+from estimator.diagnosis.candidates import Scored, Traces, ranked, score, traces_of
+from estimator.diagnosis.evidence import Between, Evidence
+from estimator.diagnosis.structures import STRUCTURES
+from estimator.session import Array
+
+LEVEL = 0.01
+"""Family-wise level: sessions without an effect that get a name."""
+
+MOST = 6
+"""Findings (and, apart from them, structures) looked for in one session."""
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """One selected signature with its rivals."""
+
+    best: Scored
+    p_family: float
+    ranking: tuple[tuple[Scored, float], ...]
+    """Every (cause, sensors) with its ln evidence, strongest first, given the other findings."""
+
+
+@dataclass(frozen=True)
+class Excess:
+    """A sensor noisier than stated."""
+
+    sensor: int
+    ratio: float
+    """Variance over the stated one."""
+    freedom: float
+    evidence: float
+    p_family: float
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """Where the search stands, and at its end what was found."""
+
+    baseline: Baseline
+    between: Between | None
+    evidence: Evidence
+    traces: tuple[Traces, ...]
+    patterns: tuple[Traces, ...]
+    found: tuple[Found, ...] = ()
+    structures: tuple[Found, ...] = ()
+    excess: tuple[Excess, ...] = field(default=())
+
+    @property
+    def families(self) -> int:
+        """Number of causes that this session puts to the test."""
+        return len(self.traces) + 1
+
+    def taken(self, without: Found | None = None) -> Array:
+        """(n, f) orthonormal traces of the findings and structures, one left out."""
+        parts = [f.best.columns for f in (*self.found, *self.structures) if f is not without]
+        if not parts:
+            return np.zeros((len(self.evidence.z), 0))
+        columns = np.concatenate(parts, axis=1)
+        left, size, _ = np.linalg.svd(columns / np.linalg.norm(columns, axis=0), full_matrices=False)
+        return left[:, size > 1e-6 * size[0]]
+
+
+def begin(baseline: Baseline, between: Between | None, catalogue: Sequence[Cause] = CATALOGUE) -> Search:
+    """A search with nothing found yet."""
+    evidence = Evidence.of(baseline, between)
+    signatures = [c for c in catalogue if isinstance(c, Signature)]
+    return Search(
+        baseline,
+        between,
+        evidence,
+        tuple(traces_of(evidence, signatures)),
+        tuple(traces_of(evidence, STRUCTURES)),
+    )
+
+
+def search(start: Search) -> Search:
+    """Causes, then what they leave."""
+    state = settle(causes(start))
+    return judge_structures(structures(state), start)
+
+
+def causes(state: Search) -> Search:
+    """Add causes until none is significant."""
+    while len(state.found) + len(state.excess) < MOST:
+        best = strongest(state, state.traces)
+        noisy = noisiest(state)
+        if noisy is not None and (best is None or noisy.evidence > best.ranking[0][1]):
+            pattern = strongest(state, state.patterns)
+            if pattern is None or noisy.evidence > pattern.ranking[0][1]:
+                state = with_excess(state, noisy)
+                continue
+        if best is None:
+            break
+        state = replace(state, found=(*state.found, best))
+    return state
+
+
+def strongest(state: Search, traces: Sequence[Traces], without: Found | None = None) -> Found | None:
+    """The signature with the strongest evidence given the other findings; None if it is not significant."""
+    order = ranked(score(state.evidence, traces, state.taken(without)))
+    families = state.families if traces is state.traces else len(traces)
+    for best, _ in order[:3]:
+        p_family = min(1.0, best.p_value * best.places * max(families, 1))
+        if p_family < LEVEL:
+            return Found(best, p_family, tuple(order))
+    return None
+
+
+def noisiest(state: Search) -> Excess | None:
+    """The sensor whose left-over most exceeds its stated noise; None if none does significantly."""
+    evidence = state.evidence
+    z = evidence.z - (taken := state.taken()) @ (taken.T @ evidence.z)
+    owner, m = evidence.owner(), len(evidence.baseline.unstated)
+    used = np.zeros(len(z))
+    used[: evidence.readings] = (evidence.basis**2).sum(axis=1)
+    used += (taken**2).sum(axis=1)
+    best = None
+    for i in range(m):
+        if evidence.baseline.unstated[i] or any(e.sensor == i for e in state.excess):
+            continue
+        rows = owner == i
+        freedom = float((1 - used[rows]).sum()) * whiteness(evidence)
+        energy = float((z[rows] ** 2).sum())
+        if freedom < 2 or energy <= freedom:
+            continue
+        p_family = min(1.0, float(stats.chi2.sf(energy, freedom)) * m * state.families)
+        weight = 0.5 * (energy - freedom - freedom * np.log(energy / freedom))
+        value = float(weight - 0.5 * np.log(freedom / 2) - np.log(m))
+        if p_family < LEVEL and (best is None or value > best.evidence):
+            best = Excess(i, energy / freedom, freedom, value, p_family)
+    return best
+
+
+def whiteness(evidence: Evidence) -> float:
+    """Share of the rows' energy that unknown directions leave to the noise."""
+    removed = (1 - (1 - evidence.whiten.removed) ** 2).sum()
+    return float(1 - removed / evidence.baseline.residual.size)
+
+
+def with_excess(state: Search, noisy: Excess) -> Search:
+    """The search begun anew with the noisy sensor's variance as it is, the findings so far kept out."""
+    variance = state.baseline.variance.copy()
+    variance[:, noisy.sensor] *= noisy.ratio
+    baseline = replace(state.baseline, variance=variance)
+    catalogue = [t.cause for t in state.traces]
+    again = begin(baseline, state.between, catalogue)
+    return causes(replace(again, excess=(*state.excess, noisy)))
+
+
+def settle(state: Search) -> Search:
+    """Choose every finding anew given the others, until nothing changes; drop what loses its significance."""
+    for _ in range(4):
+        groups = [f.best.group for f in state.found]
+        for old in state.found:
+            new = strongest(state, state.traces, without=old)
+            kept = tuple(new if f is old else f for f in state.found)
+            state = replace(state, found=tuple(f for f in kept if f is not None))
+        state = causes(state)
+        if [f.best.group for f in state.found] == groups:
+            break
+    return state
+
+
+def structures(state: Search) -> Search:
+    """Patterns without a name in what the causes leave."""
+    while len(state.structures) < MOST:
+        pattern = strongest(state, state.patterns)
+        if pattern is None:
+            break
+        state = replace(state, structures=(*state.structures, pattern))
+    return state
+
+
+def judge_structures(state: Search, start: Search) -> Search:
+    """Withdraw a name when structure without it explains the session better."""
+    for found in state.found if state.structures else ():
+        touched = {s for p in state.structures for s in p.best.shape.sensors}
+        sensors = set(found.best.shape.sensors)
+        if sensors and touched and not sensors & touched:
+            continue
+        without = tuple(f for f in state.found if f is not found)
+        rival = structures(replace(state, found=without, structures=()))
+        if total(rival) > total(state):
+            state = rival
+    return state
+
+
+def total(state: Search) -> float:
+    """ln evidence of everything found, taken one after another."""
+    return sum(f.best.evidence for f in (*state.found, *state.structures))

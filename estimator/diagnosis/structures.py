@@ -1,0 +1,154 @@
+"""Structure without a name: smooth patterns in β, order and temperature that no cause may explain.
+
+They compete with the causes of the catalogue. Where one of them wins, the session holds something that the catalogue
+does not: it is reported as unexplained, with where it lives, and never forced into a name.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from estimator.causes import Setting, Shape, Signature
+from estimator.causes.stand import harmonic
+from estimator.session import Array
+
+HIGHEST = 8
+"""Harmonic of β up to which structure is looked for (half the positions of a run where those are fewer)."""
+
+
+def highest(setting: Setting) -> int:
+    """Highest harmonic of β that the positions of one run resolve."""
+    assert setting.beta is not None
+    positions = len(np.unique(np.round(np.mod(setting.beta, 2 * np.pi), 6)))
+    return min(HIGHEST, (positions - 1) // 2)
+
+
+def one_sensor(setting: Setting, patterns: Array, label: tuple[float, ...]) -> Iterator[Shape]:
+    """A pattern (R, q) placed on every sensor in turn."""
+    m = len(setting.kinds)
+    for i in range(m):
+        columns = np.zeros((setting.rows, m, patterns.shape[1]))
+        columns[:, i, :] = patterns
+        yield Shape((i,), columns, label)
+
+
+class Structure(Signature):
+    """A family of patterns; ``nonlinear`` of its shapes says which member."""
+
+    scope = "unexplained"
+    equation = ""
+    units = ()
+    advice = "Look at the residuals there; no cause of the catalogue has this pattern."
+
+    def where(self, shape: Shape) -> str:
+        """Where the pattern lives, in words."""
+        return self.sentence.format(*(f"{v:.0f}" for v in shape.nonlinear))
+
+
+class SensorHarmonic(Structure):
+    identifier = "sensor-harmonic"
+    needs = frozenset({"stand"})
+    sentence = "harmonic {0} of β"
+
+    def shapes(self, setting: Setting) -> Iterator[Shape]:
+        for order in range(1, highest(setting) + 1):
+            yield from one_sensor(setting, harmonic(setting, order), (float(order),))
+
+
+class RunHarmonic(Structure):
+    identifier = "run-harmonic"
+    needs = frozenset({"stand", "both runs"})
+    sentence = "harmonic {0} of β, opposite in the two runs"
+
+    def shapes(self, setting: Setting) -> Iterator[Shape]:
+        assert setting.flipped is not None
+        sign = np.where(setting.flipped, -1.0, 1.0)[:, None]
+        for order in range(1, highest(setting) + 1):
+            yield from one_sensor(setting, sign * harmonic(setting, order), (float(order),))
+
+
+class HarmonicSeries(Structure):
+    identifier = "harmonic-series"
+    needs = frozenset({"stand"})
+    sentence = "several harmonics of β together"
+
+    def shapes(self, setting: Setting) -> Iterator[Shape]:
+        orders = range(2, highest(setting) + 1)
+        if len(orders) >= 2:
+            yield from one_sensor(setting, np.concatenate([harmonic(setting, k) for k in orders], axis=1), ())
+
+
+class SensorPeriodic(Structure):
+    identifier = "sensor-periodic"
+    sentence = "a wave of {0} periods over the session"
+
+    def shapes(self, setting: Setting) -> Iterator[Shape]:
+        place = np.arange(setting.rows) / setting.rows
+        for periods in range(1, setting.rows // 2):
+            wave = 2 * np.pi * periods * place
+            yield from one_sensor(setting, np.stack([np.sin(wave), np.cos(wave)], axis=-1), (float(periods),))
+
+
+class SensorTrend(Structure):
+    identifier = "sensor-trend"
+    sentence = "a smooth course over the session"
+
+    def shapes(self, setting: Setting) -> Iterator[Shape]:
+        if setting.rows >= 12:
+            place = np.linspace(-1, 1, setting.rows)
+            yield from one_sensor(setting, np.polynomial.legendre.legvander(place, 6)[:, 1:], ())
+
+
+class TemperatureCurve(Structure):
+    identifier = "temperature-curve"
+    needs = frozenset({"temperature"})
+    sentence = "a curve over temperature"
+
+    def shapes(self, setting: Setting) -> Iterator[Shape]:
+        assert setting.temperature is not None
+        t = setting.temperature
+        if len(np.unique(t)) >= 6:
+            scaled = 2 * (t - t.min()) / np.ptp(t) - 1
+            yield from one_sensor(setting, np.polynomial.legendre.legvander(scaled, 4)[:, 1:], ())
+
+
+class CommonHarmonic(Structure):
+    identifier = "common-harmonic"
+    needs = frozenset({"stand"})
+    sentence = "the applied vector, common to all sensors: harmonic {0} of β"
+
+    def shapes(self, setting: Setting) -> Iterator[Shape]:
+        assert setting.d_beta is not None
+        assert setting.d_alpha is not None
+        for order in range(1, highest(setting) + 1):
+            for turn in (setting.d_beta, setting.d_alpha):
+                change = turn[..., None] * harmonic(setting, order)[:, None, None, :]
+                yield Shape((), setting.through(change), (float(order),))
+
+
+class CommonPeriodic(Structure):
+    identifier = "common-periodic"
+    needs = frozenset({"stand"})
+    sentence = "the applied vector, common to all sensors: a wave of {0} periods over the session"
+
+    def shapes(self, setting: Setting) -> Iterator[Shape]:
+        assert setting.d_beta is not None
+        assert setting.d_alpha is not None
+        place = np.arange(setting.rows) / setting.rows
+        for periods in range(1, setting.rows // 2):
+            wave = 2 * np.pi * periods * place
+            both = np.stack([np.sin(wave), np.cos(wave)], axis=-1)
+            for turn in (setting.d_beta, setting.d_alpha):
+                yield Shape((), setting.through(turn[..., None] * both[:, None, None, :]), (float(periods),))
+
+
+STRUCTURES: tuple[Structure, ...] = (
+    SensorHarmonic(),
+    RunHarmonic(),
+    HarmonicSeries(),
+    SensorPeriodic(),
+    SensorTrend(),
+    TemperatureCurve(),
+    CommonHarmonic(),
+    CommonPeriodic(),
+)
