@@ -3,11 +3,14 @@
 from collections.abc import Iterator
 from pathlib import Path
 
+import httpx
 import pytest
 
+from service.app import create_app
 from service.settings import Settings
 from service.storage import Database, Files, Storage
 from tests.databases import ENGINES, Databases, PostgresDatabases, postgres_databases, sqlite_databases
+from tests.serving import http_client
 
 
 @pytest.fixture(scope="session")
@@ -49,3 +52,10 @@ def storage(settings: Settings) -> Iterator[Storage]:
     database = Database(settings.database)
     yield Storage(database, Files(settings.files))
     database.close()
+
+
+@pytest.fixture
+def client(settings: Settings) -> Iterator[httpx.Client]:
+    """HTTP to a service on a fresh database, of each engine in turn."""
+    with http_client(create_app(settings)) as http:
+        yield http

@@ -1,4 +1,4 @@
-"""Figures for Prometheus: requests by route and status with their time, uploads by what became of them."""
+"""Figures for Prometheus: requests by operation and status with their time, uploads by what became of them."""
 
 from time import perf_counter
 
@@ -18,7 +18,7 @@ class Metrics:
         self.requests = Histogram(
             "imu_health_request_seconds",
             "Time to answer.",
-            ("method", "route", "status"),
+            ("method", "operation", "status"),
             registry=self.registry,
             buckets=BUCKETS,
         )
@@ -32,9 +32,9 @@ class Metrics:
 
     def count_request(self, scope: Scope, status: int, seconds: float) -> None:
         """One answer; requests that no route took are counted together."""
-        route = getattr(scope.get("route"), "path", "none")
-        method = scope["method"] if route != "none" else "any"
-        self.requests.labels(method, route, str(status)).observe(seconds)
+        operation = getattr(scope.get("route"), "name", None) or "none"
+        method = scope["method"] if operation != "none" else "any"
+        self.requests.labels(method, operation, str(status)).observe(seconds)
 
     def text(self) -> bytes:
         """All figures in Prometheus' form."""

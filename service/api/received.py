@@ -28,11 +28,12 @@ class ReceivedFile:
 async def _received(request: Request, settings: SettingsOf) -> ReceivedFile:
     """The file, from the body or from the part `file` of a form."""
     longest = settings.max_upload_bytes
-    is_form = request.headers.get("content-type", "").lower().startswith("multipart/form-data")
+    content_type = request.headers.get("content-type", "").lower()
+    is_form = content_type.startswith("multipart/form-data")
     limited = Request(request.scope, _limited(request.receive, longest + (ENVELOPE if is_form else 0), longest))
     if is_form:
         return await _from_form(limited)
-    return ReceivedFile(await limited.body(), "the request's body")
+    return ReceivedFile(await limited.body(), "upload.csv" if "csv" in content_type else "upload.json")
 
 
 async def _from_form(request: Request) -> ReceivedFile:

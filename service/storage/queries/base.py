@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from sqlalchemy import CursorResult
+from sqlalchemy import literal_column
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
@@ -17,8 +17,6 @@ class Queries:
 
     def insert_once(self, table: type[Base], **values: Any) -> bool:
         """Inserts a row unless a unique constraint says it is there; waits for a rival that is inserting the same."""
-        dialect = self._session.get_bind().dialect.name
-        insert = postgresql.insert if dialect == "postgresql" else sqlite.insert
-        result = self._session.execute(insert(table).values(**values).on_conflict_do_nothing())
-        assert isinstance(result, CursorResult)
-        return result.rowcount == 1
+        insert = postgresql.insert if self._session.get_bind().dialect.name == "postgresql" else sqlite.insert
+        statement = insert(table).values(**values).on_conflict_do_nothing().returning(literal_column("1"))
+        return self._session.execute(statement).first() is not None

@@ -1,0 +1,118 @@
+"""Sessions over HTTP: uploaded once, judged, read back unchanged; or refused with every fault."""
+
+import json
+from hashlib import sha256
+
+import httpx
+
+from estimator import calibrate
+from estimator.reading import read_session
+from tests.builders import accelerometer_block
+from tests.service.sessions import session_bytes
+
+SESSIONS = "/api/v1/sessions"
+
+
+def post(client: httpx.Client, content: bytes) -> httpx.Response:
+    """Uploads a session as the body."""
+    return client.post(SESSIONS, content=content, headers={"Content-Type": "application/json"})
+
+
+def test_an_upload_is_answered_with_id_unit_verdict_and_url(client: httpx.Client) -> None:
+    content = session_bytes()
+    answer = post(client, content)
+    assert answer.status_code == 201
+    assert answer.json()["id"] == sha256(content).hexdigest()[:20]
+    assert (answer.json()["unit"], answer.json()["verdict"]) == ("BA-017", "undecidable")
+    assert answer.json()["url"] == answer.headers["location"]
+    assert client.get(answer.json()["url"]).json()["is_reference"] is True
+
+
+def test_the_same_bytes_again_are_stored_once(client: httpx.Client) -> None:
+    first = post(client, session_bytes())
+    again = client.post(SESSIONS, files={"file": ("another name.json", session_bytes())})
+    assert (first.status_code, again.status_code) == (201, 200)
+    assert first.json()["id"] == again.json()["id"]
+    assert len(client.get(SESSIONS).json()["sessions"]) == 1
+
+
+def test_the_file_comes_back_unchanged(client: httpx.Client) -> None:
+    content = b"\n  " + session_bytes() + b"\n\n"
+    id = client.post(SESSIONS, files={"file": ("BA-017.json", content)}).json()["id"]
+    assert client.get(f"{SESSIONS}/{id}/file").content == content
+    assert client.get(f"{SESSIONS}/{id}").json()["filename"] == "BA-017.json"
+
+
+def test_the_stored_calibration_is_the_one_that_the_library_computes(client: httpx.Client) -> None:
+    content = session_bytes()
+    id = post(client, content).json()["id"]
+    expected = json.loads(json.dumps(calibrate(read_session(content)).to_dict()))
+    assert client.get(f"{SESSIONS}/{id}/calibration").json() == expected
+
+
+def test_a_moved_bias_fails_and_the_reason_names_it(client: httpx.Client) -> None:
+    post(client, session_bytes())
+    found = post(client, session_bytes(seed=2, month=9, a3_moved=90.0)).json()
+    assert found["verdict"] == "fail"
+    assert found["reason"].startswith("A3 bias moved +9")
+    assert found["reason"].endswith("µg) beyond the tolerance of 50 µg.")
+
+
+def test_every_decision_says_what_it_rests_on(client: httpx.Client) -> None:
+    post(client, session_bytes())
+    id = post(client, session_bytes(seed=2, month=9)).json()["id"]
+    decisions = client.get(f"{SESSIONS}/{id}").json()["decisions"]
+    assert len(decisions) == 24
+    assert {d["verdict"] for d in decisions} == {"pass"}
+    assert all(abs(d["expanded"] - 2 * d["uncertainty"]) < 1e-12 for d in decisions)
+    assert {d["rule"] for d in decisions} == {"ILAC-G8-four-state/1 (accelerometer × 6, V rev 1)"}
+
+
+def test_three_faults_are_reported_with_their_rows(client: httpx.Client) -> None:
+    document = accelerometer_block()
+    document["table"]["A2"][4] = "n/a"
+    document["table"]["A5_se"][6] = -1.0
+    document["table"]["time_s"][9] = 0.0
+    answer = post(client, json.dumps(document).encode())
+    assert answer.status_code == 422
+    assert answer.headers["content-type"] == "application/problem+json"
+    places = {(p["field"].rpartition(".")[2], p["row"]) for p in answer.json()["problems"]}
+    assert {("A2", 5), ("A5_se", 7), ("time_s", 10)} <= places
+
+
+def test_a_refused_upload_leaves_no_session(client: httpx.Client) -> None:
+    assert post(client, b'{"format": "imu-session/2"}').status_code == 422
+    assert client.get(SESSIONS).json()["sessions"] == []
+    assert client.get("/api/v1/units").json()["units"] == []
+
+
+def test_a_form_without_a_file_is_told_so(client: httpx.Client) -> None:
+    answer = client.post(SESSIONS, files={"fiel": ("a.json", session_bytes())})
+    assert answer.status_code == 422
+    assert answer.json()["problems"][0]["field"] == "file"
+
+
+def test_a_programme_that_does_not_calibrate_is_refused(client: httpx.Client) -> None:
+    answer = post(client, session_bytes(programme="in-service"))
+    assert answer.status_code == 422
+    assert answer.json()["problems"]
+
+
+def test_names_that_no_database_keeps_are_refused(client: httpx.Client) -> None:
+    answer = post(client, session_bytes(unit="BA\x00", unit_type="x" * 300))
+    assert answer.status_code == 422
+    assert {p["field"] for p in answer.json()["problems"]} >= {"unit"}
+
+
+def test_a_session_from_the_future_is_refused(client: httpx.Client) -> None:
+    answer = post(client, session_bytes(started_at="2150-01-01T00:00:00Z"))
+    assert answer.json()["problems"][0]["field"] == "started_at"
+
+
+def test_sessions_are_listed_page_by_page_newest_first(client: httpx.Client) -> None:
+    for month in (3, 5, 4):
+        post(client, session_bytes(seed=month, month=month))
+    first = client.get(SESSIONS, params={"limit": 2, "unit": "BA-017"}).json()
+    rest = client.get(SESSIONS, params={"limit": 2, "page": first["next_page"]}).json()
+    months = [s["started_at"][5:7] for s in first["sessions"] + rest["sessions"]]
+    assert (months, rest["next_page"]) == (["05", "04", "03"], None)
