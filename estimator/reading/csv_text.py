@@ -36,7 +36,7 @@ def parse_csv(text: str, problems: Problems, sidecar: str | None = None) -> dict
 
 
 def _parse_table(lines: list[str], problems: Problems) -> dict[str, Column]:
-    """Column name → cells: numbers, texts, None for an empty one."""
+    """Column name → cells of the CSV lines."""
     if len(lines) - 1 > MOST_ROWS:
         raise problems.fail("table", f"has {len(lines) - 1} rows; at most {MOST_ROWS} can be read")
     if not lines:
@@ -48,11 +48,8 @@ def _parse_table(lines: list[str], problems: Problems) -> dict[str, Column]:
         raise problems.fail("file", f"is not a readable CSV table: {error}") from error
     if len(rows) != len(lines) - 1:
         raise problems.fail("table", "a cell holds a line break, or a quote is not closed; keep each row in one line")
-    if len(header) > MOST_COLUMNS:
-        raise problems.fail("table", f"has {len(header)} columns; at most {MOST_COLUMNS} can be read")
-    names = [name.strip() for name in header]
-    rows = _even(rows, len(names), problems)
-    return _named(names, [_cells([row[k] for row in rows]) for k in range(len(names))], problems)
+    rows = _even(rows, len(header), problems)
+    return named_columns(header, [_cells([row[k] for row in rows]) for k in range(len(header))], problems)
 
 
 def _even(rows: list[list[str]], width: int, problems: Problems) -> list[list[str]]:
@@ -64,10 +61,12 @@ def _even(rows: list[list[str]], width: int, problems: Problems) -> list[list[st
     return [(row + [""] * (width - len(row)))[:width] for row in rows]
 
 
-def _named(names: list[str], columns: list[Column], problems: Problems) -> dict[str, Column]:
+def named_columns(header: list[str], columns: list[Column], problems: Problems) -> dict[str, Column]:
     """Name → column; a nameless column is tolerated when it is empty (a separator at the end of every line)."""
+    if len(header) > MOST_COLUMNS:
+        raise problems.fail("table", f"has {len(header)} columns; at most {MOST_COLUMNS} can be read")
     table: dict[str, Column] = {}
-    for number, (name, cells) in enumerate(zip(names, columns, strict=True), start=1):
+    for number, (name, cells) in enumerate(zip(map(str.strip, header), columns, strict=True), start=1):
         if name in table:
             problems.add(name, f"is the name of two columns of the header, {shown(name)}; names must differ")
         elif name:
@@ -82,12 +81,13 @@ def _cells(texts: list[str]) -> Column:
     try:
         numbers = np.fromiter(map(float, texts), np.float64, len(texts))
     except ValueError:
-        return [_cell(text) for text in texts]
+        return [cell_of(text) for text in texts]
     exact = np.isfinite(numbers).all() and not any("_" in text for text in texts)
-    return numbers if exact else [_cell(text) for text in texts]
+    return numbers if exact else [cell_of(text) for text in texts]
 
 
-def _cell(text: str) -> object:
+def cell_of(text: str) -> object:
+    """What one text says: a number, the text itself, or None when it is empty."""
     text = text.strip()
     if not text:
         return None

@@ -4,12 +4,16 @@ from collections.abc import Callable
 
 from estimator.reading import read_session
 from estimator.session import CalibrationSession
-from service.ingest.parquet import MAGIC as PARQUET
-from service.ingest.parquet import read_parquet
+from service.ingest import hdf5, mat, parquet, xlsx
 
 Reader = Callable[[bytes, str], dict[str, object]]
 
-READERS: tuple[tuple[bytes, Reader], ...] = ((PARQUET, read_parquet),)
+READERS: tuple[tuple[bytes, Reader], ...] = (
+    (parquet.MAGIC, parquet.read_parquet),
+    (xlsx.MAGIC, xlsx.read_xlsx),
+    (hdf5.MAGIC, hdf5.read_hdf5),
+    (mat.MAGIC, mat.read_mat),
+)
 """First bytes of a binary format, and what reads it; anything else is JSON or CSV, or refused as neither."""
 
 

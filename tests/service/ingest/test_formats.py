@@ -3,8 +3,12 @@
 import json
 from io import BytesIO
 
+import h5py
+import numpy as np
 import polars as pl
 import pytest
+import xlsxwriter
+from scipy.io import savemat
 
 from estimator.errors import FormatError, SessionError
 from estimator.reading import read_session
@@ -17,6 +21,14 @@ def metadata(document):
     return json.dumps({key: value for key, value in document.items() if key != "table"})
 
 
+def rounded(document):
+    """The same with 15 digits, which is what a spreadsheet keeps."""
+    table = document["table"]
+    for name, cells in table.items():
+        table[name] = [float(f"{cell:.15g}") if isinstance(cell, float) else cell for cell in cells]
+    return document
+
+
 def json_bytes(document):
     return json.dumps(document).encode()
 
@@ -27,7 +39,57 @@ def parquet_bytes(document):
     return buffer.getvalue()
 
 
-WRITERS = {"json": json_bytes, "csv": csv_of, "parquet": parquet_bytes}
+def key_values(node, way=""):
+    """Rows of the session sheet: a dotted key and its value, lists of numbers as JSON."""
+    if isinstance(node, dict):
+        for key, child in node.items():
+            yield from key_values(child, f"{way}.{key}" if way else key)
+    elif isinstance(node, list) and isinstance(node[0], dict):
+        for number, child in enumerate(node, start=1):
+            yield from key_values(child, f"{way}[{number}]")
+    else:
+        yield way, json.dumps(node) if isinstance(node, list) else node
+
+
+def xlsx_bytes(document):
+    buffer = BytesIO()
+    with xlsxwriter.Workbook(buffer) as book:
+        session, readings = book.add_worksheet("session"), book.add_worksheet("readings")
+        for j, row in enumerate(key_values({k: v for k, v in document.items() if k != "table"})):
+            session.write_row(j, 0, row)
+        for k, (name, cells) in enumerate(document["table"].items()):
+            readings.write_column(0, k, [name, *cells])
+    return buffer.getvalue()
+
+
+def hdf5_bytes(document):
+    buffer = BytesIO()
+    with h5py.File(buffer, "w") as file:
+        file.attrs["imu-session"] = metadata(document)
+        for name, cells in document["table"].items():
+            text = any(isinstance(cell, str) for cell in cells)
+            file[f"readings/{name}"] = [c or "" for c in cells] if text else np.array(cells, dtype=float)
+    return buffer.getvalue()
+
+
+def mat_bytes(document):
+    columns = {
+        name: np.array([c or "" for c in cells]) if any(isinstance(c, str) for c in cells) else np.array(cells, float)
+        for name, cells in document["table"].items()
+    }
+    buffer = BytesIO()
+    savemat(buffer, {"imu_session": metadata(document), **columns}, do_compression=True, oned_as="column")
+    return buffer.getvalue()
+
+
+WRITERS = {
+    "json": json_bytes,
+    "csv": csv_of,
+    "parquet": parquet_bytes,
+    "xlsx": xlsx_bytes,
+    "hdf5": hdf5_bytes,
+    "mat": mat_bytes,
+}
 BUILDERS = (
     builders.accelerometer_block,
     builders.gyro_block,
@@ -40,13 +102,13 @@ BUILDERS = (
 @pytest.mark.parametrize("build", BUILDERS)
 @pytest.mark.parametrize("kind", WRITERS)
 def test_every_format_gives_the_same_session(kind, build):
-    document = build()
+    document = rounded(build())
     assert same(read_upload(WRITERS[kind](document), f"x.{kind}"), read_session(document))
 
 
 @pytest.mark.parametrize("kind", WRITERS)
 def test_empty_cells_survive_every_format(kind):
-    document = builders.arbitrary_orientations()
+    document = rounded(builders.arbitrary_orientations())
     document["table"]["A1_se"][3] = None
     document["table"]["position"] = ["p1", *["p2"] * 22, None]
     assert same(read_upload(WRITERS[kind](document), "x"), read_session(document))
