@@ -6,17 +6,19 @@ linear start (`start`); what the set does not tell is said (`information`). Dire
 known sigma enter as a prior, which is what makes six labelled positions enough.
 
 The quadratic term. ``quadratic`` True: estimated. False: left out of the model, reported as not observable. None:
-estimated when the set determines every parameter with it and every sensor's c·g to better than 1e-3, else left out.
+estimated when the set determines every parameter with it and every sensor's c·g to better than 1e-4, else left out: on
+measured recordings a term known less well than that predicts held-out positions worse than none (docs/recordings.md).
 Source: multi-parameter optimisation paper, functional (5), in its maximum-likelihood form.
 """
 
 import numpy as np
 
+from estimator.calibration.free.excess import explained
 from estimator.calibration.free.gyros import GyroBiases, rest_biases
-from estimator.calibration.free.information import information
+from estimator.calibration.free.information import Information, information
 from estimator.calibration.free.knowledge import merged, of_accelerometers, of_gyros
 from estimator.calibration.free.model import Rows
-from estimator.calibration.free.report import enlargement, fit_of_accelerometers, fit_of_gyros, report
+from estimator.calibration.free.report import fit_of_accelerometers, fit_of_gyros, report
 from estimator.calibration.free.solve import Solution, search, search_with_noise
 from estimator.calibration.free.start import start
 from estimator.errors import Problem, ScheduleError
@@ -26,7 +28,7 @@ from estimator.reference import gravity
 from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
-USEFUL_QUADRATIC = 1e-3
+USEFUL_QUADRATIC = 1e-4
 """Sigma of c·g below which the quadratic term is worth estimating."""
 
 FEWEST = 4
@@ -67,10 +69,10 @@ def calibrate_free(session: CalibrationSession, *, quadratic: bool | None = None
     g = gravity(session.site)
     rows, stated = accelerometer_rows(session, ~is_gyro, g)
     solution = solve(rows, stated, quadratic)
-    factor = enlargement(solution.chi2, solution.dof, stated)
-    known = of_accelerometers(solution, scale[~is_gyro], g, factor)
+    used = explained(solution) if stated else solution
+    known = of_accelerometers(used, solution.rows.sigma, scale[~is_gyro], g)
     own_names = names(tuple(s for s in session.sensors if s.kind == ACCELEROMETER))
-    fit = fit_of_accelerometers(solution, known, stated, factor, own_names)
+    fit = fit_of_accelerometers(solution, used, known, stated, own_names)
     if gyros is not None:
         known = merged(known, of_gyros(gyros, scale[is_gyro], axes[is_gyro]), session)
     return report(session, known, fit, "directions" if rows.held else "nominal-axes")
@@ -160,14 +162,15 @@ def solve(rows: Rows, stated: bool, quadratic: bool | None) -> Solution:
     """The search, with or without the quadratic term, with or without stated noise."""
     run = search if stated else search_with_noise
     solution = run(rows, start(rows), bool(quadratic))
-    if quadratic is None and quadratic_is_useful(solution):
-        return run(solution.rows, solution.state, True)
-    return solution
+    if quadratic is not None or not useful(information(solution.rows, solution.state, quadratic=True)):
+        return solution
+    extended = run(solution.rows, solution.state, True)
+    honest = explained(extended) if stated else extended
+    return extended if useful(honest.knowledge) else solution
 
 
-def quadratic_is_useful(solution: Solution) -> bool:
-    """Whether the set determines everything with the quadratic term, and each c·g to `USEFUL_QUADRATIC`."""
-    knowledge = information(solution.rows, solution.state, quadratic=True)
+def useful(knowledge: Information) -> bool:
+    """Whether everything is determined with the quadratic term, and each c·g to `USEFUL_QUADRATIC`."""
     return knowledge.full and bool(np.all(np.diagonal(knowledge.covariance)[2::5] < USEFUL_QUADRATIC**2))
 
 

@@ -30,27 +30,27 @@ class Knowledge:
     """(R, m) one sigma at the input."""
 
 
-def of_accelerometers(solution: Solution, scale: Array, g: float, factor: float) -> Knowledge:
+def of_accelerometers(solution: Solution, sigma: Array, scale: Array, g: float) -> Knowledge:
     """The accelerometers' parameters in SI with their covariance.
 
     Parameters
     ----------
+    sigma : (R, m) stated or estimated noise, dimensionless.
     scale : (m,) nominal scales, which the search worked in.
     g : m/s².
-    factor : by which the covariance is enlarged.
     """
     state, rows, m = solution.state, solution.rows, len(scale)
     gain = np.exp(state.log_scale)
     parameters = SensorParameters(scale * gain, g * state.offset / gain, state.quadratic / g, state.axes)
     T = to_bias(state.offset, gain)
-    covariance = factor * (T @ solution.knowledge.covariance @ T.T)
+    covariance = T @ solution.knowledge.covariance @ T.T
     unseen = T @ solution.knowledge.unseen
     observable = observed(covariance, unseen, np.linalg.norm(solution.knowledge.basis, axis=1) > 0)
     factors = parameters.si_factors(np.full(m, g))
     known = tuple(combinations(i, parameters, covariance, unseen, observable, factors) for i in range(m))
     covariance = np.where(np.outer(observable, observable), covariance * np.outer(factors, factors), np.nan)
     residual = (rows.y - predicted(state)) * (g / gain)
-    return Knowledge(parameters, covariance, observable.reshape(m, 5), known, residual, rows.sigma * (g / gain))
+    return Knowledge(parameters, covariance, observable.reshape(m, 5), known, residual, sigma * (g / gain))
 
 
 def to_bias(offset: Array, gain: Array) -> Array:

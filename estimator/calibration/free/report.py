@@ -1,9 +1,9 @@
 """The `Calibration` of a block in unknown orientations, from what is known of its sensors."""
 
 import numpy as np
-from scipy.stats import chi2 as chi_squared
 
 from estimator.arrays import tangents
+from estimator.calibration.free.excess import p_value
 from estimator.calibration.free.gyros import GyroBiases
 from estimator.calibration.free.knowledge import Knowledge
 from estimator.calibration.free.solve import Solution
@@ -13,38 +13,31 @@ from estimator.session import Array, CalibrationSession
 
 METHOD = "arbitrary-orientations/maximum-likelihood"
 
-UNLIKELY = 1e-3
-"""p-value below which the stated noise does not explain the residuals and the covariance is enlarged."""
-
-
-def p_value(chi2: float, dof: int, stated: bool) -> float | None:
-    """Probability of a χ² at least this large; None without stated noise or without degrees of freedom."""
-    return float(chi_squared.sf(chi2, dof)) if stated and dof > 0 else None
-
-
-def enlargement(chi2: float, dof: int, stated: bool) -> float:
-    """Factor that makes the covariance agree with residuals that the stated noise cannot explain."""
-    p = p_value(chi2, dof, stated)
-    return chi2 / dof if p is not None and p < UNLIKELY else 1.0
-
 
 def fit_of_accelerometers(
-    solution: Solution, known: Knowledge, stated: bool, factor: float, element_names: tuple[str, ...]
+    solution: Solution, used: Solution, known: Knowledge, stated: bool, element_names: tuple[str, ...]
 ) -> Fit:
-    """How well the accelerometers fit; ``element_names`` are theirs."""
-    lead, sigma = solution.knowledge.weakest
+    """How well the accelerometers fit.
+
+    Parameters
+    ----------
+    solution : under the stated (or estimated) noise; χ² and p-value are its.
+    used : under the noise that explains the residuals.
+    element_names : of the accelerometers.
+    """
+    lead, sigma = used.knowledge.weakest
     return Fit(
         chi2=solution.chi2,
         dof=solution.dof,
-        p_value=p_value(solution.chi2, solution.dof, stated),
+        p_value=p_value(solution.chi2, solution.dof) if stated else None,
         residual_rms=float(np.sqrt(np.mean(known.residual**2))),
         noise="stated" if stated else "estimated",
-        covariance_factor=factor,
-        rank=solution.knowledge.rank,
-        parameters=solution.knowledge.parameters,
+        covariance_factor=1.0 if used is solution else solution.chi2 / solution.dof,
+        rank=used.knowledge.rank,
+        parameters=used.knowledge.parameters,
         weakest=(element_names[lead], sigma),
-        iterations=solution.iterations,
-        converged=solution.converged,
+        iterations=used.iterations,
+        converged=used.converged,
     )
 
 
@@ -54,7 +47,7 @@ def fit_of_gyros(gyros: GyroBiases, element_names: tuple[str, ...]) -> Fit:
     return Fit(
         chi2=gyros.chi2,
         dof=gyros.dof,
-        p_value=p_value(gyros.chi2, gyros.dof, gyros.stated),
+        p_value=p_value(gyros.chi2, gyros.dof) if gyros.stated else None,
         residual_rms=float(np.sqrt(np.mean(gyros.residual**2))),
         noise="stated" if gyros.stated else "estimated",
         covariance_factor=1.0,

@@ -43,6 +43,8 @@ class Solution:
     rows: Rows
     """With the noise that was used."""
     state: State
+    quadratic: bool
+    """Whether the quadratic term was estimated."""
     chi2: float
     knowledge: Information
     iterations: int
@@ -83,7 +85,7 @@ def search(rows: Rows, state: State, quadratic: bool) -> Solution:
             basis = movable(rows.nominal_axes, state.axes, rows.held, quadratic)
         else:
             damping *= 10
-    return Solution(rows, state, chi2, information(rows, state, quadratic), iterations, converged)
+    return Solution(rows, state, quadratic, chi2, information(rows, state, quadratic), iterations, converged)
 
 
 def proposal(linear: Linear, basis: Array, damping: float) -> tuple[Array, Array, float]:

@@ -1,0 +1,1 @@
+"""Real recordings: our calibration beside the published one. `python -m benchmarks.recordings` prints the tables."""

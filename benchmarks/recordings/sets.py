@@ -1,0 +1,57 @@
+"""The recordings, from the raw files to averaged sessions."""
+
+import os
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from estimator.calibration.free import residual_per_freedom
+from estimator.reading import read_session
+from estimator.session import ACCELEROMETER, CalibrationSession, Sensor
+from estimator.static import average
+from service.ingest.convert import convert
+
+FOLDER = "IMU_HEALTH_RECORDINGS"
+FILES = {
+    "imu-tk": "imu-tk-xsens-mti/*.mat",
+    "mpu9150-five": "mpu9150-five/*.log",
+    "kth-mimu": "kth-mimu-array/*.bin",
+    "ctu-mat": "ctu-orientations/measured_accelerations_*.mat",
+    "ferraris-csv": "ferraris-six-position/*.csv",
+}
+
+
+def folder() -> Path:
+    """Where the recordings are: the environment's word, or beside the project."""
+    return Path(os.environ.get(FOLDER, Path(__file__).resolve().parents[3] / "shared" / "data"))
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """One averaged session of a recording."""
+
+    name: str
+    session: CalibrationSession
+
+    @property
+    def g(self) -> float:
+        """m/s², as the publication states it."""
+        assert self.session.site.gravity is not None
+        return self.session.site.gravity
+
+    @property
+    def triads(self) -> list[tuple[Sensor, ...]]:
+        """The accelerometers, three neighbours at a time."""
+        found = [s for s in self.session.sensors if s.kind == ACCELEROMETER]
+        return [tuple(found[k : k + 3]) for k in range(0, len(found), 3)]
+
+
+@cache
+def recordings(format_name: str) -> tuple[Recording, ...]:
+    """The averaged sessions of all files of a format, oldest first."""
+    found = []
+    for name, document in convert(format_name, sorted(folder().glob(FILES[format_name]))):
+        session = read_session(document)
+        averaged = average(session, residual_per_freedom) if session.is_raw else session
+        found.append(Recording(name.removesuffix(".json"), averaged))
+    return tuple(found)
