@@ -1,0 +1,39 @@
+"""``python -m benchmarks.study --sessions 2000 --seed 1`` writes docs/diagnosis/study.md."""
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+from benchmarks.study.examine import run, tasks
+from benchmarks.study.report import page
+
+PAGE = Path(__file__).parents[2] / "docs" / "diagnosis" / "study.md"
+
+
+def main() -> None:
+    """Run the study and write its page."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.study", description=__doc__)
+    parser.add_argument("--sessions", type=int, default=2000)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--out", type=Path, default=PAGE)
+    parser.add_argument("--cause", help="only this cause, one effect a session")
+    parser.add_argument("--kind", help="only this kind: single, weak, none, outside or two")
+    parser.add_argument("--dump", help="folder for the files of every case that went wrong")
+    options = parser.parse_args()
+    work = tasks(options.sessions, options.seed, options.dump, options.kind, options.cause)
+    outcomes = []
+    for k, outcome in enumerate(run(work, options.processes), 1):
+        outcomes.append(outcome)
+        print(f"\r{k}/{len(work)}", end="", file=sys.stderr)
+    print(file=sys.stderr)
+    command = f"python -m benchmarks.study --sessions {options.sessions} --seed {options.seed}"
+    options.out.parent.mkdir(parents=True, exist_ok=True)
+    options.out.write_text(page(outcomes, command))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,158 @@
+"""Causes inside one sensor: what is added at its input, what changes its parameters, what clips its readings.
+
+Every function takes the session, the effect, n (R, 3) and a (R,) of that sensor and the specific force (R, 3), and
+returns what is added inside the bracket of the sensor model, (R,).
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from tests.blind.world import Array, Effect, Session, Unit
+
+
+def across(axis: Array) -> tuple[Array, Array]:
+    """Two unit vectors orthogonal to an axis and to one another."""
+    helper = np.eye(3)[np.argmin(np.abs(axis))]
+    p = np.cross(axis, helper)
+    p /= np.linalg.norm(p)
+    return p, np.cross(axis, p)
+
+
+def sideways(session: Session, effect: Effect, n: Array) -> tuple[Array, Array]:
+    """(R,) p·n and o·n."""
+    p, o = across(session.unit.axis[effect.sensor])
+    return n @ p, n @ o
+
+
+def centred(values: Array) -> Array:
+    """Without the session mean."""
+    return values - values.mean()
+
+
+def cubic_nonlinearity(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    return effect.k * a**3
+
+
+def scale_asymmetry(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    return effect.k * np.abs(a)
+
+
+def cross_coupling(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    pn, on = sideways(session, effect, n)
+    return a * (effect.amplitude[0] * pn + effect.amplitude[1] * on)
+
+
+def bias_temperature(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    return effect.k * centred(session.schedule.temperature)
+
+
+def scale_temperature(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    return effect.k * centred(session.schedule.temperature) * a
+
+
+def bias_ramp(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    return effect.k * centred(session.schedule.time)
+
+
+def warm_up(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    return effect.k * np.exp(-session.schedule.time / effect.shape[0])
+
+
+def bias_jump(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    return effect.k * (np.arange(len(a)) >= effect.shape[0])
+
+
+def hysteresis(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    flipped = session.schedule.flipped
+    came_from = np.sign(np.diff(a, prepend=a[0]))
+    first = np.concatenate([[True], flipped[1:] != flipped[:-1]])
+    return effect.k * np.where(first, 0.0, came_from)
+
+
+def odd_quadratic(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    return effect.k * a * np.abs(a)
+
+
+def bias_asymmetry(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    return effect.k * np.sign(a)
+
+
+def cross_axis_quadratic(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    pn, on = sideways(session, effect, n)
+    return effect.amplitude[0] * pn**2 + effect.amplitude[1] * pn * on
+
+
+def scale_ramp(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    return effect.k * centred(session.schedule.time) * a
+
+
+def axis_creep(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    pn, on = sideways(session, effect, n)
+    return (effect.amplitude[0] * pn + effect.amplitude[1] * on) * centred(session.schedule.time)
+
+
+def temperature_rate(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    return effect.k * session.schedule.temperature_rate
+
+
+def bias_per_position(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    beta = session.schedule.beta
+    return effect.amplitude[0] * np.sin(beta) + effect.amplitude[1] * np.cos(beta)
+
+
+def reading_outlier(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    return effect.k * (np.arange(len(a)) == effect.shape[0])
+
+
+def g_sensitivity(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    return force @ np.array(effect.amplitude)
+
+
+INPUT = {
+    "cubic-nonlinearity": cubic_nonlinearity,
+    "scale-asymmetry": scale_asymmetry,
+    "cross-coupling": cross_coupling,
+    "bias-temperature": bias_temperature,
+    "scale-temperature": scale_temperature,
+    "bias-ramp": bias_ramp,
+    "warm-up": warm_up,
+    "bias-jump": bias_jump,
+    "hysteresis": hysteresis,
+    "odd-quadratic": odd_quadratic,
+    "bias-asymmetry": bias_asymmetry,
+    "cross-axis-quadratic": cross_axis_quadratic,
+    "scale-ramp": scale_ramp,
+    "axis-creep": axis_creep,
+    "temperature-rate": temperature_rate,
+    "bias-per-position": bias_per_position,
+    "reading-outlier": reading_outlier,
+    "g-sensitivity": g_sensitivity,
+}
+
+
+def sensor_drift(unit: Unit, effect: Effect) -> Unit:
+    """Amplitude: relative scale, bias, and two turns of the axis."""
+    i = effect.sensor
+    scale, bias, turn_p, turn_o = effect.amplitude
+    p, o = across(unit.axis[i])
+    axis = unit.axis[i] + turn_p * p + turn_o * o
+    moved = {"scale": unit.scale.copy(), "bias": unit.bias.copy(), "axis": unit.axis.copy()}
+    moved["scale"][i] *= 1 + scale
+    moved["bias"][i] += bias
+    moved["axis"][i] = axis / np.linalg.norm(axis)
+    return replace(unit, **moved)
+
+
+UNIT = {"sensor-drift": sensor_drift}
+
+
+def clipped(u: Array, effects: Sequence[Effect]) -> Array:
+    """Readings beyond a limit cut to it. Shape: the side, +1 or −1, or 0 for both."""
+    u = u.copy()
+    for effect in effects:
+        if effect.cause == "saturation":
+            i, limit, side = effect.sensor, effect.k, effect.shape[0]
+            u[:, i] = np.clip(u[:, i], -np.inf if side > 0 else -abs(limit), np.inf if side < 0 else abs(limit))
+    return u
