@@ -16,8 +16,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
-from scipy.special import logsumexp
+from scipy.special import chdtrc
 
 from estimator.causes import Shape, Signature
 from estimator.diagnosis.evidence import Evidence
@@ -134,7 +133,7 @@ def _score(evidence: Evidence, traces: Traces, taken: Array, z: Array) -> Iterab
             statistic,
             q,
             bayes_factor(statistic, q) - float(np.log(places)),
-            float(stats.chi2.sf(statistic, q)),
+            float(chdtrc(q, statistic)) if q else 1.0,
             places,
         )
 
@@ -176,7 +175,7 @@ def ranked(scored: Sequence[Scored]) -> list[tuple[Scored, float]]:
     for s in scored:
         groups.setdefault(s.group, []).append(s)
     best = [
-        (max(members, key=lambda s: s.evidence), float(logsumexp([s.evidence for s in members])))
+        (max(members, key=lambda s: s.evidence), float(np.logaddexp.reduce([s.evidence for s in members])))
         for members in groups.values()
     ]
     return sorted(best, key=lambda pair: -pair[1])

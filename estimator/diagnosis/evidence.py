@@ -84,7 +84,8 @@ class Evidence:
         design = whiten(np.concatenate([spread(baseline.design), baseline.constant], axis=-1))
         prior = np.concatenate([np.zeros((k, P)), np.diag(1 / baseline.constant_sigma)], axis=1)
         full = np.concatenate([design, prior])
-        scale = np.maximum(np.linalg.norm(full, axis=0), 1e-300)
+        size = np.linalg.norm(full, axis=0)
+        scale = np.where(size > 0, size, 1.0)
         left, size, right = np.linalg.svd(full / scale, full_matrices=False)
         kept = size > NOTHING * size[0]
         absorb = (right[kept].T / size[kept]) @ left[:, kept].T / scale[:, None]

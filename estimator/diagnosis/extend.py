@@ -14,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 
 from estimator.calibration.calibrate import calibrate
-from estimator.diagnosis.candidates import Scored
+from estimator.diagnosis.candidates import INVISIBLE, Scored
 from estimator.diagnosis.search import Excess, Search
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
@@ -48,7 +48,8 @@ def amplitudes(state: Search) -> Amplitudes:
         left, size, _ = np.linalg.svd(pattern, full_matrices=False)
         left = left[:, size > 1e-9 * size[0]]
         z = z - left @ (left.T @ z)
-    scale = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    white = [np.linalg.norm(state.evidence.raw(s.shape.columns), axis=0) for s in found]
+    scale = np.maximum(np.linalg.norm(columns, axis=0), INVISIBLE * np.concatenate(white))
     gram = (columns / scale).T @ (columns / scale)
     covariance = np.linalg.inv(gram + 1e-12 * np.eye(len(gram))) / scale[:, None] / scale
     return Amplitudes(covariance @ (columns.T @ z), covariance, slices)

@@ -5,9 +5,11 @@ level when amplitude·s reaches the root of the noncentrality at which χ²_q ex
 """
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
-from scipy import optimize, stats
+from scipy import optimize
+from scipy.special import chdtri, chndtr
 
 from estimator.causes import Cause, Correction, Signature
 from estimator.diagnosis.candidates import INVISIBLE, Traces
@@ -17,12 +19,13 @@ from estimator.diagnosis.search import LEVEL, Search
 POWER = 0.95
 
 
+@lru_cache(maxsize=4096)
 def required(q: int, p_single: float) -> float:
     """Strength that a test of q amplitudes at level ``p_single`` finds with `POWER`."""
-    threshold = stats.chi2.isf(p_single, q)
+    threshold = float(chdtri(q, p_single))
 
     def shortfall(strength: float) -> float:
-        return float(stats.ncx2.sf(threshold, q, strength**2)) - POWER
+        return 1.0 - float(chndtr(threshold, q, strength**2)) - POWER
 
     return float(optimize.brentq(shortfall, 1e-3, 200.0))
 
@@ -61,7 +64,7 @@ def excess_limit(state: Search, cause: Cause) -> Limit:
     if state.baseline.unstated.all():
         return Limit(cause.identifier, None, cause.units, "the file states no noise to exceed")
     freedom = max(evidence.freedom / m, 2.0)
-    threshold = stats.chi2.isf(LEVEL / (m * state.families), freedom)
-    ratio = threshold / stats.chi2.isf(POWER, freedom)
+    threshold = chdtri(freedom, LEVEL / (m * state.families))
+    ratio = threshold / chdtri(freedom, POWER)
     sigma = float(np.sqrt(np.median(state.baseline.variance)))
     return Limit(cause.identifier, (sigma * float(np.sqrt(max(ratio - 1, 0.0))),), cause.units, "")

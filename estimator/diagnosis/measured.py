@@ -105,7 +105,7 @@ def force_on_stand(session: CalibrationSession) -> Array | None:
 def in_orientations(session: CalibrationSession) -> Baseline:
     """Arbitrary orientations: the applied vector is estimated row by row; gyros at rest see no input."""
     state = fitted_state(session)
-    y, errors = measured(session)
+    y, _ = measured(session)
     g = gravity(session.site)
     kinds = tuple(s.kind for s in session.sensors)
     gyro = np.array([kind == GYROSCOPE for kind in kinds])

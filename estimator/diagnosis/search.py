@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy import stats
+from scipy.special import chdtrc
 
 from estimator.causes import CATALOGUE, Cause, Signature
 from estimator.diagnosis.baseline import Baseline
@@ -22,8 +22,8 @@ from estimator.session import Array
 LEVEL = 0.01
 """Family-wise level: sessions without an effect that get a name."""
 
-MOST = 6
-"""Findings (and, apart from them, structures) looked for in one session."""
+MOST = 8
+"""Different causes (and, apart from them, patterns) looked for in one session, each on as many sensors as show it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +34,10 @@ class Found:
     p_family: float
     ranking: tuple[tuple[Scored, float], ...]
     """Every (cause, sensors) with its ln evidence, strongest first, given the other findings."""
+
+    def ranking_of(self, scored: Scored) -> tuple[tuple[Scored, float], ...]:
+        """The ranking as another sensor sees it: its own causes and those of no sensor."""
+        return tuple(pair for pair in self.ranking if pair[0].shape.sensors in ((), scored.shape.sensors))
 
 
 @dataclass(frozen=True)
@@ -97,7 +101,7 @@ def search(start: Search) -> Search:
 
 def causes(state: Search) -> Search:
     """Add causes until none is significant."""
-    while len(state.found) + len(state.excess) < MOST:
+    while len({f.best.cause.identifier for f in state.found}) < MOST:
         best = strongest(state, state.traces)
         noisy = noisiest(state)
         if noisy is not None and (best is None or noisy.evidence > best.ranking[0][1]):
@@ -107,8 +111,20 @@ def causes(state: Search) -> Search:
                 continue
         if best is None:
             break
-        state = replace(state, found=(*state.found, best))
+        state = replace(state, found=(*state.found, best, *companions(state, best, state.traces)))
     return state
+
+
+def companions(state: Search, best: Found, traces: Sequence[Traces]) -> list[Found]:
+    """The same cause on other sensors, where it is significant and leads that sensor's own ranking."""
+    leads: dict[tuple[int, ...], Scored] = {}
+    for scored, _ in best.ranking:
+        leads.setdefault(scored.shape.sensors, scored)
+    same = [s for sensors, s in leads.items() if sensors and sensors != best.best.shape.sensors]
+    same = [s for s in same if s.cause is best.best.cause]
+    families = state.families if traces is state.traces else len(traces)
+    levels = [(s, min(1.0, s.p_value * s.places * families)) for s in same]
+    return [Found(s, level, best.ranking_of(s)) for s, level in levels if level < LEVEL]
 
 
 def strongest(state: Search, traces: Sequence[Traces], without: Found | None = None) -> Found | None:
@@ -139,7 +155,7 @@ def noisiest(state: Search) -> Excess | None:
         energy = float((z[rows] ** 2).sum())
         if freedom < 2 or energy <= freedom:
             continue
-        p_family = min(1.0, float(stats.chi2.sf(energy, freedom)) * m * state.families)
+        p_family = min(1.0, float(chdtrc(freedom, energy)) * m * state.families)
         weight = 0.5 * (energy - freedom - freedom * np.log(energy / freedom))
         value = float(weight - 0.5 * np.log(freedom / 2) - np.log(m))
         if p_family < LEVEL and (best is None or value > best.evidence):
@@ -165,7 +181,7 @@ def with_excess(state: Search, noisy: Excess) -> Search:
 
 def settle(state: Search) -> Search:
     """Choose every finding anew given the others, until nothing changes; drop what loses its significance."""
-    for _ in range(4):
+    for _ in range(4 if state.found else 0):
         groups = [f.best.group for f in state.found]
         for old in state.found:
             new = strongest(state, state.traces, without=old)
@@ -179,11 +195,11 @@ def settle(state: Search) -> Search:
 
 def structures(state: Search) -> Search:
     """Patterns without a name in what the causes leave."""
-    while len(state.structures) < MOST:
+    for _ in range(MOST):
         pattern = strongest(state, state.patterns)
         if pattern is None:
             break
-        state = replace(state, structures=(*state.structures, pattern))
+        state = replace(state, structures=(*state.structures, pattern, *companions(state, pattern, state.patterns)))
     return state
 
 
