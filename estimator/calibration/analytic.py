@@ -29,8 +29,11 @@ VANISHES = 1e-6
 DEPENDENT = 1e-8
 """Relative singular value below which the schedule does not determine all columns."""
 
-DEAD = 1e-12
-"""Relative size of the answer to the reference vector below which a reading is constant."""
+CONSTANT = 1e-6
+"""Part of a reading that must change over the rows for the sensor to answer to anything."""
+
+NO_TRACE = 1e-12
+"""Squared trace of the second-order term in the coefficients, relative, below which there is none."""
 
 SECOND_ORDER = [1, 3, 6, 7]
 """Places of q12, p4, q23, q24 among the eight coefficients."""
@@ -92,11 +95,16 @@ def solve(q: Coefficients, size: Array, angle: Array) -> SensorParameters:
     per_c = np.stack([2 * e1 * e2 * lift, reach * (e1**2 - e3**2) / 2, 2 * e2 * e3 * lift, 2 * reach * e1 * e3]) * reach
     weight = 1.0 / q.variance[SECOND_ORDER]
     trace = np.tensordot(weight, per_c**2, axes=1)
-    blind = trace < DEAD * weight.max()
+    blind = trace < NO_TRACE * weight.max()
     seen = np.moveaxis(q.value[..., SECOND_ORDER, :], -2, 0) / some
     c = np.where(blind, 0.0, np.tensordot(weight, per_c * seen, axes=1) / np.where(blind, 1.0, trace))
     b = p0 / some - c * (e2**2 * lift**2 + (e1**2 + e3**2) * reach**2 / 2)
     return SensorParameters(gain / size, b * size, c / size, np.stack([e1, e2, e3], axis=-1))
+
+
+def answers(y: Array) -> Array:
+    """(..., m) whether the readings (..., R, m) of a sensor change at all."""
+    return np.ptp(y, axis=-2) > CONSTANT * np.abs(y).max(axis=-2)
 
 
 def closed_form(
@@ -123,7 +131,7 @@ def closed_form(
         return None
     of_kind = {kind: elevation(session.stand, kind) for kind in {s.kind for s in session.sensors}}
     p = solve(q, size, np.array([of_kind[s.kind] for s in session.sensors]))
-    alive = p.scale * size > DEAD * np.abs(y).max(axis=-2)
+    alive = answers(y)
     return SensorParameters(
         np.where(alive, p.scale, nominal.scale),
         np.where(alive, p.bias, 0.0),

@@ -34,10 +34,15 @@ class Spectrum:
 
     @property
     def observed(self) -> Array:
-        """(..., m, 5) bool; the axis needs both of its elements."""
+        """(..., m, 5) bool; the axis needs both of its elements, and the scale needs the axis.
+
+        An axis off by δ out of the plane that the rows reach changes the scale by δ²/2, which the information at the
+        solution does not show.
+        """
         variance = (self.vectors**2 / (self.values + PLAUSIBLE**-2)[..., None, :]).sum(axis=-1)
         seen = variance < LIMIT**2
         seen[..., 3:] = seen[..., 3:].all(axis=-1, keepdims=True)
+        seen[..., 0] &= seen[..., 3]
         return seen
 
     @property

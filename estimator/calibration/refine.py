@@ -54,7 +54,7 @@ class Fitted:
     residual: Array
     """(S, R, m) at the input."""
     variance: Array
-    """(S, R, m) of the independent noise at the input."""
+    """(S, R, m) of the independent noise at the input; infinite for readings that take no part."""
     chi2: Array
     """(S,)"""
     constant: Array
@@ -63,6 +63,11 @@ class Fitted:
     """(S,)"""
     converged: Array
     """(S,) bool"""
+
+    @property
+    def readings(self) -> Array:
+        """(S,) number of readings that take part; those of infinite variance do not."""
+        return np.isfinite(self.variance).sum(axis=(1, 2))
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,7 +175,7 @@ def fit(y: Array, variance: Array, geometry: Geometry, start: SensorParameters) 
     Parameters
     ----------
     y : (S, R, m) readings, offset taken off (`forward.measured`).
-    variance : (S, R, m) of the independent noise at the input.
+    variance : (S, R, m) of the independent noise at the input; infinite for readings that take no part.
     geometry : of the schedule.
     start : (S, m) starting values; the closed form where there is one.
     """

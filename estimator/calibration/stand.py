@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from estimator.calibration import noise
-from estimator.calibration.analytic import closed_form, linear_start
+from estimator.calibration.analytic import answers, closed_form, linear_start
 from estimator.calibration.observability import Spectrum, spectrum
 from estimator.calibration.refine import Fitted, fit, input_variance
 from estimator.calibration.stand_report import Solved, reports
@@ -56,13 +56,16 @@ def starting_point(y: Array, session: CalibrationSession, geometry: Geometry) ->
 def noise_variance(
     y: Array, errors: Array, start: SensorParameters, session: CalibrationSession, geometry: Geometry
 ) -> tuple[Array, Array]:
-    """Independent noise at the input (S, R, m), estimated where not stated, and whether (S,) all of it is stated."""
+    """Independent noise at the input (S, R, m), estimated where not stated, and whether (S,) all of it is stated.
+
+    A sensor whose reading is constant answers to nothing: its noise is infinite, so that it takes no part.
+    """
     variance = input_variance(start, errors, np.array([s.bias_repeatability for s in session.sensors]))
     unstated = np.isnan(variance)
-    if not unstated.any():
-        return variance, np.ones(len(y), dtype=bool)
-    estimated = noise.estimated_variance(y, start, geometry)
-    return np.where(unstated, estimated, variance), np.logical_not(unstated.any(axis=(1, 2)))
+    if unstated.any():
+        variance = np.where(unstated, noise.estimated_variance(y, start, geometry), variance)
+    variance = np.where(answers(y)[:, None, :], variance, np.inf)
+    return variance, np.logical_not(unstated.any(axis=(1, 2)))
 
 
 def judged(solution: Fitted, stated: Array) -> tuple[Spectrum, Array, Array]:
@@ -72,8 +75,7 @@ def judged(solution: Fitted, stated: Array) -> tuple[Spectrum, Array, Array]:
     degree of freedom; the estimate stays, and so do the stand's constant errors.
     """
     seen = spectrum(solution.information)
-    _, R, m = solution.residual.shape
-    dof = R * m - seen.rank
+    dof = solution.readings - seen.rank
     p_value = noise.p_value(solution.chi2, dof)
     doubtful = stated & (p_value < noise.SUSPICIOUS) & (solution.chi2 > dof)
     factor = np.where(doubtful, solution.chi2 / np.maximum(dof, 1), 1.0)

@@ -154,13 +154,14 @@ def known(k: int, i: int, solved: Solved, seen: list[bool]) -> tuple[KnownCombin
 def qualities(sessions: Sequence[CalibrationSession], solved: Solved) -> list[Fit]:
     """Quality of fit of every session."""
     fitted, seen = solved.fitted, solved.spectrum
-    rms = np.sqrt((fitted.residual**2).mean(axis=(1, 2)))
+    taking_part = np.isfinite(fitted.variance)
+    rms = np.sqrt((fitted.residual**2).sum(axis=(1, 2), where=taking_part) / np.maximum(fitted.readings, 1))
     columns = (fitted.chi2, seen.rank, solved.p_value, rms, solved.stated, solved.factor, *seen.weakest)
     chi2, rank, p_value, residual_rms, stated, factor, sensor, lead, sigma = (c.tolist() for c in columns)
     return [
         Fit(
             chi2=chi2[k],
-            dof=fitted.residual[k].size - rank[k],
+            dof=int(fitted.readings[k]) - rank[k],
             p_value=p_value[k] if stated[k] else None,
             residual_rms=residual_rms[k],
             noise="stated" if stated[k] else "estimated",
