@@ -23,12 +23,14 @@ T = TypeVar("T")
 Files = Annotated[list[Path], typer.Argument(metavar="FILE", help="Session files.", show_default=False)]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON: one object; with several files one a line.")]
 Server = Annotated[str, typer.Option(help="Address of the service.", envvar="IMU_HEALTH_SERVER")]
+WIDE = 160
+"""Columns of a table that goes to a file or another program."""
 DEFAULT_SERVER = "http://127.0.0.1:8000"
 
 
 def screen() -> Console:
     """Standard output for people; wide enough for a table when it is not a terminal."""
-    return Console(width=None if sys.stdout.isatty() else 120)
+    return Console(width=None if sys.stdout.isatty() else WIDE)
 
 
 def say(line: str) -> None:

@@ -61,10 +61,13 @@ def _off_nominal(scale: Estimate, nominal: float) -> Estimate:
 def _notes(calibration: Calibration) -> Iterator[Text]:
     """Sentences: how well the model fits, and what this session cannot see."""
     yield Text(fit_in_words(calibration.fit))
+    sensors: dict[str, list[str]] = {}
     for sensor in calibration.sensors:
-        unseen = [name for name in PARAMETERS if not sensor.observable[name]]
+        unseen = ", ".join(name for name in PARAMETERS if not sensor.observable[name])
+        sensors.setdefault(unseen, []).append(sensor.name)
+    for unseen, names in sensors.items():
         if unseen:
-            yield Text(f"{sensor.name}: this session does not observe {', '.join(unseen)}.", "yellow")
+            yield Text(f"{', '.join(names)}: this session does not observe {unseen}.", "yellow")
 
 
 def fit_in_words(fit: Fit) -> str:

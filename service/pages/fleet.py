@@ -9,8 +9,8 @@ from service.pages.verdicts import UNDECIDED, Condition, condition_of
 from service.records import FleetCondition, UnitSummary
 
 PAGE_SIZE = 50
-BAR_LIMIT = 1.5
-"""The margin bar ends at one and a half tolerances."""
+BAR_LIMIT = 150.0
+"""The margin bar ends at one and a half tolerances, per cent."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class FleetView:
 
 @dataclass(frozen=True)
 class Margin:
-    """How much of its tolerance a parameter uses up, as words and as a bar."""
+    """How much of its tolerance a parameter uses up, uncertainty included: as words and as a bar."""
 
     words: str
     used: float
@@ -125,9 +125,8 @@ def _row(unit: UnitSummary) -> FleetRow:
 
 
 def margin_of(margin: float | None) -> Margin | None:
-    """A margin as words and bar; None when nothing was judged."""
+    """1 − (|d| + U)/T as what is used of T; None when nothing was judged."""
     if margin is None:
         return None
-    share = round(100 * abs(margin))
-    words = f"{share} % left" if margin >= 0 else f"{share} % over" if margin > -1 else f"{1 - margin:.1f} × limit"
-    return Margin(words, 100 * min(max(1 - margin, 0.0), BAR_LIMIT))
+    used = 100 * (1 - margin)
+    return Margin(f"{used:.0f} %", min(max(used, 0.0), BAR_LIMIT))

@@ -10,7 +10,6 @@ from starlette.types import Message, Receive
 from service.dependencies import SettingsOf
 from service.errors import TooLargeError
 from service.pages.headers import sent_by_this_site
-from service.pages.units import size_in_words
 
 MOST_FILES = 200
 ENVELOPE = 64 * 1024
@@ -43,7 +42,7 @@ def _limited(receive: Receive, limit: int) -> Receive:
         message = await receive()
         seen += len(message.get("body", b""))
         if seen > limit + ENVELOPE:
-            raise TooLargeError(f"An upload may hold {size_in_words(limit)} at a time; this one is larger.")
+            raise TooLargeError(f"An upload may hold {limit:,} bytes at a time; this one is larger.")
         return message
 
     return counted

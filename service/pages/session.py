@@ -168,4 +168,4 @@ def _probability(decision: Decision | None) -> str:
     """Worth a word only where it is in doubt."""
     if decision is None or decision.probability_out is None or not 0.001 < decision.probability_out < 0.999:
         return ""
-    return f"{number(100 * decision.probability_out, 1)} % chance of being out of tolerance"
+    return f"{100 * decision.probability_out:.2g} % chance to be out"

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from service.pages.units import deviation_unit, limit, measured, signed
-from service.pages.verdicts import Condition, condition_of
+from service.pages.verdicts import NOT_JUDGED, Condition, condition_of
 from service.records import PARAMETERS, HistoryPoint, Service
 from service.units import DeviationUnit
 
@@ -130,7 +130,7 @@ def _points(points: Sequence[HistoryPoint], unit: DeviationUnit, services: Seque
             limit_upper=edge(p, +1),
             epoch=sum(s.at <= p.at for s in services),
             text=_text(p, origin, one, unit),
-            condition=condition_of(p.verdict),
+            condition=NOT_JUDGED if p.tolerance is None else condition_of(p.verdict),
         )
         for p in points
     )

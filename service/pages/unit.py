@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from service.pages.charts import ChartSet
 from service.pages.charts.history import history_charts
 from service.pages.tracks import Track, TrackPoint, day_of, tolerance_text, tracks_of
-from service.pages.verdicts import Condition, condition_of
+from service.pages.verdicts import NOT_JUDGED, Condition, condition_of
 from service.records import HistoryPoint, Service, StoredSession, UnitReport
 
 HEADINGS = {"scale": "Scale factor", "bias": "Bias", "quadratic": "Quadratic term", "axis": "Axis"}
@@ -77,13 +77,14 @@ def _section(tracks: Sequence[Track], services: Sequence[Service], several: bool
     parameter = tracks[0].parameter
     kind = tracks[0].name.rpartition("-")[2]
     latest = [track.points[-1].condition for track in tracks]
+    judged = [condition for condition in latest if condition is not NOT_JUDGED]
     return ParameterSection(
         anchor=tracks[0].name,
         heading=f"{HEADINGS[parameter]}, {kind}s" if several else HEADINGS[parameter],
         meaning=MEANINGS[parameter],
         unit=tracks[0].unit.label,
         tolerance=tolerance_text(tracks[0]),
-        worst=min(latest, key=lambda c: c.rank),
+        worst=min(judged, key=lambda c: c.rank, default=NOT_JUDGED),
         charts=history_charts(tracks, services),
         sensors=tuple(track.sensor for track in tracks),
         rows=_rows(tracks),

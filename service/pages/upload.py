@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from estimator.errors import Problem
-from service.pages.units import size_in_words
 from service.pages.verdicts import Condition, condition_of
 from service.records import Receipt
 
@@ -38,4 +37,4 @@ class UploadPage:
 
 def upload_page(outcomes: Sequence[Outcome], max_bytes: int) -> UploadPage:
     """The page before (no outcomes) or after an upload."""
-    return UploadPage(tuple(outcomes), size_in_words(max_bytes))
+    return UploadPage(tuple(outcomes), f"{max_bytes / 2**20:g} MiB")

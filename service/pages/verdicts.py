@@ -39,6 +39,7 @@ PROBABLY_FIT = Condition(
 )  # fmt: skip
 FIT = Condition("pass", "Fit", "pass", "circle", "Within tolerance, beyond doubt.")
 NOT_MEASURED = Condition("none", "Not measured", "no session", "stroke", "No session has been uploaded yet.")
+NOT_JUDGED = Condition("none", "Not judged", "not judged", "circle", "No tolerance or no reference is set.")
 
 CONDITIONS = (UNFIT, PROBABLY_UNFIT, UNDECIDED, PROBABLY_FIT, FIT)
 """Worst first, as they are listed."""

@@ -8,7 +8,7 @@ import altair as alt
 
 from service.pages.charts import DATA_FORM, ChartSet, Panel, padded, specification
 from service.pages.tracks import Track, TrackPoint
-from service.pages.verdicts import CONDITIONS
+from service.pages.verdicts import CONDITIONS, FIT, NOT_JUDGED
 from service.records import Service
 
 HEIGHT = 150
@@ -106,15 +106,17 @@ def _breaks(services: alt.NamedData) -> alt.Chart:
 
 
 def _marks(base: alt.Chart, y: alt.Y) -> alt.Chart:
-    names = [c.formal for c in CONDITIONS]
-    chart: alt.Chart = base.mark_point(filled=True, opacity=1, size=55, stroke="var(--card)", strokeWidth=1).encode(
+    shown = (*CONDITIONS, NOT_JUDGED)
+    names = [c.formal for c in shown]
+
+    def by_verdict(values: list[Any]) -> dict[str, Any]:
+        return {"legend": None, "scale": alt.Scale(domain=names, range=values)}
+
+    chart: alt.Chart = base.mark_point(filled=True, opacity=1, stroke="var(--card)", strokeWidth=0.8).encode(
         y=y,
-        color=alt.Color(
-            "verdict:N",
-            legend=None,
-            scale=alt.Scale(domain=names, range=[f"var(--{c.key})" for c in CONDITIONS]),
-        ),
-        shape=alt.Shape("verdict:N", legend=None, scale=alt.Scale(domain=names, range=[c.shape for c in CONDITIONS])),
+        color=alt.Color("verdict:N", **by_verdict([f"var(--{c.key})" for c in shown])),
+        shape=alt.Shape("verdict:N", **by_verdict([c.shape for c in shown])),
+        size=alt.Size("verdict:O", **by_verdict([45 if c is FIT else 95 for c in shown])),
         tooltip=[
             alt.Tooltip("date:N", title="date"),
             alt.Tooltip("value:N", title="value"),

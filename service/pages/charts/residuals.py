@@ -95,7 +95,8 @@ def _spec(across: _Across, unit: DeviationUnit, largest: float) -> dict[str, Any
     y_scale = alt.Scale(domain=padded(-largest, largest))
     y = alt.Y("y:Q", title=unit.label, axis=alt.Axis(tickCount=5), scale=y_scale)
     base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
-    band = base.transform_calculate(low="-datum.band").mark_area(color="var(--accent)", opacity=0.12)
+    shade = 0.07 if across.name == "beta" else 0.13
+    band = base.transform_calculate(low="-datum.band").mark_area(color="var(--accent)", opacity=shade)
     zero = alt.Chart(alt.InlineData(values=[{"zero": 0}])).mark_rule(color="var(--muted)").encode(y="zero:Q")
     return specification(
         [

@@ -1,5 +1,7 @@
 """Migrations make the schema that the code expects, and go down and up again on a database with data."""
 
+from datetime import UTC, datetime
+
 import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
@@ -7,11 +9,13 @@ from sqlalchemy import inspect, text
 from sqlalchemy.exc import DatabaseError
 
 from service.errors import AwayError
-from service.storage import Database
+from service.flows.upload import upload
+from service.storage import Database, Storage
 from service.storage.engine import open_engine
 from service.storage.schema import downgrade, head_revision, stored_revision, upgrade
 from service.storage.tables import Base
 from tests.databases import Databases
+from tests.service.sessions import session_bytes
 
 
 def test_the_migrated_schema_is_the_one_of_the_tables(store_url: str) -> None:
@@ -51,12 +55,14 @@ def test_the_audit_refuses_to_be_changed(store_url: str) -> None:
     engine.dispose()
 
 
-def test_down_to_nothing_and_up_again(store_url: str) -> None:
+def test_down_to_nothing_and_up_again_with_data(store_url: str, storage: Storage) -> None:
+    now = datetime(2026, 11, 21, tzinfo=UTC)
+    upload(storage, session_bytes(), "a.json", now)
+    storage.database.close()
     downgrade(store_url, "base")
     engine = open_engine(store_url)
     assert inspect(engine).get_table_names() == ["alembic_version"]
     engine.dispose()
     upgrade(store_url)
-    database = Database(store_url)
-    database.require_ready()
-    database.close()
+    storage.database.require_ready()
+    assert upload(storage, session_bytes(), "a.json", now).created
