@@ -35,14 +35,17 @@ class Happened:
 
 
 def applied(session: CalibrationSession, kind: str, e: Happened) -> Array:
-    """(R, 3) what the stand applies, block axes: rotations about level Z and Y, then X (raise), then Y (turn)."""
+    """(R, 3) what the stand applies, block axes: rotations about level Z and Y, then X (raise), then Y (turn).
+
+    The head points south, so that X is west; raised by A above the horizon it is χ = A + φ − 90° above the equator.
+    """
     phi = session.site.latitude
     if kind == ACCELEROMETER:
         level, raised = np.array([0.0, 0.0, GRAVITY]), session.stand.alpha
     else:
         seen = phi + e.of("latitude")
-        level = EARTH_RATE * np.array([0.0, np.cos(seen), np.sin(seen)])
-        raised = session.stand.chi + phi - np.pi / 2
+        level = EARTH_RATE * np.array([0.0, -np.cos(seen), np.sin(seen)])
+        raised = session.stand.chi - phi + np.pi / 2
     turned = Rotation.from_euler("zy", [e.of("meridian"), e.of("theta_y")]).apply(level)
     lifted = Rotation.from_euler("x", -(raised + e.of("theta_x") + e.of("alpha"))).apply(turned)
     platform = Rotation.from_euler("y", -(session.beta + e.beta)[:, None]).apply(lifted)
