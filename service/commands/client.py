@@ -1,5 +1,8 @@
 """Talking to a running service over HTTP; its refusals become the errors that commands already understand."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from http import HTTPStatus
 from pathlib import Path
 from typing import Any
@@ -12,12 +15,23 @@ from service.errors import RefusedError, ServiceError
 TIMEOUT = httpx.Timeout(60.0, connect=5.0)
 
 
+@contextmanager
+def connected(server: str) -> "Iterator[Client]":
+    """A client of the service at an address; ServiceError when it is no address."""
+    try:
+        http = httpx.Client(base_url=f"{server.rstrip('/')}/api/v1", timeout=TIMEOUT)
+    except httpx.InvalidURL as fault:
+        raise ServiceError(f"{server} is not an address: {fault}") from fault
+    with http:
+        yield Client(server, http)
+
+
+@dataclass(frozen=True)
 class Client:
     """One connection to a service."""
 
-    def __init__(self, server: str) -> None:
-        self.server = server.rstrip("/")
-        self._http = httpx.Client(base_url=f"{self.server}/api/v1", timeout=TIMEOUT)
+    server: str
+    http: httpx.Client
 
     def upload(self, file: Path) -> dict[str, Any]:
         """Sends a session file; RefusedError with its problems when the service cannot use it."""
@@ -32,9 +46,7 @@ class Client:
     def _answer(self, method: str, path: str, **request: Any) -> httpx.Response:
         """The answer, or the error that it states."""
         try:
-            response = self._http.request(method, path, **request)
-        except httpx.InvalidURL as fault:
-            raise ServiceError(f"{self.server} is not an address: {fault}") from fault
+            response = self.http.request(method, path, **request)
         except httpx.HTTPError as fault:
             raise ServiceError(f"{self.server} does not answer: {fault}") from fault
         if response.is_success:

@@ -8,7 +8,7 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
-from service.commands.client import Client
+from service.commands.client import connected
 from service.commands.console import DEFAULT_SERVER, AsJson, Server, print_json, screen
 from service.commands.upload import coloured
 from service.pages.units import number
@@ -24,12 +24,12 @@ class Format(StrEnum):
 
 def fleet(server: Server = DEFAULT_SERVER, as_json: AsJson = False) -> None:
     """Show every unit with its condition, the worst first; --json prints how many units are in which."""
-    client = Client(server)
-    condition = client.get("/fleet").json()
-    if as_json:
-        print_json(condition)
-        return
-    screen().print(_summary(condition), _table(client.get("/fleet/report").json()["units"]))
+    with connected(server) as client:
+        condition = client.get("/fleet").json()
+        if as_json:
+            print_json(condition)
+        else:
+            screen().print(_summary(condition), _table(client.get("/fleet/report").json()["units"]))
 
 
 def report(
@@ -38,7 +38,8 @@ def report(
     out: Annotated[Path | None, typer.Option(help="File to write.", show_default="standard output")] = None,
 ) -> None:
     """Write the fleet's condition as a file for other programs."""
-    content = Client(server).get("/fleet/report", format=format.value).content
+    with connected(server) as client:
+        content = client.get("/fleet/report", format=format.value).content
     if out is None:
         typer.echo(content, nl=False)
     else:

@@ -5,7 +5,7 @@ from typing import Any
 
 from rich.markup import escape
 
-from service.commands.client import Client
+from service.commands.client import connected
 from service.commands.console import DEFAULT_SERVER, AsJson, Files, Server, for_each, print_json, screen
 from service.pages.verdicts import Condition, condition_of
 from service.records import Verdict
@@ -21,9 +21,9 @@ COLOURS = {
 
 def upload_files(files: Files, server: Server = DEFAULT_SERVER, as_json: AsJson = False) -> None:
     """Upload session files and print the verdict of each; a file that is already there is stored once."""
-    client = Client(server)
     show: Callable[[dict[str, Any]], None] = print_json if as_json else _print_line
-    for_each(files, client.upload, show, "uploading")
+    with connected(server) as client:
+        for_each(files, client.upload, show, "uploading")
 
 
 def _print_line(answer: dict[str, Any]) -> None:

@@ -1,0 +1,92 @@
+"""`imu-health upload`, `fleet` and `report` against a running service."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import polars as pl
+import pytest
+
+from service.settings import Settings
+from tests.builders import accelerometer_block
+from tests.databases import Databases
+from tests.service.cli.conftest import Run, write
+from tests.serving import serving
+
+
+@pytest.fixture
+def address(sqlite: Databases, tmp_path: Path) -> Iterator[str]:
+    """A running service on an empty database."""
+    with serving(Settings(database_url=sqlite.migrated(), data_folder=tmp_path / "data")) as address:
+        yield address
+
+
+@pytest.fixture
+def two_sessions(tmp_path: Path) -> list[Path]:
+    """A unit's reference session, and one in which nothing has changed."""
+    first, later = (accelerometer_block(positions=36, seed=seed) for seed in (1, 9))
+    later["started_at"] = "2026-05-01T09:00:00Z"
+    return [write(tmp_path, "first.json", first), write(tmp_path, "later.json", later)]
+
+
+def test_an_uploaded_file_is_in_the_service(run: Run, address: str, good_file: Path) -> None:
+    ran = run("upload", good_file, "--server", address, "--json")
+    [receipt] = ran.documents
+    assert (ran.code, receipt["unit"], receipt["created"]) == (0, "BA-017", True)
+    assert httpx.get(f"{address}/api/v1/sessions/{receipt['id']}/file").content == good_file.read_bytes()
+
+
+def test_the_same_file_twice_is_stored_once(run: Run, address: str, good_file: Path) -> None:
+    first, again = run("upload", good_file, good_file, "--server", address, "--json").documents
+    assert first["id"] == again["id"]
+    assert (first["created"], again["created"]) == (True, False)
+
+
+def test_a_refused_file_names_field_and_row_and_stops_no_other(
+    run: Run, address: str, bad_file: Path, good_file: Path
+) -> None:
+    ran = run("upload", bad_file, good_file, "--server", address, "--json")
+    assert (ran.code, len(ran.documents), ran.err.count("\n")) == (2, 1, 1)
+    for part in (str(bad_file), "A2, row 3", "stand.alpha_deg", "A4_se, row 5"):
+        assert part in ran.err
+
+
+def test_a_missing_file_is_unusable_input(run: Run, address: str, tmp_path: Path) -> None:
+    ran = run("upload", tmp_path / "missing.json", "--server", address)
+    assert ran.code == 2
+    assert "missing.json" in ran.err
+
+
+def test_the_verdict_is_printed_in_words(run: Run, address: str, two_sessions: list[Path]) -> None:
+    ran = run("upload", *two_sessions, "--server", address)
+    assert ran.code == 0
+    assert [line.split("  ")[:2] for line in ran.out.splitlines()] == [["BA-017", "Undecided"], ["BA-017", "Fit"]]
+
+
+@pytest.mark.parametrize("server", ["http://127.0.0.1:1", "nonsense", "http://[", "http://127.0.0.1:1/" + "a" * 70_000])
+def test_a_server_that_does_not_answer_is_said_on_one_line(run: Run, good_file: Path, server: str) -> None:
+    ran = run("upload", good_file, "--server", server)
+    assert (ran.code, ran.out, ran.err.count("\n")) == (1, "", 1)
+
+
+def test_the_fleet_is_shown_worst_first(run: Run, address: str, two_sessions: list[Path], tmp_path: Path) -> None:
+    other = write(tmp_path, "other.json", accelerometer_block(unit="BA-100"))
+    run("upload", *two_sessions, other, "--server", address)
+    lines = run("fleet", "--server", address).out.splitlines()
+    assert lines[0] == "2 units: 1 Undecided, 1 Fit"
+    assert [line.split()[0] for line in lines if line.startswith("BA-")] == ["BA-100", "BA-017"]
+
+
+def test_how_many_units_are_in_which_condition_is_there_as_json(run: Run, address: str, good_file: Path) -> None:
+    run("upload", good_file, "--server", address)
+    [condition] = run("fleet", "--server", address, "--json").documents
+    assert (condition["units"], condition["verdicts"]["undecidable"]) == (1, 1)
+
+
+def test_the_report_is_a_table_for_other_programs(run: Run, address: str, good_file: Path, tmp_path: Path) -> None:
+    run("upload", good_file, "--server", address)
+    target = tmp_path / "fleet.csv"
+    assert run("report", "--server", address, "--out", target).code == 0
+    assert pl.read_csv(target)["serial"].to_list() == ["BA-017"]
+    [report] = run("report", "--server", address, "--format", "json").documents
+    assert report["units"][0]["serial"] == "BA-017"
