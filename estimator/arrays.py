@@ -21,9 +21,10 @@ def tangents(axis: Array) -> Array:
     -------
     (..., 3, 2), columns p and o with p × o = axis.
     """
-    helper = np.zeros_like(axis)
-    np.put_along_axis(helper, np.abs(axis).argmin(axis=-1)[..., None], 1.0, axis=-1)
+    helper = np.eye(3)[np.abs(axis).argmin(axis=-1)]
+    frame = np.empty((*axis.shape, 2))
     p = helper - axis * (axis * helper).sum(axis=-1, keepdims=True)
-    p = p / np.sqrt((p * p).sum(axis=-1, keepdims=True))
-    o = axis[..., [1, 2, 0]] * p[..., [2, 0, 1]] - axis[..., [2, 0, 1]] * p[..., [1, 2, 0]]
-    return np.stack([p, o], axis=-1)
+    p /= np.sqrt((p * p).sum(axis=-1, keepdims=True))
+    frame[..., 0] = p
+    frame[..., 1] = axis[..., [1, 2, 0]] * p[..., [2, 0, 1]] - axis[..., [2, 0, 1]] * p[..., [1, 2, 0]]
+    return frame

@@ -1,0 +1,33 @@
+"""P2: a fleet of such sessions in one call, against `calibrate` in a loop and against bare least-squares solves.
+
+The bare solve is `numpy.linalg.lstsq` on the whitened Jacobian of each sensor of each session, at the solution: no
+model, no iteration, no covariance, no stand errors.
+"""
+
+import numpy as np
+
+from benchmarks.block import sessions
+from benchmarks.figures import Figure, side_by_side
+from estimator import calibrate, calibrate_many
+from estimator.forward import jacobian
+from estimator.parameters import nominal
+from estimator.reference import stand_geometry
+
+SESSIONS = 500
+
+
+def run() -> list[Figure]:
+    """Both peers."""
+    fleet = sessions(SESSIONS)
+    geometry = stand_geometry(fleet[0])
+    J = jacobian(nominal(fleet[0].sensors), geometry.n, geometry.norm)
+    stacked = [(J[:, i] / 3e-6, s.readings[:, i] / 3e-6) for s in fleet for i in range(len(s.sensors))]
+    work = f"calibrate {SESSIONS} sessions of one schedule in one call, results built"
+    loop = side_by_side(lambda: calibrate_many(fleet), lambda: [calibrate(s) for s in fleet], rounds=5)
+    bare = side_by_side(
+        lambda: calibrate_many(fleet), lambda: [np.linalg.lstsq(A, y, rcond=None) for A, y in stacked], rounds=5
+    )
+    return [
+        Figure("P2, loop", work, "calibrate in a loop", *loop, "20"),
+        Figure("P2, solves", work, "bare numpy.linalg.lstsq of every sensor", *bare, "at least 1/3"),
+    ]
