@@ -1,0 +1,86 @@
+"""The service keeps its own description: generated requests, no 5xx, answers that match, on both engines."""
+
+from collections.abc import Iterator
+from contextlib import nullcontext, suppress
+from pathlib import Path
+
+import httpx
+import pytest
+import schemathesis
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis.errors import Unsatisfiable
+from schemathesis import GenerationMode
+
+from service.settings import Settings
+from tests.databases import ENGINES, Databases
+from tests.service.sessions import session_bytes
+from tests.serving import serving
+
+EXAMPLES = 12
+
+
+@pytest.fixture(scope="module", params=ENGINES)
+def address(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """A service with two sessions of one unit."""
+    databases: Databases = request.getfixturevalue(request.param)
+    folder: Path = tmp_path_factory.mktemp("data")
+    with serving(Settings(database_url=databases.migrated(), data_folder=folder)) as url:
+        for seed in (1, 2):
+            httpx.post(f"{url}/api/v1/sessions", content=session_bytes(seed=seed)).raise_for_status()
+        yield url
+
+
+@pytest.fixture(scope="module")
+def description(address: str) -> schemathesis.BaseSchema:
+    """What the service says of itself."""
+    return schemathesis.openapi.from_url(f"{address}/openapi.json")
+
+
+@pytest.mark.parametrize("mode", list(GenerationMode))
+def test_generated_requests_are_answered_as_described(
+    description: schemathesis.BaseSchema, mode: GenerationMode
+) -> None:
+    """Requests that keep the description, and requests that break it wherever it can be broken."""
+    operations = [found.ok() for found in description.get_all_operations()]
+    assert len(operations) > 15
+    for operation in operations:
+        # Where nothing is asked for, nothing can be broken.
+        with suppress(Unsatisfiable) if mode is GenerationMode.NEGATIVE else nullcontext():
+            assert_conforming(operation, mode)
+
+
+def assert_conforming(operation: schemathesis.APIOperation, mode: GenerationMode) -> None:
+    """Sends generated requests and holds every answer to the description."""
+
+    @settings(
+        max_examples=EXAMPLES,
+        derandomize=True,
+        deadline=None,
+        database=None,
+        phases=[Phase.explicit, Phase.generate],
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(case=operation.as_strategy(generation_mode=mode))
+    def conforms(case: schemathesis.Case) -> None:
+        # What a schema cannot say of a session file, a unit that exists or a time in the past is refused with 4xx.
+        case.call_and_validate(excluded_checks=[schemathesis.checks.positive_data_acceptance], timeout=60)
+
+    conforms()
+
+
+def test_every_field_and_parameter_is_described(address: str) -> None:
+    found = httpx.get(f"{address}/openapi.json").json()
+    bare = [
+        f"{name}.{field}"
+        for name, model in found["components"]["schemas"].items()
+        for field, spec in model.get("properties", {}).items()
+        if "description" not in spec and "$ref" not in spec
+    ]
+    bare += [
+        f"{path} {parameter['name']}"
+        for path, operations in found["paths"].items()
+        for operation in operations.values()
+        for parameter in operation.get("parameters", [])
+        if "description" not in parameter
+    ]
+    assert bare == []
