@@ -80,6 +80,7 @@ def residuals(formats: Sequence[str] = ("imu-tk", "mpu9150-five", "ctu-mat", "kt
                 milli(held_out(recording.session, recording.g, literature(recording, start))),
                 milli(held_out(recording.session, recording.g, ours(recording))),
                 milli(held_out(recording.session, recording.g, ours(recording, True))),
+                "with c" if calibrate(recording.session).sensors[0].observable["quadratic"] else "without",
             ]
         )
     head = [
@@ -92,6 +93,7 @@ def residuals(formats: Sequence[str] = ("imu-tk", "mpu9150-five", "ctu-mat", "kt
         "norm fit, held out",
         "ours, held out",
         "ours with c, held out",
+        "left to itself",
     ]
     return table(head, body)
 

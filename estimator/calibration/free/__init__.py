@@ -6,18 +6,20 @@ linear start (`start`); what the set does not tell is said (`information`). Dire
 known sigma enter as a prior, which is what makes six labelled positions enough.
 
 The quadratic term. ``quadratic`` True: estimated. False: left out of the model, reported as not observable. None:
-estimated when the set determines every parameter with it and every sensor's c·g to better than 1e-4, else left out: on
-measured recordings a term known less well than that predicts held-out positions worse than none (docs/recordings.md).
+estimated when the set determines every parameter with it, and either every sensor's c·g to better than 1e-4 or terms
+that are plainly there (χ² of all of them, at 1e-3). On measured recordings terms that pass neither predict held-out
+positions worse than none, and those that pass predict them better (docs/recordings.md).
 Source: multi-parameter optimisation paper, functional (5), in its maximum-likelihood form.
 """
 
 import numpy as np
+from scipy.stats import chi2
 
 from estimator.calibration.free.excess import explained
 from estimator.calibration.free.gyros import GyroBiases, rest_biases
-from estimator.calibration.free.information import Information, information
+from estimator.calibration.free.information import information
 from estimator.calibration.free.knowledge import merged, of_accelerometers, of_gyros
-from estimator.calibration.free.model import Rows
+from estimator.calibration.free.model import Rows, predicted
 from estimator.calibration.free.report import fit_of_accelerometers, fit_of_gyros, report
 from estimator.calibration.free.solve import Solution, search, search_with_noise
 from estimator.calibration.free.start import start
@@ -29,7 +31,10 @@ from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
 USEFUL_QUADRATIC = 1e-4
-"""Sigma of c·g below which the quadratic term is worth estimating."""
+"""Sigma of c·g below which the quadratic term is worth estimating, be it there or not."""
+
+PLAIN_QUADRATIC = 1e-3
+"""Probability, without any quadratic term, of estimates this large: below it the term is there."""
 
 FEWEST = 4
 """Orientations below which nothing at all can be estimated: a sphere needs four points."""
@@ -81,14 +86,20 @@ def calibrate_free(session: CalibrationSession, *, quadratic: bool | None = None
 def residual_per_freedom(session: CalibrationSession) -> float:
     """Root of the squared residuals per degree of freedom, m/s², and one standard error of that on top.
 
-    What the still stretches of a raw log are chosen by; infinite where the rows do not determine everything.
+    What the still stretches of a raw log are chosen by; infinite where the rows do not determine everything, and zero,
+    so that the first choice stands, for a block of gyros alone.
     """
-    result = calibrate_free(session, quadratic=False)
-    dof = result.fit.dof
-    if result.fit.rank < result.fit.parameters or dof < 1:
+    check(session)
+    chosen = np.array([s.kind == ACCELEROMETER for s in session.sensors])
+    if not chosen.any():
+        return 0.0
+    g = gravity(session.site)
+    rows, stated = accelerometer_rows(session, chosen, g)
+    solution = solve(rows, stated, quadratic=False)
+    if not solution.knowledge.full or solution.dof < 1:
         return float("inf")
-    spread = result.fit.residual_rms * np.sqrt(result.residuals.value.size / dof)
-    return float(spread * (1 + 1 / np.sqrt(2 * dof)))
+    squares = ((rows.y - predicted(solution.state)) * g / np.exp(solution.state.log_scale)) ** 2
+    return float(np.sqrt(squares.sum() / solution.dof) * (1 + 1 / np.sqrt(2 * solution.dof)))
 
 
 def check(session: CalibrationSession) -> None:
@@ -162,16 +173,21 @@ def solve(rows: Rows, stated: bool, quadratic: bool | None) -> Solution:
     """The search, with or without the quadratic term, with or without stated noise."""
     run = search if stated else search_with_noise
     solution = run(rows, start(rows), bool(quadratic))
-    if quadratic is not None or not useful(information(solution.rows, solution.state, quadratic=True)):
+    if quadratic is not None or not information(solution.rows, solution.state, quadratic=True).full:
         return solution
     extended = run(solution.rows, solution.state, True)
-    honest = explained(extended) if stated else extended
-    return extended if useful(honest.knowledge) else solution
+    return extended if useful(explained(extended) if stated else extended) else solution
 
 
-def useful(knowledge: Information) -> bool:
-    """Whether everything is determined with the quadratic term, and each c·g to `USEFUL_QUADRATIC`."""
-    return knowledge.full and bool(np.all(np.diagonal(knowledge.covariance)[2::5] < USEFUL_QUADRATIC**2))
+def useful(extended: Solution) -> bool:
+    """Whether the quadratic terms are known well, or are plainly there, under noise that explains the residuals."""
+    if not extended.knowledge.full:
+        return False
+    terms = np.arange(2, len(extended.knowledge.covariance), 5)
+    covariance = extended.knowledge.covariance[np.ix_(terms, terms)]
+    c = extended.state.quadratic
+    known = np.all(np.diagonal(covariance) < USEFUL_QUADRATIC**2)
+    return bool(known or chi2.sf(c @ np.linalg.solve(covariance, c), len(c)) < PLAIN_QUADRATIC)
 
 
 def gyro_biases(session: CalibrationSession, chosen: Array) -> GyroBiases:

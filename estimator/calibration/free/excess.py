@@ -12,13 +12,17 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import chi2 as chi_squared
 
+from estimator.calibration.free.model import predicted
 from estimator.calibration.free.solve import Solution, search
+from estimator.session import Array
 
 UNLIKELY = 1e-3
 """p-value below which the stated noise does not explain the residuals."""
 
 SETTLED = 1e-3
 """Relative accuracy of the added sigma."""
+
+ROUNDS = 12
 
 
 def p_value(chi2: float, dof: int) -> float | None:
@@ -31,18 +35,29 @@ def explained(solution: Solution) -> Solution:
     p = p_value(solution.chi2, solution.dof)
     if p is None or p >= UNLIKELY:
         return solution
-    found = {0.0: solution}
+    stated, found, last = solution.rows.sigma, solution, np.inf
+    for _ in range(ROUNDS):
+        added = added_noise(found, stated, solution.dof)
+        sigma = np.hypot(stated, added * np.exp(found.state.log_scale))
+        found = search(solution.rows.weighted(sigma), found.state, solution.quadratic)
+        if abs(added - last) < SETTLED * added:
+            break
+        last = added
+    return replace(found, iterations=solution.iterations)
+
+
+def added_noise(found: Solution, stated: Array, dof: int) -> float:
+    """Sigma at the input, in g, that brings χ² of the residuals as they are to its degrees of freedom."""
+    gain = np.exp(found.state.log_scale)
+    squares = (found.rows.y - predicted(found.state)) ** 2
+    turned = found.rows.prior[:, None] * (found.rows.directions - found.state.directions) ** 2
 
     def surplus(log_sigma: float) -> float:
-        added = np.exp(solution.state.log_scale + log_sigma)
-        trial = search(solution.rows.weighted(np.hypot(solution.rows.sigma, added)), solution.state, solution.quadratic)
-        found[log_sigma] = trial
-        return trial.chi2 / solution.dof - 1.0
+        variance = stated**2 + (np.exp(log_sigma) * gain) ** 2
+        return float((squares / variance).sum() + turned.sum()) / dof - 1.0
 
-    usual = float(np.log(np.median(solution.rows.sigma)))
-    low, high = usual - 3.0, usual + 0.5 * np.log(solution.chi2 / solution.dof) + 1.0
-    while surplus(high) > 0:
-        high += 1.0
-    root = low if surplus(low) < 0 else brentq(surplus, low, high, xtol=SETTLED)
-    surplus(root)
-    return replace(found[root], iterations=solution.iterations)
+    high = 0.5 * float(np.log((squares / gain**2).sum() / dof)) + 1.0
+    low = high - 12.0
+    if surplus(low) <= 0 or surplus(high) >= 0:
+        return float(np.exp(low if surplus(low) <= 0 else high))
+    return float(np.exp(brentq(surplus, low, high, xtol=SETTLED)))

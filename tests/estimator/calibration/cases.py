@@ -169,7 +169,7 @@ CASES: tuple[Case, ...] = (
     Case(
         "arbitrary-orientations",
         orientation_schedule(accelerometers(4), SITE, sphere(24)),
-        np.full(4, 30 * VOLTS),
+        np.full(4, 10 * VOLTS),
         sessions=200,
         quadratic=0.0,
     ),

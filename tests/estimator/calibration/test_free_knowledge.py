@@ -140,3 +140,25 @@ def test_bias_repeatability_adds_to_the_noise():
     measured = session(truth(6), sphere(40, np.random.default_rng(1)), noise=1e-4)
     wandering = replace(measured, sensors=tuple(replace(s, bias_repeatability=1e-3) for s in measured.sensors))
     np.testing.assert_allclose(calibrate_free(wandering).residuals.sigma, np.hypot(1e-4, 1e-3), rtol=0.01)
+
+
+def test_positions_that_do_not_repeat_are_given_the_uncertainty_that_they_have():
+    true, d = truth(4), sphere(24, np.random.default_rng(5))
+    stated, rng, total = np.full((24, 4), 0.12e-5), np.random.default_rng(6), 0.0
+    stated[0] = 0.12e-7
+    for _ in range(60):
+        measured = replace(session(true, d, noise=1e-3, rng=rng), standard_errors=stated)
+        result = calibrate_free(measured, quadratic=False)
+        error, sigma = errors(result, true), np.sqrt(np.diagonal(result.covariance))
+        seen = np.isfinite(sigma)
+        total += np.mean((error[seen] / sigma[seen]) ** 2) / 60
+    assert total == pytest.approx(1.0, abs=0.3)
+
+
+def test_a_plain_quadratic_term_is_estimated_although_noise_is_large():
+    true = truth(6, quadratic=2e-2)
+    result = calibrate_free(session(true, sphere(40, np.random.default_rng(2)), noise=1e-2))
+    assert result.sensors[0].quadratic.value == pytest.approx(
+        true.quadratic[0], abs=4 * result.sensors[0].quadratic.sigma
+    )
+    assert result.sensors[0].quadratic.sigma * 9.81 > 1e-4

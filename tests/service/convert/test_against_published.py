@@ -1,0 +1,72 @@
+"""Real recordings: ours beside the published calibration, by residual and parameter by parameter."""
+
+import numpy as np
+import pytest
+
+from benchmarks.recordings.held_out import held_out, rms
+from benchmarks.recordings.published import ferraris, mpu9150, xsens
+from benchmarks.recordings.sets import recordings
+from benchmarks.recordings.tables import known_triads, literature, ours, start_of
+from benchmarks.recordings.triad import triad_of
+from estimator.calibration import calibrate
+from tests.service.convert.made import needs_recordings
+
+pytestmark = needs_recordings
+
+
+def triads(recording):
+    """Our triads from all positions."""
+    return ours(recording)(recording.session)
+
+
+@pytest.mark.parametrize(("name", "which"), [("imu-tk", 0), *(("mpu9150-five", k) for k in range(5))])
+def test_published_parameters_leave_more_than_ours_on_the_same_positions(name, which):
+    recording = recordings(name)[which]
+    known = rms(known_triads(recording), recording.session, recording.g)
+    assert np.all(rms(triads(recording), recording.session, recording.g) < known)
+
+
+@pytest.mark.parametrize(("name", "count"), [("imu-tk", 1), ("mpu9150-five", 6), ("ctu-mat", 1), ("kth-mimu", 3)])
+def test_held_out_positions_are_met_as_well_as_by_the_usual_fit(name, count):
+    found = recordings(name)
+    assert len(found) == count
+    for recording in found:
+        usual = held_out(recording.session, recording.g, literature(recording, start_of(recording)))
+        own = held_out(recording.session, recording.g, ours(recording))
+        assert np.sqrt(np.mean(own**2)) < 1.1 * np.sqrt(np.mean(usual**2))
+
+
+@pytest.mark.parametrize("k", range(5))
+def test_the_five_published_calibrations_are_reproduced(k):
+    recording = recordings("mpu9150-five")[k]
+    (own,), known = triads(recording), mpu9150(k)
+    np.testing.assert_allclose(np.diagonal(own.upper()), np.diagonal(known.upper()), atol=4e-4)
+    np.testing.assert_allclose(own.offset, known.offset, atol=3e-3)
+    np.testing.assert_allclose(own.misalignment(), known.misalignment(), atol=np.radians(0.03))
+
+
+def test_the_factory_calibration_of_the_xsens_is_met_to_a_quarter_of_a_per_cent():
+    (own,), known = triads(recordings("imu-tk")[0]), xsens()
+    np.testing.assert_allclose(own.scale / known.scale, 1, atol=2.5e-3)
+    np.testing.assert_allclose(own.offset, known.offset, atol=5)
+
+
+def test_six_labelled_positions_give_the_published_result_within_our_uncertainty():
+    (recording,) = recordings("ferraris-csv")
+    result = calibrate(recording.session)
+    own, known = triad_of(result, recording.triads[0]), ferraris()
+    sigma = np.array([s.scale.sigma for s in result.sensors[:3]])
+    assert np.all(np.abs(own.scale - known.scale) < 2 * sigma)
+    assert result.fit.p_value > 0.05
+
+
+def test_twenty_four_accelerometers_of_one_board_repeat_from_session_to_session():
+    first, second, _ = (triads(r) for r in recordings("kth-mimu"))
+    change = np.array([b.scale / a.scale - 1 for a, b in zip(first, second, strict=True)])
+    assert change.std() < 4e-4
+
+
+def test_the_five_imus_agree_with_each_other_within_their_stated_noise():
+    result = calibrate(recordings("mpu9150-five")[5].session)
+    assert result.fit.p_value > 0.01
+    assert result.fit.parameters == 4 * 15 - 3
