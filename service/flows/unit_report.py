@@ -4,6 +4,7 @@ from datetime import datetime
 
 from service.errors import NotFoundError
 from service.records import UnitReport
+from service.storage.queries.services import epoch
 from service.storage.store import Store
 
 LATEST = 50
@@ -16,11 +17,12 @@ def unit_report(store: Store, serial: str, now: datetime) -> UnitReport:
         raise NotFoundError(f"There is no unit {serial!r}.")
     unit = store.units.key(serial)
     unit_type = store.unit_types.of_unit(serial)
-    since, until = store.services.around(unit, now)
+    services = store.services.of_unit(serial)
+    since, until = epoch(tuple(service.at for service in services), now)
     return UnitReport(
         summary=summary,
         unit_type=unit_type,
         reference_session=store.sessions.reference(unit, unit_type.block, since, until),
         sessions=store.sessions.page(serial, 0, LATEST),
-        services=store.services.of_unit(serial),
+        services=services,
     )

@@ -36,10 +36,13 @@ class Services(Queries):
 
     def around(self, unit: int, at: datetime) -> tuple[datetime | None, datetime | None]:
         """The last break at or before a time and the first one after it: the epoch that the time is in."""
-        times = sorted(self._session.scalars(select(ServiceRow.at).where(ServiceRow.unit_id == unit)))
-        before = [time for time in times if time <= at]
-        after = [time for time in times if time > at]
-        return (before[-1] if before else None), (after[0] if after else None)
+        return epoch(tuple(self._session.scalars(select(ServiceRow.at).where(ServiceRow.unit_id == unit))), at)
+
+
+def epoch(breaks: tuple[datetime, ...], at: datetime) -> tuple[datetime | None, datetime | None]:
+    """The last of the breaks at or before a time and the first one after it."""
+    before, after = [b for b in breaks if b <= at], [b for b in breaks if b > at]
+    return max(before, default=None), min(after, default=None)
 
 
 def _services() -> Select[ServiceRow, str]:

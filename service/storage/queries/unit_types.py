@@ -3,7 +3,7 @@
 from dataclasses import asdict
 from datetime import datetime
 
-from sqlalchemy import select
+from sqlalchemy import Select, select
 
 from service.errors import NotFoundError
 from service.records import Tolerances, UnitType
@@ -33,24 +33,17 @@ class UnitTypes(Queries):
         return self._record(self._row(name))
 
     def of_unit(self, serial: str) -> UnitType:
-        """The type of a unit."""
-        row = self._session.scalar(select(UnitTypeRow).join(UnitRow).where(UnitRow.serial == serial))
-        if row is None:
+        """The type of a unit with the tolerances that hold now."""
+        found = self._session.execute(
+            _with_tolerances().join(UnitRow, UnitRow.unit_type_id == UnitTypeRow.id).where(UnitRow.serial == serial)
+        ).one_or_none()
+        if found is None:
             raise NotFoundError(f"There is no unit {serial!r}.")
-        return self._record(row)
+        return _unit_type(*found)
 
     def page(self, offset: int, limit: int) -> tuple[UnitType, ...]:
         """Types by name."""
-        rows = self._session.execute(
-            select(UnitTypeRow, ToleranceRow)
-            .join(
-                ToleranceRow,
-                (ToleranceRow.unit_type_id == UnitTypeRow.id) & (ToleranceRow.revision == UnitTypeRow.revision),
-            )
-            .order_by(UnitTypeRow.name)
-            .offset(offset)
-            .limit(limit)
-        )
+        rows = self._session.execute(_with_tolerances().order_by(UnitTypeRow.name).offset(offset).limit(limit))
         return tuple(_unit_type(row, tolerances) for row, tolerances in rows)
 
     def hold(self, name: str) -> UnitType:
@@ -89,6 +82,14 @@ class UnitTypes(Queries):
 
     def _record(self, row: UnitTypeRow) -> UnitType:
         return _unit_type(row, self._session.get_one(ToleranceRow, (row.id, row.revision)))
+
+
+def _with_tolerances() -> Select[UnitTypeRow, ToleranceRow]:
+    """Types, each with the revision of its tolerances that holds."""
+    return select(UnitTypeRow, ToleranceRow).join(
+        ToleranceRow,
+        (ToleranceRow.unit_type_id == UnitTypeRow.id) & (ToleranceRow.revision == UnitTypeRow.revision),
+    )
 
 
 def _missing(name: str) -> NotFoundError:

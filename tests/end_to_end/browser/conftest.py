@@ -6,19 +6,15 @@ import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from pathlib import Path
-from threading import Thread
-from time import sleep
 
 import httpx
 import pytest
-import uvicorn
 from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
-from service.app import create_app
 
 from service.settings import Settings
-from service.storage.schema import upgrade
 from tests.builders import Document, accelerometer_block, arbitrary_orientations, gyro_block, true_sensors
+from tests.databases import Databases
+from tests.serving import serving
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 FLAGS = (
@@ -56,28 +52,11 @@ def upload(url: str, document: Document) -> str:
     return str(answer.json()["id"])
 
 
-@contextmanager
-def serving(folder: Path) -> Iterator[str]:
-    """A running service with an empty store in ``folder``."""
-    settings = Settings(data_folder=folder)
-    upgrade(settings.database)
-    app = create_app(settings)
-    server = uvicorn.Server(uvicorn.Config(app, port=0, log_level="warning"))
-    thread = Thread(target=server.run, daemon=True)
-    thread.start()
-    while not server.started:
-        assert thread.is_alive(), "the service did not start"
-        sleep(0.02)
-    port = server.servers[0].sockets[0].getsockname()[1]
-    yield f"http://127.0.0.1:{port}"
-    server.should_exit = True
-    thread.join()
-
-
 @pytest.fixture(scope="session")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
+def site(sqlite: Databases, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
     """A service with four units: one that drifted out of tolerance, two fit, one measured by hand."""
-    with serving(tmp_path_factory.mktemp("service")) as url:
+    settings = Settings(database_url=sqlite.migrated(), data_folder=tmp_path_factory.mktemp("service"))
+    with serving(settings) as url:
         unfit = [upload(url, drifting(step)) for step in range(7)][-1]
         for seed in (1, 2):
             upload(url, accelerometer_block(unit="BA-018", seed=seed) | {"started_at": f"2026-0{seed}-01T08:00:00Z"})

@@ -35,7 +35,7 @@ def test_chosen_tile_leads_back_to_all() -> None:
 
 def test_margin_in_words_and_as_a_bar() -> None:
     found = [margin_of(m) for m in (0.4, 0.0, -0.12, -3.0, None)]
-    assert [m and m.words for m in found] == ["40 % left", "0 % left", "12 % over", "4.0 × limit", None]
+    assert [m and m.words for m in found] == ["60 %", "100 %", "112 %", "400 %", None]
     assert [m and round(m.used) for m in found] == [60, 100, 112, 150, None]
 
 

@@ -1,0 +1,57 @@
+"""The pictures of the documentation, taken of the demonstration fleet when they are asked for."""
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+from playwright.sync_api import Browser
+
+from service.demo.fill import fill
+from service.settings import Settings
+from service.storage import Database, Files, Storage
+from tests.databases import Databases
+from tests.end_to_end.browser.conftest import opened
+from tests.serving import serving
+
+ASKED = "IMU_HEALTH_PICTURES"
+FOLDER = Path(__file__).parents[3] / "docs" / "pictures"
+UNIT = "BA-107"
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(not os.environ.get(ASKED), reason=f"writes docs/pictures; set {ASKED}=1 to take them"),
+]
+
+
+@pytest.fixture(scope="module")
+def demonstration(sqlite: Databases, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """A service with the demonstration fleet."""
+    settings = Settings(database_url=sqlite.migrated(), data_folder=tmp_path_factory.mktemp("demonstration"))
+    storage = Storage(Database(settings.database), Files(settings.files))
+    fill(storage, settings.coverage_factor, lambda: None)
+    storage.database.close()
+    with serving(settings) as url:
+        yield url
+
+
+@pytest.mark.parametrize(
+    ("name", "path", "width", "height"),
+    [
+        ("fleet", "/", 1280, 1080),
+        ("fleet-phone", "/", 390, 844),
+        ("unit", f"/units/{UNIT}", 1280, 1500),
+        ("session", "/sessions/{last}", 1280, 1500),
+        ("upload", "/upload", 1280, 560),
+    ],
+)
+def test_picture(chromium: Browser, demonstration: str, name: str, path: str, width: int, height: int) -> None:
+    last = httpx.get(f"{demonstration}/api/v1/units").json()["units"][0]["last_session"]
+    with opened(chromium, width) as (_, page):
+        page.set_viewport_size({"width": width, "height": height})
+        page.goto(demonstration + path.format(last=last), wait_until="networkidle")
+        page.wait_for_timeout(500)
+        FOLDER.mkdir(parents=True, exist_ok=True)
+        page.screenshot(path=FOLDER / f"{name}.png")
+    assert (FOLDER / f"{name}.png").stat().st_size > 10_000
