@@ -1,0 +1,83 @@
+"""The demonstration fleet: what it shows, that it is always the same, and that it is never mixed with real units."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from estimator.reading import read_session
+from service.demo.cast import CAST
+from service.demo.fill import FILES, fill, is_wanted
+from service.demo.history import files_of
+from service.flows.fleet import fleet_overview
+from service.flows.upload import upload
+from service.records import Verdict
+from service.storage import Database, Files, Storage
+from tests.databases import Databases
+
+CONDITIONS = {
+    "BA-103": Verdict.PASS,
+    "BA-104": Verdict.CONDITIONAL_PASS,
+    "BA-105": Verdict.CONDITIONAL_FAIL,
+    "BA-106": Verdict.FAIL,
+    "BA-107": Verdict.PASS,
+    "BA-108": Verdict.UNDECIDABLE,
+}
+
+
+@pytest.fixture
+def empty(sqlite: Databases, tmp_path: Path) -> Iterator[Storage]:
+    """Stores that hold nothing."""
+    database = Database(sqlite.migrated())
+    yield Storage(database, Files(tmp_path / "files"))
+    database.close()
+
+
+def ignore() -> None:
+    """Nothing is shown of the progress."""
+
+
+def test_the_files_are_the_same_every_time_and_say_that_they_are_simulated() -> None:
+    member = CAST[0]
+    first, again = list(files_of(member)), list(files_of(member))
+    assert first == again
+    assert len({file.content for file in first}) == member.sessions
+    assert all("Simulated" in read_session(file.content).notes for file in first)
+
+
+def test_dates_are_irregular_and_in_order_over_three_years() -> None:
+    for member in CAST:
+        dates = [file.at for file in files_of(member)]
+        gaps = [(b - a).days for a, b in pairwise(dates)]
+        assert min(gaps) > 7
+        assert len(set(gaps)) > 3
+        assert (dates[0].year, dates[-1].year) == (2025 if member.joined else 2023, 2026)
+
+
+def test_the_fleet_shows_every_condition(empty: Storage) -> None:
+    fill(empty, 2.0, ignore)
+    with empty.database.reading() as store:
+        units = {unit.serial: unit for unit in fleet_overview(store)}
+        breaks = {serial: store.services.of_unit(serial) for serial in units}
+        sessions = store.sessions.page("BA-107", 0, 50)
+    assert {serial: units[serial].verdict for serial in CONDITIONS} == CONDITIONS
+    assert all(unit.simulated for unit in units.values())
+    assert sum(unit.sessions for unit in units.values()) == FILES
+    assert {serial for serial, found in breaks.items() if found} == {"BA-107", "BA-109"}
+    assert [s.is_reference for s in sessions].count(True) == 2, "a new reference after the service"
+
+
+def test_only_an_empty_database_or_an_unfinished_demonstration_is_filled(empty: Storage) -> None:
+    assert is_wanted(empty)
+    first = next(files_of(CAST[0]))
+    upload(empty, first.content, first.name, first.at, simulated=True)
+    assert is_wanted(empty)
+    fill(empty, 2.0, ignore)
+    assert not is_wanted(empty)
+
+
+def test_a_database_with_a_real_unit_is_left_alone(empty: Storage) -> None:
+    first = next(files_of(CAST[0]))
+    upload(empty, first.content, first.name, first.at)
+    assert not is_wanted(empty)

@@ -1,0 +1,91 @@
+"""`imu-health serve` and `db`, as processes of their own."""
+
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import httpx
+import pytest
+
+from service.storage.database import Database
+from tests.databases import Databases
+from tests.service.cli.conftest import Run
+
+COMMAND = Path(sys.executable).parent / "imu-health"
+ENTRYPOINT = Path(__file__).parents[3] / "docker" / "entrypoint.sh"
+READY = "imu-health is ready: open "
+
+
+@contextmanager
+def started(*command: object, **environment: str) -> Iterator[str]:
+    """The address that a starting service prints; the service is stopped as Ctrl-C stops it, and stops cleanly."""
+    with subprocess.Popen(
+        list(map(str, command)),
+        stdout=subprocess.PIPE,
+        text=True,
+        env={"PATH": f"{COMMAND.parent}:/usr/bin:/bin", **environment},
+    ) as process:
+        try:
+            assert process.stdout is not None
+            line = process.stdout.readline().strip()
+            assert line.startswith(READY), line
+            yield line.removeprefix(READY)
+        finally:
+            process.send_signal(signal.SIGINT)
+            process.wait(timeout=20)
+
+
+def test_an_empty_database_is_filled_once_with_units_that_say_they_are_simulated(tmp_path: Path) -> None:
+    for _ in range(2):
+        with started(COMMAND, "serve", "--demo", "--port", 0, "--data-folder", tmp_path) as address:
+            assert address.startswith("http://127.0.0.1:")
+            assert httpx.get(f"{address}/readyz").status_code == 200
+            fleet = httpx.get(f"{address}/api/v1/fleet").json()
+            assert (fleet["units"], fleet["simulated"]) == (12, 12)
+            assert len(httpx.get(f"{address}/api/v1/sessions", params={"limit": 1000}).json()["sessions"]) == 151
+
+
+def test_without_demo_the_database_stays_empty(tmp_path: Path) -> None:
+    with started(COMMAND, "serve", "--port", 0, "--data-folder", tmp_path) as address:
+        assert httpx.get(f"{address}/api/v1/fleet").json()["units"] == 0
+
+
+def test_the_container_s_entrypoint_starts_the_service(tmp_path: Path) -> None:
+    with started("/bin/sh", ENTRYPOINT, IMU_HEALTH_PORT="0", IMU_HEALTH_DATA_FOLDER=str(tmp_path)) as address:
+        assert httpx.get(f"{address}/readyz").status_code == 200
+
+
+def test_the_container_s_entrypoint_runs_other_commands() -> None:
+    done = subprocess.run(
+        ["/bin/sh", ENTRYPOINT, "simulate", "--help"],
+        env={"PATH": f"{COMMAND.parent}:/usr/bin:/bin"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert "--drift" in done.stdout
+
+
+def test_db_upgrade_and_downgrade(run: Run, databases: Databases) -> None:
+    url = databases.empty()
+    assert run("db", "upgrade", "--database-url", url).code == 0
+    ready = Database(url)
+    ready.require_ready()
+    ready.close()
+    assert run("db", "downgrade", "base", "--database-url", url).code == 0
+    assert run("db", "upgrade", "--database-url", url).code == 0
+
+
+def test_a_database_that_does_not_answer_is_said_on_one_line(run: Run) -> None:
+    ran = run("db", "upgrade", "--database-url", "postgresql://nobody@127.0.0.1:1/none")
+    assert (ran.code, ran.err.count("\n")) == (1, 1)
+
+
+def test_a_setting_that_makes_no_sense_is_named(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("IMU_HEALTH_PORT", "many")
+    ran = run("db", "upgrade")
+    assert ran.code == 1
+    assert "port" in ran.err
