@@ -13,14 +13,15 @@ BINS = ((2, 3), (3, 4), (4, 5), (5, 6.5), (6.5, 8), (8, 12), (12, 18), (18, 27),
 INTRODUCTION = (
     "Unit, stand, schedule, temperature, order, noise and effect are drawn at random; the physics is written a second "
     "time, apart from the estimator. Strength is the norm of what the baseline leaves of an effect, in standard errors "
-    "of a reading; separation the norm of what is left of it after the best fit of a rival. Intervals are 95 % (Wilson)."
+    "of a reading; separation the norm of what is left of it after the best fit of a rival. Intervals: 95 % (Wilson)."
 )
 
 
 def page(outcomes: list[Outcome], command: str) -> str:
     """Markdown."""
+    made = f"{len(outcomes)} simulated sessions, made by `{command}`."
     parts = [
-        f"# How well hidden effects are found\n\n{len(outcomes)} simulated sessions, made by `{command}`. {INTRODUCTION}",
+        f"# How well hidden effects are found\n\n{made} {INTRODUCTION}",
         _targets(outcomes),
         _by_cause(outcomes),
         _confusion(outcomes),

@@ -25,6 +25,8 @@ ENTRY_FACTOR = 3.0
 PASSING = ("bias-jump", "reading-outlier")
 """Effects of one sensor that belong to one session."""
 TRIES = 60
+BLIND = 0.03
+"""Below this share of the best seen direction a combination of amplitudes is taken as unseen."""
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,8 @@ class Truth:
     strength: float
     nearest: Rival | None
     """The closest rival; None when there is none."""
+    comparable: bool = True
+    """Whether the session sees every one of several amplitudes."""
 
     @property
     def separation(self) -> float:
@@ -119,7 +123,14 @@ def _truth(field: Field, session: Session, effect: Effect, strength: float) -> T
         sum(k != 0 for k in effect.amplitude) if effect.cause == "sensor-drift" else CATALOGUE[effect.cause].parameters
     )
     rivals = field.rivals(left, effect.cause, effect.sensors, own)
-    return Truth(effect, names, strength, rivals[0] if rivals else None)
+    comparable = len(effect.amplitude) < 2 or _all_seen(field.lens.left(_columns(session, effect)))
+    return Truth(effect, names, strength, rivals[0] if rivals else None, comparable)
+
+
+def _all_seen(left: np.ndarray) -> bool:
+    """Whether no direction of the amplitudes is close to unseen."""
+    values = np.linalg.svd(left, compute_uv=False)
+    return bool(values[-1] > BLIND * values[0])
 
 
 def _two(label: str, rng: np.random.Generator, cause: str | None) -> Case:

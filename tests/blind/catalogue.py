@@ -62,7 +62,7 @@ CATALOGUE = {
     "gravity-entry": _hidden(1, HISTORY, "history", "both runs", "accelerometers"),
     "sensor-drift": _hidden(4, HISTORY, "history", "both runs"),
     "remount-rotation": _hidden(3, HISTORY, "history", "both runs"),
-    "g-sensitivity": _hidden(3, HISTORY, "history", "both runs", "mixed"),
+    "g-sensitivity": _hidden(3, HISTORY, "history", "both runs", "gyros"),
     "latitude-entry": _hidden(1, HISTORY, "history", "both runs", "gyros"),
     "meridian-error": _hidden(1, WHOLE, "both runs", "gyros"),
 }

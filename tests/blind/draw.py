@@ -27,9 +27,7 @@ def draw_arrangement(rng: np.random.Generator, needs: frozenset[str]) -> Arrange
     """Mostly six accelerometers; gyros as rates, as pulses or beside accelerometers."""
     m = int(rng.choice([6] * 12 + [4, 5, 7, 8, 9, 10, 12, 8]))
     kind = rng.choice(["accelerometer", "rate", "pulse", "mixed"], p=[0.64, 0.12, 0.12, 0.12])
-    if "mixed" in needs:
-        kind = "mixed"
-    elif "gyros" in needs and kind == "accelerometer":
+    if "gyros" in needs and kind == "accelerometer":
         kind = rng.choice(["rate", "pulse", "mixed"])
     elif "accelerometers" in needs and kind in ("rate", "pulse"):
         kind = "accelerometer"

@@ -17,6 +17,7 @@ from tests.blind.world import Array, Effect, Session
 LARGEST_TURN = 0.02
 LARGEST_ADDED = 0.1
 LARGEST_ENTRY = 0.3
+COARSE = 0.08
 
 
 class UnhideableError(Exception):
@@ -33,12 +34,21 @@ def draw_effect(session: Session, cause: str, rng: np.random.Generator) -> Effec
     if cause in DISCRETE:
         return _draw_record(session, cause, rng)
     hidden = CATALOGUE[cause]
+    if cause == "temperature-rate" and not resolved(session):
+        raise UnhideableError(cause)
     sensors = _draw_sensor(session, cause, rng) if hidden.scope == SENSOR or cause in SINGLE else ()
     direction = rng.normal(size=hidden.size)
     if cause == "sensor-drift":
         direction *= [(1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 1)][rng.integers(3)]
     steps = np.array([step_of(session, cause, k) for k in range(hidden.size)])
     return Effect(cause, tuple(direction * steps), sensors, _draw_shape(session, cause, rng))
+
+
+def resolved(session: Session) -> bool:
+    """Whether the rows sample the temperature so closely that its rate can be told from them."""
+    schedule = session.schedule
+    sampled = np.gradient(schedule.temperature, schedule.time)
+    return bool(np.std(sampled - schedule.temperature_rate) < COARSE * np.std(schedule.temperature_rate))
 
 
 SINGLE = ("sensor-drift", "g-sensitivity")

@@ -41,7 +41,6 @@ def available(session: Session, cause: str) -> bool:
         "stated noise": session.noise.stated,
         "accelerometers": not unit.gyro.all(),
         "gyros": bool(unit.gyro.any()),
-        "mixed": bool(unit.gyro.any() and not unit.gyro.all()),
         "history": True,
     }
     return all(has[need] for need in CATALOGUE[cause].needs)

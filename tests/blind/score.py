@@ -105,7 +105,7 @@ def _is(truth: Truth, finding: dict[str, Any]) -> bool:
 def pulls(truth: Truth, finding: dict[str, Any], case: Case) -> list[Pull]:
     """(estimate − truth)/sigma of every amplitude that can be compared; a length for tangent components."""
     cause, true = truth.effect.cause, np.array(truth.effect.amplitude)
-    if cause in UNCOMPARED:
+    if cause in UNCOMPARED or not truth.comparable:
         return []
     value, sigma = (np.array(finding[key], dtype=float)[: len(true)] for key in ("amplitude", "sigma"))
     if len(value) < len(true):
