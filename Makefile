@@ -1,5 +1,6 @@
 # The two commands of the README are `make run` and `make test`; `make setup` is what both share.
-PYTHON ?= python3
+PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
+	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 BIN := .venv/bin
 STAMP := .venv/.complete
 
@@ -8,20 +9,21 @@ STAMP := .venv/.complete
 setup: $(STAMP)
 
 $(STAMP): requirements.lock pyproject.toml
-	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "imu-health needs Python 3.11 or newer")'
+	@test -n "$(PYTHON)" || { echo "imu-health needs Python 3.11 or newer" >&2; exit 1; }
+	@echo "Setting up .venv, once; this takes a minute or two."
 	$(PYTHON) -m venv .venv
 	$(BIN)/pip install --quiet --disable-pip-version-check -r requirements.lock
 	$(BIN)/pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
 	touch $@
 
 run: setup
-	$(BIN)/imu-health serve --demo
+	@$(BIN)/imu-health serve --demo
 
 browser:
 	@sh tests/install_chromium.sh
 
 test: setup browser
-	$(BIN)/pytest -n 2
+	$(BIN)/pytest -n auto --maxprocesses 8
 
 lint: setup
 	$(BIN)/ruff format --check .
