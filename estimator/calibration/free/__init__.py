@@ -18,32 +18,25 @@ from scipy.stats import chi2
 from estimator.calibration.free.excess import explained
 from estimator.calibration.free.gyros import GyroBiases, rest_biases
 from estimator.calibration.free.information import information
-from estimator.calibration.free.knowledge import merged, of_accelerometers, of_gyros
+from estimator.calibration.free.knowledge import merged, of_accelerometers, of_gyros, of_nothing
 from estimator.calibration.free.model import Rows, predicted
 from estimator.calibration.free.report import fit_of_accelerometers, fit_of_gyros, report
+from estimator.calibration.free.schedule import Mask, check, sorted_out
 from estimator.calibration.free.solve import Solution, search, search_with_noise
 from estimator.calibration.free.start import start
-from estimator.errors import Problem, ScheduleError
 from estimator.forward import measured
 from estimator.parameters import names
 from estimator.reference import gravity
 from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
+__all__ = ["accelerometer_rows", "calibrate_free", "check", "gyro_biases", "residual_per_freedom", "solve"]
+
 USEFUL_QUADRATIC = 1e-4
 """Sigma of c·g below which the quadratic term is worth estimating, be it there or not."""
 
 PLAIN_QUADRATIC = 1e-3
 """Probability, without any quadratic term, of estimates this large: below it the term is there."""
-
-FEWEST = 4
-"""Orientations below which nothing at all can be estimated: a sphere needs four points."""
-
-LEAST_TURN = 0.05
-"""g; rows whose readings vary less than this show one orientation."""
-
-GENERIC = 9
-"""Unlabelled orientations that determine scale, bias and axes of any block: an ellipsoid has nine parameters."""
 
 UNSTATED_NOISE = 1e-4
 """g; relative weight to begin with where no noise is stated."""
@@ -62,25 +55,27 @@ def calibrate_free(session: CalibrationSession, *, quadratic: bool | None = None
     ScheduleError
         Rows from which nothing can be estimated. Rows that determine only a part are a result.
     """
-    check(session)
-    is_gyro = np.array([s.kind != ACCELEROMETER for s in session.sensors])
+    live, dead, gyro = sorted_out(session)
     scale = np.array([s.nominal_scale for s in session.sensors])
     axes = np.stack([s.nominal_axis for s in session.sensors])
-    gyros = gyro_biases(session, is_gyro) if is_gyro.any() else None
-    if gyros is not None and is_gyro.all():
-        return report(
-            session, of_gyros(gyros, scale, axes), fit_of_gyros(gyros, names(session.sensors)), "nominal-axes"
-        )
+    readings = measured(session)[0]
+    parts = []
+    if dead.any():
+        parts.append((np.flatnonzero(dead), of_nothing(readings[:, dead], scale[dead], axes[dead])))
+    if gyro.any():
+        biases = gyro_biases(session, gyro)
+        parts.append((np.flatnonzero(gyro), of_gyros(biases, scale[gyro], axes[gyro])))
+        if gyro.all():
+            return report(session, parts[0][1], fit_of_gyros(biases, names(session.sensors)), "nominal-axes")
     g = gravity(session.site)
-    rows, stated = accelerometer_rows(session, ~is_gyro, g)
+    rows, stated = accelerometer_rows(session, live, g)
     solution = solve(rows, stated, quadratic)
     used = explained(solution) if stated else solution
-    known = of_accelerometers(used, solution.rows.sigma, scale[~is_gyro], g)
-    own_names = names(tuple(s for s in session.sensors if s.kind == ACCELEROMETER))
+    known = of_accelerometers(used, solution.rows.sigma, scale[live], g)
+    own_names = names(tuple(s for s, own in zip(session.sensors, live, strict=True) if own))
     fit = fit_of_accelerometers(solution, used, known, stated, own_names)
-    if gyros is not None:
-        known = merged(known, of_gyros(gyros, scale[is_gyro], axes[is_gyro]), session)
-    return report(session, known, fit, "directions" if rows.held else "nominal-axes")
+    everything = merged([(np.flatnonzero(live), known), *parts])
+    return report(session, everything, fit, "directions" if rows.held else "nominal-axes")
 
 
 def residual_per_freedom(session: CalibrationSession) -> float:
@@ -89,12 +84,11 @@ def residual_per_freedom(session: CalibrationSession) -> float:
     What the still stretches of a raw log are chosen by; infinite where the rows do not determine everything, and zero,
     so that the first choice stands, for a block of gyros alone.
     """
-    check(session)
-    chosen = np.array([s.kind == ACCELEROMETER for s in session.sensors])
-    if not chosen.any():
+    live, _, _ = sorted_out(session)
+    if not live.any():
         return 0.0
     g = gravity(session.site)
-    rows, stated = accelerometer_rows(session, chosen, g)
+    rows, stated = accelerometer_rows(session, live, g)
     solution = solve(rows, stated, quadratic=False)
     if not solution.knowledge.full or solution.dof < 1:
         return float("inf")
@@ -102,42 +96,9 @@ def residual_per_freedom(session: CalibrationSession) -> float:
     return float(np.sqrt(squares.sum() / solution.dof) * (1 + 1 / np.sqrt(2 * solution.dof)))
 
 
-def check(session: CalibrationSession) -> None:
-    """ScheduleError unless something can be estimated."""
-    accelerometers = [s for s in session.sensors if s.kind == ACCELEROMETER]
-    if not accelerometers:
-        return
-    spread = np.linalg.svd(np.stack([s.nominal_axis for s in accelerometers]), compute_uv=False)
-    if len(accelerometers) < 3 or spread[2] < 0.05 * spread[0]:
-        raise ScheduleError(
-            [
-                Problem(
-                    "sensors",
-                    f"{len(accelerometers)} accelerometers whose nominal axes do not span space; arbitrary "
-                    "orientations need three or more axes that do not lie in one plane",
-                )
-            ]
-        )
-    R = len(session.readings)
-    if R < FEWEST:
-        raise ScheduleError([Problem("table", f"{R} orientations are too few to estimate anything; {advice(R)}")])
-    turned = np.array([s.kind == ACCELEROMETER for s in session.sensors])
-    unit = gravity(session.site) * np.array([s.nominal_scale for s in accelerometers])
-    if (measured(session)[0][:, turned] / unit).std(axis=0).max() < LEAST_TURN:
-        raise ScheduleError([Problem("table", f"all {R} rows show the same orientation; {advice(0)}")])
-
-
-def advice(rows: int) -> str:
-    """What to add to ``rows`` orientations."""
-    return (
-        f"add at least {GENERIC - rows} so that there are {GENERIC} or more still orientations spread over the whole "
-        "sphere, tilted about all three axes, or label six positions with their directions"
-    )
-
-
-def accelerometer_rows(session: CalibrationSession, chosen: Array, g: float) -> tuple[Rows, bool]:
+def accelerometer_rows(session: CalibrationSession, chosen: Mask, g: float) -> tuple[Rows, bool]:
     """Dimensionless rows of the accelerometers, and whether their noise is stated."""
-    sensors = [s for s in session.sensors if s.kind == ACCELEROMETER]
+    sensors = [s for s, own in zip(session.sensors, chosen, strict=True) if own]
     readings, errors = measured(session)
     unit = g * np.array([s.nominal_scale for s in sensors])
     axes = np.stack([s.nominal_axis for s in sensors])
@@ -190,7 +151,7 @@ def useful(extended: Solution) -> bool:
     return bool(known or chi2.sf(c @ np.linalg.solve(covariance, c), len(c)) < PLAIN_QUADRATIC)
 
 
-def gyro_biases(session: CalibrationSession, chosen: Array) -> GyroBiases:
+def gyro_biases(session: CalibrationSession, chosen: Mask) -> GyroBiases:
     """The gyros' biases by their nominal scale."""
     sensors = [s for s in session.sensors if s.kind != ACCELEROMETER]
     readings, errors = measured(session)

@@ -3,14 +3,17 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import null_space
+from numpy.typing import NDArray
+from scipy.linalg import block_diag, null_space
 
 from estimator.calibration.free.gyros import GyroBiases
 from estimator.calibration.free.model import predicted
 from estimator.calibration.free.solve import Solution
 from estimator.parameters import ELEMENTS, PLAUSIBLE, SensorParameters
 from estimator.results import KnownCombination
-from estimator.session import ACCELEROMETER, Array, CalibrationSession
+from estimator.session import Array
+
+Indices = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,31 +113,39 @@ def of_gyros(gyros: GyroBiases, scale: Array, axes: Array) -> Knowledge:
     return Knowledge(parameters, square, observable, ((),) * k, gyros.residual, gyros.noise)
 
 
-def merged(accelerometers: Knowledge, gyros: Knowledge, session: CalibrationSession) -> Knowledge:
-    """Both kinds in the session's order; the two are independent."""
-    is_gyro = np.array([s.kind != ACCELEROMETER for s in session.sensors])
-    order = np.argsort(np.concatenate([np.flatnonzero(~is_gyro), np.flatnonzero(is_gyro)]))
-    elements = (5 * order[:, None] + np.arange(5)).ravel()
-    a, b = accelerometers, gyros
-    covariance = np.zeros((5 * len(order), 5 * len(order)))
-    split = len(a.covariance)
-    covariance[:split, :split], covariance[split:, split:] = a.covariance, b.covariance
-    observable = np.concatenate([a.observable, b.observable])
-    unknown = ~observable.ravel()
-    covariance[unknown, :] = np.nan
-    covariance[:, unknown] = np.nan
-    p, q = a.parameters, b.parameters
-    known = a.known + b.known
+def of_nothing(readings: Array, scale: Array, axes: Array) -> Knowledge:
+    """Sensors that answer to nothing: readings (R, k) of constant value, which is all that is known of them."""
+    R, k = readings.shape
+    zero = np.zeros(k)
     return Knowledge(
-        SensorParameters(
-            np.concatenate([p.scale, q.scale])[order],
-            np.concatenate([p.bias, q.bias])[order],
-            np.concatenate([p.quadratic, q.quadratic])[order],
-            np.concatenate([p.axis, q.axis])[order],
-        ),
-        covariance[np.ix_(elements, elements)],
-        observable[order],
-        tuple(known[k] for k in order),
-        np.concatenate([a.residual, b.residual], axis=1)[:, order],
-        np.concatenate([a.noise, b.noise], axis=1)[:, order],
+        parameters=SensorParameters(scale, zero, zero, axes),
+        covariance=np.full((5 * k, 5 * k), np.nan),
+        observable=np.zeros((k, 5), dtype=bool),
+        known=((),) * k,
+        residual=(readings - readings.mean(axis=0)) / scale,
+        noise=np.broadcast_to(np.abs(readings.std(axis=0) / scale), (R, k)),
+    )
+
+
+def merged(parts: list[tuple[Indices, Knowledge]]) -> Knowledge:
+    """Independent parts, each with the places (k,) of its sensors, as one in the session's order."""
+    places = np.concatenate([at for at, _ in parts])
+    order = np.argsort(places)
+    elements = (5 * order[:, None] + np.arange(5)).ravel()
+    covariance = block_diag(*(k.covariance for _, k in parts))
+    observable = np.concatenate([k.observable for _, k in parts])
+    flat = observable.ravel()
+    covariance = np.where(np.outer(flat, flat), covariance, np.nan)
+    known = [c for _, k in parts for c in k.known]
+
+    def joined(name: str) -> Array:
+        return np.concatenate([getattr(k.parameters, name) for _, k in parts])[order]
+
+    return Knowledge(
+        parameters=SensorParameters(joined("scale"), joined("bias"), joined("quadratic"), joined("axis")),
+        covariance=covariance[np.ix_(elements, elements)],
+        observable=observable[order],
+        known=tuple(known[k] for k in order),
+        residual=np.concatenate([k.residual for _, k in parts], axis=1)[:, order],
+        noise=np.concatenate([k.noise for _, k in parts], axis=1)[:, order],
     )

@@ -20,6 +20,9 @@ SLIGHT = (0.05, 0.005, 0.0005)
 """The same for the quadric, tried in turn: below it the sphere's shape is kept. Few orientations need a small one
 when they are precise and a large one when they are plain."""
 
+LEAST_GAIN = 1e-6
+"""Of nominal; a sensor that answers less is dead."""
+
 FLAT = 1e-3
 """Ratio of the quadric's eigenvalues below which it is no ellipsoid."""
 
@@ -32,7 +35,7 @@ def start(rows: Rows) -> State:
 
 def oriented(rows: Rows, sensitivity: Array, offset: Array) -> State:
     """State with sensitivity (m, 3), offset (m,) and the orientations that fit them best."""
-    gain = np.linalg.norm(sensitivity, axis=1)
+    gain = np.maximum(np.linalg.norm(sensitivity, axis=1), LEAST_GAIN)
     directions = unit((rows.y - offset) @ np.linalg.pinv(sensitivity).T)
     if rows.held:
         directions = np.where(rows.prior[:, None] > 0, rows.directions, directions)

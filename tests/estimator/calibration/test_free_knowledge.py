@@ -75,6 +75,25 @@ def test_axes_in_one_plane_are_refused():
         calibrate_free(session(true, sphere(12, np.random.default_rng(0))))
 
 
+def test_a_dead_sensor_is_left_out_and_said_to_be_unknown():
+    measured = session(truth(6), sphere(24, np.random.default_rng(1)))
+    stuck = measured.readings.copy()
+    stuck[:, 3] = 0.4
+    result = calibrate_free(replace(measured, readings=stuck))
+    assert set(result.sensor("A4").observable.values()) == {False}
+    assert all(s.observable["scale"] for s in result.sensors if s.name != "A4")
+    assert result.fit.p_value > 1e-3
+    json.dumps(result.to_dict(), allow_nan=False)
+
+
+def test_too_few_live_sensors_are_named():
+    measured = session(truth(3), sphere(24, np.random.default_rng(1)))
+    stuck = measured.readings.copy()
+    stuck[:, 1] = 0.4
+    with pytest.raises(ScheduleError, match="A2 did not answer"):
+        calibrate_free(replace(measured, readings=stuck))
+
+
 FACES = np.vstack([np.eye(3), -np.eye(3)])
 
 

@@ -1,0 +1,82 @@
+"""Whether rows in unknown orientations can tell anything, and which sensors they can tell it of."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from estimator.errors import Problem, ScheduleError
+from estimator.forward import measured
+from estimator.reference import gravity
+from estimator.session import ACCELEROMETER, CalibrationSession
+
+Mask = NDArray[np.bool_]
+
+FEWEST = 4
+"""Orientations below which nothing at all can be estimated: a sphere needs four points."""
+
+LEAST_TURN = 0.05
+"""g; rows whose readings vary less than this show one orientation."""
+
+LEAST_ANSWER = 1e-3
+"""Part of the liveliest accelerometer's variation below which another one does not answer at all."""
+
+FLATTEST = 0.05
+"""Ratio of the nominal axes' singular values below which they lie in one plane."""
+
+GENERIC = 9
+"""Unlabelled orientations that determine scale, bias and axes of any block: an ellipsoid has nine parameters."""
+
+
+def check(session: CalibrationSession) -> None:
+    """ScheduleError unless something can be estimated."""
+    sorted_out(session)
+
+
+def sorted_out(session: CalibrationSession) -> tuple[Mask, Mask, Mask]:
+    """Which sensors (m,) are accelerometers that answer to turns, accelerometers that do not, and gyros.
+
+    Raises
+    ------
+    ScheduleError
+        The accelerometers cannot be calibrated from these rows at all.
+    """
+    gyro = np.array([s.kind != ACCELEROMETER for s in session.sensors])
+    R = len(session.readings)
+    if gyro.all():
+        return np.zeros_like(gyro), np.zeros_like(gyro), gyro
+    if R < FEWEST:
+        raise ScheduleError([Problem("table", f"{R} orientations are too few to estimate anything; {advice(R)}")])
+    unit = gravity(session.site) * np.array([s.nominal_scale for s in session.sensors])
+    swing = np.where(gyro, 0.0, (measured(session)[0] / unit).std(axis=0))
+    if swing.max() < LEAST_TURN:
+        raise ScheduleError(
+            [
+                Problem(
+                    "table",
+                    f"all {R} rows show the same orientation: by nominal_scale the readings vary by "
+                    f"{swing.max():.1g} g; {advice(0)}",
+                )
+            ]
+        )
+    live = swing > LEAST_ANSWER * swing.max()
+    spread = np.linalg.svd([s.nominal_axis for s, own in zip(session.sensors, live, strict=True) if own])[1]
+    if live.sum() < 3 or spread[2] < FLATTEST * spread[0]:
+        raise ScheduleError([Problem("sensors", too_few_axes(session, live, gyro))])
+    return live, ~live & ~gyro, gyro
+
+
+def too_few_axes(session: CalibrationSession, live: Mask, gyro: Mask) -> str:
+    """Why the accelerometers cannot measure a vector."""
+    silent = [s.name for s, dead in zip(session.sensors, ~live & ~gyro, strict=True) if dead]
+    reason = f" ({', '.join(silent)} did not answer to the turns)" if silent else ""
+    return (
+        f"{int(live.sum())} accelerometers whose nominal axes do not span space{reason}; arbitrary orientations need "
+        "three or more axes that do not lie in one plane"
+    )
+
+
+def advice(rows: int) -> str:
+    """What to add to ``rows`` orientations."""
+    return (
+        f"add at least {GENERIC - rows} so that there are {GENERIC} or more still orientations spread over the whole "
+        "sphere, tilted about all three axes, or label six positions with their directions"
+    )
