@@ -39,7 +39,7 @@ def oriented(rows: Rows, sensitivity: Array, offset: Array) -> State:
     directions = unit((rows.y - offset) @ np.linalg.pinv(sensitivity).T)
     if rows.held:
         directions = np.where(rows.prior[:, None] > 0, rows.directions, directions)
-    return State(np.log(gain), offset, np.zeros_like(gain), unit(sensitivity), directions)
+    return State(np.log(gain), offset, np.zeros_like(gain), sensitivity / gain[:, None], directions)
 
 
 def with_directions(rows: Rows) -> tuple[Array, Array]:
