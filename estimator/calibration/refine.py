@@ -139,6 +139,28 @@ def input_variance(p: SensorParameters, standard_errors: Array, repeatability: A
     return (standard_errors / p.scale[:, None, :]) ** 2 + repeatability**2
 
 
+def eliminated(normal: Normal, P: int, sigma: Array) -> tuple[Array, Array, Array]:
+    """Total covariance and repeatability (S, P, P) and the step (S, P + k), with the constant errors eliminated.
+
+    With A the sensors' block, B the border and F = A⁻¹B, the readings tell D = G'WG − B'F of the constant errors s
+    beyond their prior Π (less what the ridge pretends). Then cov = A⁻¹ + F·(Π + D)⁻¹·F', of which F·(Π + D)⁻¹·Π·(Π + D)⁻¹·F' is the stand's. The rest
+    is written as a sum of positive terms: as a difference it would drown when the stand is far worse than the readings.
+    """
+    border, prior = normal.matrix[:, :P, P:], np.diag(sigma**-2.0)
+    inner = np.linalg.inv(normal.matrix[:, :P, :P])
+    lean = inner @ border
+    taken = (border + RIDGE * lean).swapaxes(-1, -2) @ lean
+    values, vectors = np.linalg.eigh(normal.matrix[:, P:, P:] - prior - taken)
+    root = vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :]
+    spread = np.linalg.inv(prior + root @ root.swapaxes(-1, -2))
+    gain = lean @ spread
+    own, seen = normal.rhs[:, :P, None], normal.rhs[:, P:, None]
+    constant = spread @ (seen - lean.swapaxes(-1, -2) @ own)
+    step = np.concatenate([inner @ own - lean @ constant, constant], axis=1)[..., 0]
+    told = gain @ root
+    return inner + gain @ lean.swapaxes(-1, -2), inner + told @ told.swapaxes(-1, -2), step
+
+
 def gauss_newton(y: Array, variance: Array, geometry: Geometry, p: SensorParameters, iteration: int) -> Fitted:
     """One step from p, the ``iteration``-th; arrays as in `fit`.
 
@@ -148,17 +170,15 @@ def gauss_newton(y: Array, variance: Array, geometry: Geometry, p: SensorParamet
     S, _, m = y.shape
     P = 5 * m
     normal, _ = linearise(y, p, geometry, 1.0 / variance)
-    inverse = np.linalg.inv(normal.matrix)
-    step = (inverse @ normal.rhs[..., None])[..., 0]
-    change, total = step[:, :P], inverse[:, :P, :P]
+    total, repeatability, step = eliminated(normal, P, geometry.constant_sigma)
+    change = step[:, :P]
     length = (change**2 / np.diagonal(total, axis1=1, axis2=2)).max(axis=-1)
     to_come = length * np.minimum(1.0, 4.0 * (change**2).max(axis=-1))
     moved = p.stepped(np.clip(change.reshape(S, m, 5), -LONGEST, LONGEST), geometry.norm)
-    cross = inverse[:, :P, P:] / geometry.constant_sigma
     return Fitted(
         parameters=moved,
         covariance=total,
-        repeatability=total - cross @ cross.swapaxes(-1, -2),
+        repeatability=repeatability,
         information=normal.own,
         residual=y / moved.scale[:, None, :] - input_of(moved, geometry.n),
         variance=variance,

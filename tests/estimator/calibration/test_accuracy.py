@@ -69,3 +69,9 @@ def test_levelling_across_the_head_leaves_scale_and_axis_alone() -> None:
     _, scale, axis = accuracy(1 / 3, StandErrors(theta_y=EPSILON))
     assert np.all(scale < 1e-4 * EPSILON**2)
     assert np.all(axis < 1e-4 * EPSILON**2)
+
+
+def test_repeatability_stands_beside_a_stand_far_worse_than_the_readings() -> None:
+    poor, perfect = (accuracy(1 / 3, StandErrors(alpha=e))[0] for e in (200 * EPSILON, 0.0))
+    assert np.all(np.linalg.eigvalsh(poor.repeatability) > 0)
+    assert np.allclose(np.diagonal(poor.repeatability), np.diagonal(perfect.repeatability), rtol=0.05)
