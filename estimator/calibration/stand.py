@@ -33,13 +33,16 @@ def calibrate_stand(sessions: Sequence[CalibrationSession]) -> list[Calibration]
     return reports(sessions, solved(sessions))
 
 
-def solved(sessions: Sequence[CalibrationSession]) -> Solved:
-    """The solution of sessions that share one schedule, as arrays over the sessions."""
+def solved(sessions: Sequence[CalibrationSession], start: SensorParameters | None = None) -> Solved:
+    """The solution of sessions that share one schedule, as arrays over the sessions.
+
+    ``start`` (S, m): where to begin, and where what the rows do not determine stays; by default the closed form.
+    """
     first = sessions[0]
     geometry = stand_geometry(first)
     readings, errors = zip(*map(measured, sessions), strict=True)
     y = np.stack(readings)
-    start = starting_point(y, first, geometry)
+    start = starting_point(y, first, geometry) if start is None else start
     variance, stated = noise_variance(y, np.stack(errors), start, first, geometry)
     solution = fit(y, variance, geometry, start)
     seen, p_value, factor = judged(solution, stated)

@@ -43,7 +43,7 @@ CATALOGUE: tuple[Cause, ...] = (
     fixture.RemountRotation(),
     gyro.GSensitivity(),
     gyro.LatitudeEntry(),
-    gyro.MeridianError(),
+    gyro.OffMeridian(),
 )
 
 UNEXPLAINED = "unexplained"

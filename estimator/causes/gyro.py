@@ -21,7 +21,7 @@ class GSensitivity(SensorCause):
         return setting.force
 
 
-class GyroStandError(CommonCause):
+class SeenByGyros(CommonCause):
     """An error of the stand that gyros alone see."""
 
     scope = "gyro"
@@ -34,7 +34,7 @@ class GyroStandError(CommonCause):
         return (change * acts[None, :, None])[..., None]
 
 
-class LatitudeEntry(GyroStandError):
+class LatitudeEntry(SeenByGyros):
     identifier = "latitude-entry"
     equation = "ω turned in the meridian by k: true latitude = latitude + k"
     needs = frozenset({"stand", "history"})
@@ -47,7 +47,7 @@ class LatitudeEntry(GyroStandError):
         return self.on_gyros(setting.d_alpha, setting)
 
 
-class MeridianError(GyroStandError):
+class OffMeridian(SeenByGyros):
     identifier = "meridian-error"
     equation = "ω turned about the vertical by k: the stand does not point along the meridian"
     needs = frozenset({"stand", "both runs"})

@@ -6,7 +6,7 @@ from estimator.causes.contract import CommonCause, Setting
 from estimator.session import Array
 
 
-class BetaError(CommonCause):
+class BetaPattern(CommonCause):
     """A cause that is a pattern of β errors: `pattern` (R, q), rad per unit amplitude."""
 
     scope = "stand"
@@ -20,7 +20,7 @@ class BetaError(CommonCause):
         return setting.d_beta[..., None] * self.pattern(setting)[:, None, None, :]
 
 
-class AlphaError(BetaError):
+class AlphaPattern(BetaPattern):
     """A cause that is a pattern of α errors: `pattern` (R, q), rad per unit amplitude."""
 
     def change(self, setting: Setting) -> Array:
@@ -34,7 +34,7 @@ def harmonic(setting: Setting, order: int) -> Array:
     return np.stack([np.sin(order * setting.beta), np.cos(order * setting.beta)], axis=-1)
 
 
-class BetaEccentricity(BetaError):
+class BetaEccentricity(BetaPattern):
     identifier = "beta-eccentricity"
     equation = "δβ = k1·sin β + k2·cos β"
     units = ("rad", "rad")
@@ -45,7 +45,7 @@ class BetaEccentricity(BetaError):
         return harmonic(setting, 1)
 
 
-class BetaSecondHarmonic(BetaError):
+class BetaSecondHarmonic(BetaPattern):
     identifier = "beta-second-harmonic"
     equation = "δβ = k1·sin 2β + k2·cos 2β"
     units = ("rad", "rad")
@@ -56,7 +56,7 @@ class BetaSecondHarmonic(BetaError):
         return harmonic(setting, 2)
 
 
-class BetaScale(BetaError):
+class BetaScale(BetaPattern):
     identifier = "beta-scale"
     equation = "δβ = k·(β − β̄)"
     units = ("1",)
@@ -68,7 +68,7 @@ class BetaScale(BetaError):
         return (setting.beta - setting.beta.mean())[:, None]
 
 
-class AxisWobble(AlphaError):
+class AxisWobble(AlphaPattern):
     identifier = "axis-wobble"
     equation = "δα = k1·sin β + k2·cos β"
     units = ("rad", "rad")
@@ -79,7 +79,7 @@ class AxisWobble(AlphaError):
         return harmonic(setting, 1)
 
 
-class LevellingY(BetaError):
+class LevellingY(BetaPattern):
     identifier = "levelling-y"
     equation = "θ_y beyond its stated σ"
     units = ("rad",)
@@ -96,7 +96,7 @@ class LevellingY(BetaError):
         return (-setting.d_beta / cos * share)[..., None]
 
 
-class AlphaShift(AlphaError):
+class AlphaShift(AlphaPattern):
     identifier = "alpha-shift"
     equation = "α of the flipped run differs by k"
     units = ("rad",)
@@ -109,7 +109,7 @@ class AlphaShift(AlphaError):
         return setting.flipped.astype(float)[:, None]
 
 
-class StandDrift(AlphaError):
+class StandDrift(AlphaPattern):
     identifier = "stand-drift"
     equation = "δα = k·(t − t̄)"
     units = ("rad/s",)

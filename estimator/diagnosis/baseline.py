@@ -35,8 +35,6 @@ class Baseline:
     """(R, m, r) effect of each row's own nuisances."""
     row_sigma: Array
     """(R, r); infinite where nothing is known beforehand."""
-    covariance: Array
-    """(5 m, 5 m) total, dimensionless elements."""
 
     @property
     def parameters(self) -> SensorParameters:

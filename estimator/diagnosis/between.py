@@ -6,7 +6,7 @@ import numpy as np
 
 from estimator.arrays import tangents
 from estimator.diagnosis.baseline import Baseline
-from estimator.diagnosis.evidence import Between
+from estimator.diagnosis.evidence import Between, parameter_covariance
 from estimator.session import Array
 
 
@@ -27,7 +27,7 @@ def deviation_of(earlier: Baseline, now: Baseline) -> tuple[Array, Array]:
     full = np.zeros((5 * m, 5 * m))
     for i in range(m):
         full[5 * i : 5 * i + 5, 5 * i : 5 * i + 5] = mapping[i]
-    return step.reshape(-1), full @ earlier.covariance @ full.T
+    return step.reshape(-1), full @ parameter_covariance(earlier) @ full.T
 
 
 def reference(now: Baseline, history: Sequence[Baseline]) -> tuple[Array, Array] | None:
@@ -61,5 +61,5 @@ def between_sessions(now: Baseline, history: Sequence[Baseline]) -> Between | No
     if found is None:
         return None
     step, covariance = found
-    response = inverse_root(covariance + now.covariance)
+    response = inverse_root(covariance + parameter_covariance(now))
     return Between(response @ -step, response)

@@ -9,14 +9,15 @@ evenly; the evidence of a shape against no effect is the local empirical Bayes f
 
     ln B = ½(T − q) − ½ q ln(T/q)            (Liang et al. 2008, (11), known variance)
 
-which charges every free amplitude for what it could have fitted. Unknown noise turns T into f·ln(f/(f − T)).
+which charges every free amplitude for what it could have fitted. Unknown noise turns T into the χ² of the same tail
+probability as its F.
 """
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import chdtrc
+from scipy.special import chdtrc, chdtri, fdtrc
 
 from estimator.causes import Shape, Signature
 from estimator.diagnosis.evidence import Evidence
@@ -25,7 +26,7 @@ from estimator.session import Array
 FAINT = 0.02
 """A direction of a signature counts when its trace is above this share of the strongest direction's."""
 
-INVISIBLE = 1e-6
+INVISIBLE = 1e-3
 """Share of a signature that must be left by the baseline for it to be visible at all."""
 
 
@@ -124,7 +125,7 @@ def _score(evidence: Evidence, traces: Traces, taken: Array, z: Array) -> Iterab
     places = int(visible.sum())
     for s in np.flatnonzero(visible):
         shape, q = traces.shapes[s], int(freedom[s])
-        statistic = equivalent(evidence, shape, float(power[s]), z)
+        statistic = equivalent(evidence, shape, float(power[s]), q, z)
         yield Scored(
             traces.cause,
             shape,
@@ -153,20 +154,24 @@ def bayes_factor(statistic: float, q: int) -> float:
     return 0.5 * (statistic - q) - 0.5 * q * float(np.log(statistic / q))
 
 
-def equivalent(evidence: Evidence, shape: Shape, power: float, z: Array) -> float:
-    """χ² of a signature; where its sensors' noise is estimated from these very residuals, f·ln(f/(f − T)).
+def equivalent(evidence: Evidence, shape: Shape, power: float, q: int, z: Array) -> float:
+    """χ² of a signature that is as unlikely as the power it takes out.
 
-    Twice the gain of the profile likelihood over the unknown noise: what an F-type test rests on.
+    Where the noise of its sensors is estimated from these very residuals, F = (T/q)/((f − T)/(f − q)) takes the place
+    of T, carried over to χ² at the same tail probability.
     """
     unstated = evidence.baseline.unstated
     sensors = list(shape.sensors) or list(range(len(unstated)))
-    if not unstated[sensors].any():
+    if q == 0 or not unstated[sensors].any():
         return power
     owned = np.isin(evidence.owner(), sensors)
     total = float((z[owned] ** 2).sum())
-    freedom = evidence.freedom * len(sensors) / len(unstated)
-    rest = max(total - power, 1e-9 * max(total, 1e-300))
-    return float(freedom * np.log(max(total, rest) / rest))
+    freedom = evidence.freedom * len(sensors) / len(unstated) + float(owned[evidence.readings :].sum())
+    if freedom <= q + 1:
+        return 0.0
+    rest = max(total - power, 1e-6 * max(total, 1e-300))
+    tail = float(fdtrc(q, freedom - q, power / q / (rest / (freedom - q))))
+    return float(chdtri(q, max(tail, 1e-290)))
 
 
 def ranked(scored: Sequence[Scored]) -> list[tuple[Scored, float]]:
@@ -178,4 +183,4 @@ def ranked(scored: Sequence[Scored]) -> list[tuple[Scored, float]]:
         (max(members, key=lambda s: s.evidence), float(np.logaddexp.reduce([s.evidence for s in members])))
         for members in groups.values()
     ]
-    return sorted(best, key=lambda pair: -pair[1])
+    return sorted(best, key=lambda pair: -round(pair[1], 6))

@@ -5,10 +5,12 @@ measured session → baseline simulation → what is left → causes → extende
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from estimator.calibration.calibrate import averaged, calibrate
 from estimator.causes import CATALOGUE, Cause, Correction
 from estimator.diagnosis.baseline import Baseline
-from estimator.diagnosis.between import between_sessions
+from estimator.diagnosis.evidence import parameter_covariance
 from estimator.diagnosis.extend import amplitudes, extended_calibration
 from estimator.diagnosis.gain import gain
 from estimator.diagnosis.limits import limits
@@ -17,7 +19,7 @@ from estimator.diagnosis.report import findings, slip_finding, structures
 from estimator.diagnosis.results import Diagnosis
 from estimator.diagnosis.search import begin, search
 from estimator.diagnosis.slips import Slip, exchanged_rows, expected_axes, turned_record, weighted_square
-from estimator.session import CalibrationSession
+from estimator.session import TWO_AXIS_STAND, CalibrationSession
 
 
 def diagnose(
@@ -39,13 +41,14 @@ def diagnose(
     ScheduleError : the session cannot be calibrated at all.
     """
     rows = averaged(session)
-    earlier = [baseline_of(averaged(h)) for h in history]
-    slips, right, baseline = undo_slips(rows, earlier, catalogue)
-    state = search(begin(baseline, between_sessions(baseline, earlier), catalogue))
+    past = [averaged(h) for h in history]
+    slips, right = undo_slips(rows, [baseline_of(h) for h in past], catalogue)
+    baseline, earlier = common_start(right, past)
+    state = search(begin(baseline, earlier, catalogue))
     fitted = amplitudes(state)
     return Diagnosis(
         unit=session.unit,
-        findings=(*(slip_finding(s, right) for s in slips), *findings(state, fitted)),
+        findings=(*(slip_finding(s, rows) for s in slips), *findings(state, fitted)),
         structures=structures(state),
         gain=gain(state),
         limits=limits(state, catalogue),
@@ -54,10 +57,25 @@ def diagnose(
     )
 
 
+def common_start(session: CalibrationSession, history: Sequence[CalibrationSession]) -> tuple[Baseline, list[Baseline]]:
+    """Baselines of a session and its history, taken near one another.
+
+    What one of them does not observe (a single run leaves a direction open) would else stay at different values, far
+    enough apart for the second order to show as a move of what is observed.
+    """
+    baseline = baseline_of(session)
+    earlier = [baseline_of(h) for h in history]
+    if session.programme != TWO_AXIS_STAND or not earlier:
+        return baseline, earlier
+    best = min([baseline, *earlier], key=lambda b: float(np.trace(parameter_covariance(b))))
+    start = best.parameters
+    return baseline_of(session, start), [baseline_of(h, start) for h in history]
+
+
 def undo_slips(
     session: CalibrationSession, history: Sequence[Baseline], catalogue: Sequence[Cause]
-) -> tuple[list[Slip], CalibrationSession, Baseline]:
-    """Put the record right where it is plainly wrong: the slips, the session put right, its baseline."""
+) -> tuple[list[Slip], CalibrationSession]:
+    """Put the record right where it is plainly wrong: the slips and the session put right."""
     known = [c for c in catalogue if isinstance(c, Correction)]
     slips: list[Slip] = []
     baseline = baseline_of(session)
@@ -69,4 +87,4 @@ def undo_slips(
         slips.append(slip)
         session = slip.session
         baseline = baseline_of(session)
-    return slips, session, baseline
+    return slips, session

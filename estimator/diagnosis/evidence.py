@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.diagnosis.baseline import Baseline, spread
+from estimator.parameters import PLAUSIBLE
 from estimator.session import Array
 
 NOTHING = 1e-9
@@ -51,6 +52,25 @@ class Whitener:
         return x.reshape(-1, columns.shape[-1])
 
 
+def whitened_design(baseline: Baseline, whiten: Whitener) -> Array:
+    """(R·m + k, 5 m + k) columns of the parameters and the constant nuisances, the nuisances' priors below."""
+    P, k = 5 * baseline.residual.shape[1], len(baseline.constant_sigma)
+    design = whiten(np.concatenate([spread(baseline.design), baseline.constant], axis=-1))
+    prior = np.concatenate([np.zeros((k, P)), np.diag(1 / baseline.constant_sigma)], axis=1)
+    return np.concatenate([design, prior])
+
+
+def parameter_covariance(baseline: Baseline) -> Array:
+    """(5 m, 5 m) total covariance, dimensionless; what is not observed carries the plausible range."""
+    full = whitened_design(baseline, Whitener.of(baseline))
+    P = 5 * baseline.residual.shape[1]
+    ridge = np.zeros(full.shape[1])
+    ridge[:P] = PLAUSIBLE**-2
+    scale = np.sqrt((full**2).sum(axis=0) + ridge)
+    normal = (full / scale).T @ (full / scale) + np.diag(ridge / scale**2)
+    return np.asarray(np.linalg.inv(normal)[:P, :P] / scale[:P, None] / scale[:P])
+
+
 @dataclass(frozen=True, eq=False)
 class Between:
     """What moved since the history, whitened. P = 5 m parameters."""
@@ -81,9 +101,7 @@ class Evidence:
     def of(cls, baseline: Baseline, between: Between | None = None) -> "Evidence":
         whiten = Whitener.of(baseline)
         P, k = 5 * baseline.residual.shape[1], len(baseline.constant_sigma)
-        design = whiten(np.concatenate([spread(baseline.design), baseline.constant], axis=-1))
-        prior = np.concatenate([np.zeros((k, P)), np.diag(1 / baseline.constant_sigma)], axis=1)
-        full = np.concatenate([design, prior])
+        full = whitened_design(baseline, whiten)
         size = np.linalg.norm(full, axis=0)
         scale = np.where(size > 0, size, 1.0)
         left, size, right = np.linalg.svd(full / scale, full_matrices=False)
@@ -124,8 +142,10 @@ class Evidence:
         return np.concatenate([inside, moved])
 
     def owner(self) -> Array:
-        """(data rows,) index of the sensor a row belongs to; −1 for priors and history rows."""
+        """(data rows,) index of the sensor a row belongs to; −1 for priors."""
         R, m = self.baseline.residual.shape
         owner = np.full(len(self.z), -1)
         owner[: R * m] = np.tile(np.arange(m), R)
+        if self.between is not None:
+            owner[self.readings :] = np.repeat(np.arange(m), 5)
         return owner

@@ -6,16 +6,19 @@ from estimator.arrays import tangents
 from estimator.calibration.stand import solved
 from estimator.causes import Setting
 from estimator.diagnosis.baseline import Baseline
-from estimator.diagnosis.orientations import dimensionless_covariance, fitted_state
+from estimator.diagnosis.orientations import fitted_state
 from estimator.forward import input_of, measured, projected, slope
-from estimator.parameters import PLAUSIBLE, SensorParameters
+from estimator.parameters import SensorParameters
 from estimator.reference import EARTH_RATE, Geometry, elevation, gravity, stand_geometry, stand_vector, to_block
 from estimator.session import ACCELEROMETER, GYROSCOPE, TWO_AXIS_STAND, Array, CalibrationSession
 
 
-def baseline_of(session: CalibrationSession) -> Baseline:
-    """The baseline simulation fitted to an averaged session, its noise as stated (or estimated where it is not)."""
-    return on_stand(session) if session.programme == TWO_AXIS_STAND else in_orientations(session)
+def baseline_of(session: CalibrationSession, start: SensorParameters | None = None) -> Baseline:
+    """The baseline simulation fitted to an averaged session, its noise as stated (or estimated where it is not).
+
+    ``start`` (m,): where what the session does not observe stays; by default near the nominal values.
+    """
+    return on_stand(session, start) if session.programme == TWO_AXIS_STAND else in_orientations(session)
 
 
 def unstated_noise(session: CalibrationSession) -> Array:
@@ -23,12 +26,15 @@ def unstated_noise(session: CalibrationSession) -> Array:
     return np.asarray(np.isnan(session.standard_errors).any(axis=0))
 
 
-def on_stand(session: CalibrationSession) -> Baseline:
+def on_stand(session: CalibrationSession, start: SensorParameters | None) -> Baseline:
     """Two-axis stand: the applied vector is known up to the stand's errors."""
-    solution = solved([session])
+    begin = None
+    if start is not None:
+        begin = SensorParameters(*(v[np.newaxis] for v in (start.scale, start.bias, start.quadratic, start.axis)))
+    solution = solved([session], begin)
     fitted, p = solution.fitted, solution.fitted.parameters
     own = SensorParameters(p.scale[0], p.bias[0], p.quadratic[0], p.axis[0])
-    return stand_baseline(session, own, solution.geometry, fitted.residual[0], fitted.variance[0], fitted.covariance[0])
+    return stand_baseline(session, own, solution.geometry, fitted.residual[0], fitted.variance[0])
 
 
 def stand_baseline(
@@ -37,7 +43,6 @@ def stand_baseline(
     g: Geometry,
     residual: Array,
     variance: Array,
-    covariance: Array,
 ) -> Baseline:
     """The baseline at given parameters of a session on a stand."""
     steep = slope(own, g.n)
@@ -67,7 +72,6 @@ def stand_baseline(
         constant_sigma=g.constant_sigma,
         row=(steep * projected(own.axis, g.beta))[..., None],
         row_sigma=np.full((rows, 1), g.beta_sigma),
-        covariance=covariance,
     )
 
 
@@ -77,7 +81,7 @@ def planned_on_stand(session: CalibrationSession, like: Baseline) -> Baseline:
     rows = len(session.readings)
     variance = np.broadcast_to(np.median(like.variance, axis=0), (rows, len(session.sensors)))
     nothing = np.zeros(variance.shape)
-    return stand_baseline(session, like.parameters, geometry, nothing, variance, like.covariance)
+    return stand_baseline(session, like.parameters, geometry, nothing, variance)
 
 
 def raised(session: CalibrationSession) -> Array:
@@ -139,5 +143,4 @@ def in_orientations(session: CalibrationSession) -> Baseline:
         constant_sigma=np.zeros(0),
         row=setting.through(turn),
         row_sigma=sigma,
-        covariance=dimensionless_covariance(session, p.si_factors(norm), PLAUSIBLE),
     )

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.calibration.free import accelerometer_rows, calibrate_free, check, gyro_biases, solve
+from estimator.calibration.free import accelerometer_rows, check, gyro_biases, solve
 from estimator.parameters import SensorParameters
 from estimator.reference import EARTH_RATE, gravity
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
@@ -58,11 +58,3 @@ def fitted_state(session: CalibrationSession) -> OrientationState:
     return OrientationState(
         directions, sigma, SensorParameters(scale, bias, quadratic, axis), variance, not bool(is_gyro.all())
     )
-
-
-def dimensionless_covariance(session: CalibrationSession, factors: Array, plausible: float) -> Array:
-    """(P, P) covariance of the calibration; what is not observable carries the plausible range."""
-    covariance = calibrate_free(session).covariance / factors[:, None] / factors
-    blind = np.isnan(np.diagonal(covariance))
-    known = np.where(blind[:, None] | blind, 0.0, covariance)
-    return np.asarray(known + np.diag(np.where(blind, plausible**2, 0.0)))

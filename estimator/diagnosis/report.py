@@ -14,9 +14,10 @@ from estimator.session import ACCELEROMETER, CalibrationSession
 
 
 def findings(state: Search, fitted: Amplitudes) -> tuple[Finding, ...]:
-    """Named causes in the order found; the same cause on several sensors is one finding that lists them all."""
+    """Named causes, strongest first; the same cause on several sensors is one finding that lists them all."""
     named = [finding(state, f, fitted, k) for k, f in enumerate(state.found)]
-    return (*merged(named), *(excess_finding(state, e) for e in state.excess))
+    excess = [excess_finding(state, e) for e in state.excess]
+    return tuple(sorted((*merged(named), *excess), key=lambda f: -f.strength))
 
 
 def finding(state: Search, found: Found, fitted: Amplitudes, k: int) -> Finding:

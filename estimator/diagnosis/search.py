@@ -14,6 +14,7 @@ from scipy.special import chdtrc
 
 from estimator.causes import CATALOGUE, Cause, Signature
 from estimator.diagnosis.baseline import Baseline
+from estimator.diagnosis.between import between_sessions
 from estimator.diagnosis.candidates import Scored, Traces, ranked, score, traces_of
 from estimator.diagnosis.evidence import Between, Evidence
 from estimator.diagnosis.structures import STRUCTURES
@@ -57,13 +58,18 @@ class Search:
     """Where the search stands, and at its end what was found."""
 
     baseline: Baseline
-    between: Between | None
+    history: tuple[Baseline, ...]
+    catalogue: tuple[Cause, ...]
     evidence: Evidence
     traces: tuple[Traces, ...]
     patterns: tuple[Traces, ...]
     found: tuple[Found, ...] = ()
     structures: tuple[Found, ...] = ()
     excess: tuple[Excess, ...] = field(default=())
+
+    @property
+    def between(self) -> Between | None:
+        return self.evidence.between
 
     @property
     def families(self) -> int:
@@ -76,17 +82,19 @@ class Search:
         if not parts:
             return np.zeros((len(self.evidence.z), 0))
         columns = np.concatenate(parts, axis=1)
-        left, size, _ = np.linalg.svd(columns / np.linalg.norm(columns, axis=0), full_matrices=False)
+        norms = np.linalg.norm(columns, axis=0)
+        left, size, _ = np.linalg.svd(columns[:, norms > 0] / norms[norms > 0], full_matrices=False)
         return left[:, size > 1e-6 * size[0]]
 
 
-def begin(baseline: Baseline, between: Between | None, catalogue: Sequence[Cause] = CATALOGUE) -> Search:
+def begin(baseline: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause] = CATALOGUE) -> Search:
     """A search with nothing found yet."""
-    evidence = Evidence.of(baseline, between)
+    evidence = Evidence.of(baseline, between_sessions(baseline, history))
     signatures = [c for c in catalogue if isinstance(c, Signature)]
     return Search(
         baseline,
-        between,
+        tuple(history),
+        tuple(catalogue),
         evidence,
         tuple(traces_of(evidence, signatures)),
         tuple(traces_of(evidence, STRUCTURES)),
@@ -170,12 +178,12 @@ def whiteness(evidence: Evidence) -> float:
 
 
 def with_excess(state: Search, noisy: Excess) -> Search:
-    """The search begun anew with the noisy sensor's variance as it is, the findings so far kept out."""
-    variance = state.baseline.variance.copy()
+    """The search begun anew with the noisy sensor's variance as it is, known from its own residuals alone."""
+    variance, unstated = state.baseline.variance.copy(), state.baseline.unstated.copy()
     variance[:, noisy.sensor] *= noisy.ratio
-    baseline = replace(state.baseline, variance=variance)
-    catalogue = [t.cause for t in state.traces]
-    again = begin(baseline, state.between, catalogue)
+    unstated[noisy.sensor] = True
+    baseline = replace(state.baseline, variance=variance, unstated=unstated)
+    again = begin(baseline, state.history, state.catalogue)
     return causes(replace(again, excess=(*state.excess, noisy)))
 
 
