@@ -143,8 +143,9 @@ def eliminated(normal: Normal, P: int, sigma: Array) -> tuple[Array, Array, Arra
     """Total covariance and repeatability (S, P, P) and the step (S, P + k), with the constant errors eliminated.
 
     With A the sensors' block, B the border and F = A⁻¹B, the readings tell D = G'WG − B'F of the constant errors s
-    beyond their prior Π (less what the ridge pretends). Then cov = A⁻¹ + F·(Π + D)⁻¹·F', of which F·(Π + D)⁻¹·Π·(Π + D)⁻¹·F' is the stand's. The rest
-    is written as a sum of positive terms: as a difference it would drown when the stand is far worse than the readings.
+    beyond their prior Π (less what the ridge pretends). Then cov = A⁻¹ + F·(Π + D)⁻¹·F', of which
+    F·(Π + D)⁻¹·Π·(Π + D)⁻¹·F' is the stand's. The rest is written as a sum of positive terms: as a difference it would
+    drown when the stand is far worse than the readings.
     """
     border, prior = normal.matrix[:, :P, P:], np.diag(sigma**-2.0)
     inner = np.linalg.inv(normal.matrix[:, :P, :P])
