@@ -24,7 +24,7 @@ from service.pages.units import (
     value_unit,
 )
 from service.pages.verdicts import Condition, condition_of
-from service.records import PARAMETERS, Decision, SessionReport, StoredSession
+from service.records import PARAMETERS, Decision, SessionReport, StoredSession, Verdict
 from service.units import DeviationUnit
 
 
@@ -166,6 +166,8 @@ def _tolerance(decision: Decision | None) -> str:
 
 def _probability(decision: Decision | None) -> str:
     """Worth a word only where it is in doubt."""
-    if decision is None or decision.probability_out is None or not 0.001 < decision.probability_out < 0.999:
+    if decision is None or decision.probability_out is None or decision.verdict in (Verdict.PASS, Verdict.FAIL):
         return ""
-    return f"{100 * decision.probability_out:.2g} % chance to be out"
+    percent = 100 * decision.probability_out
+    words = "more than 99" if percent > 99 else "less than 1" if percent < 1 else f"{percent:.0f}"
+    return f"{words} % chance to be out"

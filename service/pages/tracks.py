@@ -4,7 +4,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
-from service.pages.units import deviation_unit, limit, measured, signed
+from service.pages.changes import Change, changes_of
+from service.pages.units import deviation_unit, in_unit, limit, measured, signed
 from service.pages.verdicts import NOT_JUDGED, Condition, condition_of
 from service.records import PARAMETERS, HistoryPoint, Service
 from service.units import DeviationUnit
@@ -12,14 +13,13 @@ from service.units import DeviationUnit
 
 @dataclass(frozen=True)
 class TrackPoint:
-    """One session's value, in people's units, measured from the origin of its track."""
+    """One session's value: its change from the reference that held at the time, in people's units."""
 
     at: datetime
     session: str
     shown: float | None
     lower: float | None
     upper: float | None
-    reference: float | None
     limit_lower: float | None
     limit_upper: float | None
     epoch: int
@@ -28,11 +28,11 @@ class TrackPoint:
     condition: Condition
 
     @property
-    def limits(self) -> tuple[float, float, float] | None:
-        """Reference and both tolerance lines; None without a reference."""
-        if self.reference is None or self.limit_lower is None or self.limit_upper is None:
+    def limits(self) -> tuple[float, float] | None:
+        """Both tolerance lines; None where nothing is judged."""
+        if self.limit_lower is None or self.limit_upper is None:
             return None
-        return self.reference, self.limit_lower, self.limit_upper
+        return self.limit_lower, self.limit_upper
 
     @property
     def day(self) -> str:
@@ -52,14 +52,13 @@ class Track:
     points: tuple[TrackPoint, ...]
 
     @property
-    def limits(self) -> tuple[tuple[TrackPoint, datetime], ...]:
-        """Stretches with one reference and tolerance: the first point of each, and until when it holds."""
+    def limits(self) -> tuple[TrackPoint, ...]:
+        """The first point of every stretch with one tolerance."""
         firsts: list[TrackPoint] = []
         for point in self.points:
             if point.limits is not None and (not firsts or firsts[-1].limits != point.limits):
                 firsts.append(point)
-        ends = [p.at for p in firsts[1:]] + [self.points[-1].at]
-        return tuple(zip(firsts, ends, strict=False))
+        return tuple(firsts)
 
 
 def day_of(at: datetime) -> str:
@@ -77,11 +76,13 @@ def tracks_of(history: Iterable[HistoryPoint], services: Sequence[Service]) -> t
 
 
 def _group(by_sensor: dict[str, list[HistoryPoint]], services: Sequence[Service]) -> tuple[Track, ...]:
-    first = next(iter(by_sensor.values()))[0]
-    unit = deviation_unit(first.kind, first.parameter, max(_extent(points) for points in by_sensor.values()))
+    changes = {name: changes_of(by_sensor[name], services) for name in sorted(by_sensor, key=_natural)}
+    first = next(iter(changes.values()))[0].point
+    largest = max(change.largest for own in changes.values() for change in own)
+    unit = deviation_unit(first.kind, first.parameter, largest)
     return tuple(
-        Track(f"{first.parameter}-{first.kind}", sensor, first.parameter, unit, _points(points, unit, services))
-        for sensor, points in sorted(by_sensor.items(), key=lambda item: _natural(item[0]))
+        Track(f"{first.parameter}-{first.kind}", name, first.parameter, unit, tuple(_point(c, unit) for c in own))
+        for name, own in changes.items()
     )
 
 
@@ -91,70 +92,33 @@ def _natural(name: str) -> tuple[str, int, str]:
     return name.rstrip("0123456789"), int(digits or 0), name
 
 
-def _origin(points: Sequence[HistoryPoint]) -> tuple[float, float]:
-    """What changes are measured from (the latest reference, else the first value), and the size of one."""
-    known = [p.reference for p in reversed(points) if p.reference is not None]
-    known += [p.value for p in points if p.value is not None]
-    origin = known[0] if known else 0.0
-    return origin, (abs(origin) or 1.0) if points[0].parameter == "scale" else 1.0
-
-
-def _extent(points: Sequence[HistoryPoint]) -> float:
-    origin, one = _origin(points)
-    values = [abs(p.value - origin) / one for p in points if p.value is not None]
-    return max([*values, (points[-1].tolerance or 0.0) / one])
-
-
-def _points(points: Sequence[HistoryPoint], unit: DeviationUnit, services: Sequence[Service]) -> tuple[TrackPoint, ...]:
-    origin, one = _origin(points)
-    is_angle = points[0].parameter == "axis"
-
-    def shown(value: float | None) -> float | None:
-        return None if value is None else (value - origin) / one * unit.factor
-
-    def edge(point: HistoryPoint, side: int) -> float | None:
-        if point.reference is None or point.tolerance is None:
-            return None
-        allowed = point.reference + side * point.tolerance
-        return shown(max(0.0, allowed) if is_angle else allowed)
-
-    return tuple(
-        TrackPoint(
-            at=p.at,
-            session=p.session,
-            shown=shown(p.value),
-            lower=shown(_floor(p)),
-            upper=shown(p.upper),
-            reference=shown(p.reference),
-            limit_lower=edge(p, -1),
-            limit_upper=edge(p, +1),
-            epoch=sum(s.at <= p.at for s in services),
-            text=_text(p, origin, one, unit),
-            condition=NOT_JUDGED if p.tolerance is None else condition_of(p.verdict),
-        )
-        for p in points
+def _point(change: Change, unit: DeviationUnit) -> TrackPoint:
+    point, allowed = change.point, in_unit(change.tolerance, unit)
+    floor = None if allowed is None else -allowed
+    return TrackPoint(
+        at=point.at,
+        session=point.session,
+        shown=in_unit(change.value, unit),
+        lower=in_unit(change.lower, unit),
+        upper=in_unit(change.upper, unit),
+        limit_lower=0.0 if floor is not None and change.is_angle else floor,
+        limit_upper=allowed,
+        epoch=change.epoch,
+        text=_text(change, unit),
+        condition=NOT_JUDGED if point.tolerance is None else condition_of(point.verdict),
     )
 
 
-def _floor(point: HistoryPoint) -> float | None:
-    """An angle between axes is never below zero."""
-    if point.lower is None or point.parameter != "axis":
-        return point.lower
-    return max(0.0, point.lower)
-
-
-def _text(point: HistoryPoint, origin: float, one: float, unit: DeviationUnit) -> str:
-    if point.value is None:
+def _text(change: Change, unit: DeviationUnit) -> str:
+    if change.value is None:
         return "not observable"
-    spread = None if point.upper is None else (point.upper - point.value) / one
-    write = measured if point.parameter == "axis" else signed
-    return write((point.value - origin) / one, spread, unit)
+    write = measured if change.is_angle else signed
+    return write(change.value, change.expanded, unit)
 
 
 def tolerance_text(track: Track) -> str:
     """``±40 µg`` as it holds now."""
-    last = next((p.limits for p in reversed(track.points) if p.limits is not None), None)
+    last = next((p.limit_upper for p in reversed(track.points) if p.limit_upper is not None), None)
     if last is None:
         return "not set"
-    reference, _, upper = last
-    return limit((upper - reference) / track.unit.factor, track.unit, track.parameter == "axis")
+    return limit(last / track.unit.factor, track.unit, track.parameter == "axis")

@@ -11,10 +11,10 @@ from service.records import HistoryPoint, Service, StoredSession, UnitReport
 
 HEADINGS = {"scale": "Scale factor", "bias": "Bias", "quadratic": "Quadratic term", "axis": "Axis"}
 MEANINGS = {
-    "scale": "Change of the scale factor from the reference.",
-    "bias": "Change of the zero offset from the reference.",
-    "quadratic": "Change of the second-order nonlinearity from the reference.",
-    "axis": "Angle between the input axis and its reference direction.",
+    "scale": "Change of the scale factor from the reference of its time.",
+    "bias": "Change of the zero offset from the reference of its time.",
+    "quadratic": "Change of the second-order nonlinearity from the reference of its time.",
+    "axis": "Angle between the input axis and its direction in the reference of its time.",
 }
 
 
@@ -59,6 +59,8 @@ class UnitPage:
     condition: Condition
     sections: tuple[ParameterSection, ...]
     sessions: tuple[SessionLine, ...]
+    reference: str
+    """What the next session is judged against, in words; empty when it becomes the reference itself."""
 
 
 def unit_page(report: UnitReport, history: Sequence[HistoryPoint]) -> UnitPage:
@@ -70,7 +72,16 @@ def unit_page(report: UnitReport, history: Sequence[HistoryPoint]) -> UnitPage:
         condition=condition_of(report.summary.verdict),
         sections=tuple(_section(tracks, report.services, several=len(kinds) > 1) for tracks in groups),
         sessions=tuple(SessionLine(s, condition_of(s.verdict)) for s in report.sessions),
+        reference=_reference(report),
     )
+
+
+def _reference(report: UnitReport) -> str:
+    """The date of the reference, or its name where it is not among the latest sessions."""
+    if report.reference_session is None:
+        return ""
+    dates = {s.id: day_of(s.started_at) for s in report.sessions}
+    return dates.get(report.reference_session, f"session {report.reference_session[:8]}")
 
 
 def _section(tracks: Sequence[Track], services: Sequence[Service], several: bool) -> ParameterSection:

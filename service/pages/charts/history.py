@@ -16,22 +16,23 @@ HEIGHT = 150
 
 def history_charts(tracks: Sequence[Track], services: Sequence[Service]) -> ChartSet:
     """The panels of one parameter; every track has the same parameter and unit."""
+    span = _span(tracks)
     return ChartSet(
         name=tracks[0].name,
         heading=tracks[0].parameter,
-        spec=_spec(tracks),
-        panels=tuple(_panel(track, services) for track in tracks),
+        spec=_spec(tracks, span),
+        panels=tuple(_panel(track, services, span) for track in tracks),
     )
 
 
-def _panel(track: Track, services: Sequence[Service]) -> Panel:
+def _panel(track: Track, services: Sequence[Service], span: list[str]) -> Panel:
     return Panel(
         title=track.sensor,
         description=track.points[-1].text,
         condition=track.points[-1].condition if track.points[-1].limits else None,
         datasets={
             DATA_FORM: [_point(p) for p in track.points if p.shown is not None],
-            "limits": [_limit(p, until) for p, until in track.limits],
+            "limits": _limits(track, span),
             "services": [{"t": _iso(s.at), "what": s.kind, "note": s.note} for s in services],
         },
     )
@@ -50,18 +51,17 @@ def _point(point: TrackPoint) -> dict[str, Any]:
     }
 
 
-def _limit(point: TrackPoint, until: datetime) -> dict[str, Any]:
-    return {
-        "from": _iso(point.at),
-        "to": _iso(until),
-        "ref": _short(point.reference),
-        "hi": _short(point.limit_upper),
-        "lo": _short(point.limit_lower),
-    }
+def _limits(track: Track, span: list[str]) -> list[dict[str, Any]]:
+    """Tolerance and reference, each stretch until the next one begins, from edge to edge of the chart."""
+    starts = [_iso(point.at) for point in track.limits]
+    return [
+        {"from": start, "to": end, "ref": 0, "hi": _short(point.limit_upper), "lo": _short(point.limit_lower)}
+        for point, start, end in zip(track.limits, [span[0], *starts[1:]], [*starts[1:], span[1]], strict=False)
+    ]
 
 
 def _iso(at: datetime) -> str:
-    return at.strftime("%Y-%m-%dT%H:%M:%SZ")
+    return at.strftime("%Y-%m-%dT%H:%M:%S.%fZ")
 
 
 def _short(value: float | None) -> float | None:
@@ -69,10 +69,10 @@ def _short(value: float | None) -> float | None:
     return None if value is None else float(f"{value:.6g}")
 
 
-def _spec(tracks: Sequence[Track]) -> dict[str, Any]:
+def _spec(tracks: Sequence[Track], span: list[str]) -> dict[str, Any]:
     unit = tracks[0].unit.label
     points, limits, services = (alt.NamedData(name=n) for n in (DATA_FORM, "limits", "services"))
-    x = alt.X("t:T", title=None, axis=alt.Axis(tickCount=4), scale=alt.Scale(type="utc", domain=_span(tracks)))
+    x = alt.X("t:T", title=None, axis=alt.Axis(tickCount=4), scale=alt.Scale(type="utc", domain=span))
     y = alt.Y("y:Q", title=unit, axis=alt.Axis(tickCount=5), scale=alt.Scale(domain=_range(tracks), zero=False))
     base = alt.Chart(points).encode(x=x)
     bounds = alt.Chart(limits).encode(x=alt.X("from:T"), x2="to:T")
@@ -129,7 +129,7 @@ def _marks(base: alt.Chart, y: alt.Y) -> alt.Chart:
 def _span(tracks: Sequence[Track]) -> list[str]:
     """One stretch of time for all sensors, so that what happened together stands in line."""
     dates = [p.at for track in tracks for p in track.points]
-    air = max((max(dates) - min(dates)) * 0.04, timedelta(days=1))
+    air = (max(dates) - min(dates)) * 0.04 or timedelta(days=1)
     return [_iso(min(dates) - air), _iso(max(dates) + air)]
 
 

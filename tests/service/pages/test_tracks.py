@@ -1,5 +1,6 @@
 """A parameter's history as people read it."""
 
+from dataclasses import replace
 from datetime import timedelta
 
 import pytest
@@ -31,11 +32,22 @@ def test_service_begins_a_new_epoch() -> None:
     assert [p.epoch for p in track.points] == [0, 0, 1]
 
 
-def test_new_reference_moves_the_tolerance_lines() -> None:
-    track = only(tracks_of([bias_point(0, 0.0), bias_point(4, 0.0), bias_point(9, 1e-4, reference=1e-4)], ()))
-    spans = [(p.day, until) for p, until in track.limits]
-    assert spans == [("1 Mar 2026", NOON + timedelta(days=9)), ("10 Mar 2026", NOON + timedelta(days=9))]
-    assert tolerance_text(track).startswith("±50.99")
+def test_changes_are_from_the_reference_of_their_own_time() -> None:
+    track = only(tracks_of([bias_point(0, 1e-4), bias_point(9, 3e-4, reference=2e-4)], ()))
+    assert [p.shown for p in track.points] == [pytest.approx(1e-4 / MICRO), pytest.approx(1e-4 / MICRO)]
+
+
+def test_new_tolerance_begins_a_new_stretch() -> None:
+    points = [bias_point(0, 0.0), bias_point(4, 0.0), replace(bias_point(9, 0.0), tolerance=2e-4)]
+    track = only(tracks_of(points, ()))
+    assert [p.day for p in track.limits] == ["1 Mar 2026", "10 Mar 2026"]
+    assert tolerance_text(track).startswith("±20.39")
+
+
+def test_first_value_stands_in_for_a_missing_reference() -> None:
+    track = only(tracks_of([bias_point(0, 1e-2, reference=None), bias_point(4, 2e-2, reference=None)], ()))
+    assert track.points[0].shown == 0.0
+    assert track.points[1].shown == pytest.approx(1e-2 / MICRO)
 
 
 def test_without_a_reference_there_are_no_tolerance_lines() -> None:
