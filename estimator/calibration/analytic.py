@@ -87,17 +87,18 @@ def solve(q: Coefficients, size: Array, angle: Array) -> SensorParameters:
     (..., m); where the second-order term leaves no trace (e = (0, ±1, 0)) c is zero, where a reading is constant K is.
     """
     lift, reach = np.sin(angle), np.cos(angle)
-    p0, _, q13, _, q21, q22, _, _ = np.moveaxis(q.value, -2, 0)
-    sensitivity = np.stack([q22 / reach, q21 / lift, q13 / reach], axis=-1)
-    gain = np.linalg.norm(sensitivity, axis=-1)
+    p0, q12, q13, p4, q21, q22, q23, q24 = (q.value[..., k, :] for k in range(8))
+    s1, s2, s3 = q22 / reach, q21 / lift, q13 / reach
+    gain = np.sqrt(s1**2 + s2**2 + s3**2)
     some = np.where(gain > 0, gain, 1.0)
-    e1, e2, e3 = np.moveaxis(sensitivity / some[..., None], -1, 0)
-    per_c = np.stack([2 * e1 * e2 * lift, reach * (e1**2 - e3**2) / 2, 2 * e2 * e3 * lift, 2 * reach * e1 * e3]) * reach
+    e1, e2, e3 = s1 / some, s2 / some, s3 / some
+    per_c = reach * np.array([2 * e1 * e2 * lift, reach * (e1**2 - e3**2) / 2, 2 * e2 * e3 * lift, 2 * reach * e1 * e3])
     weight = 1.0 / q.variance[SECOND_ORDER]
-    trace = np.tensordot(weight, per_c**2, axes=1)
+    weighted = np.einsum("k,k...->k...", weight, per_c)
+    trace = (weighted * per_c).sum(axis=0)
     blind = trace < NO_TRACE * weight.max()
-    seen = np.moveaxis(q.value[..., SECOND_ORDER, :], -2, 0) / some
-    c = np.where(blind, 0.0, np.tensordot(weight, per_c * seen, axes=1) / np.where(blind, 1.0, trace))
+    seen = (weighted * np.array([q12, p4, q23, q24])).sum(axis=0) / some
+    c = np.where(blind, 0.0, seen / np.where(blind, 1.0, trace))
     b = p0 / some - c * (e2**2 * lift**2 + (e1**2 + e3**2) * reach**2 / 2)
     return SensorParameters(gain / size, b * size, c / size, np.stack([e1, e2, e3], axis=-1))
 
