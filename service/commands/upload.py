@@ -12,7 +12,7 @@ from service.records import Verdict
 
 COLOURS = {
     Verdict.PASS: "green",
-    Verdict.CONDITIONAL_PASS: "green",
+    Verdict.CONDITIONAL_PASS: "yellow",
     Verdict.UNDECIDABLE: "blue",
     Verdict.CONDITIONAL_FAIL: "dark_orange",
     Verdict.FAIL: "red",
