@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 
-from estimator.results import ARCSEC
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor, Stand, StandErrors
 
 FORMAT = "imu-session/1"
@@ -69,7 +68,7 @@ def _stand(stand: Stand) -> dict[str, Any]:
 
 def _sigma(sigma: StandErrors) -> dict[str, float]:
     """The angles of known sigma, arcsec."""
-    values = {name: round(float(getattr(sigma, name)) / ARCSEC, ANGLE_DECIMALS) for name in ANGLE_ERRORS}
+    values = {name: round(3600 * float(np.degrees(getattr(sigma, name))), ANGLE_DECIMALS) for name in ANGLE_ERRORS}
     return {name: value for name, value in values.items() if value}
 
 
