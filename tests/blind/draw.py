@@ -12,6 +12,8 @@ from tests.blind.world import ARCSEC, STANDARD_G, Array, Noise, Session, Site, S
 DEGREE = np.pi / 180
 DEG_PER_HOUR = DEGREE / 3600
 PULSE = 0.6 * ARCSEC
+ONE_RUN = 0.15
+"""Share of sessions with a single run, where the effect allows it."""
 
 
 @dataclass(frozen=True)
@@ -151,13 +153,12 @@ def draw_site(rng: np.random.Generator) -> Site:
     return Site(latitude, height, float(rng.uniform(9.79, 9.825)) if rng.random() < 0.2 else None)
 
 
-def draw_session(rng: np.random.Generator, needs: frozenset[str] = frozenset(), one_run: float = 0.15) -> Session:
-    """A session that holds what the effect needs."""
+def draw_session(rng: np.random.Generator, needs: frozenset[str] = frozenset(), longest: int = 36) -> Session:
+    """A session that holds what the effect needs, of at most ``longest`` positions a run."""
     arrangement = draw_arrangement(rng, needs)
     unit = draw_unit(arrangement, rng)
     site = draw_site(rng)
-    many = unit.size > 8
-    wanted = Wanted.drawn(rng, needs, one_run=one_run, most=20 if many else 36)
+    wanted = Wanted.drawn(rng, needs, one_run=ONE_RUN, most=_most(unit, longest))
     noise = draw_noise(unit, arrangement.count_time, rng)
     return Session(
         unit=unit,
@@ -171,12 +172,16 @@ def draw_session(rng: np.random.Generator, needs: frozenset[str] = frozenset(), 
     )
 
 
-def draw_earlier(session: Session, rng: np.random.Generator) -> Session:
+def _most(unit: Unit, longest: int) -> int:
+    """Fewer positions where there are many sensors: the covariance is that of all readings."""
+    return min(20, longest) if unit.size > 8 else longest
+
+
+def draw_earlier(session: Session, rng: np.random.Generator, longest: int = 36) -> Session:
     """An earlier session of the same unit, on the same kind of schedule, the same day or long before."""
     needs = {"both runs"} | ({"time"} if session.schedule.timed else set())
     needs |= {"temperature"} if session.schedule.thermometer else set()
-    most = 20 if session.unit.size > 8 else 36
-    wanted = Wanted.drawn(rng, frozenset(needs), one_run=0.0, most=most)
+    wanted = Wanted.drawn(rng, frozenset(needs), one_run=0.0, most=_most(session.unit, longest))
     months = rng.integers(0, 24)
     same_day = rng.random() < 0.2
     date = (

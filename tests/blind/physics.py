@@ -50,7 +50,7 @@ def reference_vectors(session: Session, pose: Pose) -> tuple[Array, Array]:
     for platform in (force, rate):
         flipped = platform * np.array([-1.0, -1.0, 1.0])
         block = np.where(pose.flipped[:, None], flipped, platform) @ session.mounting.T
-        turned.append(block - np.cross(pose.turn, block))
+        turned.append(block - np.cross(pose.turn, block) if pose.turn.any() else block)
     return turned[0], turned[1]
 
 

@@ -7,7 +7,7 @@ from itertools import combinations
 import numpy as np
 
 from tests.blind.catalogue import CATALOGUE, DISCRETE, HISTORY, SENSOR
-from tests.blind.effects_sensor import INPUT
+from tests.blind.effects_sensor import INPUT, clipped
 from tests.blind.physics import mean_readings, reference_vectors
 from tests.blind.pose import believed
 from tests.blind.world import Array, Effect, Session
@@ -133,10 +133,8 @@ def _clips(session: Session, i: int) -> Array:
         if u.max() <= 0:
             continue
         for depth in np.geomspace(1e-7, 0.2, CLIPS):
-            limit = u.max() * (1 - depth)
-            grid.append(
-                (mean_readings(session, [Effect("saturation", (limit,), (i,), (side,))]) - clean).reshape(-1, 1)
-            )
+            effect = Effect("saturation", (u.max() * (1 - depth),), (i,), (side,))
+            grid.append((clipped(clean, [effect]) - clean).reshape(-1, 1))
     return np.array(grid)
 
 

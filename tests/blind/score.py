@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from tests.blind.cases import Case, Truth
+from tests.blind.case import Case, Truth
 from tests.blind.catalogue import DISCRETE, TANGENT
 from tests.blind.pose import gravity
 

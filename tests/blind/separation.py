@@ -7,7 +7,7 @@ import numpy as np
 from tests.blind.catalogue import CATALOGUE
 from tests.blind.rivals import Candidate, candidates
 from tests.blind.strength import Lens
-from tests.blind.world import Array
+from tests.blind.world import Array, Effect
 
 DUST = 1e-5
 """A signature of which the baseline leaves less than this share is not seen at all."""
@@ -49,6 +49,13 @@ class Field:
             if own is None or norm >= CONTAINS or not simpler(own, cause, candidate):
                 found.append(Rival(candidate.cause, candidate.sensors, norm))
         return sorted(found, key=lambda rival: rival.left)
+
+    def nearest_to_noise(self, effect: Effect, left: Array) -> Rival:
+        """The mean effect that explains most of added noise as it was drawn; as far off as the evidence it lacks."""
+        evidence = self.lens.noise_evidence(effect.sensor, effect.k, left)
+        nearest = self.rivals(left, effect.cause, effect.sensors, None)[0]
+        explained = left @ left - nearest.left**2
+        return Rival(nearest.cause, nearest.sensors, float(np.sqrt(max(0.0, evidence - explained))))
 
 
 def simpler(own: int, cause: str, candidate: Candidate) -> bool:

@@ -109,12 +109,23 @@ class Lens:
 
     def noise_strength(self, sensor: int, sigma: float) -> float:
         """Strength of added variance: the root of twice its information, as for a mean of that norm."""
+        left = self._noise_columns(sensor, sigma)
+        grown = left.T @ left
+        return float(np.sqrt(max(0.0, np.trace(grown) - np.linalg.slogdet(np.eye(len(grown)) + grown)[1])))
+
+    def noise_evidence(self, sensor: int, sigma: float, left: Array) -> float:
+        """Twice the log-likelihood ratio that added variance gains on what is ``left`` of a drawn session."""
+        columns = self._noise_columns(sensor, sigma)
+        grown = np.eye(columns.shape[1]) + columns.T @ columns
+        seen = columns.T @ left
+        return float(seen @ np.linalg.solve(grown, seen) - np.linalg.slogdet(grown)[1])
+
+    def _noise_columns(self, sensor: int, sigma: float) -> Array:
+        """(n, R) what is left of one sigma of added noise in each reading of a sensor."""
         R, m = self.session.schedule.rows, self.session.unit.size
         chosen = np.zeros((R * m, R))
         chosen[np.arange(R) * m + sensor, np.arange(R)] = sigma * self.session.unit.scale[sensor]
-        left = self.left(chosen)
-        grown = left.T @ left
-        return float(np.sqrt(max(0.0, np.trace(grown) - np.linalg.slogdet(np.eye(R) + grown)[1])))
+        return self.left(chosen)
 
 
 def orthonormal(columns: Array) -> Array:

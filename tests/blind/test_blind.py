@@ -1,0 +1,66 @@
+"""Hidden effects must be found: the whole catalogue in short sessions, held to the targets of the study.
+
+A few dozen sessions cannot measure 97 %: a test fails when so many misses would be a one-in-a-thousand accident at
+the target. `make study` measures the rates.
+"""
+
+from itertools import product
+from statistics import fmean
+
+import pytest
+from scipy.stats import binom
+
+from tests.blind.cases import draw_case
+from tests.blind.catalogue import CATALOGUE
+from tests.blind.examine import examine
+from tests.blind.score import Outcome
+
+SEED = 20
+LONGEST = 16
+ACCIDENT = 1e-3
+
+
+def examined(kind: str, cases: list[tuple[int, str | None]]) -> list[Outcome]:
+    """Outcomes of short sessions."""
+    return [examine(draw_case(kind, (SEED, number), cause, LONGEST)) for number, cause in cases]
+
+
+def enough(marks: list[bool], target: float) -> bool:
+    """Whether the misses are no more than the target allows by chance."""
+    return binom.sf(marks.count(False) - 1, len(marks), 1 - target) > ACCIDENT
+
+
+@pytest.fixture(scope="module")
+def singles() -> list[Outcome]:
+    """Every cause twice."""
+    return examined("single", [(k, cause) for k, (_, cause) in enumerate(product(range(2), CATALOGUE))])
+
+
+def test_the_hidden_cause_is_named_first_where_it_is_told_apart(singles: list[Outcome]):
+    apart = [o for o in singles if o.separated]
+    assert enough([o.first for o in apart], 0.97), [o for o in apart if not o.first]
+    assert fmean(len(o.alternatives) for o in apart) <= 0.75
+
+
+def test_the_hidden_cause_is_named_or_listed(singles: list[Outcome]):
+    assert enough([o.listed for o in singles], 0.99), [o for o in singles if not o.listed]
+    assert fmean(len(o.alternatives) for o in singles) <= 2
+
+
+def test_amplitudes_lie_within_their_own_sigma(singles: list[Outcome]):
+    assert enough([abs(p.value) <= 2 for o in singles for p in o.pulls], 0.93)
+
+
+def test_no_name_where_there_is_no_effect():
+    outcomes = examined("none", [(k, None) for k in range(40)])
+    assert enough([not o.findings for o in outcomes], 0.99), [o for o in outcomes if o.findings]
+
+
+def test_structure_outside_the_catalogue_is_unexplained():
+    outcomes = examined("outside", [(k, None) for k in range(24)])
+    assert enough([o.unexplained for o in outcomes], 0.95), [o for o in outcomes if not o.unexplained]
+
+
+def test_two_effects_are_both_named():
+    outcomes = examined("two", [(k, None) for k in range(20)])
+    assert enough([all(o.named) for o in outcomes], 0.90), [o for o in outcomes if not all(o.named)]
