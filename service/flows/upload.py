@@ -5,7 +5,6 @@ from datetime import datetime
 
 from estimator.calibration import calibrate
 from estimator.errors import SessionError
-from estimator.reading import read_session
 from estimator.results import Calibration
 from estimator.session import CalibrationSession
 from service.flows.judge import judge
@@ -13,6 +12,7 @@ from service.flows.parameter_values import parameter_values
 from service.flows.refuse import refuse
 from service.flows.storable import measured_at, plain_filename, require_storable
 from service.flows.tolerances import type_of
+from service.ingest import read_upload
 from service.records import Judged, Receipt, StoredSession
 from service.storage import Storage
 from service.storage.files import content_hash
@@ -56,7 +56,7 @@ def upload(
         return _receipt(known, created=False)
     filename = plain_filename(filename)
     try:
-        session = read_session(content, name=filename)
+        session = read_upload(content, filename)
         require_storable(session, now, filename)
         calibration = calibrate(session)
     except SessionError as fault:

@@ -1,0 +1,57 @@
+"""The project's own source, parsed."""
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = ("estimator", "service", "migrations")
+
+
+@dataclass(frozen=True)
+class Module:
+    """One file of Python."""
+
+    name: str
+    """Dotted; of a package the package's."""
+    path: Path
+    tree: ast.Module
+    is_package: bool
+
+    @property
+    def imports(self) -> frozenset[str]:
+        """Dotted names that it imports; of ``from x import y`` the module x, and x.y where that is a module."""
+        return frozenset(name for node in ast.walk(self.tree) for name in _imported(node))
+
+
+def _imported(node: ast.AST) -> Iterator[str]:
+    if isinstance(node, ast.Import):
+        yield from (alias.name for alias in node.names)
+    elif isinstance(node, ast.ImportFrom):
+        assert node.module is not None, "relative imports are not used"
+        modules = [f"{node.module}.{alias.name}" for alias in node.names]
+        found = [name for name in modules if _file(name)]
+        yield from found
+        if len(found) < len(modules):
+            yield node.module
+
+
+def _file(name: str) -> bool:
+    base = ROOT.joinpath(*name.split("."))
+    return base.with_suffix(".py").is_file() or (base / "__init__.py").is_file()
+
+
+@cache
+def modules(*packages: str) -> tuple[Module, ...]:
+    """Every module of some packages."""
+    paths = [path for package in packages for path in sorted((ROOT / package).rglob("*.py"))]
+    return tuple(_module(path) for path in paths)
+
+
+def _module(path: Path) -> Module:
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    is_package = parts[-1] == "__init__"
+    name = ".".join(parts[:-1] if is_package else parts)
+    return Module(name, path, ast.parse(path.read_text("utf-8")), is_package)

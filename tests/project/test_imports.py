@@ -1,0 +1,132 @@
+"""Imports run one way, never in a circle, never inside a function; and each library stays in its place."""
+
+import ast
+import sys
+
+import pytest
+
+from tests.project.source import PACKAGES, Module, modules
+
+SERVICE_LAYERS = (
+    {"settings", "records", "units", "errors"},
+    {"ingest", "storage"},
+    {"flows"},
+    {"dependencies"},
+    {"api", "pages", "reports"},
+    {"app", "demo"},
+    {"commands"},
+    {"cli"},
+)
+"""A part imports only from parts of earlier lines, never from one beside it."""
+ESTIMATOR_LAYERS = (
+    {"errors"},
+    {"session"},
+    {"arrays"},
+    {"reference", "parameters", "reading", "static"},
+    {"results"},
+    {"forward", "writing"},
+    {"causes"},
+    {"simulate", "calibration", "alignment", "parity", "planning"},
+    {"diagnosis", "health"},
+)
+HOMES = {
+    "sqlalchemy": ("service.storage", "migrations"),
+    "alembic": ("service.storage", "migrations"),
+    "fastapi": ("service.api", "service.pages", "service.dependencies", "service.app"),
+    "starlette": ("service.api", "service.pages", "service.dependencies", "service.app"),
+    "typer": ("service.cli", "service.commands"),
+}
+ALL = modules(*PACKAGES)
+NAMES = [module.name for module in ALL]
+
+
+def layer(part: str, layers: tuple[set[str], ...]) -> int:
+    """Which line a part stands in; a new part must be given one."""
+    for number, parts in enumerate(layers):
+        if part in parts:
+            return number
+    raise AssertionError(f"{part} has no place in the layers yet")
+
+
+def upward(package: str, layers: tuple[set[str], ...]) -> list[str]:
+    """Imports within a package that do not go to an earlier layer."""
+    found = []
+    for module in modules(package):
+        if module.name == package:
+            continue
+        own = module.name.split(".")[1]
+        for name in module.imports:
+            parts = name.split(".")
+            if parts[0] != package or len(parts) == 1 or parts[1] == own or not is_part(package, parts[1]):
+                continue
+            if layer(parts[1], layers) >= layer(own, layers):
+                found.append(f"{module.name} imports {name}")
+    return found
+
+
+def is_part(package: str, name: str) -> bool:
+    """Whether a name of a package is a module of it."""
+    return any(other.split(".")[:2] == [package, name] for other in NAMES)
+
+
+def test_the_service_s_imports_run_one_way() -> None:
+    assert upward("service", SERVICE_LAYERS) == []
+
+
+def test_the_estimator_s_imports_run_one_way() -> None:
+    assert upward("estimator", ESTIMATOR_LAYERS) == []
+
+
+def test_the_estimator_is_pure() -> None:
+    allowed = {"estimator", "numpy", "scipy", *sys.stdlib_module_names}
+    impure = {"datetime", "time", "sqlite3", "urllib", "socket", "subprocess", "threading", "logging"}
+    found = [
+        f"{module.name} imports {name}"
+        for module in modules("estimator")
+        for name in module.imports
+        if (root := name.split(".")[0]) not in allowed or (root in impure and not reads_files(module))
+    ]
+    assert found == []
+
+
+def reads_files(module: Module) -> bool:
+    """Reading a session file may look at dates."""
+    return module.name.startswith(("estimator.reading", "estimator.writing"))
+
+
+@pytest.mark.parametrize("library", HOMES)
+def test_a_library_stays_in_its_place(library: str) -> None:
+    found = [
+        module.name
+        for module in ALL
+        if any(name.split(".")[0] == library for name in module.imports)
+        and not any(module.name == home or module.name.startswith(f"{home}.") for home in HOMES[library])
+    ]
+    assert found == []
+
+
+def test_no_import_stands_inside_a_function() -> None:
+    found = [
+        f"{module.name}:{inner.lineno}"
+        for module in ALL
+        for node in ast.walk(module.tree)
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+        for inner in ast.walk(node)
+        if isinstance(inner, ast.Import | ast.ImportFrom)
+    ]
+    assert found == []
+
+
+def test_no_imports_go_in_a_circle() -> None:
+    graph = {module.name: {name for name in module.imports if name in NAMES} for module in ALL}
+    done: set[str] = set()
+
+    def walk(name: str, trail: tuple[str, ...]) -> None:
+        assert name not in trail, " → ".join((*trail[trail.index(name) :], name))
+        if name not in done:
+            for imported in graph[name]:
+                walk(imported, (*trail, name))
+            done.add(name)
+
+    for name in graph:
+        walk(name, ())
