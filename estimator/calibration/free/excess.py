@@ -40,7 +40,7 @@ def explained(solution: Solution) -> Solution:
         added = added_noise(found, stated, solution.dof)
         sigma = np.hypot(stated, added * np.exp(found.state.log_scale))
         found = search(solution.rows.weighted(sigma), found.state, solution.quadratic)
-        if abs(added - last) < SETTLED * added:
+        if abs(added - last) < SETTLED * added or not found.converged:
             break
         last = added
     return replace(found, iterations=solution.iterations)

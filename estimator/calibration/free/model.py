@@ -25,6 +25,9 @@ import numpy as np
 from estimator.arrays import tangents, unit
 from estimator.session import Array
 
+LEAST_TURN = 1e-13
+"""Part of an orientation's information that is added to it, so that sensors that agree on one plane leave no hole."""
+
 
 @dataclass(frozen=True, eq=False)
 class Rows:
@@ -151,6 +154,7 @@ def linearise(rows: Rows, state: State) -> Linear:
     residual = (rows.y - predicted(state)) / rows.sigma
     missed = np.einsum("rk,rka->ra", rows.directions - state.directions, tangents(state.directions))
     D = np.swapaxes(shared, 1, 2) @ shared + rows.prior[:, None, None] * np.eye(2)
+    D += (LEAST_TURN * np.trace(D, axis1=1, axis2=2) + np.finfo(float).tiny ** 0.5)[:, None, None] * np.eye(2)
     inverse = np.linalg.inv(D)
     coupling = (own[..., :, None] * shared[..., None, :]).reshape(R, 5 * m, 2)
     blocks = np.einsum("rmi,rmj->mij", own, own)

@@ -14,6 +14,9 @@ from estimator.calibration.free.model import Linear, Rows, State, cost, linearis
 from estimator.session import Array
 
 MAX_ITERATIONS = 200
+MOST_ITERATIONS = 600
+"""Of all searches while the noise settles."""
+
 CONVERGED = 1e-10
 """Expected fall of χ² below which the search has ended: steps of 1e-5 standard errors."""
 
@@ -139,6 +142,6 @@ def search_with_noise(rows: Rows, state: State, quadratic: bool) -> Solution:
         change = np.abs(sigma / solution.rows.sigma - 1.0).max()
         solution = search(rows.weighted(sigma), solution.state, quadratic)
         iterations += solution.iterations
-        if change < NOISE_SETTLED:
+        if change < NOISE_SETTLED or iterations > MOST_ITERATIONS:
             break
     return replace(solution, iterations=iterations)

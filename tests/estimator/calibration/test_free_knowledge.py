@@ -181,3 +181,20 @@ def test_a_plain_quadratic_term_is_estimated_although_noise_is_large():
         true.quadratic[0], abs=4 * result.sensors[0].quadratic.sigma
     )
     assert result.sensors[0].quadratic.sigma * 9.81 > 1e-4
+
+
+@pytest.mark.parametrize("size", [1.0, 1e3, 1e9])
+@pytest.mark.parametrize("count", [4, 8, 30])
+def test_readings_without_sense_give_a_result_that_json_can_hold(size, count):
+    measured = session(truth(4), sphere(count, np.random.default_rng(0)))
+    nonsense = 0.12 * 9.81 * (1 + size * np.random.default_rng(1).standard_normal((count, 4)))
+    result = calibrate_free(replace(measured, readings=nonsense))
+    assert json.loads(json.dumps(result.to_dict(), allow_nan=False))["fit"]["dof"] == result.fit.dof
+
+
+def test_axes_that_share_planes_leave_no_hole():
+    true = replace(truth(4), nominal=np.array([[1.0, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 1]]))
+    faces = session(replace(true, axes=true.nominal), np.vstack([FACES, FACES]))
+    result = calibrate_free(faces)
+    assert result.fit.rank < result.fit.parameters
+    json.dumps(result.to_dict(), allow_nan=False)
