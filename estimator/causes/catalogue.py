@@ -1,10 +1,17 @@
-"""The catalogue: every cause the diagnosis knows. Adding a cause is one class and one line here."""
+"""The catalogue: every cause the diagnosis knows. Adding a cause is one class and one line here.
+
+Where two causes leave the very same trace the earlier one is named first: what only gyros have stands before what all
+blocks have.
+"""
 
 from estimator.causes import environment, fixture, gyro, record, sensor, stand
 from estimator.causes.contract import Cause
 from estimator.causes.noise import ExcessNoise
 
 CATALOGUE: tuple[Cause, ...] = (
+    gyro.GSensitivity(),
+    gyro.LatitudeEntry(),
+    gyro.OffMeridian(),
     sensor.CubicNonlinearity(),
     sensor.ScaleAsymmetry(),
     sensor.CrossCoupling(),
@@ -41,9 +48,6 @@ CATALOGUE: tuple[Cause, ...] = (
     record.GravityEntry(),
     record.SensorDrift(),
     fixture.RemountRotation(),
-    gyro.GSensitivity(),
-    gyro.LatitudeEntry(),
-    gyro.OffMeridian(),
 )
 
 UNEXPLAINED = "unexplained"

@@ -22,8 +22,20 @@ class AlphaEntry(CommonCause):
     advice = "Read the elevation off the stand again, correct the record and upload it anew."
 
     def change(self, setting: Setting) -> Array:
+        """α counts for accelerometers; a block of gyros alone has χ in its place."""
         assert setting.d_alpha is not None
-        return setting.d_alpha[..., None]
+        acts = np.array([kind == ACCELEROMETER or ACCELEROMETER not in setting.kinds for kind in setting.kinds])
+        return (setting.d_alpha * acts[None, :, None])[..., None]
+
+    def put_right(self, session: CalibrationSession, amount: float) -> CalibrationSession:
+        """The session with ``amount`` (rad) added to the elevation in its record."""
+        stand = session.stand
+        assert stand is not None
+        if any(s.kind == ACCELEROMETER for s in session.sensors):
+            assert stand.alpha is not None
+            return replace(session, stand=replace(stand, alpha=stand.alpha + amount))
+        assert stand.chi is not None
+        return replace(session, stand=replace(stand, chi=stand.chi + amount))
 
 
 class GravityEntry(CommonCause):

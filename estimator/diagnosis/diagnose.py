@@ -9,13 +9,15 @@ import numpy as np
 
 from estimator.calibration.calibrate import averaged, calibrate
 from estimator.causes import CATALOGUE, Cause, Correction
+from estimator.causes.record import AlphaEntry
 from estimator.diagnosis.baseline import Baseline
 from estimator.diagnosis.evidence import parameter_covariance
 from estimator.diagnosis.extend import amplitudes, extended_calibration
 from estimator.diagnosis.gain import gain
 from estimator.diagnosis.limits import limits
 from estimator.diagnosis.measured import baseline_of
-from estimator.diagnosis.report import findings, slip_finding, structures
+from estimator.diagnosis.nominal import WrongEntry, wrong_elevation
+from estimator.diagnosis.report import entry_finding, findings, slip_finding, structures
 from estimator.diagnosis.results import Diagnosis
 from estimator.diagnosis.search import begin, search
 from estimator.diagnosis.slips import Slip, exchanged_rows, expected_axes, turned_record, weighted_square
@@ -43,18 +45,32 @@ def diagnose(
     rows = averaged(session)
     past = [averaged(h) for h in history]
     slips, right = undo_slips(rows, [baseline_of(h) for h in past], catalogue)
+    entry = None if past else against_nominal(right, catalogue)
+    right = right if entry is None else entry.session
     baseline, earlier = common_start(right, past)
     state = search(begin(baseline, earlier, catalogue))
     fitted = amplitudes(state)
     return Diagnosis(
         unit=session.unit,
-        findings=(*(slip_finding(s, rows) for s in slips), *findings(state, fitted)),
+        findings=(
+            *(slip_finding(s, rows) for s in slips),
+            *([] if entry is None else [entry_finding(entry)]),
+            *findings(state, fitted),
+        ),
         structures=structures(state),
         gain=gain(state),
         limits=limits(state, catalogue),
         baseline=calibrate(rows),
         calibration=extended_calibration(state, fitted),
     )
+
+
+def against_nominal(session: CalibrationSession, catalogue: Sequence[Cause]) -> WrongEntry | None:
+    """A wrong elevation told from the nominal axes; None off the stand or where the axes are as they should be."""
+    elevation = next((c for c in catalogue if isinstance(c, AlphaEntry)), None)
+    if elevation is None or session.programme != TWO_AXIS_STAND:
+        return None
+    return wrong_elevation(session, elevation)
 
 
 def common_start(session: CalibrationSession, history: Sequence[CalibrationSession]) -> tuple[Baseline, list[Baseline]]:

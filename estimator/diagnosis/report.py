@@ -4,6 +4,7 @@ import numpy as np
 
 from estimator.causes.noise import ExcessNoise
 from estimator.diagnosis.extend import Amplitudes
+from estimator.diagnosis.nominal import WrongEntry
 from estimator.diagnosis.parity import parity_split
 from estimator.diagnosis.results import Finding, Rival, Structure
 from estimator.diagnosis.rivals import CREDIBLE, alternatives, ranking, separations
@@ -161,4 +162,25 @@ def structures(state: Search) -> tuple[Structure, ...]:
             strength=f.best.strength,
         )
         for f in state.structures
+    )
+
+
+def entry_finding(entry: WrongEntry) -> Finding:
+    """An entry of the record that the nominal axes show to be wrong."""
+    return Finding(
+        cause=entry.cause.identifier,
+        sensors=(),
+        amplitude=(entry.amplitude,),
+        sigma=(entry.sigma,),
+        units=entry.cause.units,
+        nonlinear={},
+        p_value=entry.p_value,
+        strength=entry.strength,
+        alternatives=(),
+        separations=(),
+        ranking=(),
+        sentence=entry.cause.sentence,
+        advice=entry.cause.advice,
+        parity=None,
+        new=None,
     )
