@@ -1,14 +1,17 @@
 """Gyros at rest in unknown orientations: the bias and nothing else.
 
 The Earth's rate Ω acts along an unknown direction in every orientation, so its projection on an input axis is a bounded
-unknown of mean square Ω²/3. From one orientation to the next it is drawn anew; the mean over the rows keeps its share.
+unknown of mean square Ω²/3. From one orientation to the next it is drawn anew; the mean over the rows keeps its share. A gyro whose rows scatter more than noise and Earth rate explain has
+the uncertainty of the scatter.
 Scale, axis and nonlinearity need rates that a resting block does not see.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import chi2 as chi_squared
 
+from estimator.calibration.free.excess import UNLIKELY
 from estimator.reference import EARTH_RATE
 from estimator.session import Array
 
@@ -54,4 +57,7 @@ def rest_biases(readings: Array, standard_errors: Array, repeatability: Array) -
     variance = noise**2 + EARTH_RATE**2 / 3
     bias = (readings / variance).sum(axis=0) / (1 / variance).sum(axis=0)
     sigma = 1 / np.sqrt((1 / variance).sum(axis=0))
+    squares = ((readings - bias) ** 2 / variance).sum(axis=0)
+    restless = chi_squared.sf(squares, max(R - 1, 1)) < UNLIKELY
+    sigma = sigma * np.where(restless, np.sqrt(squares / max(R - 1, 1)), 1.0)
     return GyroBiases(bias, sigma, readings - bias, noise, bool(known.all()))

@@ -156,6 +156,15 @@ def test_gyros_at_rest_give_their_bias_and_nothing_else():
     assert result.sensor("A1").observable["scale"]
 
 
+def test_a_gyro_that_wanders_has_the_uncertainty_of_its_scatter():
+    measured = session(truth(3), sphere(24, np.random.default_rng(2)), gyros=3)
+    wandering = measured.readings.copy()
+    wandering[:, 4] += 1e-2 * np.random.default_rng(3).standard_normal(24)
+    result = calibrate_free(replace(measured, readings=wandering))
+    assert result.sensor("G2").bias.sigma == pytest.approx(1e-2 / np.sqrt(24), rel=0.4)
+    assert result.sensor("G1").bias.sigma < 1e-4
+
+
 def test_a_sensor_between_gyros_keeps_its_place():
     measured = session(truth(3), sphere(24, np.random.default_rng(2)), gyros=3)
     order = [3, 0, 4, 1, 5, 2]
