@@ -26,6 +26,8 @@ def deviation(current: SensorCalibration, reference: SensorCalibration, paramete
     then: Estimate = getattr(reference, parameter)
     if now.value is None or then.value is None or now.sigma is None or then.sigma is None:
         return None
+    if parameter == "scale" and then.value == 0:
+        return None
     if parameter == "scale":
         ratio = now.value / then.value
         u = np.hypot(now.sigma / then.value, ratio * then.sigma / then.value)

@@ -50,7 +50,8 @@ def _chords(center: float, sigma: float, radius: float) -> tuple[Array, Array]:
 def _share(chord: Array, weight: Array, center: float, sigma: float) -> float:
     """The weights times what the second axis leaves inside each chord."""
     inside = ndtr((chord - center) / sigma) - ndtr((-chord - center) / sigma)
-    return float(min(max(weight @ inside, 0.0), 1.0))
+    share: float = weight @ inside
+    return min(max(float(share), 0.0), 1.0)
 
 
 @dataclass(frozen=True)
@@ -99,4 +100,6 @@ def _length_with(probability: float, measured: float, sigma: Array) -> float:
 
     if excess(0.0) <= 0:
         return 0.0
-    return float(brentq(excess, 0.0, measured + REACH * float(sigma[1]), xtol=1e-5 * float(sigma[1])))
+    reach = measured + REACH * float(sigma[1])
+    found: float = brentq(excess, 0.0, reach, xtol=1e-5 * float(sigma[1]))
+    return found

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from sqlalchemy import literal_column
+from sqlalchemy import Integer, literal_column
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
@@ -18,5 +18,5 @@ class Queries:
     def insert_once(self, table: type[Base], **values: Any) -> bool:
         """Inserts a row unless a unique constraint says it is there; waits for a rival that is inserting the same."""
         insert = postgresql.insert if self._session.get_bind().dialect.name == "postgresql" else sqlite.insert
-        statement = insert(table).values(**values).on_conflict_do_nothing().returning(literal_column("1"))
-        return self._session.execute(statement).first() is not None
+        inserted = insert(table).values(**values).on_conflict_do_nothing().returning(literal_column("1", Integer))
+        return self._session.scalar(inserted) is not None

@@ -63,6 +63,11 @@ def test_what_the_reference_did_not_observe_is_undecidable() -> None:
     assert (found.verdict, found.value, found.reference) == ("undecidable", 1e-7, None)
 
 
+def test_a_scale_has_no_relative_deviation_from_zero() -> None:
+    found = judged({"scale": (0.12, 1e-6)}, {"scale": (0.0, 1e-6)})["scale"]
+    assert (found.verdict, found.deviation) == ("undecidable", None)
+
+
 def test_a_sensor_that_the_reference_lacks_is_undecidable() -> None:
     then, now = calibration(sensor("A1")), calibration(sensor("A9"))
     assert {j.verdict for j in judge(now, then, TOLERANCES)} == {"undecidable"}
