@@ -16,6 +16,9 @@ ELEMENTS = ("scale", "bias", "quadratic", "axis_1", "axis_2")
 PLAUSIBLE = 0.1
 """One sigma of what a dimensionless element could be at all: 10 % of scale, 0.1 g, 0.1/g, 0.1 rad."""
 
+LIMIT = 0.3 * PLAUSIBLE
+"""An element counts as observed when its dimensionless one sigma is below this share of what it could be at all."""
+
 
 @dataclass(frozen=True, eq=False)
 class SensorParameters:

@@ -5,13 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.forward import projected, slope
-from estimator.parameters import ELEMENTS, PLAUSIBLE, SensorParameters
+from estimator.parameters import ELEMENTS, LIMIT, PLAUSIBLE, SensorParameters
 from estimator.reference import Geometry
 from estimator.results import KnownCombination
 from estimator.session import Array
-
-LIMIT = 0.3 * PLAUSIBLE
-"""An element counts as observed when its dimensionless one sigma is below this share of what it could be at all."""
 
 ROUNDING = 1e-14
 """Eigenvalues of the information below this part of the largest are rounding, not knowledge."""

@@ -15,13 +15,13 @@ S sessions of one schedule are solved in one call; R rows, m sensors, k constant
 Source: analytic alignment paper (14), (15), with the noise and stand errors of the package page.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 
 from estimator.forward import input_of, jacobian, projected, slope
-from estimator.parameters import PLAUSIBLE, SensorParameters
+from estimator.parameters import LIMIT, PLAUSIBLE, SensorParameters
 from estimator.reference import Geometry
 from estimator.session import Array
 
@@ -162,6 +162,23 @@ def eliminated(normal: Normal, P: int, sigma: Array) -> tuple[Array, Array, Arra
     return inner + gain @ lean.swapaxes(-1, -2), inner + told @ told.swapaxes(-1, -2), step
 
 
+def held(normal: Normal) -> Normal:
+    """The normal equations with each sensor's open directions held where they are.
+
+    Along them the readings say nothing to first order, but a step would change to second order what they do say.
+    """
+    values, vectors = np.linalg.eigh(normal.own)
+    weak = np.where(values < LIMIT**-2, 1.0, 0.0)
+    stiff = values.max(axis=-1, keepdims=True) * weak
+    own = (vectors * stiff[..., None, :]) @ vectors.swapaxes(-1, -2)
+    S, m = own.shape[:2]
+    stiffness, one = np.zeros((S, m, 5, m, 5)), np.arange(m)
+    stiffness[:, one, :, one] = own.swapaxes(0, 1)
+    matrix = normal.matrix.copy()
+    matrix[:, : 5 * m, : 5 * m] += stiffness.reshape(S, 5 * m, 5 * m)
+    return replace(normal, matrix=matrix)
+
+
 def gauss_newton(y: Array, variance: Array, geometry: Geometry, p: SensorParameters, iteration: int) -> Fitted:
     """One step from p, the ``iteration``-th; arrays as in `fit`.
 
@@ -172,6 +189,8 @@ def gauss_newton(y: Array, variance: Array, geometry: Geometry, p: SensorParamet
     P = 5 * m
     normal, _ = linearise(y, p, geometry, 1.0 / variance)
     total, repeatability, step = eliminated(normal, P, geometry.constant_sigma)
+    if np.diagonal(total, axis1=1, axis2=2).max() > LIMIT**2:
+        *_, step = eliminated(held(normal), P, geometry.constant_sigma)
     change = step[:, :P]
     length = (change**2 / np.diagonal(total, axis1=1, axis2=2)).max(axis=-1)
     to_come = length * np.minimum(1.0, 4.0 * (change**2).max(axis=-1))

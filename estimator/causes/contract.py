@@ -129,6 +129,10 @@ class Signature(Cause):
     def shapes(self, setting: Setting) -> Iterator[Shape]:
         """Every signature the cause could leave in this session."""
 
+    def reported(self, setting: Setting, shape: Shape, amplitude: Array, sigma: Array) -> tuple[Array, Array]:
+        """Amplitude and sigma as `units` names them, from those of the signature's columns."""
+        return amplitude, sigma
+
 
 class Correction(Cause):
     """A slip in the record that can be undone: the corrected session is tried instead of a signature."""
@@ -145,6 +149,10 @@ class SensorCause(Signature):
         """Values of the nonlinear parameters to try; one empty tuple for a linear cause."""
         yield ()
 
+    def grid_of(self, setting: Setting, i: int) -> Iterator[tuple[float, ...]]:
+        """The grid for sensor i, where it is not the same for all."""
+        yield from self.grid(setting)
+
     @abstractmethod
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
         """(R, q) what a unit amplitude adds inside the bracket of sensor i."""
@@ -154,7 +162,7 @@ class SensorCause(Signature):
         for i in range(m):
             if self.kind is not None and setting.kinds[i] != self.kind:
                 continue
-            for nonlinear in self.grid(setting):
+            for nonlinear in self.grid_of(setting, i):
                 term = self.term(setting, i, nonlinear)
                 columns = np.zeros((setting.rows, m, term.shape[1]))
                 columns[:, i, :] = term

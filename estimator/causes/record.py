@@ -55,7 +55,7 @@ class GravityEntry(CommonCause):
 
 
 class SensorDrift(SensorCause):
-    """Amplitudes: relative scale, bias, and the axis' turn along its two tangents."""
+    """Amplitudes: relative scale, bias, and the axis' turn along its two tangents; zero where nothing moved."""
 
     identifier = "sensor-drift"
     scope = "sensor"
@@ -66,10 +66,16 @@ class SensorDrift(SensorCause):
     sentence = "{sensors} itself moved since the earlier sessions; stand and fixture do not explain it."
     advice = "Watch this sensor: repeat the session to confirm, and plan its adjustment or replacement."
 
+    moves = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 1), (1, 1, 1, 1))
+    """What may have moved: the scale, the bias or the axis alone, or everything."""
+
+    def grid(self, setting: Setting) -> Iterator[tuple[float, ...]]:
+        yield from self.moves
+
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
         columns = jacobian(setting.parameters, setting.n, setting.norm)[:, i, :]
         columns[:, 1] = 1.0
-        return columns[:, [0, 1, 3, 4]]
+        return columns[:, [0, 1, 3, 4]] * np.array(nonlinear)
 
 
 class RunsSwapped(Correction):

@@ -1,11 +1,12 @@
 """Causes inside one sensor. Model equation terms after IEEE Std 1293 where it names them."""
 
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 
 from estimator.arrays import tangents
-from estimator.causes.contract import SensorCause, Setting, column
+from estimator.causes.contract import SensorCause, Setting, Shape, column
 from estimator.forward import input_of
 from estimator.session import Array
 
@@ -125,25 +126,38 @@ class BiasPerPosition(SensorCause):
 
 
 class Saturation(SensorCause):
-    """The nonlinear parameter is the limit at the input, m/s²; the amplitude of its signature is one by nature."""
+    """The nonlinear parameter is the limit at the input; reported as the amplitude, m/s²."""
 
     identifier = "saturation"
     scope = "sensor"
     equation = "reading clipped beyond a limit"
-    units = ("1",)
+    units = ("m/s²",)
     nonlinear_units = ("m/s²",)
     sentence = "{sensors} is clipped: its reading stops at a limit."
     advice = "Lower the converter's gain or use a range that holds the largest input, and repeat the session."
-    levels = 10
+    deepest = 8
+    """Levels of input, from the largest down, that the limit is tried between."""
 
-    def grid(self, setting: Setting) -> Iterator[tuple[float, ...]]:
-        for share in np.linspace(0.02, 0.6, self.levels):
-            yield (float(share),)
+    def level(self, setting: Setting, i: int) -> Array:
+        """Size of what sensor i should have read, at the input, in units of the applied vector: (R,)."""
+        return np.abs(input_of(setting.parameters, setting.n)[:, i]) / setting.norm[i]
+
+    def grid_of(self, setting: Setting, i: int) -> Iterator[tuple[float, ...]]:
+        levels = np.unique(np.round(self.level(setting, i), 4))[::-1][: self.deepest + 1]
+        for upper, lower in pairwise(levels):
+            yield (float(lower * setting.norm[i]),)
+            yield (float((upper + lower) / 2 * setting.norm[i]),)
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
         h = input_of(setting.parameters, setting.n)[:, i]
-        limit = np.quantile(np.abs(h), 1 - nonlinear[0])
-        return column(-np.sign(h) * np.maximum(np.abs(h) - limit, 0.0))
+        return column(-np.sign(h) * np.maximum(np.abs(h) - nonlinear[0], 0.0))
+
+    def reported(self, setting: Setting, shape: Shape, amplitude: Array, sigma: Array) -> tuple[Array, Array]:
+        """The limit: what is cut off on average, moved from the tried limit to where the amplitude is one."""
+        (i,), (limit,) = shape.sensors, shape.nonlinear
+        cut = -shape.columns[:, i, 0] * np.sign(input_of(setting.parameters, setting.n)[:, i])
+        depth = float(cut[cut > 0].mean())
+        return limit + (1 - amplitude) * depth, sigma * depth
 
 
 class ReadingOutlier(SensorCause):

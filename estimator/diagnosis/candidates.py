@@ -118,7 +118,7 @@ def _score(evidence: Evidence, traces: Traces, taken: Array, z: Array) -> Iterab
     columns = traces.columns - taken @ (taken.T @ traces.columns)
     norms = np.maximum(np.linalg.norm(columns, axis=1, keepdims=True), 1e-300)
     basis, size = orthonormal(columns / norms)
-    visible = norms[:, 0, :].max(axis=-1) > INVISIBLE * traces.raw
+    visible = (traces.raw > 0) & (norms[:, 0, :].max(axis=-1) > INVISIBLE * traces.raw)
     live = (size > FAINT * size[:, :1]) & visible[:, None]
     power = ((z @ basis) ** 2 * live).sum(axis=-1)
     freedom = live.sum(axis=-1)

@@ -49,9 +49,11 @@ def amplitudes(state: Search) -> Amplitudes:
         left = left[:, size > 1e-9 * size[0]]
         z = z - left @ (left.T @ z)
     white = [np.linalg.norm(state.evidence.raw(s.shape.columns), axis=0) for s in found]
-    scale = np.maximum(np.linalg.norm(columns, axis=0), INVISIBLE * np.concatenate(white))
+    raw = np.concatenate(white)
+    scale = np.where(raw > 0, np.maximum(np.linalg.norm(columns, axis=0), INVISIBLE * raw), 1.0)
     gram = (columns / scale).T @ (columns / scale)
     covariance = np.linalg.inv(gram + 1e-12 * np.eye(len(gram))) / scale[:, None] / scale
+    covariance *= np.outer(raw > 0, raw > 0)
     return Amplitudes(covariance @ (columns.T @ z), covariance, slices)
 
 

@@ -26,13 +26,15 @@ def finding(state: Search, found: Found, fitted: Amplitudes, k: int) -> Finding:
     best, names = found.best, [s.name for s in state.baseline.session.sensors]
     sensors = tuple(names[i] for i in best.shape.sensors)
     part = fitted.slices[k]
-    sigma = np.sqrt(np.diagonal(fitted.covariance)[part])
+    amplitude, sigma = best.cause.reported(
+        state.baseline.setting, best.shape, fitted.value[part], np.sqrt(np.diagonal(fitted.covariance)[part])
+    )
     others = alternatives(state, found)
     gyro = any(state.baseline.setting.kinds[i] != ACCELEROMETER for i in best.shape.sensors)
     return Finding(
         cause=best.cause.identifier,
         sensors=sensors,
-        amplitude=tuple(map(float, fitted.value[part])),
+        amplitude=tuple(map(float, amplitude)),
         sigma=tuple(map(float, sigma)),
         units=tuple(u.replace("m/s²", "rad/s") if gyro else u for u in best.cause.units),
         nonlinear=nonlinear(state, found),
@@ -57,7 +59,7 @@ def nonlinear(state: Search, found: Found) -> dict[str, float]:
     """The shape parameters by unit; rows counted from 1, a saturation limit at the input."""
     cause, values = found.best.cause, found.best.shape.nonlinear
     shown = {}
-    for unit, value in zip(cause.nonlinear_units, values, strict=True):
+    for unit, value in zip(cause.nonlinear_units, values, strict=False):
         shown[unit] = value + 1 if unit == "row" else value
     return shown
 

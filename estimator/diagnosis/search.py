@@ -20,8 +20,11 @@ from estimator.diagnosis.evidence import Between, Evidence
 from estimator.diagnosis.structures import STRUCTURES
 from estimator.session import Array
 
-LEVEL = 0.01
-"""Family-wise level: sessions without an effect that get a name."""
+LEVEL = 0.005
+"""Family-wise level: sessions without an effect that get a name; half of what is allowed, for safety."""
+
+DECISIVE = 3.0
+"""ln evidence by which a signature must beat mere excess noise to be believed without a look at the scatter."""
 
 MOST = 8
 """Different causes (and, apart from them, patterns) looked for in one session, each on as many sensors as show it."""
@@ -104,23 +107,32 @@ def begin(baseline: Baseline, history: Sequence[Baseline], catalogue: Sequence[C
 def search(start: Search) -> Search:
     """Causes, then what they leave."""
     state = settle(causes(start))
-    return judge_structures(structures(state), start)
+    return judge_structures(structures(state))
 
 
 def causes(state: Search) -> Search:
     """Add causes until none is significant."""
     while len({f.best.cause.identifier for f in state.found}) < MOST:
-        best = strongest(state, state.traces)
         noisy = noisiest(state)
-        if noisy is not None and (best is None or noisy.evidence > best.ranking[0][1]):
-            pattern = strongest(state, state.patterns)
-            if pattern is None or noisy.evidence > pattern.ranking[0][1]:
+        best = strongest(state, state.traces)
+        if noisy is not None and (best is None or noisy.evidence > best.ranking[0][1] - DECISIVE):
+            wary = with_unknown_noise(state, noisy.sensor)
+            best = strongest(wary, wary.traces)
+            if best is None and strongest(wary, wary.patterns) is None:
                 state = with_excess(state, noisy)
                 continue
         if best is None:
             break
         state = replace(state, found=(*state.found, best, *companions(state, best, state.traces)))
     return state
+
+
+def with_unknown_noise(state: Search, sensor: int) -> Search:
+    """The search that does not believe one sensor's stated noise: its signatures must stand out of its own scatter."""
+    unstated = state.baseline.unstated.copy()
+    unstated[sensor] = True
+    baseline = replace(state.baseline, unstated=unstated)
+    return replace(state, baseline=baseline, evidence=replace(state.evidence, baseline=baseline))
 
 
 def companions(state: Search, best: Found, traces: Sequence[Traces]) -> list[Found]:
@@ -158,7 +170,7 @@ def noisiest(state: Search) -> Excess | None:
     for i in range(m):
         if evidence.baseline.unstated[i] or any(e.sensor == i for e in state.excess):
             continue
-        rows = owner == i
+        rows = (owner == i) & (np.arange(len(z)) < evidence.readings)
         freedom = float((1 - used[rows]).sum()) * whiteness(evidence)
         energy = float((z[rows] ** 2).sum())
         if freedom < 2 or energy <= freedom:
@@ -211,20 +223,49 @@ def structures(state: Search) -> Search:
     return state
 
 
-def judge_structures(state: Search, start: Search) -> Search:
-    """Withdraw a name when structure without it explains the session better."""
-    for found in state.found if state.structures else ():
-        touched = {s for p in state.structures for s in p.best.shape.sensors}
-        sensors = set(found.best.shape.sensors)
-        if sensors and touched and not sensors & touched:
+def judge_structures(state: Search) -> Search:
+    """Withdraw names when structure without them explains the session better.
+
+    Tried for every name alone, for all names of one sensor together, for those of no sensor, and for all names.
+    """
+    for group in groups(state):
+        if not all(f in state.found for f in group):
             continue
-        without = tuple(f for f in state.found if f is not found)
-        rival = structures(replace(state, found=without, structures=()))
-        if total(rival) > total(state):
+        kept = tuple(f for f in state.found if f not in group)
+        rival = structures(replace(state, found=kept, structures=()))
+        if rival.structures and total(rival) > total(state):
             state = rival
     return state
 
 
+def groups(state: Search) -> list[tuple[Found, ...]]:
+    """The sets of findings that structure may replace, the largest first."""
+    by_sensor: dict[tuple[int, ...], list[Found]] = {}
+    for f in state.found:
+        by_sensor.setdefault(f.best.shape.sensors, []).append(f)
+    sets = [state.found, *map(tuple, by_sensor.values()), *((f,) for f in state.found)]
+    return list(dict.fromkeys(s for s in sets if s))
+
+
 def total(state: Search) -> float:
-    """ln evidence of everything found, taken one after another."""
-    return sum(f.best.evidence for f in (*state.found, *state.structures))
+    """ln evidence of everything found together: what the fit gains, less what every free amplitude and place costs."""
+    members = [f.best for f in (*state.found, *state.structures)]
+    price = sum(
+        0.5 * s.freedom * (1 + float(np.log(max(s.statistic / max(s.freedom, 1), 1.0)))) + float(np.log(s.places))
+        for s in members
+    )
+    return gained(state) - price
+
+
+def gained(state: Search) -> float:
+    """ln likelihood gained by all findings and structures together, over each sensor's noise where it is unknown."""
+    evidence, taken = state.evidence, state.taken()
+    left = evidence.z - taken @ (taken.T @ evidence.z)
+    before, after, owner = evidence.z**2, left**2, evidence.owner()
+    unstated = np.append(state.baseline.unstated, False)[owner]
+    gain = 0.5 * float((before - after)[~unstated].sum())
+    share = evidence.freedom / len(state.baseline.unstated)
+    for i in np.flatnonzero(state.baseline.unstated):
+        rows = owner == i
+        gain += 0.5 * share * float(np.log(before[rows].sum() / max(after[rows].sum(), 1e-300)))
+    return gain

@@ -84,7 +84,7 @@ class SensorPeriodic(Structure):
 
     def shapes(self, setting: Setting) -> Iterator[Shape]:
         place = np.arange(setting.rows) / setting.rows
-        for periods in range(1, setting.rows // 2):
+        for periods in range(1, setting.rows // 2 + 1):
             wave = 2 * np.pi * periods * place
             yield from one_sensor(setting, np.stack([np.sin(wave), np.cos(wave)], axis=-1), (float(periods),))
 
@@ -110,6 +110,46 @@ class TemperatureCurve(Structure):
         if len(np.unique(t)) >= 6:
             scaled = 2 * (t - t.min()) / np.ptp(t) - 1
             yield from one_sensor(setting, np.polynomial.legendre.legvander(scaled, 4)[:, 1:], ())
+
+
+class TemperatureStep(Structure):
+    identifier = "temperature-step"
+    needs = frozenset({"temperature"})
+    sentence = "a step at {0} °C"
+
+    def shapes(self, setting: Setting) -> Iterator[Shape]:
+        assert setting.temperature is not None
+        levels = np.unique(setting.temperature)
+        for threshold in (levels[1:] + levels[:-1]) / 2 if len(levels) <= 200 else ():
+            yield from one_sensor(setting, (setting.temperature > threshold)[:, None] * 1.0, (float(threshold),))
+
+
+class InputCurve(Structure):
+    identifier = "input-curve"
+    sentence = "a curve over the sensor's own input"
+
+    def shapes(self, setting: Setting) -> Iterator[Shape]:
+        m = len(setting.kinds)
+        for i in range(m):
+            x = setting.a[:, i] / setting.norm[i]
+            if len(np.unique(np.round(x, 3))) >= 9:
+                columns = np.zeros((setting.rows, m, 5))
+                columns[:, i, :] = np.polynomial.legendre.legvander(x, 7)[:, 3:]
+                yield Shape((i,), columns)
+
+
+class TurningScale(Structure):
+    identifier = "turning-scale"
+    needs = frozenset({"stand"})
+    sentence = "the scale factor, harmonic {0} of β"
+
+    def shapes(self, setting: Setting) -> Iterator[Shape]:
+        m = len(setting.kinds)
+        for order in range(1, min(highest(setting), 3) + 1):
+            for i in range(m):
+                columns = np.zeros((setting.rows, m, 2))
+                columns[:, i, :] = harmonic(setting, order) * setting.a[:, i, None]
+                yield Shape((i,), columns, (float(order),))
 
 
 class CommonHarmonic(Structure):
@@ -149,6 +189,9 @@ STRUCTURES: tuple[Structure, ...] = (
     SensorPeriodic(),
     SensorTrend(),
     TemperatureCurve(),
+    TemperatureStep(),
+    InputCurve(),
+    TurningScale(),
     CommonHarmonic(),
     CommonPeriodic(),
 )

@@ -1,9 +1,9 @@
 """Gyros at rest in unknown orientations: the bias and nothing else.
 
 The Earth's rate Ω acts along an unknown direction in every orientation, so its projection on an input axis is a bounded
-unknown of mean square Ω²/3. From one orientation to the next it is drawn anew; the mean over the rows keeps its share. A gyro whose rows scatter more than noise and Earth rate explain has
-the uncertainty of the scatter.
-Scale, axis and nonlinearity need rates that a resting block does not see.
+unknown of mean square Ω²/3. From one orientation to the next it is drawn anew; the mean over the rows keeps its share.
+A gyro whose rows scatter more than noise and Earth rate explain has the uncertainty of the scatter. Scale, axis and
+nonlinearity need rates that a resting block does not see.
 """
 
 from dataclasses import dataclass
