@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from rich.columns import Columns
 from rich.console import Group, RenderableType
 from rich.markup import escape
 from rich.table import Table
@@ -12,7 +13,6 @@ from estimator.session import CalibrationSession, Sensor
 from service.pages.units import deviation_unit, in_unit, measured, number
 
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
-HEADINGS = {"scale": "scale, off nominal", "bias": "bias", "quadratic": "quadratic", "axis": "axis, block axes"}
 UNSEEN = "not observable"
 UNLIKELY = 0.001
 DOUBTFUL = 0.05
@@ -30,25 +30,35 @@ def _heading(session: CalibrationSession, calibration: Calibration) -> Text:
     return Text.assemble((session.unit, "bold"), f"{when}{place}: {method}; ± is one sigma, all sources")
 
 
-def _parameters(session: CalibrationSession, calibration: Calibration) -> Table:
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    table.add_column("sensor", no_wrap=True)
-    for parameter in PARAMETERS:
-        table.add_column(HEADINGS[parameter], justify="right", no_wrap=True)
-    table.add_column("± axis", justify="right", no_wrap=True)
+def _parameters(session: CalibrationSession, calibration: Calibration) -> RenderableType:
+    """Two tables of one row a sensor: beside each other where there is room, else one below the other."""
+    numbers = _table("sensor", "scale, off nominal", "bias", "quadratic")
+    axes = _table("sensor", "axis, block axes", "±")
     for declared, sensor in zip(session.sensors, calibration.sensors, strict=True):
-        table.add_row(escape(sensor.name), *_cells(declared, sensor))
+        numbers.add_row(escape(sensor.name), *_numbers(declared, sensor))
+        axes.add_row(escape(sensor.name), *_axis(sensor))
+    return Columns([numbers, axes], padding=(0, 3))
+
+
+def _table(*headings: str) -> Table:
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    for place, heading in enumerate(headings):
+        table.add_column(heading, justify="right" if place else "left", no_wrap=True)
     return table
 
 
-def _cells(declared: Sensor, sensor: SensorCalibration) -> Iterator[str]:
+def _numbers(declared: Sensor, sensor: SensorCalibration) -> Iterator[str]:
     off = _off_nominal(sensor.scale, declared.nominal_scale)
     for parameter, estimate in (("scale", off), ("bias", sensor.bias), ("quadratic", sensor.quadratic)):
         unit = deviation_unit(sensor.kind, parameter, estimate.value or 0.0)
         yield UNSEEN if estimate.value is None else measured(estimate.value, estimate.sigma, unit)
-    yield UNSEEN if sensor.axis is None else " ".join(number(x, 6) for x in sensor.axis)
-    unit = deviation_unit(sensor.kind, "axis", sensor.axis_sigma or 0.0)
-    yield "" if sensor.axis_sigma is None else f"{number(in_unit(sensor.axis_sigma, unit), 1)} {unit.label}"
+
+
+def _axis(sensor: SensorCalibration) -> tuple[str, str]:
+    if sensor.axis is None or sensor.axis_sigma is None:
+        return UNSEEN, ""
+    unit = deviation_unit(sensor.kind, "axis", sensor.axis_sigma)
+    return " ".join(number(x, 6) for x in sensor.axis), f"{number(in_unit(sensor.axis_sigma, unit), 1)} {unit.label}"
 
 
 def _off_nominal(scale: Estimate, nominal: float) -> Estimate:

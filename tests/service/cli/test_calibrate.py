@@ -1,9 +1,13 @@
 """`imu-health calibrate`: what it prints, and its exit codes."""
 
+from io import StringIO
 from pathlib import Path
+
+from rich.console import Console
 
 from estimator import calibrate
 from estimator.reading import read_session
+from service.commands.tables import calibration_view
 from tests.builders import accelerometer_block, arbitrary_orientations, gyro_block
 from tests.service.cli.conftest import Run, write
 
@@ -61,6 +65,14 @@ def test_the_table_shows_people_s_units_with_uncertainties(run: Run, good_file: 
     row = next(line for line in ran.out.splitlines() if line.startswith("A1 "))
     assert bias[:2] in row.replace("\u202f", "")
     assert all(unit in row for unit in ("ppm", "µg", "µg/g²", "arcsec", "±"))
+
+
+def test_no_number_is_cut_off_on_a_narrow_terminal(good_file: Path) -> None:
+    session = read_session(good_file)
+    narrow = Console(width=80, file=StringIO())
+    narrow.print(calibration_view(session, calibrate(session)))
+    assert isinstance(narrow.file, StringIO)
+    assert "…" not in narrow.file.getvalue()
 
 
 def test_gyros_are_shown_in_degrees_an_hour(run: Run, tmp_path: Path) -> None:
