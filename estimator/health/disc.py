@@ -50,8 +50,7 @@ def _chords(center: float, sigma: float, radius: float) -> tuple[Array, Array]:
 def _share(chord: Array, weight: Array, center: float, sigma: float) -> float:
     """The weights times what the second axis leaves inside each chord."""
     inside = ndtr((chord - center) / sigma) - ndtr((-chord - center) / sigma)
-    share: float = weight @ inside
-    return min(max(float(share), 0.0), 1.0)
+    return min(max(float(np.sum(weight * inside)), 0.0), 1.0)
 
 
 @dataclass(frozen=True)
