@@ -4,7 +4,7 @@ PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; 
 BIN := .venv/bin
 STAMP := .venv/.complete
 
-.PHONY: setup run test lint format bench browser lock clean
+.PHONY: setup run test lint format bench study browser lock clean
 
 setup: $(STAMP)
 
@@ -36,6 +36,9 @@ format: setup
 
 bench: setup
 	$(BIN)/python -m benchmarks
+
+study: setup
+	$(BIN)/python -m benchmarks.study --sessions 2000 --seed 1
 
 lock: setup
 	$(BIN)/pip install --quiet uv

@@ -31,8 +31,10 @@ def main() -> None:
         print(f"\r{k}/{len(work)}", end="", file=sys.stderr)
     print(file=sys.stderr)
     command = f"python -m benchmarks.study --sessions {options.sessions} --seed {options.seed}"
+    text = page(outcomes, command)
     options.out.parent.mkdir(parents=True, exist_ok=True)
-    options.out.write_text(page(outcomes, command))
+    options.out.write_text(text)
+    print(text)
 
 
 if __name__ == "__main__":

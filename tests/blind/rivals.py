@@ -12,7 +12,7 @@ from tests.blind.physics import mean_readings, reference_vectors
 from tests.blind.pose import believed
 from tests.blind.world import Array, Effect, Session
 
-CLIPS = 12
+CLIPS = 40
 TIME_CONSTANTS = np.geomspace(0.03, 1.5, 9)
 
 
