@@ -10,7 +10,7 @@ from tests.blind.catalogue import CATALOGUE, DISCRETE, HISTORY
 from tests.blind.draw import draw_session
 from tests.blind.effects_pose import POSE
 from tests.blind.effects_sensor import INPUT, UNIT, across
-from tests.blind.hide import at_strength, draw_effect, signature
+from tests.blind.hide import at_strength, draw_effect, resolved, signature
 from tests.blind.physics import mean_readings, measure
 from tests.blind.rivals import available
 from tests.blind.separation import Field
@@ -122,7 +122,11 @@ def visible(cause: str, between: bool) -> tuple[Lens, Effect]:
         session = draw_session(rng, CATALOGUE[cause].needs)
         if not available(session, cause):
             continue
-        lens = Lens(session, 1e3 * np.eye(5 * session.unit.size) if between else None)
+        if cause == "temperature-rate" and not resolved(session):
+            continue
+        lens = Lens(session)
+        if between:
+            lens = Lens(session, np.diag(np.linalg.norm(lens.whitened, axis=0)))
         effect = draw_effect(session, cause, rng)
         column = signature(session, effect).reshape(-1, 1)
         if np.linalg.norm(lens.left(column)) > 1e-2 * np.linalg.norm(lens.whiten(column)):
