@@ -59,7 +59,7 @@ def pulls_inside(outcomes: list[Outcome]) -> list[bool]:
 
 
 def _targets(outcomes: list[Outcome]) -> str:
-    single, none = of_kind(outcomes, "single"), of_kind(outcomes, "none")
+    single, none, two = (of_kind(outcomes, kind) for kind in ("single", "none", "two"))
     apart = [o for o in single if o.separated]
     rows = [
         ("named first where separated by 5", "≥ 97 %", rate([o.first for o in apart])),
@@ -69,7 +69,8 @@ def _targets(outcomes: list[Outcome]) -> str:
         ("a name where there is no effect", "≤ 1 %", rate([bool(o.findings) for o in none])),
         ("`unexplained` where there is no effect", "", rate([o.unexplained for o in none])),
         ("outside the catalogue: `unexplained`", "≥ 95 %", rate([o.unexplained for o in of_kind(outcomes, "outside")])),
-        ("two effects: both named", "≥ 90 %", rate([all(o.named) for o in of_kind(outcomes, "two")])),
+        ("two effects, separated by 5: both named", "≥ 90 %", rate([all(o.named) for o in two if o.separated])),
+        ("two effects, all: both named or listed", "≥ 90 %", rate([all(o.offered) for o in two])),
         ("amplitudes within two of their own sigma", "93–97 %", rate(pulls_inside(outcomes))),
         ("time of one diagnosis, mean", "", f"{mean(o.seconds for o in outcomes)} s"),
     ]
@@ -169,7 +170,8 @@ def _two(outcomes: list[Outcome]) -> str:
     apart = [o for o in own if o.separated]
     rows = [
         ("both named", rate([all(o.named) for o in own]), rate([all(o.named) for o in apart])),
-        ("at least one", rate([any(o.named) for o in own]), rate([any(o.named) for o in apart])),
+        ("both named or listed", rate([all(o.offered) for o in own]), rate([all(o.offered) for o in apart])),
+        ("at least one named", rate([any(o.named) for o in own]), rate([any(o.named) for o in apart])),
         ("more than two names", rate([len(o.findings) > 2 for o in own]), rate([len(o.findings) > 2 for o in apart])),
     ]
     missed = Counter(c for o in own for c, ok in zip(o.causes, o.named, strict=True) if not ok)

@@ -44,6 +44,8 @@ class Outcome:
     """The truth is the first finding or one of its alternatives."""
     named: tuple[bool, ...]
     """For each truth, whether some finding is it."""
+    offered: tuple[bool, ...]
+    """For each truth, whether some finding is it or lists it among its alternatives."""
     unexplained: bool
     pulls: tuple[Pull, ...]
     unstated_noise: bool
@@ -63,7 +65,7 @@ class Outcome:
         if self.kind == "outside":
             return self.unexplained
         if self.kind == "two":
-            return all(self.named)
+            return all(self.named) if self.separated else all(self.offered)
         if self.kind == "weak":
             return self.listed or not self.findings
         return self.first if self.separated else self.listed
@@ -89,6 +91,10 @@ def score(case: Case, found: dict[str, Any], seconds: float) -> Outcome:
         first=right,
         listed=right or any(t.effect.cause in offered for t in case.truths),
         named=named,
+        offered=tuple(
+            ok or any(t.effect.cause in f["alternatives"] for f in findings)
+            for t, ok in zip(case.truths, named, strict=True)
+        ),
         unexplained=bool(found["unexplained"]),
         pulls=tuple(p for t in case.truths for f in findings if _is(t, f) for p in pulls(t, f, case)),
         unstated_noise=not case.world.noise.stated,
