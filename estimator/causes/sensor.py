@@ -135,7 +135,7 @@ class Saturation(SensorCause):
     nonlinear_units = ("m/s²",)
     sentence = "{sensors} is clipped: its reading stops at a limit."
     advice = "Lower the converter's gain or use a range that holds the largest input, and repeat the session."
-    deepest = 8
+    deepest = 12
     """Levels of input, from the largest down, that the limit is tried between."""
 
     def level(self, setting: Setting, i: int) -> Array:
@@ -143,7 +143,7 @@ class Saturation(SensorCause):
         return np.abs(input_of(setting.parameters, setting.n)[:, i]) / setting.norm[i]
 
     def grid_of(self, setting: Setting, i: int) -> Iterator[tuple[float, ...]]:
-        levels = np.unique(np.round(self.level(setting, i), 4))[::-1][: self.deepest + 1]
+        levels = np.unique(np.round(self.level(setting, i), 5))[::-1][: self.deepest + 1]
         for upper, lower in pairwise(levels):
             yield (float(lower * setting.norm[i]),)
             yield (float((upper + lower) / 2 * setting.norm[i]),)

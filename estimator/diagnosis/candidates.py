@@ -14,7 +14,7 @@ probability as its F.
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import chdtrc, chdtri, fdtrc
@@ -25,6 +25,9 @@ from estimator.session import Array
 
 FAINT = 0.02
 """A direction of a signature counts when its trace is above this share of the strongest direction's."""
+
+OCCAM = 0.7
+"""ln evidence that every amplitude beyond the first costs: the simpler of two causes is the likelier one."""
 
 INVISIBLE = 1e-3
 """Share of a signature that must be left by the baseline for it to be visible at all."""
@@ -82,27 +85,46 @@ def traces_of(evidence: Evidence, causes: Iterable[Signature]) -> list[Traces]:
             continue
         shapes = tuple(cause.shapes(setting))
         if shapes:
-            found.append(_traces(evidence, cause, shapes))
+            found.extend(_all_traces(evidence, cause, shapes))
     return found
 
 
-def _traces(evidence: Evidence, cause: Signature, shapes: tuple[Shape, ...]) -> Traces:
-    """Traces of one cause: lasting and new where there is history, new alone for what moved since."""
+def _all_traces(evidence: Evidence, cause: Signature, shapes: tuple[Shape, ...]) -> list[Traces]:
+    """Traces of one cause. With history: as lasting since then, as new, and with the sensor's own move left open."""
+    if cause.between or evidence.between is None:
+        return [_version(evidence, cause, shapes, lasting=not cause.between)]
+    lasting = _version(evidence, cause, shapes, lasting=True)
+    versions = [lasting, _version(evidence, cause, shapes, lasting=False), freed(evidence, lasting)]
+    return [v for v in versions if v is not None]
+
+
+def _version(evidence: Evidence, cause: Signature, shapes: tuple[Shape, ...], *, lasting: bool) -> Traces:
+    """Traces of all shapes of a cause that either lasts since the history or is new."""
     q = shapes[0].columns.shape[-1]
     stacked = np.concatenate([s.columns for s in shapes], axis=-1)
-    versions = [False] if cause.between else [True] if evidence.between is None else [True, False]
-    columns = []
-    for lasting in versions:
-        trace = evidence.trace(stacked, lasting=lasting)
-        columns.append(np.moveaxis(trace.reshape(len(trace), len(shapes), q), 1, 0))
-    white = np.linalg.norm(evidence.raw(stacked), axis=0).reshape(len(shapes), q).max(axis=-1)
-    return Traces(
-        cause,
-        shapes * len(versions),
-        tuple(v for v in versions for _ in shapes),
-        np.concatenate(columns),
-        np.tile(white, len(versions)),
-    )
+    trace = evidence.trace(stacked, lasting=lasting)
+    columns = np.moveaxis(trace.reshape(len(trace), len(shapes), q), 1, 0)
+    raw = np.linalg.norm(evidence.raw(stacked), axis=0).reshape(len(shapes), q)
+    return Traces(cause, shapes, (lasting,) * len(shapes), columns, raw.max(axis=-1))
+
+
+def freed(evidence: Evidence, traces: Traces) -> Traces | None:
+    """The same with the sensor's move since the history left open; None for causes of no sensor.
+
+    An effect that some of the history had too, at other temperatures or positions, moves the sensor's parameters by
+    an amount that only a diagnosis of every earlier session would tell.
+    """
+    assert evidence.between is not None
+    if not traces.shapes[0].sensors:
+        return None
+    S, n, _ = traces.columns.shape
+    own = np.zeros((S, n, 5))
+    for k, shape in enumerate(traces.shapes):
+        rows = evidence.readings + 5 * shape.sensors[0]
+        own[k, rows : rows + 5] = np.eye(5)
+    blank = np.zeros((*traces.shapes[0].columns.shape[:2], 5))
+    shapes = tuple(Shape(s.sensors, np.concatenate([s.columns, blank], axis=-1), s.nonlinear) for s in traces.shapes)
+    return Traces(traces.cause, shapes, traces.lasting, np.concatenate([traces.columns, own], axis=-1), traces.raw)
 
 
 def score(evidence: Evidence, traces: Sequence[Traces], taken: Array) -> list[Scored]:
@@ -114,11 +136,23 @@ def score(evidence: Evidence, traces: Sequence[Traces], taken: Array) -> list[Sc
     return [scored for t in traces for scored in _score(evidence, t, taken, z)]
 
 
+def rescored(evidence: Evidence, scored: Scored, taken: Array) -> Scored:
+    """One shape scored anew on what other findings leave."""
+    raw = np.linalg.norm(evidence.raw(scored.shape.columns), axis=0).max()
+    alone = Traces(scored.cause, (scored.shape,), (scored.lasting,), scored.columns[None], np.array([raw]))
+    z = evidence.z - taken @ (taken.T @ evidence.z)
+    again = next(iter(_score(evidence, alone, taken, z)), None)
+    if again is None:
+        return replace(scored, statistic=0.0, evidence=-float(np.log(scored.places)), p_value=1.0)
+    return replace(again, evidence=again.evidence - float(np.log(scored.places)), places=scored.places)
+
+
 def _score(evidence: Evidence, traces: Traces, taken: Array, z: Array) -> Iterable[Scored]:
     columns = traces.columns - taken @ (taken.T @ traces.columns)
     norms = np.maximum(np.linalg.norm(columns, axis=1, keepdims=True), 1e-300)
     basis, size = orthonormal(columns / norms)
-    visible = (traces.raw > 0) & (norms[:, 0, :].max(axis=-1) > INVISIBLE * traces.raw)
+    amplitudes = max(len(traces.cause.units), 1) if traces.cause.units else columns.shape[-1]
+    visible = (traces.raw > 0) & (norms[:, 0, :amplitudes].max(axis=-1) > INVISIBLE * traces.raw)
     live = (size > FAINT * size[:, :1]) & visible[:, None]
     power = ((z @ basis) ** 2 * live).sum(axis=-1)
     freedom = live.sum(axis=-1)
@@ -148,10 +182,10 @@ def orthonormal(columns: Array) -> tuple[Array, Array]:
 
 
 def bayes_factor(statistic: float, q: int) -> float:
-    """ln of the local empirical Bayes factor of an effect with q amplitudes against none."""
+    """ln of the local empirical Bayes factor of an effect with q amplitudes against none, less Occam's due."""
     if q == 0 or statistic <= q:
         return 0.0
-    return 0.5 * (statistic - q) - 0.5 * q * float(np.log(statistic / q))
+    return 0.5 * (statistic - q) - 0.5 * q * float(np.log(statistic / q)) - OCCAM * (q - 1)
 
 
 def equivalent(evidence: Evidence, shape: Shape, power: float, q: int, z: Array) -> float:

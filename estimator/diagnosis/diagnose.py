@@ -20,7 +20,7 @@ from estimator.diagnosis.nominal import WrongEntry, wrong_elevation
 from estimator.diagnosis.report import entry_finding, findings, slip_finding, structures
 from estimator.diagnosis.results import Diagnosis
 from estimator.diagnosis.search import begin, search
-from estimator.diagnosis.slips import Slip, exchanged_rows, expected_axes, turned_record, weighted_square
+from estimator.diagnosis.slips import Slip, exchanged_rows, expected_axes, turned_record
 from estimator.session import TWO_AXIS_STAND, CalibrationSession
 
 
@@ -97,7 +97,7 @@ def undo_slips(
     baseline = baseline_of(session)
     for _ in range(3):
         slip = turned_record(session, baseline, expected_axes(history, session), known)
-        slip = slip or exchanged_rows(baseline, weighted_square(baseline), baseline.residual.size)
+        slip = slip or exchanged_rows(baseline)
         if slip is None:
             break
         slips.append(slip)

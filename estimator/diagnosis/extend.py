@@ -50,10 +50,11 @@ def amplitudes(state: Search) -> Amplitudes:
         z = z - left @ (left.T @ z)
     white = [np.linalg.norm(state.evidence.raw(s.shape.columns), axis=0) for s in found]
     raw = np.concatenate(white)
-    scale = np.where(raw > 0, np.maximum(np.linalg.norm(columns, axis=0), INVISIBLE * raw), 1.0)
+    shown = np.maximum(np.linalg.norm(columns, axis=0), INVISIBLE * raw)
+    scale = np.where(shown > 0, shown, 1.0)
     gram = (columns / scale).T @ (columns / scale)
     covariance = np.linalg.inv(gram + 1e-12 * np.eye(len(gram))) / scale[:, None] / scale
-    covariance *= np.outer(raw > 0, raw > 0)
+    covariance *= np.outer(shown > 0, shown > 0)
     return Amplitudes(covariance @ (columns.T @ z), covariance, slices)
 
 

@@ -25,7 +25,7 @@ def finding(state: Search, found: Found, fitted: Amplitudes, k: int) -> Finding:
     """One named cause."""
     best, names = found.best, [s.name for s in state.baseline.session.sensors]
     sensors = tuple(names[i] for i in best.shape.sensors)
-    part = fitted.slices[k]
+    part = slice(fitted.slices[k].start, fitted.slices[k].start + len(best.cause.units))
     amplitude, sigma = best.cause.reported(
         state.baseline.setting, best.shape, fitted.value[part], np.sqrt(np.diagonal(fitted.covariance)[part])
     )
@@ -156,7 +156,7 @@ def slip_finding(slip: Slip, session: CalibrationSession) -> Finding:
 def structures(state: Search) -> tuple[Structure, ...]:
     """Unexplained structure and where it lives."""
     names = [s.name for s in state.baseline.session.sensors]
-    return tuple(
+    patterns = [
         Structure(
             where=f.best.cause.where(f.best.shape) if isinstance(f.best.cause, Pattern) else "",
             sensors=tuple(names[i] for i in f.best.shape.sensors),
@@ -164,7 +164,12 @@ def structures(state: Search) -> tuple[Structure, ...]:
             strength=f.best.strength,
         )
         for f in state.structures
-    )
+    ]
+    uneven = [
+        Structure(f"smooth along {s.order}, in no pattern known", (names[s.sensor],), s.p_value, s.strength)
+        for s in state.serial
+    ]
+    return (*patterns, *uneven)
 
 
 def entry_finding(entry: WrongEntry) -> Finding:

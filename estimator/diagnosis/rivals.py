@@ -109,7 +109,7 @@ def expected_separation(planned: Baseline, named: Scored, value: Array, rival: S
     own, other = (matching(planned, s) for s in (named, rival))
     if own is None or other is None:
         return None
-    signature = evidence.trace(own) @ value
+    signature = evidence.trace(own) @ value[: own.shape[-1]]
     nothing = np.zeros((len(signature), 0))
     return separation(signature, evidence.trace(other), nothing)
 

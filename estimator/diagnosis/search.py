@@ -7,7 +7,7 @@ withdrawn.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import chdtrc
@@ -15,16 +15,20 @@ from scipy.special import chdtrc
 from estimator.causes import CATALOGUE, Cause, Signature
 from estimator.diagnosis.baseline import Baseline
 from estimator.diagnosis.between import between_sessions
-from estimator.diagnosis.candidates import Scored, Traces, ranked, score, traces_of
+from estimator.diagnosis.candidates import Scored, Traces, ranked, rescored, score, traces_of
 from estimator.diagnosis.evidence import Between, Evidence
+from estimator.diagnosis.serial import Serial, serial_structure
 from estimator.diagnosis.structures import STRUCTURES
 from estimator.session import Array
 
 LEVEL = 0.005
 """Family-wise level: sessions without an effect that get a name; half of what is allowed, for safety."""
 
-DECISIVE = 3.0
-"""ln evidence by which a signature must beat mere excess noise to be believed without a look at the scatter."""
+DECISIVE = 4.0
+"""ln evidence by which a signature must beat mere excess noise, and structure without a name the named causes."""
+
+AGAIN = frozenset({"reading-outlier", "bias-jump"})
+"""Causes that may happen to one sensor more than once."""
 
 MOST = 8
 """Different causes (and, apart from them, patterns) looked for in one session, each on as many sensors as show it."""
@@ -68,11 +72,24 @@ class Search:
     patterns: tuple[Traces, ...]
     found: tuple[Found, ...] = ()
     structures: tuple[Found, ...] = ()
-    excess: tuple[Excess, ...] = field(default=())
+    excess: tuple[Excess, ...] = ()
+    serial: tuple[Serial, ...] = ()
+    """Sensors whose left-over is not white, though no pattern fits it."""
 
     @property
     def between(self) -> Between | None:
         return self.evidence.between
+
+    @property
+    def spoken_for(self) -> set[int]:
+        """Sensors whose scatter is already known to be excess noise or uneven."""
+        return {e.sensor for e in self.excess} | {s.sensor for s in self.serial}
+
+    @property
+    def left(self) -> Array:
+        """(n,) what findings and structures leave."""
+        taken = self.taken()
+        return np.asarray(self.evidence.z - taken @ (taken.T @ self.evidence.z))
 
     @property
     def families(self) -> int:
@@ -107,7 +124,7 @@ def begin(baseline: Baseline, history: Sequence[Baseline], catalogue: Sequence[C
 def search(start: Search) -> Search:
     """Causes, then what they leave."""
     state = settle(causes(start))
-    return judge_structures(structures(state))
+    return unevenness(judge_structures(structures(state)))
 
 
 def causes(state: Search) -> Search:
@@ -119,12 +136,23 @@ def causes(state: Search) -> Search:
             wary = with_unknown_noise(state, noisy.sensor)
             best = strongest(wary, wary.traces)
             if best is None and strongest(wary, wary.patterns) is None:
-                state = with_excess(state, noisy)
+                uneven = serial_of(state, noisy.sensor)
+                known = with_excess(state, noisy) if uneven is None else replace(state, serial=(*state.serial, uneven))
+                state = known
                 continue
         if best is None:
             break
-        state = replace(state, found=(*state.found, best, *companions(state, best, state.traces)))
+        found = (*state.found, best, *companions(state, best, state.traces))
+        if repeated(found):
+            break
+        state = replace(state, found=found)
     return state
+
+
+def repeated(found: Sequence[Found]) -> bool:
+    """Whether a cause that can act on a sensor only once was named on it twice: then it is not that cause."""
+    once = [f.best.group for f in found if f.best.cause.identifier not in AGAIN]
+    return len(once) != len(set(once))
 
 
 def with_unknown_noise(state: Search, sensor: int) -> Search:
@@ -158,17 +186,30 @@ def strongest(state: Search, traces: Sequence[Traces], without: Found | None = N
     return None
 
 
+def serial_of(state: Search, sensor: int) -> Serial | None:
+    """Whether one sensor's left-over runs smoothly along some order of its rows."""
+    return serial_structure(state.evidence, state.left, sensor, LEVEL)
+
+
+def unevenness(state: Search) -> Search:
+    """Sensors whose left-over is not white after everything found."""
+    m = len(state.baseline.unstated)
+    open_sensors = [i for i in range(m) if i not in state.spoken_for]
+    uneven = [serial_structure(state.evidence, state.left, i, LEVEL / m) for i in open_sensors]
+    return replace(state, serial=(*state.serial, *(u for u in uneven if u is not None)))
+
+
 def noisiest(state: Search) -> Excess | None:
     """The sensor whose left-over most exceeds its stated noise; None if none does significantly."""
     evidence = state.evidence
-    z = evidence.z - (taken := state.taken()) @ (taken.T @ evidence.z)
+    z, taken = state.left, state.taken()
     owner, m = evidence.owner(), len(evidence.baseline.unstated)
     used = np.zeros(len(z))
     used[: evidence.readings] = (evidence.basis**2).sum(axis=1)
     used += (taken**2).sum(axis=1)
     best = None
     for i in range(m):
-        if evidence.baseline.unstated[i] or any(e.sensor == i for e in state.excess):
+        if evidence.baseline.unstated[i] or i in state.spoken_for:
             continue
         rows = (owner == i) & (np.arange(len(z)) < evidence.readings)
         freedom = float((1 - used[rows]).sum()) * whiteness(evidence)
@@ -196,7 +237,7 @@ def with_excess(state: Search, noisy: Excess) -> Search:
     unstated[noisy.sensor] = True
     baseline = replace(state.baseline, variance=variance, unstated=unstated)
     again = begin(baseline, state.history, state.catalogue)
-    return causes(replace(again, excess=(*state.excess, noisy)))
+    return causes(replace(again, excess=(*state.excess, noisy), serial=state.serial))
 
 
 def settle(state: Search) -> Search:
@@ -233,7 +274,7 @@ def judge_structures(state: Search) -> Search:
             continue
         kept = tuple(f for f in state.found if f not in group)
         rival = structures(replace(state, found=kept, structures=()))
-        if rival.structures and total(rival) > total(state):
+        if rival.structures and total(rival) > total(state) + DECISIVE:
             state = rival
     return state
 
@@ -248,24 +289,9 @@ def groups(state: Search) -> list[tuple[Found, ...]]:
 
 
 def total(state: Search) -> float:
-    """ln evidence of everything found together: what the fit gains, less what every free amplitude and place costs."""
-    members = [f.best for f in (*state.found, *state.structures)]
-    price = sum(
-        0.5 * s.freedom * (1 + float(np.log(max(s.statistic / max(s.freedom, 1), 1.0)))) + float(np.log(s.places))
-        for s in members
-    )
-    return gained(state) - price
-
-
-def gained(state: Search) -> float:
-    """ln likelihood gained by all findings and structures together, over each sensor's noise where it is unknown."""
-    evidence, taken = state.evidence, state.taken()
-    left = evidence.z - taken @ (taken.T @ evidence.z)
-    before, after, owner = evidence.z**2, left**2, evidence.owner()
-    unstated = np.append(state.baseline.unstated, False)[owner]
-    gain = 0.5 * float((before - after)[~unstated].sum())
-    share = evidence.freedom / len(state.baseline.unstated)
-    for i in np.flatnonzero(state.baseline.unstated):
-        rows = owner == i
-        gain += 0.5 * share * float(np.log(before[rows].sum() / max(after[rows].sum(), 1e-300)))
-    return gain
+    """ln evidence of everything found together, each weighed on what those before it leave."""
+    weight, before = 0.0, replace(state, found=(), structures=())
+    for member in (*state.found, *state.structures):
+        weight += rescored(state.evidence, member.best, before.taken()).evidence
+        before = replace(before, found=(*before.found, member))
+    return weight

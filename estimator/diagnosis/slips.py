@@ -6,6 +6,7 @@ those of the unit's history (or the nominal ones), and that putting the record r
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 from scipy.special import logsumexp
@@ -93,29 +94,34 @@ def usable(cause: Correction, session: CalibrationSession) -> bool:
     return both or "both runs" not in cause.needs
 
 
-def exchanged_rows(baseline: Baseline, chi2: float, freedom: int) -> Slip | None:
+def exchanged_rows(baseline: Baseline) -> Slip | None:
     """Two rows whose readings are exchanged, or None.
 
     Screened linearly: exchanging rows j and k back changes the left-over by the difference of the two rows'
-    simulated readings. The best few are tried by fitting the corrected record.
+    simulated readings. The best few are tried by fitting the corrected record. Where noise is estimated from the
+    left-over itself, what counts is how far the exchange brings the left-over down.
     """
-    if freedom < 1 or chi2 < GROSS * freedom:
+    chi2, freedom = weighted_square(baseline), baseline.residual.size
+    blind = bool(baseline.unstated.any())
+    if not blind and chi2 < GROSS * freedom:
         return None
     session = baseline.session
-    rows = len(session.readings)
-    pairs = [(j, k) for j in range(rows) for k in range(j + 1, rows)]
+    pairs = list(combinations(range(len(session.readings)), 2))
     gains = screen(baseline, pairs)
+    if gains.max() < chi2 / 2:
+        return None
     best = []
     for index in np.argsort(-gains)[:12]:
         j, k = pairs[int(index)]
         right = exchange_rows(session, j, k)
-        best.append((weighted_square(baseline_of(right)), (j, k), right))
-    best.sort(key=lambda t: t[0])
-    after, places, right = best[0]
-    evidence = 0.5 * (chi2 - after) - float(np.log(len(pairs)))
+        after = float((baseline_of(right).residual ** 2 / baseline.variance).sum())
+        best.append((0.5 * freedom * np.log(chi2 / after) if blind else 0.5 * (chi2 - after), after, (j, k), right))
+    best.sort(key=lambda t: -t[0])
+    weight, after, places, right = best[0]
+    evidence = float(weight - np.log(len(pairs)))
     if evidence < BETTER or after > chi2 / 4:
         return None
-    rivals = tuple(("positions-swapped", p, 0.5 * (chi2 - a) - float(np.log(len(pairs)))) for a, p, _ in best)
+    rivals = tuple(("positions-swapped", p, float(w - np.log(len(pairs)))) for w, _, p, _ in best)
     return Slip(PositionsSwapped(), places, right, evidence, rivals)
 
 
