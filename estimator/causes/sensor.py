@@ -126,37 +126,40 @@ class BiasPerPosition(SensorCause):
 
 
 class Saturation(SensorCause):
-    """The nonlinear parameter is the limit at the input; reported as the amplitude, m/s²."""
+    """The nonlinear parameters are the limit at the input, reported as the amplitude, and the side: 0 both, ±1 one."""
 
     identifier = "saturation"
     scope = "sensor"
     equation = "reading clipped beyond a limit"
     units = ("m/s²",)
-    nonlinear_units = ("m/s²",)
+    nonlinear_units = ("m/s²", "side")
     sentence = "{sensors} is clipped: its reading stops at a limit."
     advice = "Lower the converter's gain or use a range that holds the largest input, and repeat the session."
-    deepest = 12
+    deepest = 10
     """Levels of input, from the largest down, that the limit is tried between."""
 
-    def level(self, setting: Setting, i: int) -> Array:
-        """Size of what sensor i should have read, at the input, in units of the applied vector: (R,)."""
-        return np.abs(input_of(setting.parameters, setting.n)[:, i]) / setting.norm[i]
+    def beyond(self, setting: Setting, i: int, side: float) -> tuple[Array, Array]:
+        """Size (R,) of what sensor i should have read on a side, at the input, and its sign."""
+        h = input_of(setting.parameters, setting.n)[:, i]
+        return (np.abs(h) if side == 0 else side * h), np.sign(h)
 
     def grid_of(self, setting: Setting, i: int) -> Iterator[tuple[float, ...]]:
-        levels = np.unique(np.round(self.level(setting, i), 5))[::-1][: self.deepest + 1]
-        for upper, lower in pairwise(levels):
-            yield (float(lower * setting.norm[i]),)
-            yield (float((upper + lower) / 2 * setting.norm[i]),)
+        for side in (0.0, 1.0, -1.0):
+            size, _ = self.beyond(setting, i, side)
+            levels = np.unique(np.round(size / setting.norm[i], 5))[::-1][: self.deepest + 1]
+            for upper, lower in pairwise(levels):
+                for limit in (lower, (upper + lower) / 2):
+                    yield (float(limit * setting.norm[i]), side)
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
-        h = input_of(setting.parameters, setting.n)[:, i]
-        return column(-np.sign(h) * np.maximum(np.abs(h) - nonlinear[0], 0.0))
+        size, sign = self.beyond(setting, i, nonlinear[1])
+        return column(-sign * np.maximum(size - nonlinear[0], 0.0))
 
     def reported(self, setting: Setting, shape: Shape, amplitude: Array, sigma: Array) -> tuple[Array, Array]:
         """The limit: what is cut off on average, moved from the tried limit to where the amplitude is one."""
-        (i,), (limit,) = shape.sensors, shape.nonlinear
-        cut = -shape.columns[:, i, 0] * np.sign(input_of(setting.parameters, setting.n)[:, i])
-        depth = float(cut[cut > 0].mean())
+        (i,), (limit, side) = shape.sensors, shape.nonlinear
+        size, _ = self.beyond(setting, i, side)
+        depth = float((size - limit)[size > limit].mean())
         return limit + (1 - amplitude) * depth, sigma * depth
 
 

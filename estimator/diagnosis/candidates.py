@@ -156,10 +156,10 @@ def _score(evidence: Evidence, traces: Traces, taken: Array, z: Array) -> Iterab
     live = (size > FAINT * size[:, :1]) & visible[:, None]
     power = ((z @ basis) ** 2 * live).sum(axis=-1)
     freedom = live.sum(axis=-1)
-    places = int(visible.sum())
+    places, used = int(visible.sum()), (taken**2).sum(axis=1)
     for s in np.flatnonzero(visible):
         shape, q = traces.shapes[s], int(freedom[s])
-        statistic = equivalent(evidence, shape, float(power[s]), q, z)
+        statistic = equivalent(evidence, shape, float(power[s]), q, z, used)
         yield Scored(
             traces.cause,
             shape,
@@ -188,11 +188,12 @@ def bayes_factor(statistic: float, q: int) -> float:
     return 0.5 * (statistic - q) - 0.5 * q * float(np.log(statistic / q)) - OCCAM * (q - 1)
 
 
-def equivalent(evidence: Evidence, shape: Shape, power: float, q: int, z: Array) -> float:
+def equivalent(evidence: Evidence, shape: Shape, power: float, q: int, z: Array, used: Array) -> float:
     """χ² of a signature that is as unlikely as the power it takes out.
 
     Where the noise of its sensors is estimated from these very residuals, F = (T/q)/((f − T)/(f − q)) takes the place
-    of T, carried over to χ² at the same tail probability.
+    of T, carried over to χ² at the same tail probability. ``used`` (n,) is the share of every row that the findings so
+    far have taken out of z.
     """
     unstated = evidence.baseline.unstated
     sensors = list(shape.sensors) or list(range(len(unstated)))
@@ -201,6 +202,7 @@ def equivalent(evidence: Evidence, shape: Shape, power: float, q: int, z: Array)
     owned = np.isin(evidence.owner(), sensors)
     total = float((z[owned] ** 2).sum())
     freedom = evidence.freedom * len(sensors) / len(unstated) + float(owned[evidence.readings :].sum())
+    freedom -= float(used[owned].sum())
     if freedom <= q + 1:
         return 0.0
     rest = max(total - power, 1e-6 * max(total, 1e-300))

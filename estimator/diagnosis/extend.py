@@ -15,12 +15,9 @@ import numpy as np
 
 from estimator.calibration.calibrate import calibrate
 from estimator.diagnosis.candidates import INVISIBLE, Scored
-from estimator.diagnosis.search import Excess, Search
+from estimator.diagnosis.search import DRIFT, Excess, Search
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
-
-KEPT_IN_THE_SENSOR = "sensor-drift"
-"""The one effect that is not taken out of the readings: the sensor's parameters really are what they are now."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,10 +61,13 @@ def effect(found: Sequence[Scored], fitted: Amplitudes) -> Array:
 
 
 def without_effects(state: Search, fitted: Amplitudes) -> CalibrationSession:
-    """The session with the named effects taken out of the readings and the true noise stated."""
+    """The session with the named effects taken out of the readings and the true noise stated.
+
+    A sensor's drift stays in: its parameters really are what they are now.
+    """
     session, p = state.baseline.session, state.baseline.parameters
     taken = [f.best for f in state.found]
-    stays = [s.cause.identifier == KEPT_IN_THE_SENSOR for s in taken]
+    stays = [s.cause.identifier == DRIFT for s in taken]
     readings = session.readings
     if not all(stays):
         inside = [
@@ -98,7 +98,7 @@ def extended_calibration(state: Search, fitted: Amplitudes) -> Calibration:
     taken = [f.best for f in state.found]
     if not taken:
         return plain
-    keep = [s.cause.identifier != KEPT_IN_THE_SENSOR for s in taken]
+    keep = [s.cause.identifier != DRIFT for s in taken]
     columns = np.concatenate([s.shape.columns * k for s, k in zip(taken, keep, strict=True)], axis=-1)
     answer = state.evidence.absorb @ state.evidence.raw(columns)
     factors = state.baseline.parameters.si_factors(state.baseline.setting.norm)

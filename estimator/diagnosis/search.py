@@ -30,6 +30,8 @@ DECISIVE = 4.0
 AGAIN = frozenset({"reading-outlier", "bias-jump"})
 """Causes that may happen to one sensor more than once."""
 
+DRIFT = "sensor-drift"
+
 MOST = 8
 """Different causes (and, apart from them, patterns) looked for in one session, each on as many sensors as show it."""
 
@@ -123,7 +125,7 @@ def begin(baseline: Baseline, history: Sequence[Baseline], catalogue: Sequence[C
 
 def search(start: Search) -> Search:
     """Causes, then what they leave."""
-    state = settle(causes(start))
+    state = without_needless_drift(settle(causes(start)))
     return unevenness(judge_structures(structures(state)))
 
 
@@ -251,6 +253,23 @@ def settle(state: Search) -> Search:
         state = causes(state)
         if [f.best.group for f in state.found] == groups:
             break
+    return state
+
+
+def without_needless_drift(state: Search) -> Search:
+    """Take back a sensor's drift where another effect on that sensor, part of the history too, explains its move."""
+    for drift in [f for f in state.found if f.best.cause.identifier == DRIFT]:
+        sensors = drift.best.shape.sensors
+        others = [f for f in state.found if f is not drift and f.best.shape.sensors == sensors]
+        for other in others:
+            rest = replace(state, found=tuple(f for f in state.found if f is not drift))
+            again = strongest(rest, rest.traces, without=other)
+            if again is None or again.best.cause.identifier == DRIFT:
+                continue
+            rival = replace(rest, found=tuple(again if f is other else f for f in rest.found))
+            if total(rival) > total(state) - DECISIVE:
+                state = rival
+                break
     return state
 
 

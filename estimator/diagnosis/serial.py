@@ -32,7 +32,7 @@ def orders(evidence: Evidence, sensor: int) -> dict[str, Array]:
     """The orders in which a left-over may run smoothly: (R,) keys to sort by."""
     setting = evidence.baseline.setting
     keys = {"the order measured": np.arange(setting.rows, dtype=float), "the sensor's input": setting.a[:, sensor]}
-    if setting.temperature is not None and len(np.unique(setting.temperature)) > setting.rows // 2:
+    if setting.temperature is not None and len(np.unique(setting.temperature)) >= 6:
         keys["temperature"] = setting.temperature
     if setting.beta is not None:
         keys["β"] = np.mod(setting.beta, 2 * np.pi)
