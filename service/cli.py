@@ -1,36 +1,75 @@
-"""The command line, `imu-health`. Exit codes: 0 done, 2 unusable input, 1 anything else."""
+"""The command line, `imu-health`. Exit codes: 0 done, 2 unusable input, 1 anything else.
+
+A command is imported when it is asked for, so that `calibrate` waits for neither a web server nor a database.
+"""
 
 import sys
+from importlib import import_module
+from typing import Any
 
 import typer
+from typer.core import TyperGroup
 from typer.exceptions import TyperException
 
-from service.commands.calibrate import calibrate_files
 from service.commands.console import FAILED, say
-from service.commands.convert import convert_files
-from service.commands.database import database
-from service.commands.report import fleet, report
-from service.commands.serve import serve
-from service.commands.simulate import simulate_files
-from service.commands.upload import upload_files
 from service.errors import ServiceError
+
+COMMANDS = {
+    "serve": "serve.serve",
+    "calibrate": "calibrate.calibrate_files",
+    "upload": "upload.upload_files",
+    "convert": "convert.convert_files",
+    "fleet": "report.fleet",
+    "report": "report.report",
+    "simulate": "simulate.simulate_files",
+    "db": "database.database",
+}
+"""Every command, and where it is below `service.commands`: a function, or commands of its own."""
+
+
+class Commands(TyperGroup):
+    """The commands by name, each imported when it is wanted."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """All names, in the order of the help."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """One command; None when there is none of that name."""
+        if cmd_name in COMMANDS and cmd_name not in self.commands:
+            self.commands[cmd_name] = _command(cmd_name)
+        return self.commands.get(cmd_name)
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """A name that is none is answered with the ones that are like it, so all must be known."""
+        if args[0] not in COMMANDS:
+            self.commands.update({name: _command(name) for name in COMMANDS})
+        return super().resolve_command(ctx, args)
+
+
+def _command(name: str) -> Any:
+    module, _, member = COMMANDS[name].partition(".")
+    found = getattr(import_module(f"service.commands.{module}"), member)
+    if isinstance(found, typer.Typer):
+        return typer.main.get_command(found)
+    single = typer.Typer(add_completion=False, rich_markup_mode="markdown")
+    single.command(name)(found)
+    return typer.main.get_command(single)
+
 
 app = typer.Typer(
     name="imu-health",
-    help="In-service health of redundant inertial measurement units.",
+    cls=Commands,
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode="markdown",
 )
-app.command("serve")(serve)
-app.command("calibrate")(calibrate_files)
-app.command("upload")(upload_files)
-app.command("convert")(convert_files)
-app.command("fleet")(fleet)
-app.command("report")(report)
-app.command("simulate")(simulate_files)
-app.add_typer(database, name="db")
+
+
+@app.callback()
+def imu_health() -> None:
+    """In-service health of redundant inertial measurement units."""
 
 
 def main() -> None:

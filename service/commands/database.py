@@ -7,7 +7,9 @@ import typer
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.storage.schema import downgrade, upgrade
 
-database = typer.Typer(help="Bring the database's schema up or down.", no_args_is_help=True)
+database = typer.Typer(
+    name="db", add_completion=False, help="Bring the database's schema up or down.", no_args_is_help=True
+)
 
 
 @database.command("upgrade")

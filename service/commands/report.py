@@ -11,8 +11,8 @@ from rich.table import Table
 from service.commands.client import connected
 from service.commands.console import DEFAULT_SERVER, AsJson, Server, print_json, screen
 from service.commands.upload import coloured
-from service.pages.units import number
 from service.records import Verdict
+from service.units import number
 
 
 class Format(StrEnum):

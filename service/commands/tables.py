@@ -10,7 +10,7 @@ from rich.text import Text
 
 from estimator.results import Calibration, Estimate, Fit, SensorCalibration
 from estimator.session import CalibrationSession, Sensor
-from service.pages.units import deviation_unit, in_unit, measured, number
+from service.units import deviation_unit, in_unit, measured, number
 
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
 UNSEEN = "not observable"

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import isfinite, sqrt
 
 from estimator.results import Fit
-from service.pages.units import number
+from service.units import number
 
 
 @dataclass(frozen=True)

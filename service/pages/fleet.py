@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from datetime import datetime
 from urllib.parse import urlencode
 
-from service.pages.verdicts import UNDECIDED, Condition, condition_of
 from service.records import FleetCondition, UnitSummary
+from service.verdicts import UNDECIDED, Condition, condition_of
 
 PAGE_SIZE = 50
 BAR_LIMIT = 150.0

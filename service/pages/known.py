@@ -3,8 +3,7 @@
 from dataclasses import dataclass
 
 from estimator.results import KnownCombination
-from service.pages.units import COVERAGE, measured, reading_unit, value_unit
-from service.units import DeviationUnit
+from service.units import COVERAGE, DeviationUnit, measured, reading_unit, value_unit
 
 READING_TERMS = {
     "zero_reading": ("K·b", 0),

@@ -11,7 +11,7 @@ from markupsafe import Markup
 
 from service.pages.assets import asset_url
 from service.pages.tracks import day_of
-from service.pages.verdicts import CONDITIONS
+from service.verdicts import CONDITIONS
 
 TEMPLATES = Path(__file__).parent / "templates"
 

@@ -9,10 +9,12 @@ from service.pages.charts.residuals import residual_charts
 from service.pages.fit import FitWords, fit_in_words
 from service.pages.known import combination_in_words
 from service.pages.residual_table import ResidualTable, residual_table
-from service.pages.units import (
+from service.records import PARAMETERS, Decision, SessionReport, StoredSession, Verdict
+from service.units import (
     COVERAGE,
     HARD,
     THIN,
+    DeviationUnit,
     decimals,
     deviation_unit,
     in_unit,
@@ -23,9 +25,7 @@ from service.pages.units import (
     size_in_words,
     value_unit,
 )
-from service.pages.verdicts import Condition, condition_of
-from service.records import PARAMETERS, Decision, SessionReport, StoredSession, Verdict
-from service.units import DeviationUnit
+from service.verdicts import Condition, condition_of
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,9 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from service.pages.changes import Change, changes_of
-from service.pages.units import deviation_unit, in_unit, limit, measured, signed
-from service.pages.verdicts import NOT_JUDGED, Condition, condition_of
 from service.records import PARAMETERS, HistoryPoint, Service
-from service.units import DeviationUnit
+from service.units import DeviationUnit, deviation_unit, in_unit, limit, measured, signed
+from service.verdicts import NOT_JUDGED, Condition, condition_of
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from service.pages.charts import ChartSet
 from service.pages.charts.history import history_charts
 from service.pages.tracks import Track, TrackPoint, day_of, tolerance_text, tracks_of
-from service.pages.verdicts import NOT_JUDGED, Condition, condition_of
 from service.records import HistoryPoint, Service, StoredSession, UnitReport
+from service.verdicts import NOT_JUDGED, Condition, condition_of
 
 HEADINGS = {"scale": "Scale factor", "bias": "Bias", "quadratic": "Quadratic term", "axis": "Axis"}
 MEANINGS = {

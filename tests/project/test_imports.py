@@ -9,6 +9,7 @@ from tests.project.source import PACKAGES, Module, modules
 
 SERVICE_LAYERS = (
     {"settings", "records", "units", "errors"},
+    {"verdicts"},
     {"ingest", "storage"},
     {"flows"},
     {"dependencies"},

@@ -9,7 +9,7 @@ from typing import Any
 
 import altair as alt
 
-from service.pages.verdicts import Condition
+from service.verdicts import Condition
 
 DATA_FORM = "points"
 """Name of the main data set of every specification."""

@@ -8,8 +8,8 @@ import altair as alt
 
 from service.pages.charts import DATA_FORM, ChartSet, Panel, padded, specification
 from service.pages.tracks import Track, TrackPoint
-from service.pages.verdicts import CONDITIONS, FIT, NOT_JUDGED
 from service.records import Service
+from service.verdicts import CONDITIONS, FIT, NOT_JUDGED
 
 HEIGHT = 150
 

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from estimator.results import Calibration, Residuals
 from service.pages.charts import DATA_FORM, ChartSet, Panel, padded, specification
-from service.pages.units import THIN, decimals, deviation_unit, number
-from service.units import DeviationUnit
+from service.units import THIN, DeviationUnit, decimals, deviation_unit, number
 
 HEIGHT = 130
 RUNS = ("direct", "flipped")

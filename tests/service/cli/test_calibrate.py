@@ -1,5 +1,7 @@
 """`imu-health calibrate`: what it prints, and its exit codes."""
 
+import subprocess
+import sys
 from io import StringIO
 from pathlib import Path
 
@@ -93,3 +95,17 @@ def test_the_quality_of_the_fit_is_said_in_words(run: Run, good_file: Path, tmp_
     assert "within their stated noise" in run("calibrate", good_file).out
     unstated = write(tmp_path, "unstated.json", arbitrary_orientations(se=None))
     assert "states no standard errors" in run("calibrate", unstated).out
+
+
+def test_calibrating_loads_neither_web_server_nor_database_nor_charts(good_file: Path) -> None:
+    script = "import sys, service.cli\ntry: service.cli.main()\nexcept SystemExit: print(*sys.modules)"
+    command = [sys.executable, "-c", script, "calibrate", str(good_file)]
+    loaded = subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
+    assert "estimator.calibration" in loaded
+    assert not {"fastapi", "sqlalchemy", "altair", "uvicorn"} & set(loaded)
+
+
+def test_a_command_that_is_none_is_told_what_it_may_have_been(run: Run) -> None:
+    ran = run("calibrat")
+    assert ran.code == 1
+    assert "'calibrate'" in ran.err

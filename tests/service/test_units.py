@@ -2,7 +2,7 @@
 
 import pytest
 
-from service.pages.units import deviation_unit, limit, measured, number, signed, size_in_words, value_unit
+from service.units import deviation_unit, limit, measured, number, signed, size_in_words, value_unit
 
 MICRO_G = deviation_unit("accelerometer", "bias", 1e-4)
 
