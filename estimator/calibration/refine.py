@@ -145,21 +145,25 @@ def eliminated(normal: Normal, P: int, sigma: Array) -> tuple[Array, Array, Arra
     With A the sensors' block, B the border and F = A⁻¹B, the readings tell D = G'WG − B'F of the constant errors s
     beyond their prior Π (less what the ridge pretends). Then cov = A⁻¹ + F·(Π + D)⁻¹·F', of which
     F·(Π + D)⁻¹·Π·(Π + D)⁻¹·F' is the stand's. The rest is written as a sum of positive terms: as a difference it would
-    drown when the stand is far worse than the readings.
+    drown when the stand is far worse than the readings. D is taken apart in units of Π, so that readings that tell of
+    the stand beyond all measure cannot make the sum singular.
     """
     border, prior = normal.matrix[:, :P, P:], np.diag(sigma**-2.0)
     inner = np.linalg.inv(normal.matrix[:, :P, :P])
     lean = inner @ border
     taken = (border + RIDGE * lean).swapaxes(-1, -2) @ lean
-    values, vectors = np.linalg.eigh(normal.matrix[:, P:, P:] - prior - taken)
-    root = vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :]
-    spread = np.linalg.inv(prior + root @ root.swapaxes(-1, -2))
+    told = sigma[:, None] * (normal.matrix[:, P:, P:] - prior - taken) * sigma
+    values, vectors = np.linalg.eigh(told)
+    values = np.maximum(values, 0.0)[:, None, :]
+    root = vectors * np.sqrt(values) / sigma[:, None]
+    half = vectors * sigma[:, None] / np.sqrt(1.0 + values)
+    spread = half @ half.swapaxes(-1, -2)
     gain = lean @ spread
     own, seen = normal.rhs[:, :P, None], normal.rhs[:, P:, None]
     constant = spread @ (seen - lean.swapaxes(-1, -2) @ own)
     step = np.concatenate([inner @ own - lean @ constant, constant], axis=1)[..., 0]
-    told = gain @ root
-    return inner + gain @ lean.swapaxes(-1, -2), inner + told @ told.swapaxes(-1, -2), step
+    own_part = gain @ root
+    return inner + gain @ lean.swapaxes(-1, -2), inner + own_part @ own_part.swapaxes(-1, -2), step
 
 
 def held(normal: Normal) -> Normal:

@@ -125,9 +125,26 @@ class Cause(ABC):
 class Signature(Cause):
     """A cause whose effect is a linear combination of known columns."""
 
+    nameless: ClassVar[bool] = False
+    """Whether it is a mere pattern, no cause: what lives within one session and has no history."""
+    bounded: ClassVar[bool] = False
+    """Whether `plausible` has something to say of the amplitude."""
+
     @abstractmethod
     def shapes(self, setting: Setting) -> Iterator[Shape]:
         """Every signature the cause could leave in this session."""
+
+    def plausible(self, shape: Shape, amplitude: float) -> bool:
+        """Whether the cause can have this amplitude (one amplitude)."""
+        return True
+
+    def polished(self, setting: Setting, shape: Shape) -> Iterator[Shape]:
+        """Shapes beside one of the grid, to find the best nonlinear parameters between its points."""
+        yield from ()
+
+    def bend(self, setting: Setting, shape: Shape) -> Array:
+        """(R, m, r) change of the columns by each continuous nonlinear parameter; its own error belongs to sigma."""
+        return np.zeros((*shape.columns.shape[:2], 0))
 
     def reported(self, setting: Setting, shape: Shape, amplitude: Array, sigma: Array) -> tuple[Array, Array]:
         """Amplitude and sigma as `units` names them, from those of the signature's columns."""

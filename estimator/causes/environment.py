@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from estimator.causes.contract import SensorCause, Setting, column
+from estimator.causes.contract import SensorCause, Setting, Shape, column
 from estimator.causes.sensor import across
 from estimator.session import Array
 
@@ -129,6 +129,21 @@ class WarmUp(SensorCause):
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
         assert setting.time is not None
         return column(np.exp(-setting.time / nonlinear[0]))
+
+    def polished(self, setting: Setting, shape: Shape) -> Iterator[Shape]:
+        (tau,) = shape.nonlinear
+        for factor in np.geomspace(0.6, 1.7, 23):
+            columns = np.zeros_like(shape.columns)
+            columns[:, shape.sensors[0], :1] = self.term(setting, shape.sensors[0], (tau * factor,))
+            yield Shape(shape.sensors, columns, (float(tau * factor),))
+
+    def bend(self, setting: Setting, shape: Shape) -> Array:
+        """By ln τ."""
+        assert setting.time is not None
+        (tau,) = shape.nonlinear
+        bent = np.zeros((*shape.columns.shape[:2], 1))
+        bent[:, shape.sensors[0], 0] = np.exp(-setting.time / tau) * setting.time / tau
+        return bent
 
 
 class BiasJump(SensorCause):

@@ -91,7 +91,7 @@ def traces_of(evidence: Evidence, causes: Iterable[Signature]) -> list[Traces]:
 
 def _all_traces(evidence: Evidence, cause: Signature, shapes: tuple[Shape, ...]) -> list[Traces]:
     """Traces of one cause. With history: as lasting since then, as new, and with the sensor's own move left open."""
-    if cause.between or evidence.between is None:
+    if cause.between or cause.nameless or evidence.between is None:
         return [_version(evidence, cause, shapes, lasting=not cause.between)]
     lasting = _version(evidence, cause, shapes, lasting=True)
     versions = [lasting, _version(evidence, cause, shapes, lasting=False), freed(evidence, lasting)]
@@ -158,6 +158,8 @@ def _score(evidence: Evidence, traces: Traces, taken: Array, z: Array) -> Iterab
     freedom = live.sum(axis=-1)
     places, used = int(visible.sum()), (taken**2).sum(axis=1)
     for s in np.flatnonzero(visible):
+        if not possible(traces, int(s), columns[s], z):
+            continue
         shape, q = traces.shapes[s], int(freedom[s])
         statistic = equivalent(evidence, shape, float(power[s]), q, z, used)
         yield Scored(
@@ -171,6 +173,14 @@ def _score(evidence: Evidence, traces: Traces, taken: Array, z: Array) -> Iterab
             float(chdtrc(q, statistic)) if q else 1.0,
             places,
         )
+
+
+def possible(traces: Traces, s: int, columns: Array, z: Array) -> bool:
+    """Whether the amplitude that fits best is one that the cause can have; asked of single amplitudes only."""
+    size = float((columns[:, 0] ** 2).sum())
+    if not traces.cause.bounded or size == 0:
+        return True
+    return traces.cause.plausible(traces.shapes[s], float(columns[:, 0] @ z) / size)
 
 
 def orthonormal(columns: Array) -> tuple[Array, Array]:

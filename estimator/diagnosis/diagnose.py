@@ -17,6 +17,7 @@ from estimator.diagnosis.gain import gain
 from estimator.diagnosis.limits import limits
 from estimator.diagnosis.measured import baseline_of
 from estimator.diagnosis.nominal import WrongEntry, wrong_elevation
+from estimator.diagnosis.polish import polished
 from estimator.diagnosis.report import entry_finding, findings, slip_finding, structures
 from estimator.diagnosis.results import Diagnosis
 from estimator.diagnosis.search import begin, search
@@ -48,7 +49,7 @@ def diagnose(
     entry = None if past else against_nominal(right, catalogue)
     right = right if entry is None else entry.session
     baseline, earlier = common_start(right, past)
-    state = search(begin(baseline, earlier, catalogue))
+    state = polished(search(begin(baseline, earlier, catalogue)))
     fitted = amplitudes(state)
     return Diagnosis(
         unit=session.unit,

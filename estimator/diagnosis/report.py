@@ -30,7 +30,7 @@ def finding(state: Search, found: Found, fitted: Amplitudes, k: int) -> Finding:
         state.baseline.setting, best.shape, fitted.value[part], np.sqrt(np.diagonal(fitted.covariance)[part])
     )
     others = alternatives(state, found)
-    gyro = any(state.baseline.setting.kinds[i] != ACCELEROMETER for i in best.shape.sensors)
+    gyro = best.cause.kind is None and any(state.baseline.setting.kinds[i] != ACCELEROMETER for i in best.shape.sensors)
     return Finding(
         cause=best.cause.identifier,
         sensors=sensors,

@@ -36,6 +36,7 @@ class Structure(Signature):
     """A family of patterns; ``nonlinear`` of its shapes says which member."""
 
     scope = "unexplained"
+    nameless = True
     equation = ""
     units = ()
     advice = "Look at the residuals there; no cause of the catalogue has this pattern."
