@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
+from typing import Any
 
 from estimator.results import Calibration
 from estimator.session import CalibrationSession
@@ -75,6 +76,8 @@ class StoredSession:
     """Why the verdict is what it is, in one sentence a technician understands."""
     is_reference: bool
     simulated: bool
+    revision: int = 0
+    """The model revision that the calibration in force was made under; 0 is the baseline."""
 
 
 @dataclass(frozen=True)
@@ -152,6 +155,8 @@ class HistoryPoint:
     """In the unit of value (for scale: relative tolerance times the reference); None where it is not judged."""
     verdict: Verdict
     axis: tuple[float, float, float] | None
+    revision: int = 0
+    """The model revision that it was computed under."""
 
 
 @dataclass(frozen=True)
@@ -182,6 +187,8 @@ class UnitSummary:
     worst_parameter: str | None
     margin: float | None
     """1 − (|d| + U)/T of the worst parameter: 1 is spotless, 0 the edge of pass, negative beyond."""
+    diagnosis: str = ""
+    """What the simulation gets wrong about the latest session, in one line; empty where nothing is wrong."""
 
 
 @dataclass(frozen=True)
@@ -241,3 +248,118 @@ class Receipt:
     reason: str
     created: bool
     """False when the same bytes were already stored."""
+
+
+class DiagnosisState(StrEnum):
+    """What a diagnosis came to."""
+
+    NOTHING = "nothing wrong"
+    NAMED = "named"
+    UNDECIDED = "cannot tell which"
+    UNEXPLAINED = "unexplained"
+    FAILED = "failed"
+    """The session cannot be diagnosed."""
+
+    @property
+    def is_wrong(self) -> bool:
+        """Whether something is wrong that people should hear of."""
+        return self in (DiagnosisState.NAMED, DiagnosisState.UNDECIDED, DiagnosisState.UNEXPLAINED)
+
+
+@dataclass(frozen=True)
+class DiagnosisSummary:
+    """A session's diagnosis in one line."""
+
+    state: DiagnosisState
+    summary: str
+
+
+@dataclass(frozen=True)
+class StoredDiagnosis:
+    """What the simulation gets wrong about a session."""
+
+    session: str
+    model_revision: int
+    """In force when it was made."""
+    state: DiagnosisState
+    summary: str
+    document: dict[str, Any] | None
+    """imu-diagnosis/1; None where the session could not be diagnosed."""
+    verdict_after: Verdict | None
+    """The verdict that the session would have with the named causes in the model."""
+    estimator_version: str
+    created_at: datetime
+
+
+class Scope(StrEnum):
+    """Whose model an accepted cause becomes part of."""
+
+    UNIT = "unit"
+    UNIT_TYPE = "unit type"
+    STAND = "stand"
+
+
+@dataclass(frozen=True)
+class NewModel:
+    """A cause that an engineer accepts."""
+
+    cause: str
+    scope: Scope
+    by: str
+    note: str
+
+
+@dataclass(frozen=True)
+class ModelRevision:
+    """One accepted cause. Revisions are numbered through, so that a number says which model a result rests on."""
+
+    id: int
+    scope: Scope
+    subject: str
+    """Serial number of the unit, or name of the unit type or of the stand."""
+    cause: str
+    sensors: tuple[str, ...]
+    session: str
+    evidence: dict[str, Any]
+    """Of the finding: p_value, strength, amplitude, sigma, units, and the gain."""
+    accepted_by: str
+    note: str
+    accepted_at: datetime
+
+
+@dataclass(frozen=True)
+class DiagnosisReport:
+    """Everything a session's diagnosis page shows."""
+
+    session: StoredSession
+    diagnosis: StoredDiagnosis | None
+    """None while it is being made."""
+    calibration: Calibration
+    """In force."""
+    revisions: tuple[ModelRevision, ...]
+    """That concern the session, oldest first."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """The causes beyond the baseline that a session's calibration takes into account."""
+
+    revision: int
+    """The latest revision that concerns the session; 0 for the baseline alone."""
+    causes: tuple[tuple[str, tuple[str, ...]], ...]
+    """Identifier and sensors of each."""
+
+
+@dataclass(frozen=True)
+class Recalibrated:
+    """What became of a unit's stored sessions under the model in force."""
+
+    unit: str
+    sessions: int
+    recomputed: int
+    unchanged: int
+    """Computed under this model before."""
+    left: int
+    """Sessions that cannot be calibrated under it; they keep what they have."""
+    revision: int
+    """The latest revision that any of them rests on."""

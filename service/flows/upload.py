@@ -1,19 +1,19 @@
-"""Flow: uploaded bytes → checked → calibrated → judged against the unit's reference → stored, once."""
+"""Flow: uploaded bytes → checked → calibrated under the model in force → judged → stored, once."""
 
 from dataclasses import dataclass
 from datetime import datetime
 
-from estimator.calibration import calibrate
 from estimator.errors import SessionError
 from estimator.results import Calibration
 from estimator.session import CalibrationSession
 from service.flows.judge import judge
+from service.flows.model_in_force import calibrated, model_for
 from service.flows.parameter_values import parameter_values
 from service.flows.refuse import refuse
 from service.flows.storable import measured_at, plain_filename, require_storable
 from service.flows.tolerances import type_of
 from service.ingest import read_upload
-from service.records import Judged, Receipt, StoredSession
+from service.records import Judged, Model, Receipt, StoredSession
 from service.storage import Storage
 from service.storage.files import content_hash
 from service.storage.store import Store
@@ -32,6 +32,7 @@ class Upload:
     who: str
     simulated: bool
     session: CalibrationSession
+    model: Model
     calibration: Calibration
 
 
@@ -58,11 +59,13 @@ def upload(
     try:
         session = read_upload(content, filename)
         require_storable(session, now, filename)
-        calibration = calibrate(session)
+        with storage.database.reading() as store:
+            model = model_for(store, session)
+        calibration = calibrated(session, model)
     except SessionError as fault:
         raise refuse(storage, content, filename, fault.problems, now, who) from fault
     storage.files.keep(content)
-    new = Upload(digest, filename, len(content), now, who, simulated, session, calibration)
+    new = Upload(digest, filename, len(content), now, who, simulated, session, model, calibration)
     with storage.database.writing() as store:
         return _store(store, new, coverage_factor)
 
@@ -77,11 +80,12 @@ def _store(store: Store, new: Upload, coverage_factor: float) -> Receipt:
     record = _session_record(new, judged)
     stand = store.units.stand_key(record.stand)
     store.sessions.add(record, unit, stand, new.session.block, judged.worst)
-    store.calibrations.add(record.id, new.calibration)
-    store.history.add(unit, record.id, record.started_at, parameter_values(new.calibration))
-    store.sessions.add_decisions(record.id, judged.decisions)
+    store.calibrations.add(record.id, record.revision, judged, new.at)
+    store.history.add(unit, record, parameter_values(new.calibration))
+    store.sessions.add_decisions(record.id, judged.decisions, record.revision)
     store.fleet.refresh(unit)
-    store.log.audit(new.at, new.who, "upload", record.id, {"unit": record.unit, "verdict": record.verdict.value})
+    details = {"unit": record.unit, "verdict": record.verdict.value, "revision": record.revision}
+    store.log.audit(new.at, new.who, "upload", record.id, details)
     return _receipt(record, created=True)
 
 
@@ -127,6 +131,7 @@ def _session_record(new: Upload, judged: Judged) -> StoredSession:
         reason=judged.reason,
         is_reference=judged.is_reference,
         simulated=new.simulated,
+        revision=new.model.revision,
     )
 
 

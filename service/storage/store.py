@@ -5,9 +5,11 @@ from functools import cached_property
 from sqlalchemy.orm import Session
 
 from service.storage.queries.calibrations import Calibrations
+from service.storage.queries.diagnoses import Diagnoses
 from service.storage.queries.fleet import Fleet
 from service.storage.queries.history import History
 from service.storage.queries.log import Log
+from service.storage.queries.models import Models
 from service.storage.queries.services import Services
 from service.storage.queries.sessions import Sessions
 from service.storage.queries.unit_types import UnitTypes
@@ -44,6 +46,16 @@ class Store:
     def history(self) -> History:
         """Parameters through time."""
         return History(self._session)
+
+    @cached_property
+    def diagnoses(self) -> Diagnoses:
+        """What the simulation gets wrong."""
+        return Diagnoses(self._session)
+
+    @cached_property
+    def models(self) -> Models:
+        """Causes that engineers accepted, as numbered revisions."""
+        return Models(self._session)
 
     @cached_property
     def services(self) -> Services:

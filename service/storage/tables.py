@@ -1,12 +1,15 @@
-"""The tables. A session's rows are written once; only `conditions` (a summary that can be rebuilt) is ever updated.
+"""The tables. What was measured and computed is written once. Only summaries that can be rebuilt are ever updated:
+`conditions`, and of a session the revision in force with its verdict, which repeat those of its calibration.
 
 unit_types ──< tolerance_revisions          stands
     └──< units ──< services                   │
            ├──1 conditions                    │
            └──< sessions >────────────────────┘
-                   ├──1 calibrations          refusals   what was turned away
+                   ├──< calibrations          refusals   what was turned away
                    ├──< parameters            audit      who did what when, append-only
-                   └──< decisions
+                   ├──< decisions
+                   ├──1 diagnoses
+                   └──< model_revisions       causes that engineers accepted, numbered through
 """
 
 from datetime import datetime
@@ -103,15 +106,23 @@ class SessionRow(Base):
     margin: Mapped[float | None]
     is_reference: Mapped[bool]
     simulated: Mapped[bool]
+    revision: Mapped[int]
 
 
 class CalibrationRow(Base):
-    """The whole imu-calibration/1 of a session, covariance and residuals included: JSON, deflated."""
+    """The whole imu-calibration/1 of a session under one model revision, and the verdict it led to; JSON, deflated."""
 
     __tablename__ = "calibrations"
     session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), primary_key=True)
+    revision: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
     method: Mapped[str] = mapped_column(String(80))
     document: Mapped[bytes]
+    computed_at: Mapped[datetime]
+    verdict: Mapped[str] = mapped_column(String(20))
+    reason: Mapped[str]
+    worst_sensor: Mapped[str | None]
+    worst_parameter: Mapped[str | None] = mapped_column(String(20))
+    margin: Mapped[float | None]
 
 
 class ParameterRow(Base):
@@ -120,6 +131,7 @@ class ParameterRow(Base):
     __tablename__ = "parameters"
     __table_args__ = (Index("ix_parameters_history", "unit_id", "at", "session_id", "sensor_index", "parameter"),)
     session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), primary_key=True)
+    revision: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
     sensor: Mapped[str] = mapped_column(String(200), primary_key=True)
     parameter: Mapped[str] = mapped_column(String(20), primary_key=True)
     unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"))
@@ -138,6 +150,7 @@ class DecisionRow(Base):
 
     __tablename__ = "decisions"
     session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), primary_key=True)
+    revision: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
     sensor: Mapped[str] = mapped_column(String(200), primary_key=True)
     parameter: Mapped[str] = mapped_column(String(20), primary_key=True)
     position: Mapped[int]
@@ -154,6 +167,37 @@ class DecisionRow(Base):
     verdict: Mapped[str] = mapped_column(String(20))
     rule: Mapped[str]
     critical: Mapped[float | None]
+
+
+class DiagnosisRow(Base):
+    """What the simulation gets wrong about a session: imu-diagnosis/1, deflated, or why there is none."""
+
+    __tablename__ = "diagnoses"
+    session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), primary_key=True)
+    model_revision: Mapped[int]
+    state: Mapped[str] = mapped_column(String(20))
+    summary: Mapped[str]
+    document: Mapped[bytes | None]
+    verdict_after: Mapped[str | None] = mapped_column(String(20))
+    estimator_version: Mapped[str] = mapped_column(String(40))
+    created_at: Mapped[datetime]
+
+
+class ModelRow(Base):
+    """One cause that an engineer accepted into the model of a unit, a unit type or a stand; never changed."""
+
+    __tablename__ = "model_revisions"
+    __table_args__ = (Index("ix_model_revisions_scope", "scope", "subject", "id"),)
+    id: Mapped[int] = mapped_column(primary_key=True)
+    scope: Mapped[str] = mapped_column(String(20))
+    subject: Mapped[str] = mapped_column(String(200))
+    cause: Mapped[str] = mapped_column(String(60))
+    sensors: Mapped[list[Any]]
+    session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), index=True)
+    evidence: Mapped[dict[str, Any]]
+    accepted_by: Mapped[str]
+    note: Mapped[str]
+    accepted_at: Mapped[datetime]
 
 
 class ConditionRow(Base):

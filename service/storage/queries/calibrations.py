@@ -1,35 +1,61 @@
-"""Calibrations as they were computed: the whole imu-calibration/1, deflated."""
+"""Calibrations as they were computed, one a session and model revision: the whole imu-calibration/1, deflated."""
 
 import json
 import zlib
+from datetime import datetime
 
 from sqlalchemy import select
 
 from estimator.results import Calibration
 from service.errors import NotFoundError
+from service.records import Judged
 from service.storage.calibration_document import calibration_from_dict
 from service.storage.queries.base import Queries
-from service.storage.tables import CalibrationRow
+from service.storage.tables import CalibrationRow, SessionRow
 
 
 class Calibrations(Queries):
-    """Calibrations by session."""
+    """Calibrations by session and model revision."""
 
-    def add(self, session: str, calibration: Calibration) -> None:
-        """Stores the calibration of a session with its full covariance and residuals."""
-        document = json.dumps(calibration.to_dict(), separators=(",", ":"), allow_nan=False)
+    def add(self, session: str, revision: int, judged: Judged, at: datetime) -> None:
+        """Stores the calibration of a session with its full covariance and residuals, and the verdict it led to."""
+        document = json.dumps(judged.calibration.to_dict(), separators=(",", ":"), allow_nan=False)
         self._session.add(
-            CalibrationRow(session_id=session, method=calibration.method, document=zlib.compress(document.encode()))
+            CalibrationRow(
+                session_id=session,
+                revision=revision,
+                method=judged.calibration.method,
+                document=zlib.compress(document.encode()),
+                computed_at=at,
+                verdict=judged.verdict,
+                reason=judged.reason,
+                worst_sensor=judged.worst.sensor,
+                worst_parameter=judged.worst.parameter,
+                margin=judged.worst.margin,
+            )
         )
         self._session.flush()
 
-    def json(self, session: str) -> bytes:
-        """imu-calibration/1 of a session, as it was written."""
-        deflated = self._session.scalar(select(CalibrationRow.document).where(CalibrationRow.session_id == session))
+    def json(self, session: str, revision: int | None = None) -> bytes:
+        """imu-calibration/1 of a session, as it was written: the one in force, or the one of a revision."""
+        query = select(CalibrationRow.document).where(CalibrationRow.session_id == session)
+        if revision is None:
+            query = query.join(SessionRow, SessionRow.id == CalibrationRow.session_id).where(
+                CalibrationRow.revision == SessionRow.revision
+            )
+        else:
+            query = query.where(CalibrationRow.revision == revision)
+        deflated = self._session.scalar(query)
         if deflated is None:
-            raise NotFoundError(f"There is no calibration of session {session!r}.")
+            under = "" if revision is None else f" under model revision {revision}"
+            raise NotFoundError(f"There is no calibration of session {session!r}{under}.")
         return zlib.decompress(deflated)
 
-    def get(self, session: str) -> Calibration:
+    def get(self, session: str, revision: int | None = None) -> Calibration:
         """The calibration of a session, as it was computed."""
-        return calibration_from_dict(json.loads(self.json(session)))
+        return calibration_from_dict(json.loads(self.json(session, revision)))
+
+    def revisions(self, session: str) -> tuple[int, ...]:
+        """The model revisions that a session was computed under, in order."""
+        query = select(CalibrationRow.revision).where(CalibrationRow.session_id == session)
+        return tuple(self._session.scalars(query.order_by(CalibrationRow.revision)))

@@ -3,10 +3,13 @@
 from dataclasses import dataclass
 
 from sqlalchemy import Row, Select, func, select
+from sqlalchemy.orm import defer
 
-from service.records import FleetCondition, UnitSummary, Verdict
+from service.records import DiagnosisState, FleetCondition, UnitSummary, Verdict
 from service.storage.queries.base import Queries
-from service.storage.tables import ConditionRow, SessionRow, UnitRow, UnitTypeRow
+from service.storage.tables import ConditionRow, DiagnosisRow, SessionRow, UnitRow, UnitTypeRow
+
+Summaries = Select[UnitRow, str, ConditionRow, SessionRow, DiagnosisRow]
 
 
 @dataclass(frozen=True)
@@ -70,18 +73,18 @@ class Fleet(Queries):
         return FleetCondition(units=sum(verdicts.values()), verdicts=verdicts, simulated=simulated)
 
 
-def _summaries() -> Select[UnitRow, str, ConditionRow, SessionRow]:
+def _summaries() -> Summaries:
     return (
-        select(UnitRow, UnitTypeRow.name, ConditionRow, SessionRow)
+        select(UnitRow, UnitTypeRow.name, ConditionRow, SessionRow, DiagnosisRow)
+        .options(defer(DiagnosisRow.document))
         .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
         .join(ConditionRow, ConditionRow.unit_id == UnitRow.id)
         .join(SessionRow, SessionRow.id == ConditionRow.last_session)
+        .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
     )
 
 
-def _matching(
-    query: Select[UnitRow, str, ConditionRow, SessionRow], wanted: FleetQuery
-) -> Select[UnitRow, str, ConditionRow, SessionRow]:
+def _matching(query: Summaries, wanted: FleetQuery) -> Summaries:
     if wanted.verdict is not None:
         query = query.where(ConditionRow.severity == wanted.verdict.severity)
     if wanted.text:
@@ -92,8 +95,8 @@ def _matching(
     return query
 
 
-def _summary(row: Row[UnitRow, str, ConditionRow, SessionRow]) -> UnitSummary:
-    unit, type_name, condition, last = row
+def _summary(row: Row[UnitRow, str, ConditionRow, SessionRow, DiagnosisRow]) -> UnitSummary:
+    unit, type_name, condition, last = row[0], row[1], row[2], row[3]
     return UnitSummary(
         serial=unit.serial,
         unit_type=type_name,
@@ -106,4 +109,10 @@ def _summary(row: Row[UnitRow, str, ConditionRow, SessionRow]) -> UnitSummary:
         worst_sensor=last.worst_sensor,
         worst_parameter=last.worst_parameter,
         margin=last.margin,
+        diagnosis=_diagnosis(row[4]),
     )
+
+
+def _diagnosis(row: DiagnosisRow | None) -> str:
+    """In one line, where something is wrong."""
+    return "" if row is None or not DiagnosisState(row.state).is_wrong else row.summary

@@ -4,11 +4,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
 
-from sqlalchemy import Row, select
+from sqlalchemy import ColumnElement, Row, func, select
 
-from service.records import HistoryPoint, ParameterValue, Verdict
+from service.records import HistoryPoint, ParameterValue, StoredSession, Verdict
 from service.storage.queries.base import Queries
-from service.storage.tables import DecisionRow, ParameterRow
+from service.storage.tables import CalibrationRow, DecisionRow, ParameterRow, SessionRow
 
 
 @dataclass(frozen=True)
@@ -21,18 +21,21 @@ class HistoryQuery:
     until: datetime | None = None
     offset: int = 0
     limit: int = 10_000
+    revision: int | None = None
+    """As computed under this model revision or the last one before it; None for what is in force."""
 
 
 class History(Queries):
     """Parameters through time."""
 
-    def add(self, unit: int, session: str, at: datetime, values: Iterable[ParameterValue]) -> None:
-        """Stores the parameters of a session, sensor after sensor."""
+    def add(self, unit: int, record: StoredSession, values: Iterable[ParameterValue]) -> None:
+        """Stores the parameters of a session under its model revision, sensor after sensor."""
         self._session.add_all(
             ParameterRow(
-                session_id=session,
+                session_id=record.id,
+                revision=record.revision,
                 unit_id=unit,
-                at=at,
+                at=record.started_at,
                 sensor=value.sensor,
                 sensor_index=value.sensor_index,
                 kind=value.kind,
@@ -51,10 +54,16 @@ class History(Queries):
         """The wanted part of a unit's history, oldest first, in one query."""
         same = (
             (DecisionRow.session_id == ParameterRow.session_id)
+            & (DecisionRow.revision == ParameterRow.revision)
             & (DecisionRow.sensor == ParameterRow.sensor)
             & (DecisionRow.parameter == ParameterRow.parameter)
         )
-        query = select(ParameterRow, DecisionRow).outerjoin(DecisionRow, same).where(ParameterRow.unit_id == unit)
+        query = (
+            select(ParameterRow, DecisionRow)
+            .join(SessionRow, SessionRow.id == ParameterRow.session_id)
+            .outerjoin(DecisionRow, same)
+            .where(ParameterRow.unit_id == unit, ParameterRow.revision == _revision(wanted.revision))
+        )
         if wanted.parameter is not None:
             query = query.where(ParameterRow.parameter == wanted.parameter)
         if wanted.sensor is not None:
@@ -66,6 +75,17 @@ class History(Queries):
         order = (ParameterRow.at, ParameterRow.session_id, ParameterRow.sensor_index, ParameterRow.parameter)
         found = self._session.execute(query.order_by(*order).offset(wanted.offset).limit(wanted.limit))
         return tuple(_point(row) for row in found)
+
+
+def _revision(wanted: int | None) -> ColumnElement[int]:
+    """The revision of a session that is in force, or the last one up to the wanted."""
+    if wanted is None:
+        return SessionRow.revision.expression
+    return (
+        select(func.max(CalibrationRow.revision))
+        .where(CalibrationRow.session_id == ParameterRow.session_id, CalibrationRow.revision <= wanted)
+        .scalar_subquery()
+    )
 
 
 def _point(row: Row[ParameterRow, DecisionRow]) -> HistoryPoint:
@@ -89,6 +109,7 @@ def _point(row: Row[ParameterRow, DecisionRow]) -> HistoryPoint:
         tolerance=None if decision is None else _tolerance(decision),
         verdict=Verdict.UNDECIDABLE if decision is None else Verdict(decision.verdict),
         axis=_axis(parameter),
+        revision=parameter.revision,
     )
 
 

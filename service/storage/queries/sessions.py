@@ -3,12 +3,12 @@
 from dataclasses import asdict, fields
 from datetime import datetime
 
-from sqlalchemy import Select, select
+from sqlalchemy import Select, select, update
 
 from service.errors import NotFoundError
-from service.records import Decision, StoredSession, Verdict, Worst
+from service.records import Decision, Judged, StoredSession, Verdict, Worst
 from service.storage.queries.base import Queries
-from service.storage.tables import DecisionRow, SessionRow, StandRow, UnitRow
+from service.storage.tables import DecisionRow, DiagnosisRow, SessionRow, StandRow, UnitRow
 
 
 class Sessions(Queries):
@@ -51,18 +51,49 @@ class Sessions(Queries):
         self._session.add(SessionRow(unit_id=unit, stand_id=stand, block=block, **values, **_worst_columns(worst)))
         self._session.flush()
 
-    def add_decisions(self, id: str, decisions: tuple[Decision, ...]) -> None:
-        """Stores what was decided of a session's parameters."""
+    def of_unit(self, serial: str) -> tuple[StoredSession, ...]:
+        """All sessions of a unit, oldest first."""
+        query = _sessions().where(UnitRow.serial == serial).order_by(SessionRow.started_at, SessionRow.id)
+        return tuple(_session_record(*found) for found in self._session.execute(query))
+
+    def before(self, session: StoredSession, since: datetime | None, most: int) -> tuple[StoredSession, ...]:
+        """The last sessions of the unit measured before one and not before a time, oldest first."""
+        query = _sessions().where(UnitRow.serial == session.unit, SessionRow.started_at < session.started_at)
+        if since is not None:
+            query = query.where(SessionRow.started_at >= since)
+        latest = query.order_by(SessionRow.started_at.desc(), SessionRow.id.desc()).limit(most)
+        return tuple(_session_record(*found) for found in self._session.execute(latest))[::-1]
+
+    def without_diagnosis(self, after: str, limit: int) -> tuple[str, ...]:
+        """Ids of sessions that were never diagnosed, from an id on."""
+        query = (
+            select(SessionRow.id)
+            .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
+            .where(DiagnosisRow.session_id.is_(None), SessionRow.id > after)
+        )
+        return tuple(self._session.scalars(query.order_by(SessionRow.id).limit(limit)))
+
+    def put_in_force(self, id: str, revision: int, judged: Judged) -> None:
+        """Makes a session speak for its calibration of a revision; the ones before stay where they are."""
+        summary = {"verdict": judged.verdict, "reason": judged.reason, **_worst_columns(judged.worst)}
+        self._session.execute(update(SessionRow).where(SessionRow.id == id).values(revision=revision, **summary))
+        self._session.expire_all()
+
+    def add_decisions(self, id: str, decisions: tuple[Decision, ...], revision: int) -> None:
+        """Stores what was decided of a session's parameters under a model revision."""
         self._session.add_all(
-            DecisionRow(session_id=id, position=position, **asdict(decision))
+            DecisionRow(session_id=id, revision=revision, position=position, **asdict(decision))
             for position, decision in enumerate(decisions)
         )
         self._session.flush()
 
     def decisions(self, id: str) -> tuple[Decision, ...]:
-        """What was decided of a session's parameters, in the order of its sensors."""
+        """What was decided of a session's parameters under the revision in force, in the order of its sensors."""
         rows = self._session.scalars(
-            select(DecisionRow).where(DecisionRow.session_id == id).order_by(DecisionRow.position)
+            select(DecisionRow)
+            .join(SessionRow, SessionRow.id == DecisionRow.session_id)
+            .where(DecisionRow.session_id == id, DecisionRow.revision == SessionRow.revision)
+            .order_by(DecisionRow.position)
         )
         return tuple(_decision(row) for row in rows)
 

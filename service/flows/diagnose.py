@@ -1,0 +1,153 @@
+"""Flow: what the simulation gets wrong about a stored session, found once and kept.
+
+A session without a diagnosis is one whose diagnosis is pending; whoever asks for it first makes it, and a starting
+service makes those that were interrupted. So an acknowledged upload is never left without one.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from datetime import datetime
+from importlib.metadata import version
+from threading import Lock
+
+from estimator.diagnosis import Diagnosis
+from estimator.diagnosis import diagnose as find_causes
+from estimator.errors import SessionError
+from estimator.session import CalibrationSession
+from service.errors import NotFoundError
+from service.flows.diagnosis_in_words import document_of, state_of, summary_of
+from service.flows.judge import judge
+from service.ingest import read_upload
+from service.records import DiagnosisState, StoredDiagnosis, StoredSession, Verdict
+from service.storage import Files, Storage
+from service.storage.store import Store
+
+MOST_EARLIER = 10
+"""Earlier sessions of the unit that a diagnosis looks at."""
+QUICK_BYTES, QUICK_EARLIER_BYTES = 40_000, 400_000
+"""Files up to this size are diagnosed within the request that brought them: some tenths of a second."""
+BREAKDOWNS = (SessionError, ArithmeticError, ValueError, LookupError, AssertionError)
+"""What a session that the numerics cannot digest ends in; it is stored as such and harms nothing else."""
+VERSION = version("imu-health")
+
+
+@dataclass(frozen=True)
+class Task:
+    """A stored session with what its diagnosis looks at."""
+
+    session: StoredSession
+    earlier: tuple[StoredSession, ...]
+    """Of the same unit and epoch, oldest first."""
+    model_revision: int
+
+    @property
+    def is_quick(self) -> bool:
+        """Whether it is made within a request."""
+        earlier = sum(past.size for past in self.earlier)
+        return self.session.size <= QUICK_BYTES and earlier <= QUICK_EARLIER_BYTES
+
+
+@dataclass(frozen=True)
+class InProgress:
+    """The sessions that this process is diagnosing."""
+
+    _ids: set[str] = field(default_factory=set)
+    _lock: Lock = field(default_factory=Lock)
+
+    @contextmanager
+    def claim(self, id: str) -> Iterator[bool]:
+        """Whether the session is ours to diagnose until the block ends."""
+        with self._lock:
+            free = id not in self._ids
+            self._ids.add(id)
+        try:
+            yield free
+        finally:
+            if free:
+                with self._lock:
+                    self._ids.discard(id)
+
+
+def task_of(store: Store, id: str) -> Task:
+    """What the diagnosis of a session looks at."""
+    session = store.sessions.get(id)
+    since, _ = store.services.around(store.units.key(session.unit), session.started_at)
+    revisions = store.models.of_session(id)
+    return Task(session, store.sessions.before(session, since, MOST_EARLIER), max((r.id for r in revisions), default=0))
+
+
+def diagnose(storage: Storage, id: str, now: datetime) -> StoredDiagnosis:
+    """The diagnosis of a session: the stored one, or a new one that is stored."""
+    with storage.database.reading() as store:
+        known = store.diagnoses.get(id)
+        if known is not None:
+            return known
+        task = task_of(store, id)
+    made = _made(storage, task, now)
+    with storage.database.writing() as store:
+        if store.diagnoses.add_once(made):
+            details = {"state": made.state.value, "summary": made.summary}
+            store.log.audit(now, "diagnosis", "diagnose", id, details)
+    return made
+
+
+def _made(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
+    """Reads the stored bytes again and looks for causes."""
+    try:
+        session = _read(storage.files, task.session)
+        found = find_causes(session, _comparable(storage.files, task, session))
+        verdict = _verdict_after(storage, task, session, found)
+    except BREAKDOWNS as fault:
+        return _stored(task, DiagnosisState.FAILED, f"The session cannot be diagnosed: {fault}", None, None, now)
+    return _stored(task, state_of(found), summary_of(found), found, verdict, now)
+
+
+def _stored(
+    task: Task, state: DiagnosisState, summary: str, found: Diagnosis | None, verdict: Verdict | None, now: datetime
+) -> StoredDiagnosis:
+    return StoredDiagnosis(
+        session=task.session.id,
+        model_revision=task.model_revision,
+        state=state,
+        summary=summary,
+        document=None if found is None else document_of(found),
+        verdict_after=verdict,
+        estimator_version=VERSION,
+        created_at=now,
+    )
+
+
+def _read(files: Files, stored: StoredSession) -> CalibrationSession:
+    return read_upload(files.read(stored.sha256), stored.filename)
+
+
+def _comparable(files: Files, task: Task, session: CalibrationSession) -> list[CalibrationSession]:
+    """Earlier sessions of the same sensors measured in the same way; a lost file is passed over."""
+    found = []
+    for past in task.earlier:
+        try:
+            earlier = _read(files, past)
+        except (NotFoundError, SessionError):
+            continue
+        if earlier.programme == session.programme and _sensors(earlier) == _sensors(session):
+            found.append(earlier)
+    return found
+
+
+def _sensors(session: CalibrationSession) -> list[tuple[str, str]]:
+    return [(sensor.name, sensor.kind) for sensor in session.sensors]
+
+
+def _verdict_after(storage: Storage, task: Task, session: CalibrationSession, found: Diagnosis) -> Verdict | None:
+    """The verdict with the named causes in the model; None where none was named or there is no reference."""
+    if not found.findings or task.session.is_reference:
+        return None
+    with storage.database.reading() as store:
+        unit = store.units.key(session.unit)
+        since, until = store.services.around(unit, task.session.started_at)
+        reference = store.sessions.reference(unit, session.block, since, until)
+        if reference is None or reference == task.session.id:
+            return None
+        unit_type, known = store.unit_types.of_unit(session.unit), store.calibrations.get(reference)
+    return judge(session, found.calibration, known, unit_type, 2.0).verdict

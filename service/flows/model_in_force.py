@@ -1,0 +1,27 @@
+"""Step: the causes beyond the baseline that a session's calibration takes into account, and the calibration itself."""
+
+from collections.abc import Sequence
+
+from estimator.calibration import calibrate
+from estimator.diagnosis.model import calibrate_extended
+from estimator.results import Calibration
+from estimator.session import CalibrationSession
+from service.records import Model, ModelRevision
+from service.storage.store import Store
+
+
+def model_of(revisions: Sequence[ModelRevision]) -> Model:
+    """The model that revisions add up to; the same cause on the same sensors counts once."""
+    causes = dict.fromkeys((revision.cause, revision.sensors) for revision in revisions)
+    return Model(max((revision.id for revision in revisions), default=0), tuple(causes))
+
+
+def model_for(store: Store, session: CalibrationSession) -> Model:
+    """The model for a session that is not stored yet."""
+    stand = None if session.stand is None else session.stand.id
+    return model_of(store.models.for_upload(session.unit, session.unit_type, stand))
+
+
+def calibrated(session: CalibrationSession, model: Model) -> Calibration:
+    """The calibration under a model; a session that a cause of it does not show is calibrated without that cause."""
+    return calibrate_extended(session, model.causes) if model.causes else calibrate(session)

@@ -1,0 +1,94 @@
+"""Flow: a unit's stored sessions, computed again under the model that is in force now; nothing is overwritten."""
+
+from collections import Counter
+from dataclasses import dataclass
+from datetime import datetime
+
+from estimator.errors import SessionError
+from estimator.results import Calibration
+from estimator.session import CalibrationSession
+from service.flows.judge import judge
+from service.flows.model_in_force import calibrated, model_of
+from service.flows.parameter_values import parameter_values
+from service.ingest import read_upload
+from service.records import Judged, Model, Recalibrated, StoredSession
+from service.storage import Storage
+from service.storage.store import Store
+
+RECOMPUTED, UNCHANGED, LEFT = "recomputed", "unchanged", "left"
+
+
+@dataclass(frozen=True)
+class Recomputed:
+    """A stored session with its calibration under another model."""
+
+    stored: StoredSession
+    session: CalibrationSession
+    model: Model
+    calibration: Calibration
+
+
+def recalibrate(
+    storage: Storage, serial: str, now: datetime, *, coverage_factor: float = 2.0, who: str = "engineer"
+) -> Recalibrated:
+    """Computes and judges every session of a unit under its model; references first, because others hang on them."""
+    with storage.database.reading() as store:
+        store.units.key(serial)
+        stored = store.sessions.of_unit(serial)
+    outcome: Counter[str] = Counter()
+    revision = 0
+    for session in sorted(stored, key=lambda s: (not s.is_reference, s.started_at, s.id)):
+        done, used = _recalibrate(storage, session, now, coverage_factor, who)
+        outcome[done] += 1
+        revision = max(revision, used)
+    if outcome[RECOMPUTED]:
+        with storage.database.writing() as store:
+            store.fleet.refresh(store.units.hold(serial))
+    return Recalibrated(serial, len(stored), outcome[RECOMPUTED], outcome[UNCHANGED], outcome[LEFT], revision)
+
+
+def _recalibrate(
+    storage: Storage, stored: StoredSession, now: datetime, coverage_factor: float, who: str
+) -> tuple[str, int]:
+    """One session: what became of it and the revision that it now rests on."""
+    with storage.database.reading() as store:
+        model = model_of(store.models.of_session(stored.id))
+    if model.revision == stored.revision:
+        return UNCHANGED, stored.revision
+    try:
+        session = read_upload(storage.files.read(stored.sha256), stored.filename)
+        new = Recomputed(stored, session, model, calibrated(session, model))
+    except SessionError:
+        return LEFT, stored.revision
+    with storage.database.writing() as store:
+        _store(store, new, now, coverage_factor, who)
+    return RECOMPUTED, model.revision
+
+
+def _store(store: Store, new: Recomputed, now: datetime, coverage_factor: float, who: str) -> None:
+    """Another calibration with its decisions beside the ones before, in force from now on."""
+    unit, id, revision = store.units.hold(new.stored.unit), new.stored.id, new.model.revision
+    current = store.sessions.get(id)
+    if current.revision >= revision:
+        return
+    judged = _judged(store, unit, new, coverage_factor)
+    store.calibrations.add(id, revision, judged, now)
+    store.sessions.put_in_force(id, revision, judged)
+    store.history.add(unit, store.sessions.get(id), parameter_values(new.calibration))
+    store.sessions.add_decisions(id, judged.decisions, revision)
+    details = {"revision": revision, "verdict": judged.verdict.value, "before": current.verdict.value}
+    store.log.audit(now, who, "recalibrate", id, details)
+
+
+def _judged(store: Store, unit: int, new: Recomputed, coverage_factor: float) -> Judged:
+    since, until = store.services.around(unit, new.stored.started_at)
+    reference = store.sessions.reference(unit, new.session.block, since, until)
+    own = reference is None or new.stored.is_reference
+    return judge(
+        new.session,
+        new.calibration,
+        None if own or reference is None else store.calibrations.get(reference),
+        store.unit_types.of_unit(new.session.unit),
+        coverage_factor,
+        after_service=since is not None,
+    )

@@ -1,0 +1,59 @@
+"""Diagnoses as they were made: the whole imu-diagnosis/1, deflated, and its line."""
+
+import json
+import zlib
+from typing import Any
+
+from sqlalchemy import select
+
+from service.records import DiagnosisState, DiagnosisSummary, StoredDiagnosis, Verdict
+from service.storage.queries.base import Queries
+from service.storage.tables import DiagnosisRow
+
+
+class Diagnoses(Queries):
+    """Diagnoses by session."""
+
+    def add_once(self, found: StoredDiagnosis) -> bool:
+        """Stores the diagnosis of a session, and returns whether it is new; the first one stays."""
+        return self.insert_once(
+            DiagnosisRow,
+            session_id=found.session,
+            model_revision=found.model_revision,
+            state=found.state,
+            summary=found.summary,
+            document=None if found.document is None else _deflated(found.document),
+            verdict_after=found.verdict_after,
+            estimator_version=found.estimator_version,
+            created_at=found.created_at,
+        )
+
+    def get(self, session: str) -> StoredDiagnosis | None:
+        """The diagnosis of a session; None while it is still to be made."""
+        row = self._session.get(DiagnosisRow, session)
+        if row is None:
+            return None
+        return StoredDiagnosis(
+            session=row.session_id,
+            model_revision=row.model_revision,
+            state=DiagnosisState(row.state),
+            summary=row.summary,
+            document=None if row.document is None else json.loads(zlib.decompress(row.document)),
+            verdict_after=None if row.verdict_after is None else Verdict(row.verdict_after),
+            estimator_version=row.estimator_version,
+            created_at=row.created_at,
+        )
+
+    def summary(self, session: str) -> DiagnosisSummary | None:
+        """The diagnosis of a session in one line; None while it is still to be made."""
+        query = select(DiagnosisRow.state, DiagnosisRow.summary).where(DiagnosisRow.session_id == session)
+        row = self._session.execute(query).one_or_none()
+        return None if row is None else DiagnosisSummary(DiagnosisState(row[0]), row[1])
+
+    def exists(self, session: str) -> bool:
+        """Whether a session was diagnosed."""
+        return self.summary(session) is not None
+
+
+def _deflated(document: dict[str, Any]) -> bytes:
+    return zlib.compress(json.dumps(document, separators=(",", ":"), allow_nan=False).encode())

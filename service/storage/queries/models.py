@@ -1,0 +1,108 @@
+"""Accepted causes: numbered revisions of the models of units, unit types and stands."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import and_, func, or_, select
+
+from service.records import ModelRevision, NewModel, Scope
+from service.storage.queries.base import Queries
+from service.storage.tables import ModelRow, SessionRow, StandRow, UnitRow, UnitTypeRow
+
+
+@dataclass(frozen=True)
+class ModelQuery:
+    """Which revisions are wanted."""
+
+    scope: Scope | None = None
+    subject: str | None = None
+    offset: int = 0
+    limit: int = 100
+
+
+class Models(Queries):
+    """Numbered revisions; a row is written once."""
+
+    def add(
+        self,
+        new: NewModel,
+        subject: str,
+        sensors: tuple[str, ...],
+        session: str,
+        evidence: dict[str, Any],
+        at: datetime,
+    ) -> ModelRevision:
+        """Stores an accepted cause under the next number."""
+        row = ModelRow(
+            scope=new.scope,
+            subject=subject,
+            cause=new.cause,
+            sensors=list(sensors),
+            session_id=session,
+            evidence=evidence,
+            accepted_by=new.by,
+            note=new.note,
+            accepted_at=at,
+        )
+        self._session.add(row)
+        self._session.flush()
+        return _revision(row)
+
+    def page(self, wanted: ModelQuery) -> tuple[ModelRevision, ...]:
+        """Revisions, newest first."""
+        query = select(ModelRow).order_by(ModelRow.id.desc())
+        if wanted.scope is not None:
+            query = query.where(ModelRow.scope == wanted.scope)
+        if wanted.subject is not None:
+            query = query.where(ModelRow.subject == wanted.subject)
+        return tuple(map(_revision, self._session.scalars(query.offset(wanted.offset).limit(wanted.limit))))
+
+    def for_upload(self, unit: str, new_type: str | None, stand: str | None) -> tuple[ModelRevision, ...]:
+        """All revisions that concern a session yet to be stored, oldest first; a new unit has the type that it says."""
+        known_type = (
+            select(UnitTypeRow.name).join(UnitRow, UnitRow.unit_type_id == UnitTypeRow.id).where(UnitRow.serial == unit)
+        )
+        owner = or_(
+            and_(ModelRow.scope == Scope.UNIT, ModelRow.subject == unit),
+            and_(
+                ModelRow.scope == Scope.UNIT_TYPE,
+                ModelRow.subject == func.coalesce(known_type.scalar_subquery(), new_type or ""),
+            ),
+            and_(ModelRow.scope == Scope.STAND, ModelRow.subject == (stand or "")),
+        )
+        return tuple(map(_revision, self._session.scalars(select(ModelRow).where(owner).order_by(ModelRow.id))))
+
+    def of_session(self, id: str) -> tuple[ModelRevision, ...]:
+        """All revisions that concern a stored session, oldest first, in one query."""
+        owner = or_(
+            and_(ModelRow.scope == Scope.UNIT, ModelRow.subject == UnitRow.serial),
+            and_(ModelRow.scope == Scope.UNIT_TYPE, ModelRow.subject == UnitTypeRow.name),
+            and_(ModelRow.scope == Scope.STAND, ModelRow.subject == StandRow.name),
+        )
+        query = (
+            select(ModelRow)
+            .select_from(SessionRow)
+            .join(UnitRow, UnitRow.id == SessionRow.unit_id)
+            .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+            .outerjoin(StandRow, StandRow.id == SessionRow.stand_id)
+            .join(ModelRow, owner)
+            .where(SessionRow.id == id)
+            .order_by(ModelRow.id)
+        )
+        return tuple(map(_revision, self._session.scalars(query)))
+
+
+def _revision(row: ModelRow) -> ModelRevision:
+    return ModelRevision(
+        id=row.id,
+        scope=Scope(row.scope),
+        subject=row.subject,
+        cause=row.cause,
+        sensors=tuple(row.sensors),
+        session=row.session_id,
+        evidence=row.evidence,
+        accepted_by=row.accepted_by,
+        note=row.note,
+        accepted_at=row.accepted_at,
+    )
