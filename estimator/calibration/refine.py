@@ -31,8 +31,9 @@ RIDGE = PLAUSIBLE**-2
 FINEST = 1e-8
 """Least one sigma of a reading, as part of the reference vector: no reading is believed beyond it."""
 
-LONGEST = np.array([1.0, np.inf, np.inf, 1.0, 1.0])
-"""Longest step of each element; biases may be many g (raw counts without a stated offset)."""
+LONGEST = np.array([1.0, np.inf, 1.0, 1.0, 1.0])
+"""Longest step of each element, so that senseless readings lead nowhere rather than to infinity; biases may be many g
+(raw counts without a stated offset), and follow from the others."""
 
 MAX_ITERATIONS = 20
 CONVERGED = 1e-8
