@@ -1,15 +1,22 @@
 """What routes of the API and of the pages ask for by type."""
 
+import logging
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Annotated
 
-from fastapi import Depends, Request
+from fastapi import BackgroundTasks, Depends, Request
 
+from service.errors import ServiceError
+from service.flows.diagnose import InProgress, diagnose_now_or_later
+from service.flows.diagnose_pending import diagnose_quietly
+from service.records import StoredDiagnosis
 from service.settings import Settings
 from service.storage import Storage
 from service.storage.store import Store
+
+log = logging.getLogger("imu_health")
 
 
 @dataclass(frozen=True)
@@ -19,6 +26,31 @@ class Service:
     settings: Settings
     storage: Storage
     clock: Callable[[], datetime]
+    diagnosing: InProgress = field(default_factory=InProgress)
+
+
+@dataclass(frozen=True)
+class Diagnoser:
+    """Diagnoses within the request where that is quick, and after the answer where it is not."""
+
+    service: Service
+    after_the_answer: BackgroundTasks
+
+    def of(self, id: str, *, wait: bool = True) -> StoredDiagnosis | None:
+        """The diagnosis of a session; None while it is being made."""
+        service = self.service
+        return diagnose_now_or_later(service.storage, id, service.clock(), self._later, wait=wait)
+
+    def after_upload(self, id: str, *, wait: bool = True) -> None:
+        """The same for a session that was just stored: whatever hinders it leaves the diagnosis pending."""
+        try:
+            self.of(id, wait=wait)
+        except ServiceError as fault:
+            log.warning("the diagnosis of session %s is pending: %s", id, fault)
+
+    def _later(self, id: str) -> None:
+        service = self.service
+        self.after_the_answer.add_task(diagnose_quietly, service.storage, id, service.clock(), service.diagnosing)
 
 
 def _service(request: Request) -> Service:
@@ -43,10 +75,16 @@ def _reading(request: Request) -> Iterator[Store]:
         yield store
 
 
+def _diagnoser(request: Request, after_the_answer: BackgroundTasks) -> Diagnoser:
+    return Diagnoser(_service(request), after_the_answer)
+
+
 SettingsOf = Annotated[Settings, Depends(_settings)]
 """The settings of the service."""
 StorageOf = Annotated[Storage, Depends(_storage)]
 """Both stores, for flows that write."""
+DiagnoserOf = Annotated[Diagnoser, Depends(_diagnoser)]
+"""What makes diagnoses."""
 Now = Annotated[datetime, Depends(_now)]
 """The time of the request, UTC."""
 Reading = Annotated[Store, Depends(_reading, scope="function")]

@@ -2,7 +2,7 @@
 
 from fastapi import APIRouter, FastAPI
 
-from service.api import fleet, operations, sessions, unit_types, units
+from service.api import diagnoses, fleet, models, operations, sessions, unit_types, units
 from service.api.metrics import Measured, Metrics
 from service.api.openapi import describe
 from service.api.problems import add_problem_handlers
@@ -13,7 +13,7 @@ PREFIX = "/api/v1"
 def mount(app: FastAPI) -> None:
     """Adds every route of the API, its error shape, its description and its figures to the application."""
     api = APIRouter(prefix=PREFIX)
-    for resource in (sessions, units, unit_types, fleet):
+    for resource in (sessions, diagnoses, units, unit_types, models, fleet):
         api.include_router(resource.router)
     app.include_router(api)
     app.include_router(operations.router)

@@ -15,12 +15,13 @@ HISTORY_COLUMNS = {
     "session": pl.String(), "at": TIME, "sensor": pl.String(), "kind": pl.String(), "parameter": pl.String(),
     "value": pl.Float64(), "u": pl.Float64(), "lower": pl.Float64(), "upper": pl.Float64(),
     "reference": pl.Float64(), "tolerance": pl.Float64(), "verdict": pl.String(),
-    "axis_x": pl.Float64(), "axis_y": pl.Float64(), "axis_z": pl.Float64(),
+    "axis_x": pl.Float64(), "axis_y": pl.Float64(), "axis_z": pl.Float64(), "revision": pl.Int64(),
 }  # fmt: skip
 FLEET_COLUMNS = {
     "serial": pl.String(), "unit_type": pl.String(), "simulated": pl.Boolean(), "sessions": pl.Int64(),
     "last_session": pl.String(), "last_at": TIME, "verdict": pl.String(), "reason": pl.String(),
     "worst_sensor": pl.String(), "worst_parameter": pl.String(), "margin": pl.Float64(),
+    "diagnosis": pl.String(),
 }  # fmt: skip
 NO_AXIS = (None, None, None)
 

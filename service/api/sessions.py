@@ -5,7 +5,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request, Response
 
 from service.api.received import REQUEST_BODY, Received
-from service.api.schemas.fields import Limit, Page, SessionId, Text, next_page
+from service.api.schemas.fields import Limit, Page, Revision, SessionId, Text, next_page
 from service.api.schemas.problem import errors
 from service.api.schemas.sessions import (
     CalibrationDocument,
@@ -15,7 +15,7 @@ from service.api.schemas.sessions import (
     SessionReportSchema,
     SessionSchema,
 )
-from service.dependencies import Now, Reading, SettingsOf, StorageOf
+from service.dependencies import DiagnoserOf, Now, Reading, SettingsOf, StorageOf
 from service.flows.session_decisions import session_decisions
 from service.flows.session_list import session_list
 from service.flows.upload import upload
@@ -31,10 +31,17 @@ ANY_BYTES = {"application/octet-stream": {"schema": {"type": "string", "format":
     openapi_extra=REQUEST_BODY,
 )
 def upload_session(
-    request: Request, response: Response, received: Received, storage: StorageOf, settings: SettingsOf, now: Now
+    request: Request,
+    response: Response,
+    received: Received,
+    storage: StorageOf,
+    settings: SettingsOf,
+    now: Now,
+    diagnoser: DiagnoserOf,
 ) -> ReceiptSchema:
-    """Upload a session file: it is checked, calibrated, judged and stored. The same bytes again are stored once."""
+    """Upload a session file: it is checked, calibrated, judged, stored, diagnosed. The same bytes are stored once."""
     receipt = upload(storage, received.content, received.filename, now, coverage_factor=settings.coverage_factor)
+    diagnoser.after_upload(receipt.id)
     request.app.state.metrics.count_upload(receipt)
     url = str(request.url_for("read_session", id=receipt.id))
     response.status_code = 201 if receipt.created else 200
@@ -64,9 +71,9 @@ def read_session(id: SessionId, store: Reading) -> SessionReportSchema:
 
 
 @router.get("/{id}/calibration", responses=errors(404, 422), response_model=CalibrationDocument)
-def read_calibration(id: SessionId, store: Reading) -> Response:
-    """The calibration, imu-calibration/1, as it was computed: full covariance and residuals included."""
-    return Response(store.calibrations.json(id), media_type="application/json")
+def read_calibration(id: SessionId, store: Reading, revision: Revision = None) -> Response:
+    """The calibration in force, imu-calibration/1, as it was computed, or the one of a model revision."""
+    return Response(store.calibrations.json(id, revision), media_type="application/json")
 
 
 @router.get("/{id}/file", responses={200: {"content": ANY_BYTES}, **errors(404, 422)}, response_class=Response)

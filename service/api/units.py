@@ -6,7 +6,18 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Query, Response
 
 from service.api.exports import as_csv, as_parquet, history_table
-from service.api.schemas.fields import Limit, Moment, Page, Serial, Text, WantedText, WantedVerdict, next_page
+from service.api.schemas.fields import (
+    Limit,
+    Moment,
+    Page,
+    Revision,
+    Serial,
+    Text,
+    WantedText,
+    WantedVerdict,
+    next_page,
+)
+from service.api.schemas.models import RecalibratedSchema
 from service.api.schemas.problem import errors
 from service.api.schemas.units import (
     HistoryPage,
@@ -17,9 +28,10 @@ from service.api.schemas.units import (
     UnitReportSchema,
     UnitSummarySchema,
 )
-from service.dependencies import Now, Reading, StorageOf
+from service.dependencies import Now, Reading, SettingsOf, StorageOf
 from service.flows.fleet import fleet_overview
 from service.flows.history import unit_history
+from service.flows.recalibrate import recalibrate
 from service.flows.record_service import record_service
 from service.flows.unit_report import unit_report
 
@@ -52,12 +64,21 @@ def read_history(
     since: Annotated[Moment | None, Query(description="Measured at or after this time.")] = None,
     until: Annotated[Moment | None, Query(description="Measured before this time.")] = None,
     format: Annotated[Literal["json", "csv", "parquet"], Query(description="Form of the answer.")] = "json",
+    revision: Revision = None,
     page: Page = 1,
     limit: Annotated[int, Query(ge=1, le=50_000, description="How many points on a page.")] = 10_000,
 ) -> Response:
     """The parameters through time, oldest first: value, uncertainty, band, tolerance and verdict of every point."""
     found = unit_history(
-        store, serial, parameter=parameter, sensor=sensor, since=since, until=until, page=page, limit=limit
+        store,
+        serial,
+        parameter=parameter,
+        sensor=sensor,
+        since=since,
+        until=until,
+        revision=revision,
+        page=page,
+        limit=limit,
     )
     if format == "csv":
         return as_csv(history_table(found), f"{serial}-history.csv")
@@ -76,6 +97,13 @@ def add_service(serial: Serial, new: NewService, response: Response, storage: St
     at: datetime = new.at or now
     service, _ = record_service(storage, serial, new.kind, at, new.note, now)
     return ServiceSchema.model_validate(service)
+
+
+@router.post("/{serial:path}/recalibrate", responses=errors(404, 422))
+def recalibrate_unit(serial: Serial, storage: StorageOf, settings: SettingsOf, now: Now) -> RecalibratedSchema:
+    """Compute the stored sessions again under the model in force. What was computed before stays readable."""
+    done = recalibrate(storage, serial, now, coverage_factor=settings.coverage_factor)
+    return RecalibratedSchema.model_validate(done)
 
 
 @router.get("/{serial:path}", responses=errors(404, 422))

@@ -4,7 +4,7 @@ A session without a diagnosis is one whose diagnosis is pending; whoever asks fo
 service makes those that were interrupted. So an acknowledged upload is never left without one.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -90,6 +90,21 @@ def diagnose(storage: Storage, id: str, now: datetime) -> StoredDiagnosis:
             details = {"state": made.state.value, "summary": made.summary}
             store.log.audit(now, "diagnosis", "diagnose", id, details)
     return made
+
+
+def diagnose_now_or_later(
+    storage: Storage, id: str, now: datetime, later: Callable[[str], None], *, wait: bool = True
+) -> StoredDiagnosis | None:
+    """The diagnosis of a session where it is there or quickly made; otherwise ``later`` is asked for it."""
+    with storage.database.reading() as store:
+        known = store.diagnoses.get(id)
+        if known is not None:
+            return known
+        is_quick = wait and task_of(store, id).is_quick
+    if is_quick:
+        return diagnose(storage, id, now)
+    later(id)
+    return None
 
 
 def _made(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:

@@ -16,7 +16,7 @@ log = logging.getLogger("imu_health")
 
 
 def diagnose_pending(storage: Storage, clock: Callable[[], datetime], progress: InProgress, stop: Event) -> None:
-    """Diagnoses every session that has none, until ``stop`` is set; whatever still fails is left to its first reader."""
+    """Diagnoses every session that has none, until ``stop`` is set; what fails is left to its first reader."""
     last = ""
     while not stop.is_set():
         try:

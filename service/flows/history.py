@@ -15,9 +15,12 @@ def unit_history(
     sensor: str | None = None,
     since: datetime | None = None,
     until: datetime | None = None,
+    revision: int | None = None,
     page: int = 1,
     limit: int = 10_000,
 ) -> tuple[HistoryPoint, ...]:
     """One page of a unit's history, oldest first: value, uncertainty, band, tolerance and verdict of every point."""
     unit = store.units.key(serial)
-    return store.history.points(unit, HistoryQuery(parameter, sensor, since, until, (page - 1) * limit, limit))
+    return store.history.points(
+        unit, HistoryQuery(parameter, sensor, since, until, (page - 1) * limit, limit, revision)
+    )

@@ -13,6 +13,7 @@ from tests.serving import http_client
 EXAMPLES = {"serial": "BA-017", "id": "3f9a0c5be1d24786aa10", "name": "hex"}
 NEEDS_NO_DATABASE = {"/healthz", "/metrics"}
 BODIES: dict[str, Any] = {
+    "/api/v1/sessions/{id}/diagnosis/accept": {"cause": "bias-ramp", "scope": "unit", "by": "K. Ito"},
     "/api/v1/units/{serial}/services": {"kind": "repair"},
     "/api/v1/unit-types/{name}": {"tolerances": {"scale": 1e-4, "bias": 1e-4, "quadratic": None, "axis": 1e-4}},
     "/api/v1/sessions": {"format": "imu-session/2"},

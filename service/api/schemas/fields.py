@@ -43,6 +43,10 @@ TypeName = Annotated[
 ]
 Page = Annotated[int, Query(ge=1, le=1_000_000, description="Which page, from 1.")]
 Limit = Annotated[int, Query(ge=1, le=1000, description="How many on a page.")]
+Revision = Annotated[
+    int | None,
+    Query(ge=0, le=2_000_000_000, description="Under this model revision instead of the one in force; 0: baseline."),
+]
 WantedVerdict = Annotated[Verdict | None, Query(description="Only units whose latest session has this verdict.")]
 WantedText = Annotated[Text | None, Query(alias="q", description="Part of a serial number or of a unit type's name.")]
 

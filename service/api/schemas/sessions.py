@@ -51,6 +51,7 @@ class SessionSchema(BaseModel):
     reason: str = Field(description="Why the verdict is what it is, in one sentence.")
     is_reference: bool = Field(description="Whether later sessions are judged against this one.")
     simulated: bool = Field(description="Whether it belongs to the demonstration fleet.")
+    revision: int = Field(description="Model revision that its calibration in force was made under; 0 is the baseline.")
 
 
 class DecisionSchema(BaseModel):

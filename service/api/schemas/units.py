@@ -76,6 +76,7 @@ class UnitSummarySchema(BaseModel):
     margin: float | None = Field(
         description="1 − (|d| + U)/T of it: 1 is spotless, 0 the edge of pass, negative beyond."
     )
+    diagnosis: str = Field(description="What the simulation gets wrong about the latest session; empty if nothing.")
 
 
 class UnitPage(BaseModel):
@@ -159,6 +160,7 @@ class HistoryPointSchema(BaseModel):
     tolerance: float | None = Field(description="In the unit of the value; null where it is not judged.")
     verdict: Verdict = Field(description="The state of this parameter at this session.")
     axis: tuple[float, float, float] | None = Field(description="For the axis: its components in block axes.")
+    revision: int = Field(description="Model revision that it was computed under; 0 is the baseline.")
 
 
 class HistoryPage(BaseModel):

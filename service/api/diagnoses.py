@@ -1,0 +1,44 @@
+"""Diagnoses: what the simulation gets wrong about a session, and the acceptance of a named cause."""
+
+from typing import Any
+
+from fastapi import APIRouter, Response
+from fastapi.responses import JSONResponse
+
+from service.api.schemas.fields import SessionId
+from service.api.schemas.models import DiagnosisDocument, ModelSchema, NewModelSchema, PendingDiagnosis
+from service.api.schemas.problem import errors
+from service.dependencies import DiagnoserOf, Now, StorageOf
+from service.errors import NotFoundError
+from service.flows.accept_model import accept_model
+from service.flows.diagnose import diagnose
+from service.records import NewModel
+
+router = APIRouter(prefix="/sessions", tags=["diagnosis"])
+RETRY_AFTER = "2"
+PENDING: dict[int | str, dict[str, Any]] = {
+    202: {"model": PendingDiagnosis, "description": "Still being made; ask again after Retry-After seconds."}
+}
+
+
+@router.get("/{id}/diagnosis", responses={**PENDING, **errors(404, 422)}, response_model=DiagnosisDocument)
+def read_diagnosis(id: SessionId, diagnoser: DiagnoserOf) -> Response | DiagnosisDocument:
+    """What the simulation gets wrong about the session, imu-diagnosis/1."""
+    found = diagnoser.of(id)
+    if found is None:
+        return JSONResponse(
+            {"session": id, "status": "pending"},
+            202,
+            {"Retry-After": RETRY_AFTER},
+            background=diagnoser.after_the_answer,
+        )
+    if found.document is None:
+        raise NotFoundError(found.summary)
+    return DiagnosisDocument(**found.document, **{k: v for k, v in vars(found).items() if k != "document"})
+
+
+@router.post("/{id}/diagnosis/accept", status_code=201, responses=errors(400, 404, 422))
+def accept_cause(id: SessionId, new: NewModelSchema, storage: StorageOf, now: Now) -> ModelSchema:
+    """Accept a named cause: from the next session on it is part of the model of the unit, unit type or stand."""
+    accepted = accept_model(storage, diagnose(storage, id, now), NewModel(**new.model_dump()), now)
+    return ModelSchema.model_validate(accepted)

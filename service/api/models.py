@@ -1,0 +1,28 @@
+"""Model revisions: the causes that engineers accepted."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+
+from service.api.schemas.fields import Limit, Page, Text, next_page
+from service.api.schemas.models import ModelPage, ModelSchema
+from service.api.schemas.problem import errors
+from service.dependencies import Reading
+from service.flows.model_revisions import model_revisions
+from service.records import Scope
+
+router = APIRouter(prefix="/models", tags=["models"])
+
+
+@router.get("", responses=errors(422))
+def list_models(
+    store: Reading,
+    scope: Annotated[Scope | None, Query(description="Only models of units, of unit types or of stands.")] = None,
+    subject: Annotated[Text | None, Query(description="Only of this unit, unit type or stand.")] = None,
+    page: Page = 1,
+    limit: Limit = 100,
+) -> ModelPage:
+    """Accepted causes, newest first."""
+    found = model_revisions(store, scope=scope, subject=subject, page=page, limit=limit)
+    listed = [ModelSchema.model_validate(revision) for revision in found]
+    return ModelPage(models=listed, page=page, limit=limit, next_page=next_page(page, limit, len(listed)))

@@ -1,0 +1,105 @@
+"""Diagnoses, accepted causes as model revisions, and what became of recomputed sessions."""
+
+from datetime import datetime
+from typing import Annotated, Any
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints
+
+from service.api.schemas.fields import TEXT, LongText
+from service.records import DiagnosisState, Scope, Verdict
+
+
+def _with_a_space(scope: Any) -> Any:
+    """``unit-type`` and ``unit_type`` are ``unit type``."""
+    return scope.replace("-", " ").replace("_", " ") if isinstance(scope, str) else scope
+
+
+AnyScope = Annotated[Scope, BeforeValidator(_with_a_space)]
+Name = Annotated[str, StringConstraints(pattern=TEXT, min_length=1, max_length=200)]
+
+
+class DiagnosisDocument(BaseModel):
+    """imu-diagnosis/1: what the simulation gets wrong about a session, and how it was made."""
+
+    format: str = Field(description="`imu-diagnosis/1`.")
+    unit: str = Field(description="Serial number of the unit.")
+    findings: list[dict[str, Any]] = Field(
+        description="Named causes, strongest first: cause, sensors, amplitude and sigma in SI, p_value, alternatives, "
+        "what would tell them apart, ranking, sentence, advice."
+    )
+    unexplained: bool = Field(description="Whether there is structure that no known cause explains.")
+    structures: list[dict[str, Any]] = Field(description="Where that structure lives.")
+    gain: dict[str, Any] = Field(description="Prediction of readings that were held out, before and after.")
+    limits: list[dict[str, Any]] = Field(description="Smallest amplitude of each cause that would have been found.")
+    calibration: dict[str, Any] = Field(description="imu-calibration/1 under the model with the named causes.")
+    residuals_before: dict[str, Any] = Field(description="Measured minus simulated under the baseline model.")
+    notes: list[str] = Field(description="What else is worth knowing.")
+    session: str = Field(description="Id of the session.")
+    state: DiagnosisState = Field(description="What it came to.")
+    summary: str = Field(description="The same in one line.")
+    verdict_after: Verdict | None = Field(description="The session's verdict with the named causes in the model.")
+    model_revision: int = Field(description="Model revision in force when it was made; 0 is the baseline.")
+    estimator_version: str = Field(description="Version of the program that made it.")
+    created_at: datetime = Field(description="When, UTC.")
+
+
+class PendingDiagnosis(BaseModel):
+    """A diagnosis that is still being made."""
+
+    session: str = Field(description="Id of the session.")
+    status: str = Field(description="`pending`: ask again after the seconds in Retry-After.")
+
+
+class NewModelSchema(BaseModel):
+    """A named cause that an engineer accepts into a model."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        json_schema_extra={
+            "example": {"cause": "bias-temperature", "scope": "unit", "by": "K. Ito", "note": "seen in three sessions"}
+        },
+    )
+
+    cause: Name = Field(description="Identifier of a cause that the session's diagnosis names, or of an alternative.")
+    scope: AnyScope = Field(description="Whose model: the unit's, that of all units of its type, or the stand's.")
+    by: Name = Field(description="Who accepts it.")
+    note: LongText = Field(default="", description="Why.")
+
+
+class ModelSchema(BaseModel):
+    """One accepted cause: a numbered revision of a model."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    id: int = Field(description="Number of the revision; all models are numbered through.")
+    scope: Scope = Field(description="Whose model it is.")
+    subject: str = Field(description="Serial number of the unit, or name of the unit type or of the stand.")
+    cause: str = Field(description="Identifier of the cause.")
+    sensors: list[str] = Field(description="Sensors that it acts on; none for a cause of stand or fixture.")
+    session: str = Field(description="The session that showed it.")
+    evidence: dict[str, Any] = Field(description="p-value, strength, amplitude with sigma, and gain of the finding.")
+    accepted_by: str = Field(description="Who accepted it.")
+    note: str = Field(description="Why.")
+    accepted_at: datetime = Field(description="When, UTC.")
+
+
+class ModelPage(BaseModel):
+    """One page of model revisions, newest first."""
+
+    models: list[ModelSchema] = Field(description="The revisions of this page.")
+    page: int = Field(description="Which page this is, from 1.")
+    limit: int = Field(description="How many fit on a page.")
+    next_page: int | None = Field(description="The next page; null after the last.")
+
+
+class RecalibratedSchema(BaseModel):
+    """What became of a unit's stored sessions."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    unit: str = Field(description="Serial number of the unit.")
+    sessions: int = Field(description="How many it has.")
+    recomputed: int = Field(description="How many have a new calibration under the model in force.")
+    unchanged: int = Field(description="How many had one already.")
+    left: int = Field(description="How many cannot be calibrated under it and keep what they have.")
+    revision: int = Field(description="The latest model revision that any of them rests on; 0 is the baseline.")
