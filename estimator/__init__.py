@@ -42,7 +42,7 @@ last two are rotations of the axis along the two tangent vectors that the result
 """
 
 from estimator.calibration import calibrate, calibrate_many
-from estimator.diagnosis import Diagnosis, diagnose
+from estimator.diagnosis import Diagnosis, calibrate_extended, diagnose
 from estimator.errors import FormatError, Problem, ScheduleError, SessionError
 from estimator.reading import read_session
 from estimator.results import Calibration
@@ -61,6 +61,7 @@ __all__ = [
     "Stand",
     "StandErrors",
     "calibrate",
+    "calibrate_extended",
     "calibrate_many",
     "diagnose",
     "read_session",

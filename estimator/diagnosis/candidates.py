@@ -26,6 +26,12 @@ from estimator.session import Array
 FAINT = 0.02
 """A direction of a signature counts when its trace is above this share of the strongest direction's."""
 
+LARGEST = 0.3
+"""Largest part of the applied vector that an effect on a stand may be."""
+
+WORTH = 1e-3
+"""p-value from which on it is asked whether an amplitude is within reason."""
+
 OCCAM = 0.7
 """ln evidence that every amplitude beyond the first costs: the simpler of two causes is the likelier one."""
 
@@ -44,7 +50,7 @@ class Traces:
     columns: Array
     """(S, n, q)"""
     raw: Array
-    """(S,) largest norm of a column before the baseline absorbed its share."""
+    """(S, q) norm of every column before the baseline absorbed its share; 0 for columns that are no amplitude."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +111,7 @@ def _version(evidence: Evidence, cause: Signature, shapes: tuple[Shape, ...], *,
     trace = evidence.trace(stacked, lasting=lasting)
     columns = np.moveaxis(trace.reshape(len(trace), len(shapes), q), 1, 0)
     raw = np.linalg.norm(evidence.raw(stacked), axis=0).reshape(len(shapes), q)
-    return Traces(cause, shapes, (lasting,) * len(shapes), columns, raw.max(axis=-1))
+    return Traces(cause, shapes, (lasting,) * len(shapes), columns, raw)
 
 
 def freed(evidence: Evidence, traces: Traces) -> Traces | None:
@@ -124,7 +130,8 @@ def freed(evidence: Evidence, traces: Traces) -> Traces | None:
         own[k, rows : rows + 5] = np.eye(5)
     blank = np.zeros((*traces.shapes[0].columns.shape[:2], 5))
     shapes = tuple(Shape(s.sensors, np.concatenate([s.columns, blank], axis=-1), s.nonlinear) for s in traces.shapes)
-    return Traces(traces.cause, shapes, traces.lasting, np.concatenate([traces.columns, own], axis=-1), traces.raw)
+    raw = np.concatenate([traces.raw, np.zeros((S, 5))], axis=-1)
+    return Traces(traces.cause, shapes, traces.lasting, np.concatenate([traces.columns, own], axis=-1), raw)
 
 
 def score(evidence: Evidence, traces: Sequence[Traces], taken: Array) -> list[Scored]:
@@ -138,8 +145,8 @@ def score(evidence: Evidence, traces: Sequence[Traces], taken: Array) -> list[Sc
 
 def rescored(evidence: Evidence, scored: Scored, taken: Array) -> Scored:
     """One shape scored anew on what other findings leave."""
-    raw = np.linalg.norm(evidence.raw(scored.shape.columns), axis=0).max()
-    alone = Traces(scored.cause, (scored.shape,), (scored.lasting,), scored.columns[None], np.array([raw]))
+    raw = np.linalg.norm(evidence.raw(scored.shape.columns), axis=0)
+    alone = Traces(scored.cause, (scored.shape,), (scored.lasting,), scored.columns[None], raw[None])
     z = evidence.z - taken @ (taken.T @ evidence.z)
     again = next(iter(_score(evidence, alone, taken, z)), None)
     if again is None:
@@ -149,46 +156,47 @@ def rescored(evidence: Evidence, scored: Scored, taken: Array) -> Scored:
 
 def _score(evidence: Evidence, traces: Traces, taken: Array, z: Array) -> Iterable[Scored]:
     columns = traces.columns - taken @ (taken.T @ traces.columns)
-    norms = np.maximum(np.linalg.norm(columns, axis=1, keepdims=True), 1e-300)
-    basis, size = orthonormal(columns / norms)
-    amplitudes = max(len(traces.cause.units), 1) if traces.cause.units else columns.shape[-1]
-    visible = (traces.raw > 0) & (norms[:, 0, :amplitudes].max(axis=-1) > INVISIBLE * traces.raw)
+    norms = np.linalg.norm(columns, axis=1)
+    shown = norms > np.maximum(INVISIBLE * traces.raw, 1e-300)
+    basis, size, turn = orthonormal(columns * np.where(shown, 1 / np.where(shown, norms, 1.0), 0.0)[:, None, :])
+    visible = (shown & (traces.raw > 0)).any(axis=-1)
     live = (size > FAINT * size[:, :1]) & visible[:, None]
-    power = ((z @ basis) ** 2 * live).sum(axis=-1)
-    freedom = live.sum(axis=-1)
+    along = np.where(live, z @ basis, 0.0)
+    power, freedom = (along**2).sum(axis=-1), live.sum(axis=-1)
+    inverse = np.where(live, 1 / np.where(live, size, 1.0), 0.0)
+    amplitude = (turn.swapaxes(-1, -2) @ (along * inverse)[..., None])[..., 0] / np.where(shown, norms, np.inf)
     places, used = int(visible.sum()), (taken**2).sum(axis=1)
     for s in np.flatnonzero(visible):
-        if not possible(traces, int(s), columns[s], z):
-            continue
         shape, q = traces.shapes[s], int(freedom[s])
         statistic = equivalent(evidence, shape, float(power[s]), q, z, used)
-        yield Scored(
-            traces.cause,
-            shape,
-            traces.lasting[s],
-            traces.columns[s],
-            statistic,
-            q,
-            bayes_factor(statistic, q) - float(np.log(places)),
-            float(chdtrc(q, statistic)) if q else 1.0,
-            places,
-        )
+        p_value = float(chdtrc(q, statistic)) if q else 1.0
+        if p_value < WORTH and not within_reason(evidence, traces.cause, shape, amplitude[s]):
+            continue
+        weight = bayes_factor(statistic, q) - float(np.log(places))
+        yield Scored(traces.cause, shape, traces.lasting[s], traces.columns[s], statistic, q, weight, p_value, places)
 
 
-def possible(traces: Traces, s: int, columns: Array, z: Array) -> bool:
-    """Whether the amplitude that fits best is one that the cause can have; asked of single amplitudes only."""
-    size = float((columns[:, 0] ** 2).sum())
-    if not traces.cause.bounded or size == 0:
+def within_reason(evidence: Evidence, cause: Signature, shape: Shape, amplitude: Array) -> bool:
+    """Whether the amplitude (q,) that fits best is one that the cause can have.
+
+    On a stand no effect may be a large part of the applied vector: what the baseline absorbs almost wholly would else
+    explain a small left-over by an enormous effect.
+    """
+    if cause.bounded and not cause.plausible(shape, float(amplitude[0])):
+        return False
+    setting = evidence.baseline.setting
+    if setting.beta is None:
         return True
-    return traces.cause.plausible(traces.shapes[s], float(columns[:, 0] @ z) / size)
+    size = np.abs(shape.columns @ amplitude).max(axis=0)
+    return bool(np.all(size < LARGEST * setting.norm))
 
 
-def orthonormal(columns: Array) -> tuple[Array, Array]:
-    """Orthonormal bases (S, n, q) and sizes (S, q) of (S, n, q)."""
+def orthonormal(columns: Array) -> tuple[Array, Array, Array]:
+    """Singular value decomposition of (S, n, q): bases (S, n, q), sizes (S, q) and turns (S, q, q)."""
     if columns.shape[-1] == 1:
-        return columns, np.ones((len(columns), 1))
-    basis, size, _ = np.linalg.svd(columns, full_matrices=False)
-    return basis, size
+        size = np.linalg.norm(columns, axis=1)
+        return columns, size, np.ones((len(columns), 1, 1))
+    return np.linalg.svd(columns, full_matrices=False)
 
 
 def bayes_factor(statistic: float, q: int) -> float:

@@ -12,7 +12,7 @@ from estimator.causes import CATALOGUE, Cause, Correction
 from estimator.causes.record import AlphaEntry
 from estimator.diagnosis.baseline import Baseline
 from estimator.diagnosis.evidence import parameter_covariance
-from estimator.diagnosis.extend import amplitudes, extended_calibration
+from estimator.diagnosis.extend import amplitudes, extended_calibration, without_effects
 from estimator.diagnosis.gain import gain
 from estimator.diagnosis.limits import limits
 from estimator.diagnosis.measured import baseline_of
@@ -20,7 +20,7 @@ from estimator.diagnosis.nominal import WrongEntry, wrong_elevation
 from estimator.diagnosis.polish import polished
 from estimator.diagnosis.report import entry_finding, findings, slip_finding, structures
 from estimator.diagnosis.results import Diagnosis
-from estimator.diagnosis.search import begin, search
+from estimator.diagnosis.search import Search, begin, search
 from estimator.diagnosis.slips import Slip, exchanged_rows, expected_axes, turned_record
 from estimator.session import TWO_AXIS_STAND, CalibrationSession
 
@@ -46,10 +46,10 @@ def diagnose(
     rows = averaged(session)
     past = [averaged(h) for h in history]
     slips, right = undo_slips(rows, [baseline_of(h) for h in past], catalogue)
-    entry = None if past else against_nominal(right, catalogue)
-    right = right if entry is None else entry.session
-    baseline, earlier = common_start(right, past)
-    state = polished(search(begin(baseline, earlier, catalogue)))
+    state = searched(right, past, catalogue)
+    entry = None if past else against_nominal(without_effects(state, amplitudes(state)), catalogue)
+    if entry is not None:
+        state = searched(entry.put_right(right), past, catalogue)
     fitted = amplitudes(state)
     return Diagnosis(
         unit=session.unit,
@@ -66,8 +66,14 @@ def diagnose(
     )
 
 
+def searched(session: CalibrationSession, history: Sequence[CalibrationSession], catalogue: Sequence[Cause]) -> Search:
+    """The search for causes in a session whose record is right."""
+    baseline, earlier = common_start(session, history)
+    return polished(search(begin(baseline, earlier, catalogue)))
+
+
 def against_nominal(session: CalibrationSession, catalogue: Sequence[Cause]) -> WrongEntry | None:
-    """A wrong elevation told from the nominal axes; None off the stand or where the axes are as they should be."""
+    """A wrong elevation told from the nominal axes of a session freed of its effects; None where there is none."""
     elevation = next((c for c in catalogue if isinstance(c, AlphaEntry)), None)
     if elevation is None or session.programme != TWO_AXIS_STAND:
         return None

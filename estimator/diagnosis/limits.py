@@ -49,7 +49,7 @@ def limit(state: Search, cause: Cause, traces: Traces | None) -> Limit:
         lacking = ", ".join(missing) or "a sensor it acts on"
         return Limit(cause.identifier, None, cause.units, f"the session lacks {lacking}")
     norms = np.linalg.norm(traces.columns, axis=1)
-    visible = norms > INVISIBLE * traces.raw[:, None]
+    visible = (norms > INVISIBLE * traces.raw) & (traces.raw > 0)
     places = int(visible.any(axis=1).sum())
     if places == 0:
         return Limit(cause.identifier, None, cause.units, "the calibration absorbs it completely")

@@ -8,6 +8,7 @@ from estimator.causes import Signature, cause
 from estimator.diagnosis.candidates import score
 from estimator.diagnosis.extend import amplitudes, extended_calibration
 from estimator.diagnosis.measured import baseline_of
+from estimator.diagnosis.polish import polished
 from estimator.diagnosis.search import Found, Search, begin
 from estimator.results import Calibration
 from estimator.session import CalibrationSession
@@ -40,7 +41,10 @@ def calibrate_extended(session: CalibrationSession, causes: Sequence[Accepted]) 
     for identifier, sensors in causes:
         for place in places(rows, sensors):
             state = with_cause(state, identifier, place)
-    return extended_calibration(state, amplitudes(state)) if state.found else calibrate(rows)
+    if not state.found:
+        return calibrate(rows)
+    state = polished(state)
+    return extended_calibration(state, amplitudes(state))
 
 
 def places(session: CalibrationSession, sensors: Sequence[str]) -> list[tuple[int, ...]]:

@@ -35,8 +35,10 @@ class WrongEntry:
     sigma: float
     p_value: float
     strength: float
-    session: CalibrationSession
-    """With the entry put right."""
+
+    def put_right(self, session: CalibrationSession) -> CalibrationSession:
+        """The session with the entry put right."""
+        return self.cause.put_right(session, self.amplitude)
 
 
 def regression(baseline: Baseline, cause: AlphaEntry) -> tuple[float, float, float, int]:
@@ -71,4 +73,4 @@ def wrong_elevation(session: CalibrationSession, cause: AlphaEntry) -> WrongEntr
         total += amount
         right = cause.put_right(session, total)
         amount, sigma, _, _ = regression(baseline_of(right), cause)
-    return WrongEntry(cause, total, sigma, p_value, float(np.sqrt(f)), right)
+    return WrongEntry(cause, total, sigma, p_value, float(np.sqrt(f)))

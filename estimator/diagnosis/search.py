@@ -25,7 +25,13 @@ LEVEL = 0.005
 """Family-wise level: sessions without an effect that get a name; half of what is allowed, for safety."""
 
 DECISIVE = 4.0
-"""ln evidence by which a signature must beat mere excess noise, and structure without a name the named causes."""
+"""ln evidence by which a signature must beat mere excess noise to be believed without a look at the scatter."""
+
+NAMELESS = 1.5
+"""ln evidence by which structure without a name must beat the named causes."""
+
+DOUBT = 0.02
+"""Level at which a scatter that seems too large is taken for uneven rather than for mere noise."""
 
 AGAIN = frozenset({"reading-outlier", "bias-jump"})
 """Causes that may happen to one sensor more than once."""
@@ -190,7 +196,7 @@ def strongest(state: Search, traces: Sequence[Traces], without: Found | None = N
 
 def serial_of(state: Search, sensor: int) -> Serial | None:
     """Whether one sensor's left-over runs smoothly along some order of its rows."""
-    return serial_structure(state.evidence, state.left, sensor, LEVEL)
+    return serial_structure(state.evidence, state.left, sensor, DOUBT)
 
 
 def unevenness(state: Search) -> Search:
@@ -293,7 +299,7 @@ def judge_structures(state: Search) -> Search:
             continue
         kept = tuple(f for f in state.found if f not in group)
         rival = structures(replace(state, found=kept, structures=()))
-        if rival.structures and total(rival) > total(state) + DECISIVE:
+        if rival.structures and total(rival) > total(state) + NAMELESS:
             state = rival
     return state
 
