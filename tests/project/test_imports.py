@@ -23,12 +23,13 @@ ESTIMATOR_LAYERS = (
     {"errors"},
     {"session"},
     {"arrays"},
-    {"reference", "parameters", "reading", "static"},
+    {"reference", "parameters", "reading", "static", "printed"},
     {"results"},
     {"forward", "writing"},
     {"causes"},
-    {"simulate", "calibration", "alignment", "parity", "planning"},
+    {"simulate", "calibration", "alignment", "parity"},
     {"diagnosis", "health"},
+    {"planning"},
 )
 HOMES = {
     "sqlalchemy": ("service.storage", "migrations"),

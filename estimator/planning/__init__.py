@@ -1,0 +1,27 @@
+"""Planning: what a session would tell, before it is measured.
+
+`plan` takes a block on a two-axis stand and proposes or judges elevation, number of positions and positions;
+`rank_of_orientations` says what a set of still orientations identifies, and what to add. Neither needs readings.
+"""
+
+from estimator.planning.elevation import conditioning, optimal_elevation
+from estimator.planning.orientations import OrientationRank, proposed_orientations, rank_of_orientations
+from estimator.planning.positions import OptimalPositions, optimal_positions
+from estimator.planning.propose import plan
+from estimator.planning.results import Judged, Plan, Request, Sweep, Wanted
+
+__all__ = [
+    "Judged",
+    "OptimalPositions",
+    "OrientationRank",
+    "Plan",
+    "Request",
+    "Sweep",
+    "Wanted",
+    "conditioning",
+    "optimal_elevation",
+    "optimal_positions",
+    "plan",
+    "proposed_orientations",
+    "rank_of_orientations",
+]

@@ -1,0 +1,40 @@
+"""The elevation of the head: the paper's formula, and the conditioning of what the sensors are solved from.
+
+Source: analytic alignment paper, (6), and its measure ρ = |λ_max|/|λ_min| (Faddeev). The paper takes ρ of the matrices
+of (18) and (20), which depends on the unit of length and whose first one is singular; here it is that of each sensor's
+own information about (ln K, b/g, c·g, two turns of the axis), which depends on neither. With equal steps and N ≥ 5 it
+does not depend on N.
+"""
+
+import numpy as np
+
+from estimator.forward import jacobian
+from estimator.parameters import nominal
+from estimator.reference import stand_geometry
+from estimator.session import CalibrationSession, StandErrors
+
+ROUNDING = 1e-14
+"""Ratio of eigenvalues below which the smaller one is zero."""
+
+
+def optimal_elevation(sigma: StandErrors, positions: int) -> float:
+    """(6): α_opt in rad for stand errors of one sigma and N positions a run; 45° for a perfect stand.
+
+    It minimises the stand's share of scale and axis errors summed over an orthogonal triad. The paper's weight of
+    D_θy belongs to an estimator that does not join the two runs; `plan` asks the Jacobians instead.
+    """
+    lifted, across = sigma.theta_x**2 + sigma.alpha**2, sigma.theta_y**2
+    above, below = lifted + sigma.beta**2 / positions, 2 * lifted + across
+    return float(np.arctan((above / below) ** 0.25)) if below > 0 else np.pi / 4
+
+
+def conditioning(schedule: CalibrationSession) -> float:
+    """ρ of the worst conditioned sensor: largest over smallest eigenvalue of its own information, stand perfect.
+
+    Infinite where the schedule leaves a direction without a trace.
+    """
+    geometry = stand_geometry(schedule)
+    own = jacobian(nominal(schedule.sensors), geometry.n, geometry.norm) / geometry.norm[:, None]
+    values = np.linalg.eigvalsh(np.einsum("rmi,rmj->mij", own, own))
+    ratio = values[:, 0] / values[:, -1]
+    return float(1 / ratio.min()) if ratio.min() > ROUNDING else float("inf")

@@ -1,0 +1,120 @@
+"""The session that a plan leads to, and what its calibration would say: the same normal equations, no readings."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from estimator.calibration.stand import solved
+from estimator.calibration.stand_report import tables
+from estimator.forward import response
+from estimator.parameters import nominal
+from estimator.planning.elevation import conditioning
+from estimator.planning.results import Request, Sweep
+from estimator.reference import elevation, stand_geometry
+from estimator.session import ACCELEROMETER, Array, CalibrationSession, Stand
+
+SMALLEST = np.radians(1.0)
+"""rad; the elevation stays this far from level and upright, where the closed form has no answer."""
+
+
+def head_kind(like: CalibrationSession) -> str:
+    """Whose elevation the plan speaks of: the accelerometers' α where there are any, else the gyros' χ."""
+    kinds = {s.kind for s in like.sensors}
+    return ACCELEROMETER if ACCELEROMETER in kinds else kinds.pop()
+
+
+def raised_to(like: CalibrationSession, angle: float) -> Stand:
+    """The stand with its head at ``angle``; in a mixed block χ follows α, as the latitude wants."""
+    assert like.stand is not None
+    stand = like.stand
+    if head_kind(like) != ACCELEROMETER:
+        return replace(stand, chi=angle)
+    if stand.chi is None or stand.alpha is None:
+        return replace(stand, alpha=angle)
+    return replace(stand, alpha=angle, chi=stand.chi + angle - stand.alpha)
+
+
+def input_noise(session: CalibrationSession) -> Array:
+    """(m,) one sigma of a reading at the input, bias repeatability included: as stated, else from the residuals."""
+    return np.sqrt(np.median(solved([session]).fitted.variance[0], axis=0))
+
+
+def planned(
+    like: CalibrationSession, angle: float, positions: int, request: Request, sigma: Array
+) -> CalibrationSession:
+    """The session at N equal steps, read without noise by nominal sensors, its noise stated.
+
+    Parameters
+    ----------
+    like : gives sensors, stand, site, mounting and count time.
+    sigma : (m,) one sigma of a reading at the input, bias repeatability included.
+    """
+    runs = request.runs
+    beta = np.tile(2 * np.pi * np.arange(positions) / positions, len(runs))
+    schedule = replace(
+        like,
+        stand=raised_to(like, angle),
+        beta=beta,
+        flipped=np.repeat(np.array(runs), positions),
+        time=request.time_per_position * np.arange(len(beta)),
+        temperature=None,
+        position=None,
+        directions=None,
+        direction_sigma=None,
+        sample_rate=None,
+    )
+    return read_perfectly(schedule, sigma)
+
+
+def read_perfectly(schedule: CalibrationSession, sigma: Array) -> CalibrationSession:
+    """The schedule with the readings of nominal sensors, unrounded, and the noise as standard errors."""
+    sensors, p = schedule.sensors, nominal(schedule.sensors)
+    pulses = np.array([schedule.count_time is not None and s.kind != ACCELEROMETER for s in sensors])
+    period = np.where(pulses, schedule.count_time or 1.0, 1.0)
+    own = sigma**2 - np.array([s.bias_repeatability for s in sensors]) ** 2
+    error = np.sqrt(np.maximum(own * (p.scale * period) ** 2 - np.where(pulses, 1.0 / 12.0, 0.0), 0.0))
+    readings = response(p, stand_geometry(schedule).n) * period + np.array([s.nominal_offset or 0.0 for s in sensors])
+    return replace(schedule, readings=readings, standard_errors=np.broadcast_to(error, readings.shape).copy())
+
+
+def expected_sigmas(session: CalibrationSession) -> tuple[Array, Array]:
+    """(m, 4) total and repeatability, one sigma of relative scale, bias, quadratic, axis; NaN where not observed."""
+    table = tables(solved([session]))
+    scale = np.array([s.nominal_scale for s in session.sensors])
+
+    def four(own: Array) -> Array:
+        return np.stack([own[:, 0] / scale, own[:, 1], own[:, 2], np.hypot(own[:, 3], own[:, 4])], axis=-1)
+
+    return four(table.sigma[0]), four(table.steady[0])
+
+
+def worst(sigmas: Array) -> Array:
+    """(4,) of the worst sensor; NaN where one of them does not observe it."""
+    return np.asarray(sigmas.max(axis=0))
+
+
+def over_positions(like: CalibrationSession, angle: float, numbers: Array, request: Request, sigma: Array) -> Sweep:
+    """Expected sigmas over N at one elevation."""
+    return swept([planned(like, angle, int(N), request, sigma) for N in numbers], numbers)
+
+
+def over_elevation(like: CalibrationSession, angles: Array, positions: int, request: Request, sigma: Array) -> Sweep:
+    """Expected sigmas over the elevation at one N."""
+    return swept([planned(like, float(a), positions, request, sigma) for a in angles], angles)
+
+
+def swept(sessions: list[CalibrationSession], at: Array) -> Sweep:
+    """The sweep of planned sessions."""
+    pairs = [expected_sigmas(s) for s in sessions]
+    return Sweep(
+        at=at,
+        total=np.stack([worst(total) for total, _ in pairs]),
+        repeatability=np.stack([worst(steady) for _, steady in pairs]),
+        conditioning=np.array([conditioning(s) for s in sessions]),
+    )
+
+
+def stated_elevation(like: CalibrationSession) -> float:
+    """The elevation that the session's stand states, rad."""
+    assert like.stand is not None
+    return elevation(like.stand, head_kind(like))
