@@ -61,6 +61,8 @@ class StandErrors:
     latitude: float = 0.0
     meridian: float = 0.0
     count_time: float = 0.0
+    wobble: float | None = None
+    """Direction of a turntable's axis, drawn anew at every stop, per axis; None when not stated."""
 
 
 @dataclass(frozen=True)
@@ -102,6 +104,10 @@ class CalibrationSession:
     """(R,) s since the start."""
     temperature: Array | None = None
     """(R,) °C."""
+    turn_angle: Array | None = None
+    """(R,) rad, of a turntable about the block's Z axis at the end of the row, positive turns as Z's right hand does."""
+    turn_rate: Array | None = None
+    """(R,) rad/s, of a rate table about the block's Z axis during the row."""
     position: NDArray[np.int64] | None = None
     """(R,) label of the position that a raw sample belongs to; −1 where it belongs to none."""
     directions: Array | None = None

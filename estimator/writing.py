@@ -8,7 +8,7 @@ import numpy as np
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor, Stand, StandErrors
 
 FORMAT = "imu-session/1"
-ANGLE_ERRORS = ("theta_x", "theta_y", "alpha", "beta", "latitude", "meridian")
+ANGLE_ERRORS = ("theta_x", "theta_y", "alpha", "beta", "latitude", "meridian", "wobble")
 ANGLE_DECIMALS = 10
 """Degrees and arcsec are written to 1e-10: 30.0, not 29.999999999999996."""
 
@@ -68,7 +68,8 @@ def _stand(stand: Stand) -> dict[str, Any]:
 
 def _sigma(sigma: StandErrors) -> dict[str, float]:
     """The angles of known sigma, arcsec."""
-    values = {name: round(3600 * float(np.degrees(getattr(sigma, name))), ANGLE_DECIMALS) for name in ANGLE_ERRORS}
+    stated = {name: getattr(sigma, name) or 0.0 for name in ANGLE_ERRORS}
+    values = {name: round(3600 * float(np.degrees(angle)), ANGLE_DECIMALS) for name, angle in stated.items()}
     return {name: value for name, value in values.items() if value}
 
 
@@ -96,6 +97,9 @@ def _table(session: CalibrationSession) -> dict[str, Any]:
     for name, column in (("time_s", session.time), ("temperature_c", session.temperature)):
         if column is not None:
             table[name] = column.tolist()
+    for name, turning in (("turn_angle_deg", session.turn_angle), ("turn_rate_deg_s", session.turn_rate)):
+        if turning is not None:
+            table[name] = np.round(np.degrees(turning), ANGLE_DECIMALS).tolist()
     if session.position is not None:
         table["position"] = session.position.tolist()
     if session.directions is not None and session.direction_sigma is not None:

@@ -17,13 +17,15 @@ TOP = (
 )  # fmt: skip
 SITE = ("latitude_deg", "height_m", "gravity_m_s2")
 STAND = ("id", "alpha_deg", "chi_deg", "sigma_arcsec", "sigma_count_time_s")
-SIGMA = ("theta_x", "theta_y", "alpha", "beta", "latitude", "meridian")
+SIGMA = ("theta_x", "theta_y", "alpha", "beta", "latitude", "meridian", "wobble")
 SENSOR = (
     "name", "kind", "nominal_axis", "nominal_scale", "nominal_offset", "reading_unit",
     "bias_repeatability_m_s2", "bias_repeatability_rad_s",
 )  # fmt: skip
 DIRECTIONS = ("direction_x", "direction_y", "direction_z")
-COLUMNS = ("run", "beta_deg", "time_s", "temperature_c", "position", *DIRECTIONS)
+COLUMNS = (
+    "run", "beta_deg", "time_s", "temperature_c", "turn_angle_deg", "turn_rate_deg_s", "position", *DIRECTIONS,
+)  # fmt: skip
 
 HOME = dict.fromkeys(SITE, "site") | dict.fromkeys(STAND[1:], "stand") | {"nominal_axis": "sensors[]"}
 HOME |= dict.fromkeys((key for key in TOP if "_" in key), "the top level")

@@ -4,17 +4,38 @@ import numpy as np
 
 from estimator.reading.problems import Problems
 from estimator.reading.table import Table
-from estimator.session import ARBITRARY_ORIENTATIONS, TWO_AXIS_STAND
+from estimator.session import (
+    ACCELEROMETER,
+    ARBITRARY_ORIENTATIONS,
+    GYROSCOPE,
+    RATE_TABLE,
+    ROTATION_ALIGNMENT,
+    TWO_AXIS_STAND,
+)
 
 FEWEST_POSITIONS = 2
 
 
-def check_schedule(programme: str, table: Table, *, raw: bool, problems: Problems) -> None:
+NEEDED_KINDS = {ROTATION_ALIGNMENT: (ACCELEROMETER, GYROSCOPE), RATE_TABLE: (GYROSCOPE,)}
+
+
+def check_schedule(programme: str, table: Table, kinds: set[str], *, raw: bool, problems: Problems) -> None:
     """Record schedules that cannot be calibrated from whatever is read; what is hard to observe is a result instead."""
     if programme == TWO_AXIS_STAND:
         _check_beta(table, problems)
     if programme in (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS):
         _check_positions(table, raw, problems)
+    if programme in NEEDED_KINDS:
+        _check_turning(programme, table, kinds, raw, problems)
+
+
+def _check_turning(programme: str, table: Table, kinds: set[str], raw: bool, problems: Problems) -> None:
+    """A time series on a turntable: it needs times, and the sensors that the programme works with."""
+    for kind in NEEDED_KINDS[programme]:
+        if kind not in kinds:
+            problems.add("sensors", f"none of kind {kind}; {programme} needs them")
+    if table.time is None and not raw:
+        problems.add("time_s", f"the column is missing; {programme} needs it, or sample_rate_hz for a raw log")
 
 
 def _check_beta(table: Table, problems: Problems) -> None:

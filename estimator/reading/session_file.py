@@ -59,7 +59,7 @@ def _assemble(document: Fields) -> CalibrationSession:
     texts = {key: document.optional_text(key) for key in ("unit_type", "operator", "notes")}
     table = read_table(document, programme, sensors)
     if table is not None:
-        check_schedule(programme, table, raw=document.has("sample_rate_hz"), problems=problems)
+        check_schedule(programme, table, kinds, raw=document.has("sample_rate_hz"), problems=problems)
     problems.raise_if_any()
     assert table is not None, "a session without a table has problems"
     return CalibrationSession(

@@ -127,7 +127,8 @@ def _read_sigma(stand: Fields) -> StandErrors:
     if sigma is None:
         return StandErrors(count_time=count_time)
     check_keys(sigma, SIGMA)
-    angles = {name: ARCSEC * (sigma.optional_number(name, ANGLE_SIGMA) or 0.0) for name in SIGMA}
+    stated = {name: sigma.optional_number(name, ANGLE_SIGMA) for name in SIGMA}
+    angles = {name: ARCSEC * angle for name, angle in stated.items() if angle is not None}
     return replace(StandErrors(**angles), count_time=count_time)
 
 

@@ -10,12 +10,14 @@ from estimator.reading.columns import Columns
 from estimator.reading.fields import Fields, Interval
 from estimator.reading.keys import DIRECTIONS
 from estimator.reading.shape import check_unknown, read_columns
-from estimator.session import TWO_AXIS_STAND, Array, Sensor
+from estimator.session import RATE_TABLE, ROTATION_ALIGNMENT, TWO_AXIS_STAND, Array, Sensor
 
 RUNS = ("direct", "flipped")
 READING = Interval(-1e20, 1e20)
 STANDARD_ERROR = Interval(0, 1e20, above=True)
 BETA = Interval(-360_000, 360_000, "degrees")
+TURN = Interval(-3.6e7, 3.6e7, "degrees")
+TURN_RATE = Interval(-36_000, 36_000, "deg/s")
 TIME = Interval(-1e12, 1e12, "s")
 TEMPERATURE = Interval(-100, 200, "°C")
 DIRECTION = Interval(-1e6, 1e6)
@@ -33,6 +35,8 @@ class Table:
     beta: Array | None
     time: Array | None
     temperature: Array | None
+    turn_angle: Array | None
+    turn_rate: Array | None
     position: NDArray[np.int64] | None
     directions: Array | None
     direction_sigma: float | None
@@ -54,6 +58,8 @@ def read_table(document: Fields, programme: str, sensors: tuple[Sensor, ...]) ->
         beta=np.radians(_required(columns, "beta_deg", BETA)) if on_stand else None,
         time=_time(columns),
         temperature=_optional(columns, "temperature_c", TEMPERATURE),
+        turn_angle=_turning(columns, "turn_angle_deg", TURN, needed=programme == ROTATION_ALIGNMENT),
+        turn_rate=_turning(columns, "turn_rate_deg_s", TURN_RATE, needed=programme == RATE_TABLE),
         position=columns.labels("position") if columns.has("position") else None,
         directions=directions,
         direction_sigma=_direction_sigma(document, columns),
@@ -69,6 +75,13 @@ def _required(columns: Columns, name: str, within: Interval) -> Array:
 
 def _optional(columns: Columns, name: str, within: Interval) -> Array | None:
     return columns.numbers(name, within) if columns.has(name) else None
+
+
+def _turning(columns: Columns, name: str, within: Interval, *, needed: bool) -> Array | None:
+    """(R,) rad or rad/s, of a turntable."""
+    read = _required if needed else _optional
+    degrees = read(columns, name, within)
+    return None if degrees is None else np.radians(degrees)
 
 
 def _stack(arrays: list[Array], rows: int) -> Array:

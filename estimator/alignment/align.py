@@ -1,0 +1,236 @@
+"""Multi-position alignment of a block on a single-axis turntable: session → attitude, ∇, ε, E with covariance.
+
+The table stops at two angles or more and turns about the vertical in between. Steps: the block reduced to three axes,
+stops found in the table's angle, noise taken from the rest, coarse alignment from the stops' means, a strapdown from
+the first stop on, and the Kalman filter on its velocity errors. Source: Liu, Jia, Li, Zhao, Dong, single-axis rotation
+multi-position alignment; error model and what is new: see `sins`.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+from scipy.stats import chi2 as chi2_distribution
+
+from estimator.alignment.axes import Triad, triad
+from estimator.alignment.coarse import Coarse, coarse
+from estimator.alignment.filtering import (
+    PRIOR,
+    SEEN,
+    TABLE_SIGMA,
+    Filtered,
+    Measured,
+    Setting,
+    relative,
+    run,
+)
+from estimator.alignment.noise import Noise, at_rest
+from estimator.alignment.positions import (
+    Stop,
+    interval,
+    require_level,
+    require_positions,
+    require_rest,
+    require_turns,
+    stops,
+)
+from estimator.alignment.results import AlignmentResult, Course
+from estimator.alignment.sins import EPS, NABLA, PHI, STATES, UNITS, Model
+from estimator.alignment.strapdown import Strapdown, strapdown
+from estimator.errors import Problem, ScheduleError
+from estimator.reference import gravity
+from estimator.results import Fit
+from estimator.session import ACCELEROMETER, GYROSCOPE, ROTATION_ALIGNMENT, Array, CalibrationSession
+
+STEP = 1.0
+"""s; the filter's step, as nearly as whole rows allow."""
+UNLIKELY = 1e-3
+"""Probability of a larger χ² below which the covariance is enlarged."""
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """A turntable session, reduced to three axes and checked, from the first stop on. R rows."""
+
+    session: CalibrationSession
+    row: float
+    """Time of a row, s."""
+    per_step: int
+    """Rows of a filter step."""
+    angle: Array
+    """(R,) of the table, rad."""
+    rates: Array
+    """(R, 3) rad/s."""
+    forces: Array
+    """(R, 3) m/s²."""
+    stops: list[Stop]
+    noise: Noise
+
+
+def align(
+    session: CalibrationSession, *, model: Model = Model.TURNTABLE, mounting: tuple[float, float] = (0.0, 0.0)
+) -> AlignmentResult:
+    """Align a block on a turntable and estimate its sensors' errors.
+
+    Parameters
+    ----------
+    session : of programme rotation-alignment.
+    model : which states are estimated.
+    mounting : E_xz, E_yz as known from a rate table, rad; their effect is taken off the gyros before.
+
+    Raises
+    ------
+    ScheduleError : too few positions, a block that moves at a stop, rows out of step, a table out of level, gyros too
+        noisy for a heading.
+    """
+    record = prepared(session, mounting)
+    start = coarse(record.stops, record.rates, record.forces, record.noise.gyro, record.row)
+    computed = _computed(record, start)
+    setting = _setting(record)
+    measured = Measured(computed.velocity, _turned(record, computed))
+    filtered = run(computed.path, setting, measured, model)
+    return _result(record, start, computed, filtered, model)
+
+
+def prepared(session: CalibrationSession, mounting: tuple[float, float] = (0.0, 0.0)) -> Record:
+    """The session as the filter needs it; every fault of it is a ScheduleError."""
+    if session.programme != ROTATION_ALIGNMENT:
+        raise ScheduleError([Problem("programme", f"is {session.programme}; an alignment is {ROTATION_ALIGNMENT}")])
+    assert session.turn_angle is not None
+    row = interval(session)
+    gyros, accelerometers = triad(session, GYROSCOPE, row), triad(session, ACCELEROMETER, row)
+    rates = gyros.values - gyros.values[:, 2:] * np.array([*mounting, 0.0])
+    found = stops(session.turn_angle, row)
+    require_positions(found)
+    require_rest(found, rates, row)
+    require_turns(found, session.turn_angle, rates[:, 2], row)
+    resting = np.concatenate([accelerometers.values[stop.first : stop.last] for stop in found])
+    require_level(resting.mean(axis=0), gravity(session.site))
+    per_step = max(round(STEP / row), 1)
+    begin = found[0].first
+    noise = _noise(found, gyros, accelerometers, row, per_step)
+    return Record(
+        session=session,
+        row=row,
+        per_step=per_step,
+        angle=session.turn_angle[begin:],
+        rates=rates[begin:],
+        forces=accelerometers.values[begin:],
+        stops=[Stop(stop.first - begin, stop.last - begin, stop.angle) for stop in found],
+        noise=noise,
+    )
+
+
+def _noise(found: list[Stop], gyros: Triad, accelerometers: Triad, row: float, per_step: int) -> Noise:
+    """As the file states it for single rows, else from the readings at the stops."""
+
+    def means(values: Array) -> list[Array]:
+        parts = [values[stop.first : stop.last] for stop in found]
+        return [part[: len(part) // per_step * per_step].reshape(-1, per_step, 3).mean(axis=1) for part in parts]
+
+    gyro, _ = at_rest(means(gyros.values), row * per_step)
+    accelerometer, sway = at_rest(means(accelerometers.values), row * per_step)
+    stated = gyros.row_covariance is not None and accelerometers.row_covariance is not None
+    if gyros.row_covariance is not None:
+        gyro = gyros.row_covariance * row
+    if accelerometers.row_covariance is not None:
+        accelerometer, sway = accelerometers.row_covariance * row, 0.0
+    return Noise(accelerometer, gyro, float(np.sqrt(sway)), stated)
+
+
+def _computed(record: Record, start: Coarse) -> Strapdown:
+    """The strapdown, with the coarse zeros taken off."""
+    latitude = record.session.site.latitude
+    assert latitude is not None
+    stop_of_row = np.full(len(record.rates), -1)
+    for number, stop in enumerate(record.stops):
+        stop_of_row[stop.first : stop.last] = number
+    rates, forces = record.rates - start.gyro_bias, record.forces - start.accelerometer_bias
+    return strapdown(start.attitude, rates, forces, record.row, latitude, stop_of_row, record.per_step)
+
+
+def _setting(record: Record) -> Setting:
+    site, stand = record.session.site, record.session.stand
+    assert site.latitude is not None
+    wobble = None if stand is None else stand.sigma.wobble
+    table = None if stand is None else stand.sigma.beta
+    return Setting(
+        site.latitude,
+        gravity(site),
+        record.noise,
+        wobble=TABLE_SIGMA if wobble is None else max(wobble, 1e-12),
+        table=table or TABLE_SIGMA,
+    )
+
+
+def _turned(record: Record, computed: Strapdown) -> Array:
+    """(K, 3) φ since the first stop as the turntable shows it: its direction never changes."""
+    steps = len(computed.attitude)
+    angle = record.angle[record.per_step - 1 :: record.per_step][:steps]
+    table = computed.attitude @ Rotation.from_rotvec(-angle[:, None] * [0.0, 0.0, 1.0]).as_matrix()
+    first = table[np.flatnonzero(computed.path.begins)[0]]
+    return np.asarray(-Rotation.from_matrix(table @ first.T).as_rotvec())
+
+
+def _result(record: Record, start: Coarse, computed: Strapdown, filtered: Filtered, model: Model) -> AlignmentResult:
+    n = model.size
+    fit = _fit(record, filtered)
+    estimate = filtered.last.x.copy()
+    estimate[EPS] += start.gyro_bias
+    estimate[NABLA] += start.accelerometer_bias[:2]
+    covariance = filtered.last.P * fit.covariance_factor
+    told = np.diag(relative(filtered.last.P)) < SEEN**2
+    correction = Rotation.from_rotvec(filtered.last.x[PHI]).as_matrix()
+    course = Course(
+        time=computed.path.step * np.arange(1, len(filtered.estimates) + 1),
+        estimates=_totals(filtered.estimates, start),
+        sigmas=filtered.sigmas,
+        attitude=computed.attitude,
+        innovations=filtered.innovations,
+        innovation_sigmas=filtered.innovation_sigmas,
+        stop=computed.path.stop,
+    )
+    return AlignmentResult(
+        unit=record.session.unit,
+        model=model.value,
+        names=STATES[:n],
+        units=UNITS[:n],
+        estimate=estimate,
+        covariance=covariance,
+        observable={name: bool(seen) for name, seen in zip(STATES[2:13], told[2:13], strict=False)},
+        attitude=correction @ computed.attitude[-1],
+        positions=tuple(stop.angle for stop in record.stops),
+        fit=fit,
+        course=course,
+    )
+
+
+def _totals(estimates: Array, start: Coarse) -> Array:
+    """The estimates with the coarse zeros that were taken off before the filter."""
+    whole = estimates.copy()
+    whole[:, EPS] += start.gyro_bias
+    whole[:, NABLA] += start.accelerometer_bias[:2]
+    return whole
+
+
+def _fit(record: Record, filtered: Filtered) -> Fit:
+    """How well the innovations agree with their covariance, and what is known least."""
+    n = len(filtered.last.x)
+    values, vectors = np.linalg.eigh(relative(filtered.last.P)[2:13, 2:13])
+    dof = filtered.measured - n
+    p_value = float(chi2_distribution.sf(filtered.chi2, dof))
+    factor = max(1.0, filtered.chi2 / dof) if p_value < UNLIKELY else 1.0
+    step = record.row * record.per_step
+    return Fit(
+        chi2=filtered.chi2,
+        dof=dof,
+        p_value=p_value if record.noise.stated else None,
+        residual_rms=float(np.sqrt(np.mean(filtered.innovations**2)) / step),
+        noise="stated" if record.noise.stated else "estimated",
+        covariance_factor=factor,
+        rank=int(np.sum(values < SEEN**2)),
+        parameters=len(values),
+        weakest=(STATES[2 + int(np.argmax(np.abs(vectors[:, -1])))], float(np.sqrt(values[-1]))),
+        iterations=1,
+        converged=bool(np.abs(filtered.last.x[PHI]).max() < PRIOR[PHI][2]),
+    )

@@ -1,0 +1,63 @@
+"""Blocks of any number of sensors reduced to three axes, by weighted least squares with their covariance.
+
+A block of m > 3 sensors reads y = H·w + noise, H (m, 3) the nominal axes, noise of covariance R. The block's rate or
+specific force is ŵ = (HᵀR⁻¹H)⁻¹HᵀR⁻¹y with covariance (HᵀR⁻¹H)⁻¹. What the m − 3 surplus readings say of single
+sensors is not part of an alignment.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimator.session import ACCELEROMETER, Array, CalibrationSession
+
+
+@dataclass(frozen=True, eq=False)
+class Triad:
+    """Readings of one kind reduced to block axes. R rows."""
+
+    values: Array
+    """(R, 3) mean over each row, m/s² or rad/s."""
+    row_covariance: Array | None
+    """(3, 3) covariance of a row's white noise as the file states it; None when it does not."""
+    sensors: int
+
+
+def reduction(axes: Array, covariance: Array) -> tuple[Array, Array]:
+    """(3, m) matrix that turns readings into block axes, and the covariance (3, 3) of the outcome.
+
+    Parameters
+    ----------
+    axes : (m, 3) unit vectors.
+    covariance : (m, m) of the readings, positive definite.
+    """
+    weighted = np.linalg.solve(covariance, axes)
+    outcome = np.linalg.inv(axes.T @ weighted)
+    return outcome @ weighted.T, outcome
+
+
+def triad(session: CalibrationSession, kind: str, interval: float) -> Triad:
+    """The sensors of a kind as three axes; ``interval`` is the time of a row, s.
+
+    Sensors are weighted by their stated standard errors, else by the scatter of their readings from row to row.
+    """
+    chosen = [i for i, s in enumerate(session.sensors) if s.kind == kind]
+    scale = np.array([session.sensors[i].nominal_scale for i in chosen])
+    offset = np.array([session.sensors[i].nominal_offset or 0.0 for i in chosen])
+    counted = kind != ACCELEROMETER and session.count_time is not None
+    per_input = scale * (session.count_time if counted and session.count_time else 1.0)
+    inputs = (session.readings[:, chosen] - offset) / per_input
+    stated = session.standard_errors[:, chosen] / per_input
+    known = bool(np.isfinite(stated).all())
+    variance = np.mean(stated**2, axis=0) if known else scatter(inputs)
+    axes = np.stack([session.sensors[i].nominal_axis for i in chosen])
+    matrix, covariance = reduction(axes, np.diag(variance))
+    return Triad(inputs @ matrix.T, covariance if known else None, len(chosen))
+
+
+def scatter(values: Array) -> Array:
+    """(m,) variance of white noise from third differences of (R, m), which no smooth motion reaches; never zero."""
+    steps = np.diff(values, n=3, axis=0)
+    quiet = np.median(np.abs(steps), axis=0) / 0.6745 if len(steps) else np.zeros(values.shape[1])
+    floor = np.max(np.abs(values), axis=0, initial=0.0) * 1e-12 + 1e-30
+    return quiet**2 / 20 + floor**2

@@ -1,0 +1,117 @@
+"""The alignment filter run over a path: prior, measurements, and what the session tells beyond the prior."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimator.alignment.kalman import State, correct, predict
+from estimator.alignment.noise import TINY, Noise
+from estimator.alignment.sins import ALL, PHI, STOP, TAU, Model, Path, V, dynamics, process_noise, transition
+from estimator.results import ARCSEC
+from estimator.session import Array
+
+DEGREE = np.pi / 180
+PRIOR = np.array(
+    [TINY] * 2 + [0.2 * DEGREE] * 2 + [10 * DEGREE] + [10 * DEGREE / 3600] * 3 + [0.1] * 2
+    + [0.2 * DEGREE] * 2 + [1e-2] + [10 * DEGREE] * 3 + [0.0] * 3
+)  # fmt: skip
+"""(19,) one sigma of every state before the session, SI: wide of what coarse alignment leaves. The deviation of a stop
+is drawn when the stop begins."""
+SEEN = 0.3
+"""A state is observable when its sigma is below this part of the prior's."""
+TABLE_SIGMA = 1.0 * ARCSEC
+"""rad, where the session states none: wobble of the turn axis and error of the table's angle from stop to stop."""
+REST_SIGMA = 0.1 * ARCSEC
+"""rad by which a table that stands still may sway about each axis."""
+
+
+@dataclass(frozen=True, eq=False)
+class Setting:
+    """What the filter knows besides the path."""
+
+    latitude: float
+    gravity: float
+    noise: Noise
+    wobble: float
+    """One sigma of the turn axis' direction from stop to stop, per axis, rad."""
+    table: float
+    """One sigma of the table's angle at a stop, rad."""
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """What is measured at every step. K steps."""
+
+    velocity: Array
+    """(K, 2) m/s."""
+    turned: Array
+    """(K, 3) φ since the first stop as the turntable shows it, rad; looked at where a stop begins or ends."""
+
+
+@dataclass(frozen=True, eq=False)
+class Filtered:
+    """The filter's estimates. K steps, n states."""
+
+    estimates: Array
+    sigmas: Array
+    innovations: Array
+    innovation_sigmas: Array
+    last: State
+    chi2: float
+    """Sum over all innovations."""
+    measured: int
+    """Number of measured components."""
+
+
+def run(path: Path, setting: Setting, measured: Measured, model: Model) -> Filtered:
+    """The filter from the first step to the last."""
+    n = model.size
+    F = dynamics(path, setting.latitude, setting.gravity)
+    Phi = transition(F, path.step)
+    Q = process_noise(path, Phi, setting.noise.accelerometer, setting.noise.gyro)
+    Phi, Q = drawn_anew(path, Phi, Q, setting)
+    Phi, Q = Phi[:, :n, :n], Q[:, :n, :n]
+    H, R = velocity_measurement(n, setting)
+    H_table, R_table = table_measurement()
+    shown = path.begins | path.ends
+    state = State(np.zeros(n), np.diag(PRIOR[:n] ** 2))
+    estimates, sigmas = np.empty((2, len(Phi), n))
+    innovations, innovation_sigmas = np.empty((2, len(Phi), 2))
+    chi2, count = 0.0, 0
+    for k in range(len(Phi)):
+        state, found = correct(predict(state, Phi[k], Q[k]), measured.velocity[k], H, R)
+        innovations[k], innovation_sigmas[k] = found.value, np.sqrt(np.diag(found.covariance))
+        chi2, count = chi2 + found.chi2, count + 2
+        if model is Model.TURNTABLE and shown[k]:
+            state, found = correct(state, measured.turned[k], H_table, R_table)
+            chi2, count = chi2 + found.chi2, count + 3
+        estimates[k], sigmas[k] = state.x, np.sqrt(np.diag(state.P))
+    return Filtered(estimates, sigmas, innovations, innovation_sigmas, state, chi2, count)
+
+
+def velocity_measurement(n: int, setting: Setting) -> tuple[Array, Array]:
+    """H (2, n) and R (2, 2) of the computed horizontal velocity."""
+    H = np.zeros((2, n))
+    H[:, V] = np.eye(2)
+    return H, max(setting.noise.velocity, TINY) ** 2 * np.eye(2)
+
+
+def table_measurement() -> tuple[Array, Array]:
+    """H (3, 19) and R (3, 3) of the turntable's direction at a stop, y = φ + τ + ς."""
+    H = np.zeros((3, ALL))
+    H[:, PHI], H[:, TAU], H[:, STOP] = np.eye(3), np.eye(3), np.eye(3)
+    return H, REST_SIGMA**2 * np.eye(3)
+
+
+def drawn_anew(path: Path, Phi: Array, Q: Array, setting: Setting) -> tuple[Array, Array]:
+    """Φ and Q (K, 19, 19) under which ς is drawn anew where a stop begins."""
+    Phi, Q = Phi.copy(), Q.copy()
+    Phi[path.begins, STOP, STOP] = 0.0
+    Q[path.begins, STOP, STOP] = np.diag([setting.wobble, setting.wobble, setting.table]) ** 2
+    return Phi, Q
+
+
+def relative(P: Array) -> Array:
+    """A covariance (n, n) in units of the prior; 1 on the diagonal means that nothing was learnt. ς is left out."""
+    prior = PRIOR[: min(len(P), STOP.start)]
+    return P[: len(prior), : len(prior)] / np.outer(prior, prior)

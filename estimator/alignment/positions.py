@@ -1,0 +1,134 @@
+"""Time base and stops of a turntable session: where the table stood, and whether the block did what the table says."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from estimator.errors import Problem, ScheduleError
+from estimator.session import Array, CalibrationSession
+
+UNEVEN = 0.01
+"""Part of the interval by which the rows' times may stray from equal steps."""
+STILL = np.radians(0.01)
+"""rad that the table may move within half a second and still stand."""
+HALF = 0.5
+"""s; half the time over which that is judged."""
+SHORTEST = 10.0
+"""s that make a stop."""
+APART = np.radians(20.0)
+"""rad between stops that count as different positions."""
+DISAGREEMENT = (np.radians(1.0), 0.02)
+"""How far the gyros may disagree with the table over a turn: rad, and part of the turn."""
+MOVING = np.radians(0.1)
+"""rad/s of the block, averaged over a second, from which it does not stand still."""
+STEEPEST = np.radians(3.0)
+"""rad of the turn axis from the vertical; beyond, ∇_z leaks into what is taken for ∇_x and ∇_y."""
+GRAVITY_MISMATCH = 0.05
+
+
+@dataclass(frozen=True)
+class Stop:
+    """Rows in which the table stands."""
+
+    first: int
+    """First row, counted from 0."""
+    last: int
+    """One past the last row."""
+    angle: float
+    """rad, of the table."""
+
+    @property
+    def rows(self) -> str:
+        """The rows as people count."""
+        return f"rows {self.first + 1} to {self.last}"
+
+
+def interval(session: CalibrationSession) -> float:
+    """Time of a row, s; ScheduleError where rows are not evenly spaced."""
+    if session.time is None:
+        assert session.sample_rate is not None
+        return 1.0 / session.sample_rate
+    steps = np.diff(session.time)
+    if len(steps) < 2:
+        raise ScheduleError([Problem("time_s", f"has {len(session.time)} rows; a time series is needed")])
+    usual = float(np.median(steps))
+    uneven = np.flatnonzero(np.abs(steps - usual) > UNEVEN * usual)
+    if usual <= 0 or len(uneven):
+        row = int(uneven[0]) + 2 if len(uneven) else 2
+        message = f"is {steps[row - 2]:.6g} s after the row before, where rows are {usual:.6g} s apart"
+        raise ScheduleError(
+            [Problem("time_s", f"{message}; give evenly spaced rows without gaps ({len(uneven)} uneven)", row)]
+        )
+    return float(session.time[-1] - session.time[0]) / len(steps)
+
+
+def stops(angle: Array, row: float) -> list[Stop]:
+    """Where the table stands for `SHORTEST` or longer.
+
+    Parameters
+    ----------
+    angle : (R,) rad, at the end of each row.
+    row : time of a row, s.
+    """
+    reach = max(round(HALF / row), 1)
+    padded = np.pad(angle, reach, mode="edge")
+    still = np.abs(padded[2 * reach :] - padded[: -2 * reach]) < STILL
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], still, [False]]).astype(np.int8)))
+    found = zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
+    return [Stop(a, b, float(np.median(angle[a:b]))) for a, b in found if (b - a) * row >= SHORTEST]
+
+
+def require_positions(found: list[Stop]) -> None:
+    """ScheduleError unless the table stands at two positions that differ."""
+    turns = {round(float(np.degrees(stop.angle)), 1) for stop in found}
+    apart = [abs(np.exp(1j * stop.angle) - np.exp(1j * found[0].angle)) for stop in found]
+    if not found or max(apart) < 2 * np.sin(APART / 2):
+        where = f"only at {', '.join(f'{turn:g}°' for turn in sorted(turns))}" if turns else "nowhere"
+        advice = f"stop for {SHORTEST:g} s or longer at two angles or more, 180° apart at best"
+        raise ScheduleError([Problem("turn_angle_deg", f"the table stands {where}; {advice}")])
+
+
+def require_rest(found: list[Stop], rates: Array, row: float) -> None:
+    """ScheduleError where the gyros turn although the table stands; rates (R, 3) rad/s."""
+    block = max(round(1.0 / row), 1)
+    problems = []
+    for stop in found:
+        own = rates[stop.first : stop.last]
+        whole = own[: len(own) // block * block].reshape(-1, block, 3).mean(axis=1)
+        fastest = float(np.linalg.norm(whole, axis=1).max())
+        if fastest > MOVING:
+            told = f"the table stands in {stop.rows}, but the gyros read {np.degrees(fastest):.3g} °/s"
+            problems.append(
+                Problem("turn_angle_deg", f"{told}: the block was moved, or the columns do not belong together")
+            )
+    if problems:
+        raise ScheduleError(problems)
+
+
+def require_turns(found: list[Stop], angle: Array, rate_z: Array, row: float) -> None:
+    """ScheduleError where the azimuth gyro did not turn as the table did; rate_z (R,) rad/s."""
+    problems = []
+    for before, after in pairwise(found):
+        first, last = (before.first + before.last) // 2, (after.first + after.last) // 2
+        table = float(angle[last] - angle[first])
+        gyro = float(rate_z[first + 1 : last + 1].sum() * row)
+        if abs(gyro - table) > DISAGREEMENT[0] + DISAGREEMENT[1] * abs(table):
+            told = f"the table turned {np.degrees(table):+.1f}° between {before.rows} and {after.rows}"
+            message = f"{told}, the gyros {np.degrees(gyro):+.1f}° about the block's Z axis"
+            advice = "check the sign and unit of turn_angle_deg, the gyros' scale, and that Z is the turn axis"
+            problems.append(Problem("turn_angle_deg", f"{message}; {advice}", after.first + 1))
+    if problems:
+        raise ScheduleError(problems)
+
+
+def require_level(force: Array, g: float) -> None:
+    """ScheduleError unless the mean specific force (3,) at rest is gravity, along the turn axis."""
+    size = float(np.linalg.norm(force))
+    if abs(size - g) > GRAVITY_MISMATCH * g:
+        message = f"at rest the accelerometers read {size:.4g} m/s² where gravity is {g:.4g}"
+        raise ScheduleError([Problem("sensors", f"{message}; check nominal_scale and nominal_offset")])
+    tilt = float(np.arccos(np.clip(force[2] / size, -1, 1)))
+    if tilt > STEEPEST:
+        message = f"the turn axis (the block's Z) is {np.degrees(tilt):.1f}° off the upward vertical"
+        raise ScheduleError([Problem("table", f"{message}; alignment needs it within {np.degrees(STEEPEST):g}°")])

@@ -1,0 +1,188 @@
+"""Mounting errors of a block's gyros on a single-axis rate table: whole turns both ways.
+
+Over a whole turn about the block's Z axis the Earth's horizontal rotation averages out of every gyro; what is left of a
+turn at table rate w is, for the axes x, y, z of the reduced block,
+
+    x: ε_x + E_xz·w        y: ε_y + E_yz·w        z: ε_z + Ω sin L + (1 + κ)·w
+
+E and κ follow from turns of different rates, at best of both directions; their difference is free of every zero. Each
+whole turn is one row of the regression. Its covariance is that of the stated standard errors, else the turns' scatter
+gives it, widened by ν/(ν − 2) as Student's t is. The table's own rate is taken for
+exact: κ is the scale error against the table. ε_z needs the latitude and an upright axis.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.stats import chi2 as chi2_distribution
+
+from estimator.alignment.axes import Triad, triad
+from estimator.alignment.positions import interval
+from estimator.alignment.results import RateTableResult
+from estimator.errors import Problem, ScheduleError
+from estimator.reference import EARTH_RATE
+from estimator.results import Fit
+from estimator.session import GYROSCOPE, RATE_TABLE, Array, CalibrationSession
+
+NAMES = ("E_xz", "E_yz", "kappa_z", "eps_x", "eps_y", "eps_z")
+UNITS = ("rad", "rad", "1", "rad/s", "rad/s", "rad/s")
+FEWEST_TURNS = 6
+"""Whole turns in all; fewer leave no scatter to take the uncertainty from."""
+WHOLE = 1e-6
+"""Part of a row by which a whole turn may end early."""
+TURN = 2 * np.pi
+DISAGREEMENT = 0.05
+"""Part of the table's rate by which the azimuth gyro may differ from it."""
+UNLIKELY = 1e-3
+"""Probability of a larger χ² below which the covariance is enlarged."""
+
+
+@dataclass(frozen=True, eq=False)
+class Turns:
+    """Whole turns of the table. T turns."""
+
+    rates: Array
+    """(T,) rad/s, of the table."""
+    means: Array
+    """(T, 3) of the gyros, block axes, rad/s."""
+    times: Array
+    """(T,) middle, s."""
+    rows: Array
+    """(T,) number of rows, fractions of the last one included."""
+
+
+def rate_table(session: CalibrationSession) -> RateTableResult:
+    """E_xz, E_yz, the azimuth gyro's scale error and the gyros' zeros.
+
+    Parameters
+    ----------
+    session : of programme rate-table.
+
+    Raises
+    ------
+    ScheduleError : no whole turns, turns in one direction only, too few turns, or gyros that do not follow the table.
+    """
+    if session.programme != RATE_TABLE:
+        raise ScheduleError([Problem("programme", f"is {session.programme}; a rate table is {RATE_TABLE}")])
+    row = interval(session)
+    gyros = triad(session, GYROSCOPE, row)
+    turns = whole_turns(session, gyros.values, row)
+    _require_both_ways(turns)
+    _require_following(turns)
+    return _result(session, turns, gyros)
+
+
+def whole_turns(session: CalibrationSession, rates: Array, row: float) -> Turns:
+    """Every whole turn of every stretch of one table rate; rates (R, 3) rad/s, ``row`` s."""
+    assert session.turn_rate is not None
+    change = np.flatnonzero(np.diff(session.turn_rate)) + 1
+    edges = np.concatenate([[0], change, [len(rates)]]).tolist()
+    found, short = [], []
+    for first, last in pairwise(edges):
+        speed = float(session.turn_rate[first])
+        if speed == 0:
+            continue
+        length = TURN / abs(speed) / row
+        count = int((last - first + WHOLE) / length)
+        if count == 0:
+            part = (
+                f"rows {first + 1} to {last} at {np.degrees(speed):g} °/s cover {(last - first) / length:.2f} of a turn"
+            )
+            short.append(Problem("turn_rate_deg_s", f"{part}; turn through whole turns", first + 1))
+        found += [(speed, first + k * length, first + (k + 1) * length) for k in range(count)]
+    if not found:
+        raise ScheduleError(short or [Problem("turn_rate_deg_s", "the table never turns; give its rate in every row")])
+    start, stop = np.array([turn[1:] for turn in found]).T
+    total = np.vstack([np.zeros(3), np.cumsum(rates, axis=0)])
+    return Turns(
+        rates=np.array([turn[0] for turn in found]),
+        means=(_at(total, stop) - _at(total, start)) / (stop - start)[:, None],
+        times=row * (start + stop) / 2,
+        rows=stop - start,
+    )
+
+
+def _at(total: Array, place: Array) -> Array:
+    """The running sum (R + 1, 3) at fractions of rows (T,)."""
+    order = np.arange(len(total))
+    return np.stack([np.interp(place, order, column) for column in total.T], axis=1)
+
+
+def _require_both_ways(turns: Turns) -> None:
+    for sign, word in ((1, "positive"), (-1, "negative")):
+        if not (sign * turns.rates > 0).any():
+            message = (
+                f"no whole turn at a {word} rate; turn both ways, so that the zeros and the Earth's rotation cancel"
+            )
+            raise ScheduleError([Problem("turn_rate_deg_s", message)])
+    if len(turns.rates) < FEWEST_TURNS:
+        message = f"holds {len(turns.rates)} whole turns; give {FEWEST_TURNS} or more, so that their scatter is known"
+        raise ScheduleError([Problem("turn_rate_deg_s", message)])
+
+
+def _require_following(turns: Turns) -> None:
+    apart = np.abs(turns.means[:, 2] - turns.rates) > DISAGREEMENT * np.abs(turns.rates) + EARTH_RATE
+    if apart.any():
+        worst = int(np.argmax(apart))
+        told = f"the table turns at {np.degrees(turns.rates[worst]):+g} °/s"
+        message = f"{told}, the gyros at {np.degrees(turns.means[worst, 2]):+.4g} °/s about the block's Z axis"
+        advice = "check the sign and unit of turn_rate_deg_s, nominal_scale, and that Z is the table's axis"
+        raise ScheduleError([Problem("turn_rate_deg_s", f"{message}; {advice}")])
+
+
+def _result(session: CalibrationSession, turns: Turns, gyros: Triad) -> RateTableResult:
+    weight = np.sqrt(turns.rows)
+    design = np.column_stack([turns.rates, np.ones(len(turns.rates))])
+    beyond = turns.means - turns.rates[:, None] * [0.0, 0.0, 1.0]
+    solved, *_ = np.linalg.lstsq(weight[:, None] * design, weight[:, None] * beyond)
+    residuals = beyond - design @ solved
+    weighted = weight[:, None] * residuals
+    dof = len(turns.rates) - 2
+    scatter = weighted.T @ weighted / dof
+    inverse = np.linalg.inv((weight[:, None] * design).T @ (weight[:, None] * design))
+    rms = float(np.sqrt(np.mean(residuals**2)))
+    row_covariance, fit = _noise(gyros, scatter, dof, rms, float(np.sqrt(inverse[0, 0])))
+    estimate = solved.ravel()
+    covariance = np.kron(inverse, row_covariance * fit.covariance_factor)
+    if session.site.latitude is None:
+        estimate[5], covariance[5], covariance[:, 5] = np.nan, np.nan, np.nan
+    else:
+        estimate[5] -= EARTH_RATE * np.sin(session.site.latitude)
+    return RateTableResult(
+        unit=session.unit,
+        names=NAMES,
+        units=UNITS,
+        estimate=estimate,
+        covariance=covariance,
+        turn_rates=turns.rates,
+        turn_times=turns.times,
+        residuals=residuals,
+        residual_sigma=np.sqrt(np.diag(row_covariance)) / weight[:, None],
+        fit=fit,
+    )
+
+
+def _noise(gyros: Triad, scatter: Array, dof: int, rms: float, leverage: float) -> tuple[Array, Fit]:
+    """Covariance (3, 3) of a row, and how the turns scatter about the model."""
+    stated = gyros.row_covariance
+    covariance = scatter if stated is None else stated
+    axes = 3 if stated is not None else 1
+    chi2 = axes * dof * float(np.trace(np.linalg.solve(covariance, scatter))) / 3
+    p_value = None if stated is None else float(chi2_distribution.sf(chi2, axes * dof))
+    unlikely = p_value is not None and p_value < UNLIKELY
+    student = dof / (dof - 2) if stated is None else 1.0
+    fit = Fit(
+        chi2=chi2,
+        dof=axes * dof,
+        p_value=p_value,
+        residual_rms=rms,
+        noise="estimated" if stated is None else "stated",
+        covariance_factor=max(chi2 / (axes * dof), 1.0) if unlikely else student,
+        rank=6,
+        parameters=6,
+        weakest=("E_xz", leverage * float(np.sqrt(covariance[0, 0]))),
+        iterations=1,
+        converged=True,
+    )
+    return covariance, fit

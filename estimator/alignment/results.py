@@ -1,0 +1,126 @@
+"""What an alignment and a rate table tell; no algorithms. Units: see the package page."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from estimator.results import Estimate, Fit, json_numbers
+from estimator.session import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """How the estimates came about. K steps, n states."""
+
+    time: Array
+    """(K,) s since the first stop began, at the end of each step."""
+    estimates: Array
+    """(K, n)"""
+    sigmas: Array
+    """(K, n) one sigma."""
+    attitude: Array
+    """(K, 3, 3) computed attitude C̃, block → east-north-up; the truth is about (I + φ×)·C̃."""
+    innovations: Array
+    """(K, 2) of the velocity, east and north, m/s."""
+    innovation_sigmas: Array
+    """(K, 2) m/s."""
+    stop: Array
+    """(K,) number of the stop that ends with this step, −1 for all other steps."""
+
+
+@dataclass(frozen=True, eq=False)
+class AlignmentResult:
+    """Attitude and sensor errors from one multi-position alignment. n states, named as in `sins.STATES`."""
+
+    unit: str
+    model: str
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    estimate: Array
+    """(n,) at the end; ε and ∇ of the block's axes are total zeros, with what coarse alignment took off."""
+    covariance: Array
+    """(n, n)"""
+    observable: dict[str, bool]
+    """Of every state but the velocities: whether the session tells much more than was known before it."""
+    attitude: Array
+    """(3, 3) C, block → east-north-up, at the end, corrected by φ."""
+    positions: tuple[float, ...]
+    """Table angle of each stop, rad."""
+    fit: Fit
+    course: Course
+
+    def parameter(self, name: str) -> Estimate:
+        """Value and sigma of a state; both None when it is not observable."""
+        place = self.names.index(name)
+        if not self.observable.get(name, True):
+            return Estimate(None, None)
+        return Estimate(float(self.estimate[place]), float(np.sqrt(self.covariance[place, place])))
+
+    @property
+    def heading(self) -> float:
+        """Direction of the block's Y axis at the end, clockwise from north, rad in (−π, π]."""
+        return float(np.arctan2(self.attitude[0, 1], self.attitude[1, 1]))
+
+    def to_dict(self) -> dict[str, Any]:
+        """``imu-alignment/1``; SI."""
+        return {
+            "format": "imu-alignment/1",
+            "unit": self.unit,
+            "model": self.model,
+            "positions_deg": np.degrees(self.positions).tolist(),
+            "heading_deg": float(np.degrees(self.heading)),
+            "attitude": self.attitude.tolist(),
+            "parameters": [
+                {"name": name, "unit": unit, "observable": self.observable[name], **self.parameter(name).to_dict()}
+                for name, unit in zip(self.names, self.units, strict=True)
+                if name in self.observable
+            ],
+            "covariance": {"names": list(self.names), "total": json_numbers(self.covariance)},
+            "fit": self.fit.to_dict(),
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class RateTableResult:
+    """Mounting errors, azimuth scale and zeros of a block's gyros from whole turns both ways."""
+
+    unit: str
+    names: tuple[str, ...]
+    """E_xz, E_yz, kappa_z, eps_x, eps_y, eps_z."""
+    units: tuple[str, ...]
+    estimate: Array
+    """(6,); NaN for what is not known."""
+    covariance: Array
+    """(6, 6); NaN rows and columns for what is not known."""
+    turn_rates: Array
+    """(T,) rate of the table in every whole turn, rad/s."""
+    turn_times: Array
+    """(T,) middle of every turn, s."""
+    residuals: Array
+    """(T, 3) mean rates of the turns minus the model's, block axes, rad/s."""
+    residual_sigma: Array
+    """(T, 3) rad/s."""
+    fit: Fit
+
+    def parameter(self, name: str) -> Estimate:
+        """Value and sigma; both None when it is not known."""
+        place = self.names.index(name)
+        if not np.isfinite(self.estimate[place]):
+            return Estimate(None, None)
+        return Estimate(float(self.estimate[place]), float(np.sqrt(self.covariance[place, place])))
+
+    def to_dict(self) -> dict[str, Any]:
+        """``imu-rate-table/1``; SI."""
+        return {
+            "format": "imu-rate-table/1",
+            "unit": self.unit,
+            "turns": len(self.turn_rates),
+            "rates_deg_s": sorted({round(float(rate), 6) for rate in np.degrees(self.turn_rates)}),
+            "parameters": [
+                {"name": name, "unit": unit, **self.parameter(name).to_dict()}
+                for name, unit in zip(self.names, self.units, strict=True)
+            ],
+            "covariance": {"names": list(self.names), "total": json_numbers(self.covariance)},
+            "fit": self.fit.to_dict(),
+        }

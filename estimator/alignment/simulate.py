@@ -1,0 +1,210 @@
+"""Turntable sessions whose truth is known: true attitude → what each sensor reads, with errors and noise."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from estimator.alignment.sins import earth_rate
+from estimator.reference import gravity
+from estimator.results import ARCSEC
+from estimator.session import (
+    ACCELEROMETER,
+    GYROSCOPE,
+    RATE_TABLE,
+    ROTATION_ALIGNMENT,
+    Array,
+    CalibrationSession,
+    Sensor,
+    Site,
+    Stand,
+    StandErrors,
+)
+
+
+@dataclass(frozen=True)
+class Programme:
+    """How a turntable is run."""
+
+    angles: tuple[float, ...] = (0.0, np.pi)
+    """rad, of each stop in order; may pass 2π."""
+    dwell: float = 300.0
+    """s at each stop."""
+    rate: float = np.radians(6.0)
+    """rad/s between stops."""
+    row: float = 0.1
+    """Time of a row, s."""
+
+
+@dataclass(frozen=True, eq=False)
+class Truth:
+    """What is wrong with the block and how it stands; SI."""
+
+    gyro_bias: Array = field(default_factory=lambda: np.zeros(3))
+    accelerometer_bias: Array = field(default_factory=lambda: np.zeros(3))
+    mounting: tuple[float, float] = (0.0, 0.0)
+    """E_xz, E_yz, rad."""
+    kappa: float = 0.0
+    """Relative scale error of the azimuth gyro."""
+    heading: float = 0.0
+    """rad by which the table at angle 0 is turned from x east, y north, to the left."""
+    tilt: tuple[float, float] = (0.0, 0.0)
+    """Turns of the table's axis about east and north, rad."""
+
+
+@dataclass(frozen=True)
+class Imperfections:
+    """Noise of the sensors and the table."""
+
+    accelerometer: float = 5e-6 * 9.80665
+    """Density of white noise, m/s²/√Hz."""
+    gyro: float = 0.001 * ARCSEC * 60
+    """Density of white noise, rad/s/√Hz (0.001 °/√h unless given)."""
+    sway: float = 0.0
+    """One sigma of the base's velocity at the end of a row, per axis, m/s."""
+    wobble: float = 0.0
+    """One sigma of the turn axis' direction from stop to stop, per axis, rad."""
+    table: float = 0.0
+    """One sigma of the table's angle at a stop, rad."""
+
+
+def triads(axes: Array | None = None) -> tuple[Sensor, ...]:
+    """Accelerometers A1… and gyros G1… along axes (m, 3); x, y, z unless given. Readings in SI."""
+    directions = np.eye(3) if axes is None else axes
+    made = [
+        Sensor(f"{letter}{i + 1}", kind, axis, 1.0, unit)
+        for letter, kind, unit in (("A", ACCELEROMETER, "m/s2"), ("G", GYROSCOPE, "rad/s"))
+        for i, axis in enumerate(directions)
+    ]
+    return tuple(made)
+
+
+def table_angle(programme: Programme) -> tuple[Array, Array]:
+    """(R + 1,) angle of the table at the ends of rows, from time 0 on, and how far each is on its way between stops."""
+    angle, course = [], []
+    for number, target in enumerate(programme.angles):
+        if number:
+            before = programme.angles[number - 1]
+            rows = max(round(abs(target - before) / programme.rate / programme.row), 1)
+            part = np.arange(1, rows) / rows
+            angle.append(before + part * (target - before))
+            course.append(number - 1 + part)
+        rows = round(programme.dwell / programme.row) + 1
+        angle.append(np.full(rows, target))
+        course.append(np.full(rows, float(number)))
+    return np.concatenate(angle), np.concatenate(course)
+
+
+def true_attitude(programme: Programme, truth: Truth, leaning: Array) -> Array:
+    """(R + 1, 3, 3) C at the ends of rows; leaning (stops, 2) tilts the turn axis at every stop, rad."""
+    angle, course = table_angle(programme)
+    lean = np.stack([np.interp(course, np.arange(len(leaning)), column) for column in leaning.T], axis=1)
+    level = Rotation.from_rotvec([*truth.tilt, 0.0]) * Rotation.from_rotvec([0.0, 0.0, truth.heading])
+    wobble = Rotation.from_rotvec(np.column_stack([lean, np.zeros(len(lean))]))
+    turn = Rotation.from_rotvec(angle[:, None] * [0.0, 0.0, 1.0])
+    return np.asarray((level * wobble * turn).as_matrix())
+
+
+def true_inputs(attitude: Array, row: float, latitude: float, g: float) -> tuple[Array, Array]:
+    """Mean rate and specific force (R, 3) of every row, block axes, for attitudes (R + 1, 3, 3) at its ends."""
+    time = row * np.arange(len(attitude))
+    inertial = Rotation.from_rotvec(time[:, None] * earth_rate(latitude)) * Rotation.from_matrix(attitude)
+    steps = (inertial[:-1].inv() * inertial[1:]).as_rotvec()
+    middle = Rotation.from_matrix(attitude[1:]) * Rotation.from_rotvec(-0.5 * steps)
+    return np.asarray(steps / row), np.asarray(middle.inv().apply([0.0, 0.0, g]))
+
+
+def simulate_alignment(
+    sensors: tuple[Sensor, ...],
+    site: Site,
+    programme: Programme,
+    truth: Truth,
+    rng: np.random.Generator,
+    *,
+    imperfections: Imperfections | None = None,
+    unit: str = "simulated",
+) -> tuple[CalibrationSession, Array]:
+    """A rotation-alignment session, and the true attitude (R, 3, 3) at the end of every row.
+
+    Errors of ``truth`` are those of the block's axes; the noise is every sensor's own.
+    """
+    noise = imperfections or Imperfections()
+    assert site.latitude is not None
+    leaning = noise.wobble * rng.standard_normal((len(programme.angles), 2))
+    attitude = true_attitude(programme, truth, leaning)
+    rates, forces = true_inputs(attitude, programme.row, site.latitude, gravity(site))
+    rows = len(rates)
+    velocity = noise.sway * np.vstack([np.zeros(3), rng.standard_normal((rows, 3))])
+    swayed = forces + np.einsum("rji,rj->ri", attitude[1:], np.diff(velocity, axis=0) / programme.row)
+    angle, course = table_angle(programme)
+    misread = np.interp(course, np.arange(len(leaning)), noise.table * rng.standard_normal(len(leaning)))
+    session = CalibrationSession(
+        unit=unit,
+        block=GYROSCOPE,
+        programme=ROTATION_ALIGNMENT,
+        sensors=sensors,
+        readings=_readings(
+            sensors, with_errors(rates, truth), swayed + truth.accelerometer_bias, programme.row, noise, rng
+        ),
+        standard_errors=np.full((rows, len(sensors)), np.nan),
+        site=site,
+        stand=Stand("turntable", sigma=StandErrors(beta=noise.table, wobble=noise.wobble or None)),
+        time=programme.row * np.arange(1, rows + 1),
+        turn_angle=angle[1:] + misread[1:],
+    )
+    return session, attitude[1:]
+
+
+def with_errors(rates: Array, truth: Truth) -> Array:
+    """(R, 3) what the gyros' axes read: ω + ε + (E_xz, E_yz, κ)·ω_z."""
+    return rates + truth.gyro_bias + rates[:, 2:] * np.array([*truth.mounting, truth.kappa])
+
+
+def _readings(
+    sensors: tuple[Sensor, ...],
+    rates: Array,
+    forces: Array,
+    row: float,
+    noise: Imperfections,
+    rng: np.random.Generator,
+) -> Array:
+    """(R, m) what the sensors read along their axes."""
+    columns = []
+    for sensor in sensors:
+        inputs, density = (forces, noise.accelerometer) if sensor.kind == ACCELEROMETER else (rates, noise.gyro)
+        own = inputs @ sensor.nominal_axis + density / np.sqrt(row) * rng.standard_normal(len(inputs))
+        columns.append(sensor.nominal_scale * own + (sensor.nominal_offset or 0.0))
+    return np.column_stack(columns)
+
+
+def simulate_rate_table(
+    sensors: tuple[Sensor, ...],
+    site: Site,
+    runs: tuple[tuple[float, float], ...],
+    truth: Truth,
+    rng: np.random.Generator,
+    *,
+    row: float = 0.1,
+    imperfections: Imperfections | None = None,
+    unit: str = "simulated",
+) -> CalibrationSession:
+    """A rate-table session; ``runs`` holds rate (rad/s) and duration (s) of each run in order."""
+    assert site.latitude is not None
+    rate = np.concatenate([np.full(round(time / row), speed) for speed, time in runs])
+    angle = np.concatenate([[0.0], np.cumsum(rate * row)])
+    level = Rotation.from_rotvec([*truth.tilt, 0.0]) * Rotation.from_rotvec([0.0, 0.0, truth.heading])
+    attitude = (level * Rotation.from_rotvec(angle[:, None] * [0.0, 0.0, 1.0])).as_matrix()
+    rates, forces = true_inputs(attitude, row, site.latitude, gravity(site))
+    gyros = tuple(replace(sensor) for sensor in sensors if sensor.kind == GYROSCOPE)
+    return CalibrationSession(
+        unit=unit,
+        block=GYROSCOPE,
+        programme=RATE_TABLE,
+        sensors=gyros,
+        readings=_readings(gyros, with_errors(rates, truth), forces, row, imperfections or Imperfections(), rng),
+        standard_errors=np.full((len(rate), len(gyros)), np.nan),
+        site=site,
+        stand=Stand("rate table"),
+        time=row * np.arange(1, len(rate) + 1),
+        turn_rate=rate,
+    )

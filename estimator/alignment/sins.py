@@ -1,0 +1,136 @@
+"""Error model of a strapdown system that stands on a turntable: the states, their transition, what is measured.
+
+Frames: n is east-north-up (E, N, U), b the block, C = C_b^n. The computed attitude is C̃ = (I − φ×)·C. With v = 0,
+ω = (0, Ω cos L, Ω sin L) and the specific force (0, 0, g) in n:
+
+    δv̇_E =  2Ω sin L·δv_N − g·φ_N + (C∇)_E          φ̇ = −ω × φ − C·(ε + δω)
+    δv̇_N = −2Ω sin L·δv_E + g·φ_E + (C∇)_N          ε̇ = 0,  ∇̇ = 0
+
+These are the ten states of Liu et al. (single-axis rotation alignment, equation (1)): δv_E, δv_N, φ_E, φ_N, φ_U,
+ε_x, ε_y, ε_z, ∇_x, ∇_y. The computed velocity (δv_E, δv_N) is what is measured (2).
+
+The gyros' mounting errors E_xz, E_yz and the scale error κ of the azimuth gyro act through the turn rate ω_z,
+
+    δω = (E_xz·ω_z, E_yz·ω_z, κ·ω_z),
+
+and are three further states. The turntable itself shows the attitude: its axis keeps its direction in n and its encoder
+counts the turn θ, so that C·R_z(−θ) is one rotation T. The computed C̃·R_z(−θ) = (I − φ×)·T therefore shows φ but for
+a constant τ and for the deviation ς of each stop, by which the axis wobbles and the encoder errs:
+
+    y = φ + τ + ς,  when a stop begins and when it ends.
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from scipy.linalg import expm
+
+from estimator.reference import EARTH_RATE
+from estimator.session import Array
+
+STATES = (
+    "v_E", "v_N", "phi_E", "phi_N", "phi_U", "eps_x", "eps_y", "eps_z", "nabla_x", "nabla_y",
+    "E_xz", "E_yz", "kappa_z", "tau_E", "tau_N", "tau_U", "stop_E", "stop_N", "stop_U",
+)  # fmt: skip
+UNITS = ("m/s",) * 2 + ("rad",) * 3 + ("rad/s",) * 3 + ("m/s²",) * 2 + ("rad", "rad", "1") + ("rad",) * 6
+V, PHI, EPS, NABLA, MOUNTING = slice(0, 2), slice(2, 5), slice(5, 8), slice(8, 10), slice(10, 13)
+TAU, STOP = slice(13, 16), slice(16, 19)
+ALL = len(STATES)
+
+
+class Model(StrEnum):
+    """Which states are estimated."""
+
+    TEN = "ten-state"
+    """As published: the mounting errors are taken to be zero."""
+    MOUNTING = "mounting"
+    """With E_xz, E_yz, κ, measured by velocity alone."""
+    TURNTABLE = "turntable"
+    """With E_xz, E_yz, κ, and the direction of the turntable measured at every stop."""
+
+    @property
+    def size(self) -> int:
+        """Number of states; those of every model are the first of `STATES`."""
+        return {Model.TEN: 10, Model.MOUNTING: 13, Model.TURNTABLE: ALL}[self]
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """The attitude along an alignment, in steps of one length. K steps."""
+
+    step: float
+    """s."""
+    mean: Array
+    """(K, 3, 3) mean of C over each step."""
+    turning: Array
+    """(K, 3, 3) mean of C·ω_z over each step, rad/s."""
+    stop: Array
+    """(K,) number of the stop that the table stands at for the whole step, −1 while it turns."""
+
+    @property
+    def begins(self) -> Array:
+        """(K,) whether a stop begins with this step."""
+        return (self.stop >= 0) & (np.concatenate([[-1], self.stop[:-1]]) != self.stop)
+
+    @property
+    def ends(self) -> Array:
+        """(K,) whether a stop ends with this step."""
+        return (self.stop >= 0) & (np.append(self.stop[1:], -1) != self.stop)
+
+
+def earth_rate(latitude: float) -> Array:
+    """(3,) rotation of the Earth in n, rad/s; latitude in rad."""
+    return EARTH_RATE * np.array([0.0, np.cos(latitude), np.sin(latitude)])
+
+
+def cross(v: Array) -> Array:
+    """(..., 3, 3) matrix of the cross product with v (..., 3)."""
+    zero = np.zeros_like(v[..., 0])
+    x, y, z = v[..., 0], v[..., 1], v[..., 2]
+    rows = [[zero, -z, y], [z, zero, -x], [-y, x, zero]]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def dynamics(path: Path, latitude: float, g: float) -> Array:
+    """F (K, 19, 19) of ẋ = F·x, the mean over each step; SI."""
+    F = np.zeros((len(path.mean), ALL, ALL))
+    omega = earth_rate(latitude)
+    F[:, 0, 1], F[:, 1, 0] = 2 * omega[2], -2 * omega[2]
+    F[:, 0, 3], F[:, 1, 2] = -g, g
+    F[:, V, NABLA] = path.mean[:, :2, :2]
+    F[:, PHI, PHI] = -cross(omega)
+    F[:, PHI, EPS] = -path.mean
+    F[:, PHI, MOUNTING] = -path.turning
+    return F
+
+
+def transition(F: Array, step: float) -> Array:
+    """Φ = exp(F·step) (K, n, n); equal matrices are exponentiated once."""
+    different, which = np.unique(F.reshape(len(F), -1), axis=0, return_inverse=True)
+    return expm(different.reshape(-1, *F.shape[1:]) * step)[which.ravel()]
+
+
+def process_noise(path: Path, Phi: Array, accelerometer: Array, gyro: Array) -> Array:
+    """Q (K, 19, 19) of white noise with densities (3, 3), (m/s²)²/Hz and (rad/s)²/Hz; trapezoidal in time."""
+    density = np.zeros_like(Phi)
+    C = path.mean
+    density[:, V, V] = (C @ accelerometer @ C.swapaxes(1, 2))[:, :2, :2]
+    density[:, PHI, PHI] = C @ gyro @ C.swapaxes(1, 2)
+    return 0.5 * path.step * (density + Phi @ density @ Phi.swapaxes(1, 2))
+
+
+def mounting_effect(E_xz: float, E_yz: float, g: float) -> dict[str, float]:
+    """What unmodelled mounting errors leave in the estimates after a half turn about the vertical, equation (5).
+
+    Parameters
+    ----------
+    E_xz, E_yz : rad.
+    g : m/s².
+
+    Returns
+    -------
+    Estimate minus truth: ``phi_E``, ``phi_N`` rad along the block's x and y before the turn, ``nabla_x``, ``nabla_y``
+    m/s². East and north where the block starts with its x axis to the east, as in the paper.
+    """
+    return {"phi_E": -E_yz, "phi_N": E_xz, "nabla_x": -E_xz * g, "nabla_y": -E_yz * g}
