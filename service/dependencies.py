@@ -7,10 +7,12 @@ from datetime import datetime
 from typing import Annotated
 
 from fastapi import BackgroundTasks, Depends, Request
+from starlette.types import Message
 
-from service.errors import ServiceError
+from service.errors import ServiceError, TooLargeError
 from service.flows.diagnose import InProgress, diagnose_now_or_later
 from service.flows.diagnose_pending import diagnose_quietly
+from service.metrics import Metrics
 from service.records import StoredDiagnosis
 from service.settings import Settings
 from service.storage import Storage
@@ -27,6 +29,7 @@ class Service:
     storage: Storage
     clock: Callable[[], datetime]
     diagnosing: InProgress = field(default_factory=InProgress)
+    metrics: Metrics = field(default_factory=Metrics)
 
 
 @dataclass(frozen=True)
@@ -66,6 +69,10 @@ def _storage(request: Request) -> Storage:
     return _service(request).storage
 
 
+def _metrics(request: Request) -> Metrics:
+    return _service(request).metrics
+
+
 def _now(request: Request) -> datetime:
     return _service(request).clock()
 
@@ -79,10 +86,29 @@ def _diagnoser(request: Request, after_the_answer: BackgroundTasks) -> Diagnoser
     return Diagnoser(_service(request), after_the_answer)
 
 
+def limited(request: Request, most: int, envelope: int) -> Request:
+    """The same request, but a body that grows beyond ``most`` and its envelope is stopped, whatever it announced."""
+    seen = 0
+
+    async def counted() -> Message:
+        nonlocal seen
+        message = await request.receive()
+        seen += len(message.get("body", b""))
+        if seen > most + envelope:
+            raise TooLargeError(
+                f"An upload may hold {most:,} bytes at a time; this one is larger. Average or split it."
+            )
+        return message
+
+    return Request(request.scope, counted)
+
+
 SettingsOf = Annotated[Settings, Depends(_settings)]
 """The settings of the service."""
 StorageOf = Annotated[Storage, Depends(_storage)]
 """Both stores, for flows that write."""
+MetricsOf = Annotated[Metrics, Depends(_metrics)]
+"""The figures of the service."""
 DiagnoserOf = Annotated[Diagnoser, Depends(_diagnoser)]
 """What makes diagnoses."""
 Now = Annotated[datetime, Depends(_now)]

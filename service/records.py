@@ -5,7 +5,7 @@ from datetime import datetime
 from enum import StrEnum
 from typing import Any
 
-from estimator.results import Calibration
+from estimator.results import Calibration, Residuals
 from estimator.session import CalibrationSession
 
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
@@ -151,9 +151,15 @@ class HistoryPoint:
     """value − U."""
     upper: float | None
     reference: float | None
+    deviation: float | None
+    """From the reference, as it was judged: relative for scale, else SI; None where there was none to compare with."""
+    expanded: float | None
+    """U of the deviation, of both sessions."""
     tolerance: float | None
     """In the unit of value (for scale: relative tolerance times the reference); None where it is not judged."""
     verdict: Verdict
+    is_reference: bool
+    """Whether the session is one that later ones are judged against."""
     axis: tuple[float, float, float] | None
     revision: int = 0
     """The model revision that it was computed under."""
@@ -182,6 +188,8 @@ class UnitSummary:
     last_at: datetime | None
     verdict: Verdict | None
     """Of the latest session; None when the unit has none."""
+    is_reference: bool
+    """Whether the latest session is one that later ones are judged against."""
     reason: str
     worst_sensor: str | None
     worst_parameter: str | None
@@ -248,6 +256,8 @@ class Receipt:
     reason: str
     created: bool
     """False when the same bytes were already stored."""
+    is_reference: bool
+    """Whether later sessions are judged against this one."""
 
 
 class DiagnosisState(StrEnum):
@@ -336,6 +346,10 @@ class DiagnosisReport:
     """None while it is being made."""
     calibration: Calibration
     """In force."""
+    before: Residuals | None
+    """Measured minus simulated under the baseline model; None without a diagnosis."""
+    after: Calibration | None
+    """With the named causes in the model."""
     revisions: tuple[ModelRevision, ...]
     """That concern the session, oldest first."""
 

@@ -135,3 +135,44 @@ def in_words(kind: str, parameter: str, si: float, *, signed: bool = False) -> s
     digits = 0 if shown == 0 else max(0, 1 - floor(log10(abs(shown))))
     sign = "+" if signed and shown > 0 else ""
     return f"{sign}{shown:,.{digits}f} {unit.label}".replace("-", "−")
+
+
+PER_HOUR = 3600.0
+MICRO_G = 1e6 / STANDARD_GRAVITY
+EARTH_RATE = 7.292115e-5
+"""rad/s."""
+ANGLE_RATES = frozenset({"axis-creep", "stand-drift"})
+"""Causes whose rad/s is an angle that grows, not a rate that is measured."""
+AMPLITUDE_UNITS = {
+    "1": PPM,
+    "1/K": DeviationUnit("ppm/K", 1e6),
+    "1/s": DeviationUnit("ppm/h", 1e6 * PER_HOUR),
+    "m/s²": DeviationUnit("µg", MICRO_G),
+    "m/s²/K": DeviationUnit("µg/K", MICRO_G),
+    "m/s²/s": DeviationUnit("µg/h", MICRO_G * PER_HOUR),
+    "m/s²/(K/s)": DeviationUnit("µg/(K/h)", MICRO_G / PER_HOUR),
+    "(m/s²)⁻¹": DeviationUnit("µg/g²", 1e6 * STANDARD_GRAVITY),
+    "(m/s²)⁻²": DeviationUnit("µg/g³", 1e6 * STANDARD_GRAVITY**2),
+    "rad": ARCSEC,
+    "rad/s": DeviationUnit("°/h", PER_HOUR / DEGREE),
+    "rad/s/K": DeviationUnit("(°/h)/K", PER_HOUR / DEGREE),
+    "rad/s/s": DeviationUnit("(°/h)/h", PER_HOUR**2 / DEGREE),
+    "rad/s/(K/s)": DeviationUnit("(°/h)/(K/h)", 1 / DEGREE),
+    "(rad/s)⁻¹": DeviationUnit("ppm at Earth rate", 1e6 * EARTH_RATE),
+    "(rad/s)⁻²": DeviationUnit("ppm at Earth rate", 1e6 * EARTH_RATE**2),
+    "(rad/s)/(m/s²)": DeviationUnit("(°/h)/g", PER_HOUR / DEGREE * STANDARD_GRAVITY),
+}
+"""People's unit of a cause's amplitude, by its SI unit."""
+COARSER = {
+    "ppm": DeviationUnit("%", 1e2),
+    "µg": DeviationUnit("mg", 1e3 / STANDARD_GRAVITY),
+    "arcsec": DeviationUnit("°", 1 / DEGREE),
+}
+
+
+def amplitude_unit(cause: str, si_unit: str, largest: float) -> DeviationUnit:
+    """The unit for amplitudes of a cause up to ``largest`` (SI)."""
+    if si_unit == "rad/s" and cause in ANGLE_RATES:
+        return DeviationUnit("arcsec/h", ARCSEC.factor * PER_HOUR)
+    unit = AMPLITUDE_UNITS.get(si_unit, DeviationUnit(si_unit, 1.0))
+    return unit if abs(largest) * unit.factor < 1e4 else COARSER.get(unit.label, unit)

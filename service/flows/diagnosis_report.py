@@ -1,14 +1,18 @@
 """Flow: everything that a session's diagnosis page shows."""
 
 from service.records import DiagnosisReport, StoredDiagnosis
+from service.storage.calibration_document import calibration_from_dict, residuals_from_dict
 from service.storage.store import Store
 
 
 def diagnosis_report(store: Store, id: str, diagnosis: StoredDiagnosis | None) -> DiagnosisReport:
     """The session, its diagnosis, its calibration in force and the model revisions that concern it."""
+    document = None if diagnosis is None else diagnosis.document
     return DiagnosisReport(
         session=store.sessions.get(id),
         diagnosis=diagnosis,
         calibration=store.calibrations.get(id),
+        before=None if document is None else residuals_from_dict(document["residuals_before"]),
+        after=None if document is None else calibration_from_dict(document["calibration"]),
         revisions=store.models.of_session(id),
     )

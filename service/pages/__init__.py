@@ -6,15 +6,17 @@
 from fastapi import FastAPI
 from starlette.middleware.gzip import GZipMiddleware
 
-from service.pages import assets, routes
+from service.pages import assets, diagnosis_routes, routes
 from service.pages.headers import SecurityHeaders
-from service.pages.problem import ProblemPages
+from service.pages.problem import ProblemPages, unexpected_pages
 
 
 def mount(app: FastAPI) -> None:
     """Adds the pages, their static files, error pages, compression and the security headers of every answer."""
     app.include_router(routes.router)
+    app.include_router(diagnosis_routes.router)
     app.include_router(assets.router)
+    unexpected_pages(app)
     app.add_middleware(ProblemPages)
     app.add_middleware(GZipMiddleware, minimum_size=1000, compresslevel=6)
     app.add_middleware(SecurityHeaders)

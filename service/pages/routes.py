@@ -6,7 +6,7 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Query, Request
 from fastapi.responses import HTMLResponse
 
-from service.dependencies import Now, Reading, SettingsOf, StorageOf
+from service.dependencies import DiagnoserOf, MetricsOf, Now, Reading, SettingsOf, StorageOf
 from service.errors import RefusedError
 from service.flows.fleet import fleet_overview
 from service.flows.fleet_condition import fleet_condition
@@ -25,6 +25,9 @@ from service.settings import Settings
 
 HISTORY_LIMIT = 200_000
 """Points of one unit's history that a page draws."""
+
+FEW = 4
+"""Files whose diagnosis an upload waits for; those of more files are made after the answer."""
 
 Key = Annotated[str, Path(max_length=200, pattern=r"^[^\x00]+$")]
 
@@ -57,7 +60,8 @@ def show_unit(request: Request, store: Reading, now: Now, serial: Key) -> HTMLRe
 @router.get("/sessions/{id}")
 def show_session(request: Request, store: Reading, id: Key) -> HTMLResponse:
     """One session with its parameters and residuals."""
-    return render(request, "session.html", session_page(session_report(store, id)))
+    page = session_page(session_report(store, id), store.diagnoses.summary(id))
+    return render(request, "session.html", page)
 
 
 @router.get("/upload")
@@ -68,12 +72,19 @@ def show_upload(request: Request, settings: SettingsOf) -> HTMLResponse:
 
 @router.post("/upload")
 def take_uploads(
-    request: Request, files: FormFiles, storage: StorageOf, settings: SettingsOf, now: Now
+    request: Request,
+    files: FormFiles,
+    storage: StorageOf,
+    settings: SettingsOf,
+    now: Now,
+    metrics: MetricsOf,
+    diagnoser: DiagnoserOf,
 ) -> HTMLResponse:
     """The form with the verdict on each file, or what is wrong with it; 422 when a file cannot be used."""
     outcomes = [_outcome(file, storage, settings, now) for file in files]
     for receipt in (o.receipt for o in outcomes if o.receipt is not None):
-        request.app.state.metrics.count_upload(receipt)
+        metrics.count_upload(receipt)
+        diagnoser.after_upload(receipt.id, wait=len(files) <= FEW)
     page = upload_page(outcomes, settings.max_upload_bytes)
     return render(request, "upload.html", page, 422 if page.refused else 200)
 

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from estimator.results import Calibration, Estimate, SensorCalibration
 from service.pages.charts import ChartSet
 from service.pages.charts.residuals import residual_charts
+from service.pages.diagnosis import PENDING, TONES
 from service.pages.fit import FitWords, fit_in_words
 from service.pages.known import combination_in_words
 from service.pages.residual_table import ResidualTable, residual_table
-from service.records import PARAMETERS, Decision, SessionReport, StoredSession, Verdict
+from service.records import PARAMETERS, Decision, DiagnosisSummary, SessionReport, StoredSession, Verdict
 from service.units import (
     COVERAGE,
     HARD,
@@ -54,6 +55,14 @@ class SensorRow:
 
 
 @dataclass(frozen=True)
+class DiagnosisLine:
+    """What the simulation gets wrong, in one line."""
+
+    tone: str
+    text: str
+
+
+@dataclass(frozen=True)
 class SessionPage:
     """Everything a session's page shows."""
 
@@ -67,16 +76,17 @@ class SessionPage:
     rule: str
     coverage: str
     size: str
+    diagnosis: DiagnosisLine
 
 
-def session_page(report: SessionReport) -> SessionPage:
+def session_page(report: SessionReport, diagnosis: DiagnosisSummary | None = None) -> SessionPage:
     """The page of a session."""
     calibration, decisions = report.calibration, report.decisions
     judged = {(d.sensor, d.parameter): d for d in decisions}
     coverage = decisions[0].coverage_factor if decisions else COVERAGE
     return SessionPage(
         session=report.session,
-        condition=condition_of(report.session.verdict),
+        condition=condition_of(report.session.verdict, is_reference=report.session.is_reference),
         sensors=tuple(_sensor(s, judged, coverage) for s in calibration.sensors),
         fit=fit_in_words(calibration.fit),
         charts=residual_charts(calibration),
@@ -85,7 +95,12 @@ def session_page(report: SessionReport) -> SessionPage:
         rule=decisions[0].rule if decisions else "",
         coverage=number(coverage),
         size=size_in_words(report.session.size),
+        diagnosis=_diagnosis(diagnosis),
     )
+
+
+def _diagnosis(found: DiagnosisSummary | None) -> DiagnosisLine:
+    return DiagnosisLine("none", PENDING) if found is None else DiagnosisLine(TONES[found.state], found.summary)
 
 
 def _method(calibration: Calibration) -> str:

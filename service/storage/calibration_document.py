@@ -27,7 +27,7 @@ def calibration_from_dict(document: dict[str, Any]) -> Calibration:
         covariance=_numbers(covariance["total"]),
         repeatability=_numbers(covariance["repeatability"]),
         fit=_fit(document["fit"]),
-        residuals=_residuals(document["residuals"]),
+        residuals=residuals_from_dict(document["residuals"]),
         gauge=document["gauge"],
     )
 
@@ -58,7 +58,8 @@ def _fit(entry: dict[str, Any]) -> Fit:
     return Fit(**{**entry, "weakest": (weakest["parameter"], weakest["sigma"])})
 
 
-def _residuals(entry: dict[str, Any]) -> Residuals:
+def residuals_from_dict(entry: dict[str, Any]) -> Residuals:
+    """The residuals that `Residuals.to_dict` wrote."""
     run = entry["run"]
     return Residuals(
         value=_numbers(entry["value"]),

@@ -1,0 +1,155 @@
+"""Measured minus simulated before and after the causes are named, a panel a sensor: by angle, time, temperature."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import altair as alt
+import numpy as np
+from numpy.typing import NDArray
+
+from estimator.results import Residuals, SensorCalibration
+from service.pages.charts import DATA_FORM, ChartSet, Panel, padded, specification
+from service.units import THIN, DeviationUnit, decimals, deviation_unit, number
+
+HEIGHT = 130
+MOST_PANELS = 12
+MODELS = ("before", "after")
+RUNS = ("direct", "flipped")
+
+
+@dataclass(frozen=True)
+class _Across:
+    """What is drawn against what."""
+
+    name: str
+    heading: str
+    title: str
+    values: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Sides:
+    """Residuals of all sensors under both models; after is None where nothing was named."""
+
+    sensors: tuple[SensorCalibration, ...]
+    before: Residuals
+    after: Residuals | None
+
+
+def diagnosis_charts(sides: Sides, named: Sequence[str]) -> tuple[ChartSet, ...]:
+    """One set a way of looking and kind of sensor; the named sensors stand first, and of many only some are drawn."""
+    order = sorted(range(len(sides.sensors)), key=lambda i: (sides.sensors[i].name not in named, i))
+    kinds = dict.fromkeys(sides.sensors[i].kind for i in order)
+    return tuple(
+        _chart_set(sides, across, [i for i in order if sides.sensors[i].kind == kind][:MOST_PANELS], len(kinds) > 1)
+        for across in _ways(sides.before)
+        for kind in kinds
+    )
+
+
+def _ways(residuals: Residuals) -> tuple[_Across, ...]:
+    rows = np.arange(1.0, len(residuals.value) + 1)
+    found = []
+    if residuals.beta is not None:
+        found.append(_Across("beta", "By the angle β of the head", "β, °", np.degrees(residuals.beta) % 360))
+    if residuals.time is not None:
+        found.append(_Across("time", "By time", "h", residuals.time / 3600))
+    else:
+        found.append(_Across("order", "In the order measured", "row", rows))
+    if residuals.temperature is not None and float(np.ptp(residuals.temperature)) > 0:
+        found.append(_Across("temperature", "By temperature", "°C", residuals.temperature))
+    return tuple(found)
+
+
+def _chart_set(sides: Sides, across: _Across, columns: list[int], several: bool) -> ChartSet:
+    kind = sides.sensors[columns[0]].kind
+    largest = _largest(sides, columns)
+    unit = deviation_unit(kind, "bias", largest)
+    return ChartSet(
+        name=f"diagnosis-{kind}-{across.name}",
+        heading=f"{across.heading}, {kind}s" if several else across.heading,
+        spec=_spec(across, unit, largest * unit.factor),
+        panels=tuple(_panel(sides, i, across, unit) for i in columns),
+    )
+
+
+def _largest(sides: Sides, columns: list[int]) -> float:
+    edges = np.abs(np.stack([sides.before.value[:, columns], 2 * sides.before.sigma[:, columns]]))
+    return float(np.max(edges, initial=0.0, where=np.isfinite(edges)))
+
+
+def _panel(sides: Sides, column: int, across: _Across, unit: DeviationUnit) -> Panel:
+    shown = [_rms(side, column, unit) for side in (sides.before, sides.after) if side is not None]
+    return Panel(
+        title=sides.sensors[column].name,
+        description=f"rms {' → '.join(shown)}{THIN}{unit.label}",
+        condition=None,
+        datasets={DATA_FORM: _points(sides, column, across, unit)},
+    )
+
+
+def _rms(side: Residuals, column: int, unit: DeviationUnit) -> str:
+    value = side.value[:, column][np.isfinite(side.value[:, column])]
+    rms = float(np.sqrt(np.mean(value**2))) * unit.factor if len(value) else 0.0
+    return number(rms, decimals(rms))
+
+
+def _points(sides: Sides, column: int, across: _Across, unit: DeviationUnit) -> list[dict[str, Any]]:
+    both = [(MODELS[0], sides.before), *([] if sides.after is None else [(MODELS[1], sides.after)])]
+    flipped = sides.before.flipped
+    return [
+        {
+            "x": float(f"{across.values[row]:.6g}"),
+            "y": float(f"{side.value[row, column] * unit.factor:.5g}"),
+            "band": float(f"{2 * sides.before.sigma[row, column] * unit.factor:.4g}"),
+            "run": RUNS[int(flipped[row])] if flipped is not None else RUNS[0],
+            "model": model,
+            "row": row + 1,
+        }
+        for model, side in both
+        for row in range(min(len(across.values), len(side.value)))
+        if np.isfinite(side.value[row, column]) and np.isfinite(sides.before.sigma[row, column])
+    ]
+
+
+def _spec(across: _Across, unit: DeviationUnit, largest: float) -> dict[str, Any]:
+    domain = [-12, 372] if across.name == "beta" else padded(float(across.values.min()), float(across.values.max()))
+    ticks = {"values": [0, 90, 180, 270, 360]} if across.name == "beta" else {"tickCount": 5}
+    x = alt.X("x:Q", title=across.title, axis=alt.Axis(**ticks), scale=alt.Scale(domain=domain, nice=False, zero=False))
+    y_scale = alt.Scale(domain=padded(-largest, largest))
+    y = alt.Y("y:Q", title=unit.label, axis=alt.Axis(tickCount=5), scale=y_scale)
+    base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
+    band = base.transform_calculate(low="-datum.band").mark_area(color="var(--muted)", opacity=0.1)
+    zero = alt.Chart(alt.InlineData(values=[{"zero": 0}])).mark_rule(color="var(--muted)").encode(y="zero:Q")
+    return specification(
+        [
+            band.encode(y=alt.Y("low:Q", scale=y_scale), y2="band:Q", detail="run:N"),
+            zero,
+            _marks(base, y, unit, MODELS[0]),
+            _marks(base, y, unit, MODELS[1]),
+        ],
+        HEIGHT,
+    )
+
+
+def _marks(base: alt.Chart, y: alt.Y, unit: DeviationUnit, model: str) -> alt.Chart:
+    """Before as empty marks, after as full ones; direct round, flipped pointed."""
+    first = model == MODELS[0]
+    colour = "var(--second)" if first else "var(--accent)"
+    style = {"filled": False, "strokeWidth": 1.4} if first else {"filled": True, "stroke": "var(--card)"}
+    chart: alt.Chart = (
+        base.transform_filter(alt.datum.model == model)
+        .mark_point(color=colour, opacity=0.95, size=34, **style)
+        .encode(
+            y=y,
+            shape=alt.Shape("run:N", legend=None, scale=alt.Scale(domain=RUNS, range=["circle", "triangle-up"])),
+            tooltip=[
+                alt.Tooltip("row:Q", title="row"),
+                alt.Tooltip("run:N", title="run"),
+                alt.Tooltip("model:N", title="model"),
+                alt.Tooltip("y:Q", title=f"measured − simulated, {unit.label}"),
+            ],
+        )
+    )
+    return chart

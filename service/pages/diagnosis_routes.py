@@ -1,0 +1,59 @@
+"""The addresses of diagnoses: the page, and the forms that accept a cause or compute a unit's sessions again."""
+
+from typing import Annotated
+from urllib.parse import quote
+
+from fastapi import APIRouter, Depends, Form, HTTPException, Path, Request
+from fastapi.responses import HTMLResponse, RedirectResponse
+
+from service.dependencies import DiagnoserOf, Now, Reading, SettingsOf, StorageOf
+from service.flows.accept_model import accept_model
+from service.flows.diagnose import diagnose
+from service.flows.diagnosis_report import diagnosis_report
+from service.flows.recalibrate import recalibrate
+from service.pages.diagnosis import diagnosis_page
+from service.pages.headers import sent_by_this_site
+from service.pages.render import render
+from service.records import NewModel, Scope
+
+SEE_OTHER = 303
+NO_NUL = r"^[^\x00]*$"
+
+
+def _own_form(request: Request) -> None:
+    if not sent_by_this_site(request):
+        raise HTTPException(403, "This form was sent by another site, so nothing was changed.")
+
+
+Key = Annotated[str, Path(max_length=200, pattern=r"^[^\x00]+$")]
+OWN_FORM = [Depends(_own_form)]
+router = APIRouter(include_in_schema=False)
+
+
+@router.get("/sessions/{id}/diagnosis")
+def show_diagnosis(request: Request, store: Reading, id: Key, diagnoser: DiagnoserOf) -> HTMLResponse:
+    """What the simulation gets wrong about the session."""
+    page = diagnosis_page(diagnosis_report(store, id, diagnoser.of(id)))
+    return render(request, "diagnosis.html", page)
+
+
+@router.post("/sessions/{id}/diagnosis/accept", dependencies=OWN_FORM)
+def accept(
+    id: Key,
+    storage: StorageOf,
+    now: Now,
+    cause: Annotated[str, Form(max_length=200, pattern=NO_NUL)],
+    scope: Annotated[Scope, Form()],
+    by: Annotated[str, Form(min_length=1, max_length=200, pattern=NO_NUL)],
+    note: Annotated[str, Form(max_length=2000, pattern=NO_NUL)] = "",
+) -> RedirectResponse:
+    """Accepts a named cause, and shows the models that concern the session."""
+    accept_model(storage, diagnose(storage, id, now), NewModel(cause, scope, by, note), now)
+    return RedirectResponse(f"/sessions/{id}/diagnosis#models", SEE_OTHER)
+
+
+@router.post("/units/{serial:path}/recalibrate", dependencies=OWN_FORM)
+def recalibrate_unit(serial: Key, storage: StorageOf, settings: SettingsOf, now: Now) -> RedirectResponse:
+    """Computes a unit's sessions again under the model in force, and shows the unit."""
+    recalibrate(storage, serial, now, coverage_factor=settings.coverage_factor)
+    return RedirectResponse(f"/units/{quote(serial)}", SEE_OTHER)

@@ -1,0 +1,111 @@
+"""What naming the causes is worth, and what moved because of it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from estimator.results import Calibration, Estimate, SensorCalibration
+from estimator.session import GYROSCOPE
+from service.records import StoredDiagnosis, StoredSession
+from service.units import deviation_unit, measured, number
+from service.verdicts import Condition, condition_of
+
+
+@dataclass(frozen=True)
+class GainRow:
+    """One measure of prediction, before and after."""
+
+    name: str
+    meaning: str
+    before: str
+    after: str
+
+
+@dataclass(frozen=True)
+class Moved:
+    """How far one sensor's parameters moved because the causes are in the model."""
+
+    sensor: str
+    scale: str
+    bias: str
+    axis: str
+
+
+@dataclass(frozen=True)
+class GainView:
+    """The gain of the extended model."""
+
+    held_out: str
+    rows: tuple[GainRow, ...]
+    moved: tuple[Moved, ...]
+    verdict_before: Condition
+    verdict_after: Condition | None
+
+
+def gain_view(
+    document: dict[str, Any], found: StoredDiagnosis, session: StoredSession, before: Calibration, after: Calibration
+) -> GainView:
+    """Before is the calibration in force, after the one with the named causes."""
+    gain = document["gain"]
+    kinds = [sensor.kind for sensor in after.sensors]
+    return GainView(
+        held_out="positions that took no part in the fit" if gain["held_out"] == "positions" else "another session",
+        rows=_rows(gain, "gyroscope" if kinds and set(kinds) == {GYROSCOPE} else "accelerometer"),
+        moved=tuple(_moved(a, b) for a, b in zip(before.sensors, after.sensors, strict=False) if a.name == b.name),
+        verdict_before=condition_of(session.verdict),
+        verdict_after=None if found.verdict_after is None else condition_of(found.verdict_after),
+    )
+
+
+def _rows(gain: dict[str, Any], kind: str) -> tuple[GainRow, ...]:
+    before, after = gain["before"], gain["after"]
+    unit = deviation_unit(kind, "bias", max(_known(before["rms"]), _known(after["rms"])))
+    measures: Sequence[tuple[str, str, str, float]] = (
+        ("rms", f"error of prediction, {unit.label}", "rms", unit.factor),
+        ("χ² per degree of freedom", "1 where the noise explains the errors", "chi2_per_dof", 1.0),
+        ("log score", "of a reading; higher is better", "log_score", 1.0),
+    )
+    return tuple(
+        GainRow(name, meaning, *(number(_scaled(part[key], factor), 3) for part in (before, after)))
+        for name, meaning, key, factor in measures
+    )
+
+
+def _known(value: float | None) -> float:
+    return 0.0 if value is None else abs(value)
+
+
+def _scaled(value: float | None, factor: float) -> float | None:
+    return None if value is None else value * factor
+
+
+def _moved(before: SensorCalibration, after: SensorCalibration) -> Moved:
+    return Moved(
+        sensor=after.name,
+        scale=_relative(before.scale, after.scale, after.kind),
+        bias=_change(before.bias, after.bias, after.kind),
+        axis=_turned(before, after),
+    )
+
+
+def _relative(before: Estimate, after: Estimate, kind: str) -> str:
+    if before.value is None or after.value is None or after.sigma is None:
+        return "–"
+    change, sigma = after.value / before.value - 1, after.sigma / abs(after.value)
+    return measured(change, sigma, deviation_unit(kind, "scale", max(abs(change), sigma)))
+
+
+def _change(before: Estimate, after: Estimate, kind: str) -> str:
+    if before.value is None or after.value is None or after.sigma is None:
+        return "–"
+    change = after.value - before.value
+    return measured(change, after.sigma, deviation_unit(kind, "bias", max(abs(change), after.sigma)))
+
+
+def _turned(before: SensorCalibration, after: SensorCalibration) -> str:
+    if before.axis is None or after.axis is None or after.axis_sigma is None:
+        return "–"
+    angle = float(np.linalg.norm(np.cross(before.axis, after.axis)))
+    return measured(angle, after.axis_sigma, deviation_unit(after.kind, "axis", max(angle, after.axis_sigma)))
