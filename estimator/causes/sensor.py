@@ -143,7 +143,7 @@ class Saturation(SensorCause):
     def plausible(self, shape: Shape, amplitude: float) -> bool:
         """One is what clipping has; less where few readings leave the limit open between two levels."""
         cut = int(np.count_nonzero(shape.columns))
-        return (0.4 if cut > 2 else 0.02) < amplitude < 2.5
+        return (0.0, 0.0, 0.1, 0.4)[min(cut, 3)] < amplitude < 2.5
 
     def beyond(self, setting: Setting, i: int, side: float) -> tuple[Array, Array]:
         """Size (R,) of what sensor i should have read on a side, at the input, and its sign."""

@@ -172,8 +172,17 @@ def _score(evidence: Evidence, traces: Traces, taken: Array, z: Array) -> Iterab
         p_value = float(chdtrc(q, statistic)) if q else 1.0
         if p_value < WORTH and not within_reason(evidence, traces.cause, shape, amplitude[s]):
             continue
+        if (traces.raw[s] == 0).any() and not seen_within(columns[s][:, traces.raw[s] > 0], z, places):
+            continue
         weight = bayes_factor(statistic, q) - float(np.log(places))
         yield Scored(traces.cause, shape, traces.lasting[s], traces.columns[s], statistic, q, weight, p_value, places)
+
+
+def seen_within(columns: Array, z: Array, places: int) -> bool:
+    """Whether a cause beside which the sensor's move is left open shows in the session itself: columns (n, q)."""
+    basis, size, _ = np.linalg.svd(columns, full_matrices=False)
+    live = basis[:, size > 1e-9 * max(size[0], 1e-300)]
+    return float(chdtrc(live.shape[1], ((live.T @ z) ** 2).sum())) * places < WORTH
 
 
 def within_reason(evidence: Evidence, cause: Signature, shape: Shape, amplitude: Array) -> bool:

@@ -8,6 +8,7 @@ withdrawn.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 from scipy.special import chdtrc
@@ -131,7 +132,7 @@ def begin(baseline: Baseline, history: Sequence[Baseline], catalogue: Sequence[C
 
 def search(start: Search) -> Search:
     """Causes, then what they leave."""
-    state = without_needless_drift(settle(causes(start)))
+    state = best_pair(without_needless_drift(settle(causes(start))))
     return unevenness(judge_structures(structures(state)))
 
 
@@ -277,6 +278,25 @@ def without_needless_drift(state: Search) -> Search:
                 state = rival
                 break
     return state
+
+
+def best_pair(state: Search) -> Search:
+    """Two causes of stand or fixture chosen together: one after another, the first may patch up both."""
+    common = [f for f in state.found if not f.best.shape.sensors]
+    if len(common) != 2:
+        return state
+    others = replace(state, found=tuple(f for f in state.found if f not in common))
+    scored = score(state.evidence, state.traces, others.taken())
+    known = {f.best.group for f in common}
+    best, weight = state, total(state)
+    for first, second in combinations([s for s in scored if not s.shape.sensors], 2):
+        if {first.group, second.group} == known or first.group == second.group:
+            continue
+        pair = tuple(Found(s, 0.0, ((s, s.evidence),)) for s in (first, second))
+        rival = replace(others, found=(*others.found, *pair))
+        if (value := total(rival)) > weight:
+            best, weight = rival, value
+    return best if best is state else settle(best)
 
 
 def structures(state: Search) -> Search:
