@@ -22,6 +22,7 @@ COMMANDS = {
     "fleet": "report.fleet",
     "report": "report.report",
     "simulate": "simulate.simulate_files",
+    "plan": "plan.plan_session",
     "db": "database.database",
 }
 """Every command, and where it is below `service.commands`: a function, or commands of its own."""

@@ -1,0 +1,195 @@
+"""`imu-health plan`: what a session would tell, before it is measured."""
+
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from pydantic import ValidationError
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from estimator.diagnosis.orientations import fitted_state
+from estimator.errors import Problem, SessionError
+from estimator.planning import OrientationRank, Plan, plan, proposed_orientations, rank_of_orientations
+from estimator.planning.expected import head_kind, input_noise
+from estimator.session import ARBITRARY_ORIENTATIONS, Array, CalibrationSession
+from service.commands.console import UNUSABLE, AsJson, print_json, problem_line, say, screen
+from service.ingest import read_upload
+from service.planning.question import PlanQuestion
+from service.planning.words import (
+    UNSEEN,
+    blind,
+    headline,
+    limit_in_words,
+    seen,
+    sigma_in_words,
+    tolerance_in_words,
+)
+from service.units import number
+
+PARAMETERS = ("scale", "bias", "quadratic", "axis")
+MOST_ORIENTATIONS = 200
+
+
+def plan_session(
+    file: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="SESSION", help="Session whose block, stand and noise to plan with.", show_default=False
+        ),
+    ] = None,
+    kind: Annotated[str, typer.Option(help="Without SESSION: accelerometer or gyroscope.")] = "accelerometer",
+    sensors: Annotated[int, typer.Option("--sensors", "-m", help="Without SESSION: sensors on a cone.")] = 6,
+    alpha: Annotated[
+        float | None, typer.Option(help="Elevation of the head, degrees.", show_default="proposed")
+    ] = None,
+    positions: Annotated[
+        int | None, typer.Option("--positions", "-n", help="Positions a run.", show_default="proposed")
+    ] = None,
+    runs: Annotated[str, typer.Option(help="both or direct.")] = "both",
+    tolerance: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="PARAMETER=AMOUNT: scale in ppm, bias in µg (°/h), quadratic in µg/g², axis in arcsec. Repeatable.",
+            show_default=False,
+        ),
+    ] = None,
+    minutes: Annotated[float, typer.Option(help="Time a position takes.")] = 2.0,
+    noise: Annotated[
+        float | None, typer.Option(help="One sigma of a reading, µg (°/h).", show_default="as SESSION states or shows")
+    ] = None,
+    orientations: Annotated[
+        int | None,
+        typer.Option(help="Propose this many still orientations instead of a stand.", show_default=False),
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Plan a session: elevation, positions, expected uncertainty of every parameter, and what it cannot see.
+
+    A SESSION in arbitrary orientations is answered with the rank of its orientations and what to add.
+    """
+    question = asked(
+        kind=kind, sensors=sensors, elevation=alpha, positions=positions, runs=runs, minutes=minutes, noise=noise,
+        **dict(map(amount, tolerance or ())),
+    )  # fmt: skip
+    try:
+        like = question.cone() if file is None else read_upload(file.read_bytes(), str(file))
+        if orientations is not None or like.programme == ARBITRARY_ORIENTATIONS:
+            _show(ranked(like, orientations), as_json)
+        else:
+            sigma = question.sigma(like) if file is None or noise is not None else input_noise(like)
+            _show(plan(like, question.request(head_kind(like)), sigma=sigma), as_json)
+    except (SessionError, OSError) as fault:
+        say(_line(file, fault))
+        raise typer.Exit(UNUSABLE) from fault
+
+
+def _line(file: Path | None, fault: SessionError | OSError) -> str:
+    if isinstance(fault, SessionError):
+        return problem_line(file or Path("plan"), fault.problems)
+    return f"{file}: file: {fault.strerror or fault}; check the name and that it can be read"
+
+
+def _show(found: Plan | OrientationRank, as_json: bool) -> None:
+    if as_json:
+        print_json(found.to_dict())
+    else:
+        screen().print(plan_view(found) if isinstance(found, Plan) else orientation_view(found))
+
+
+def asked(**options: object) -> PlanQuestion:
+    """The question; a usage error that names the option where it makes no sense."""
+    try:
+        return PlanQuestion.model_validate({k: v for k, v in options.items() if v is not None})
+    except ValidationError as fault:
+        faults = "; ".join(f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in fault.errors())
+        raise typer.BadParameter(faults) from fault
+
+
+def amount(text: str) -> tuple[str, str]:
+    """``bias=50`` as a name and a number still to be checked."""
+    name, equals, value = text.partition("=")
+    if not equals or name not in PARAMETERS:
+        raise typer.BadParameter(f"{text!r}: write PARAMETER=AMOUNT, for instance bias=50; {', '.join(PARAMETERS)}")
+    return name, value
+
+
+def ranked(like: CalibrationSession, wanted: int | None) -> OrientationRank:
+    """Rank of the session's own orientations, or of as many as are asked for."""
+    if wanted is None:
+        return rank_of_orientations(like.sensors, stated(like))
+    if not 1 <= wanted <= MOST_ORIENTATIONS:
+        raise SessionError([Problem("--orientations", f"ask for 1 to {MOST_ORIENTATIONS}")])
+    return rank_of_orientations(like.sensors, proposed_orientations(like.sensors, wanted))
+
+
+def stated(like: CalibrationSession) -> Array:
+    """(R, 3) directions as the session states them, else as its readings show them."""
+    if like.directions is None or not np.isfinite(like.directions).all():
+        return fitted_state(like).directions
+    return like.directions
+
+
+def plan_view(found: Plan) -> RenderableType:
+    """The plan for people."""
+    coverage = number(found.request.coverage)
+    heading = Text(headline(found), "bold")
+    facts = Text(
+        f"Head at {number(float(np.degrees(found.elevation)), 1)}° "
+        f"(formula for the stand alone: {number(float(np.degrees(found.formula_elevation)), 1)}°); "
+        f"equal steps are {number(100 * found.optimal.efficiency, 1)} % as good as the best positions."
+    )
+    return Group(heading, facts, Text(""), _parameters(found, coverage), Text(""), _limits(found), *_blind(found))
+
+
+def _parameters(found: Plan, coverage: str) -> Table:
+    table = Table(box=None, pad_edge=False, title=f"Expected, U with k = {coverage}", title_justify="left")
+    for heading in ("sensor", *PARAMETERS):
+        table.add_column(heading)
+    rows = [found.judged[i : i + len(PARAMETERS)] for i in range(0, len(found.judged), len(PARAMETERS))]
+    for row in rows:
+        cells = []
+        for one in row:
+            verdict = "" if one.verdict == "not judged" else f"{tolerance_in_words(one)}, {one.verdict}"
+            cells.append(f"{sigma_in_words(one, found.request.coverage)} {verdict}".strip())
+        table.add_row(row[0].sensor, *cells)
+    return table
+
+
+def _limits(found: Plan) -> Table:
+    kind = head_kind(found.schedule)
+    table = Table(box=None, pad_edge=False, title="Smallest effect that would be detected", title_justify="left")
+    table.add_column("cause")
+    table.add_column("size")
+    for limit in seen(found):
+        table.add_row(limit.cause.replace("-", " "), limit_in_words(limit, kind))
+    return table
+
+
+def _blind(found: Plan) -> list[Text]:
+    reasons: dict[str, list[str]] = {}
+    for limit in blind(found):
+        reasons.setdefault(limit_in_words(limit, ""), []).append(limit.cause.replace("-", " "))
+    lines = [Text(f"Cannot see {', '.join(causes)}: {reason}.", "yellow") for reason, causes in reasons.items()]
+    if found.unseen:
+        lines.append(Text(f"{UNSEEN.capitalize()}: {', '.join(found.unseen)}.", "yellow"))
+    return lines
+
+
+def orientation_view(found: OrientationRank) -> RenderableType:
+    """The rank for people."""
+    said = "identify everything" if found.full else "leave something open"
+    lines = [
+        Text(f"{len(found.directions)} orientations {said}: rank {found.rank} of {found.parameters}.", "bold"),
+        Text(f"Least known: {found.weakest[0]}."),
+        *(Text(f"Open: {direction}", "yellow") for direction in found.unseen),
+    ]
+    table = Table(box=None, pad_edge=False, title="Direction of up, block axes", title_justify="left")
+    for heading in ("", "x", "y", "z"):
+        table.add_column(heading)
+    for name, directions in (("planned", found.directions), ("add", found.add)):
+        for direction in directions:
+            table.add_row(name, *(number(float(x), 3) for x in direction))
+    return Group(*lines, Text(""), table)

@@ -1,0 +1,123 @@
+"""A plan as people ask for it: a block on a cone or a known one, a stand, tolerances, in people's units."""
+
+from dataclasses import replace
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+
+from estimator.planning import Request, Wanted
+from estimator.results import ARCSEC
+from estimator.session import (
+    ACCELEROMETER,
+    GYROSCOPE,
+    Array,
+    CalibrationSession,
+    Sensor,
+    Site,
+    Stand,
+    StandErrors,
+)
+from estimator.simulate import cone, stand_schedule
+from service.units import DEVIATION_UNITS
+
+HALF_ANGLE = float(np.arccos(1 / np.sqrt(3)))
+"""54.7°: three of the axes are orthogonal."""
+NOISE = {ACCELEROMETER: 2.5, GYROSCOPE: 0.002}
+"""µg, °/h where none is stated: the quantisation of 0.6″ a pulse over 100 s for gyros."""
+VARIATION = {ACCELEROMETER: 6.7, GYROSCOPE: 0.0133}
+"""µg, °/h: of the published block, one sigma."""
+SCALE = {ACCELEROMETER: 0.12, GYROSCOPE: 1 / (0.6 * ARCSEC)}
+COUNT_TIME = 100.0
+COUNT_TIME_SIGMA = 1e-5
+GYRO_STAND = (1.0, 5.0)
+"""arcsec: errors of latitude and meridian."""
+
+
+def _blank(value: object) -> object:
+    """An empty field of a form says nothing."""
+    return None if value == "" else value
+
+
+Amount = Annotated[float | None, BeforeValidator(_blank), Field(gt=0, le=1e9, allow_inf_nan=False)]
+Arcsec = Annotated[float, Field(ge=0, le=3600, allow_inf_nan=False)]
+
+
+class PlanQuestion(BaseModel):
+    """What is asked; an amount that is left out is proposed, taken from the block, or not judged."""
+
+    model_config = ConfigDict(frozen=True)
+
+    kind: Literal["accelerometer", "gyroscope"] = "accelerometer"
+    sensors: Annotated[int, Field(ge=3, le=24)] = 6
+    latitude: Annotated[float, Field(ge=-90, le=90, allow_inf_nan=False)] = 55.81
+    theta: Arcsec = 0.33
+    alpha_error: Arcsec = 1.0
+    beta_error: Arcsec = 1.0
+    noise: Amount = None
+    variation: Amount = None
+    elevation: Annotated[float | None, BeforeValidator(_blank), Field(ge=1, le=89, allow_inf_nan=False)] = None
+    positions: Annotated[int | None, BeforeValidator(_blank), Field(ge=3, le=360)] = None
+    runs: Literal["both", "direct"] = "both"
+    minutes: Annotated[float, Field(gt=0, le=1440, allow_inf_nan=False)] = 2.0
+    scale: Amount = None
+    bias: Amount = None
+    quadratic: Amount = None
+    axis: Amount = None
+
+    def request(self, kind: str) -> Request:
+        """The request for blocks whose elevation is that of ``kind``."""
+        return Request(
+            elevation=None if self.elevation is None else float(np.radians(self.elevation)),
+            positions=self.positions,
+            runs=(False, True) if self.runs == "both" else (False,),
+            wanted=self.wanted(kind),
+            time_per_position=60 * self.minutes,
+        )
+
+    def wanted(self, kind: str) -> Wanted:
+        """The tolerances in SI."""
+
+        def si(parameter: str) -> float | None:
+            value: float | None = getattr(self, parameter)
+            return None if value is None else value / DEVIATION_UNITS[kind, parameter].factor
+
+        return Wanted(si("scale"), si("bias"), si("quadratic"), si("axis"))
+
+    def cone(self) -> CalibrationSession:
+        """Equal sensors on a cone of 54.7° about the head's axis."""
+        letter = "A" if self.kind == ACCELEROMETER else "G"
+        unit = "V" if self.kind == ACCELEROMETER else "pulse"
+        axes = cone(self.sensors, HALF_ANGLE)
+        return self.block(
+            tuple(Sensor(f"{letter}{i + 1}", self.kind, e, SCALE[self.kind], unit) for i, e in enumerate(axes))
+        )
+
+    def block(self, sensors: tuple[Sensor, ...]) -> CalibrationSession:
+        """A schedule for sensors on the stand that is asked for."""
+        site = Site(latitude=float(np.radians(self.latitude)))
+        gyro = any(s.kind == GYROSCOPE for s in sensors)
+        angle = float(np.radians(40.0))
+        stand = Stand("planned", alpha=angle, chi=angle if gyro else None, sigma=self.stand_errors(gyro))
+        repeatable = tuple(replace(s, bias_repeatability=self.spread(s.kind)) for s in sensors)
+        return stand_schedule(repeatable, stand, site, 24, count_time=COUNT_TIME if gyro else None)
+
+    def stand_errors(self, gyro: bool) -> StandErrors:
+        """One sigmas in SI; latitude, meridian and count time act on gyros only."""
+        theta, latitude, meridian = (x * ARCSEC for x in (self.theta, *GYRO_STAND))
+        errors = StandErrors(theta, theta, self.alpha_error * ARCSEC, self.beta_error * ARCSEC)
+        return replace(errors, latitude=latitude, meridian=meridian, count_time=COUNT_TIME_SIGMA) if gyro else errors
+
+    def spread(self, kind: str) -> float:
+        """Variation of the zero, SI."""
+        stated = VARIATION[kind] if self.variation is None else self.variation
+        return stated / DEVIATION_UNITS[kind, "bias"].factor
+
+    def sigma(self, like: CalibrationSession) -> Array:
+        """(m,) one sigma of a reading at the input, variation of the zero included."""
+        noise = np.array([self._noise(s.kind) for s in like.sensors])
+        return np.asarray(np.hypot(noise, [s.bias_repeatability for s in like.sensors]))
+
+    def _noise(self, kind: str) -> float:
+        stated = NOISE[kind] if self.noise is None else self.noise
+        return stated / DEVIATION_UNITS[kind, "bias"].factor
