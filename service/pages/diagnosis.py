@@ -25,7 +25,7 @@ TONES = {
     DiagnosisState.NOTHING: "pass",
     DiagnosisState.NAMED: "conditional-fail",
     DiagnosisState.UNDECIDED: "undecidable",
-    DiagnosisState.UNEXPLAINED: "conditional-pass",
+    DiagnosisState.UNEXPLAINED: "undecidable",
     DiagnosisState.FAILED: "none",
 }
 """Style and icon, in the tones of the verdicts: how much it asks for attention."""
@@ -111,7 +111,7 @@ def _with_evidence(page: DiagnosisPage, report: DiagnosisReport, document: dict[
     findings = tuple(finding_view(f, report.revisions) for f in document["findings"])
     return replace(
         page,
-        headline=findings[0].sentence if found.state is DiagnosisState.NAMED else page.headline,
+        headline=_headline(page.headline, findings),
         what_to_do=_what_to_do(found.state, findings),
         findings=findings,
         structures=_structures(document["structures"]),
@@ -124,6 +124,18 @@ def _with_evidence(page: DiagnosisPage, report: DiagnosisReport, document: dict[
         limits=limits_view(document["limits"]),
         notes=tuple(document["notes"]),
     )
+
+
+def _headline(otherwise: str, findings: Sequence[FindingView]) -> str:
+    """The sentence of the first cause, or the choice that cannot be made."""
+    if not findings:
+        return otherwise
+    first = findings[0]
+    if not first.doubtful:
+        return first.sentence
+    names = [in_words(choice.cause) for choice in first.choices]
+    who = f" ({', '.join(first.sensors)})" if first.sensors else ""
+    return f"Cannot tell which: {', '.join(names[:-1])} or {names[-1]}{who}"
 
 
 def _what_to_do(state: DiagnosisState, findings: Sequence[FindingView]) -> str:

@@ -12,6 +12,8 @@ from service.records import StoredDiagnosis, StoredSession
 from service.units import deviation_unit, measured, number
 from service.verdicts import Condition, condition_of
 
+WORTH_A_LINE = 0.02
+
 
 @dataclass(frozen=True)
 class GainRow:
@@ -40,6 +42,7 @@ class GainView:
     held_out: str
     rows: tuple[GainRow, ...]
     moved: tuple[Moved, ...]
+    """Sensors of which anything moved."""
     verdict_before: Condition
     verdict_after: Condition | None
 
@@ -53,7 +56,11 @@ def gain_view(
     return GainView(
         held_out="positions that took no part in the fit" if gain["held_out"] == "positions" else "another session",
         rows=_rows(gain, "gyroscope" if kinds and set(kinds) == {GYROSCOPE} else "accelerometer"),
-        moved=tuple(_moved(a, b) for a, b in zip(before.sensors, after.sensors, strict=False) if a.name == b.name),
+        moved=tuple(
+            _moved(a, b)
+            for a, b in zip(before.sensors, after.sensors, strict=False)
+            if a.name == b.name and _has_moved(a, b)
+        ),
         verdict_before=condition_of(session.verdict),
         verdict_after=None if found.verdict_after is None else condition_of(found.verdict_after),
     )
@@ -79,6 +86,21 @@ def _known(value: float | None) -> float:
 
 def _scaled(value: float | None, factor: float) -> float | None:
     return None if value is None else value * factor
+
+
+def _has_moved(before: SensorCalibration, after: SensorCalibration) -> bool:
+    """Whether any parameter moved by a share of its uncertainty that is worth a line."""
+    pairs = ((before.scale, after.scale), (before.bias, after.bias))
+    shifts = [
+        abs(b.value - a.value) > WORTH_A_LINE * b.sigma
+        for a, b in pairs
+        if a.value is not None and b.value is not None and b.sigma
+    ]
+    turned = before.axis is not None and after.axis is not None and after.axis_sigma is not None
+    if turned:
+        angle = float(np.linalg.norm(np.cross(before.axis, after.axis)))  # type: ignore[arg-type]  # checked above
+        shifts.append(angle > WORTH_A_LINE * (after.axis_sigma or 0.0))
+    return any(shifts)
 
 
 def _moved(before: SensorCalibration, after: SensorCalibration) -> Moved:

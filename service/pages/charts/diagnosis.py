@@ -13,7 +13,7 @@ from service.pages.charts import DATA_FORM, ChartSet, Panel, padded, specificati
 from service.units import THIN, DeviationUnit, decimals, deviation_unit, number
 
 HEIGHT = 130
-MOST_PANELS = 12
+MOST_PANELS = 9
 MODELS = ("before", "after")
 RUNS = ("direct", "flipped")
 
@@ -137,10 +137,11 @@ def _marks(base: alt.Chart, y: alt.Y, unit: DeviationUnit, model: str) -> alt.Ch
     """Before as empty marks, after as full ones; direct round, flipped pointed."""
     first = model == MODELS[0]
     colour = "var(--second)" if first else "var(--accent)"
-    style = {"filled": False, "strokeWidth": 1.4} if first else {"filled": True, "stroke": "var(--card)"}
+    empty, full = {"filled": False, "strokeWidth": 1.4}, {"filled": True, "stroke": "var(--card)", "strokeWidth": 0.5}
+    style = empty if first else full
     chart: alt.Chart = (
         base.transform_filter(alt.datum.model == model)
-        .mark_point(color=colour, opacity=0.95, size=34, **style)
+        .mark_point(color=colour, opacity=1, size=38, **style)
         .encode(
             y=y,
             shape=alt.Shape("run:N", legend=None, scale=alt.Scale(domain=RUNS, range=["circle", "triangle-up"])),
