@@ -41,28 +41,34 @@ A parameter vector holds five elements a sensor, sensor after sensor: scale, bia
 last two are rotations of the axis along the two tangent vectors that the result states.
 """
 
-from estimator.calibration import calibrate, calibrate_many
+from estimator.alignment import AlignmentResult, RateTableResult, align, rate_table
+from estimator.calibration import calibrate_many
 from estimator.diagnosis import Diagnosis, calibrate_extended, diagnose
 from estimator.errors import FormatError, Problem, ScheduleError, SessionError
+from estimator.programmes import calibrate
 from estimator.reading import read_session
 from estimator.results import Calibration
 from estimator.session import CalibrationSession, Sensor, Site, Stand, StandErrors
 
 __all__ = [
+    "AlignmentResult",
     "Calibration",
     "CalibrationSession",
     "Diagnosis",
     "FormatError",
     "Problem",
+    "RateTableResult",
     "ScheduleError",
     "Sensor",
     "SessionError",
     "Site",
     "Stand",
     "StandErrors",
+    "align",
     "calibrate",
     "calibrate_extended",
     "calibrate_many",
     "diagnose",
+    "rate_table",
     "read_session",
 ]

@@ -61,9 +61,11 @@ class SensorCalibration:
     axis_covariance: Array
     """(2, 2) total covariance of (axis_1, axis_2), rad²; NaN when not observable."""
     observable: dict[str, bool]
-    """Keys scale, bias, quadratic, axis."""
+    """Keys scale, bias, quadratic, axis; of a session that does not speak of all of them, those that it speaks of."""
     known: tuple[KnownCombination, ...] = ()
     """What is known of the parameters that are not observable one by one."""
+    misalignment: Estimate | None = None
+    """Turn of a gyro's input axis toward the axis of a turntable (E_xz, E_yz), rad; only of sessions on one."""
 
     @property
     def axis_sigma(self) -> float | None:
@@ -72,6 +74,7 @@ class SensorCalibration:
 
     def to_dict(self) -> dict[str, Any]:
         sigma = self.axis_sigma
+        tilted = {} if self.misalignment is None else {"misalignment": self.misalignment.to_dict()}
         return {
             "name": self.name,
             "kind": self.kind,
@@ -84,6 +87,7 @@ class SensorCalibration:
                 "tangents": self.axis_tangents.tolist(),
                 "covariance": json_numbers(self.axis_covariance),
             },
+            **tilted,
             "observable": dict(self.observable),
             "known_combinations": [k.to_dict() for k in self.known],
         }

@@ -16,7 +16,14 @@ ARBITRARY_ORIENTATIONS = "arbitrary-orientations"
 ROTATION_ALIGNMENT = "rotation-alignment"
 RATE_TABLE = "rate-table"
 IN_SERVICE = "in-service"
+CALIBRATIONS = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS)
+"""Programmes that calibrate every sensor of a block."""
 PROGRAMMES = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, ROTATION_ALIGNMENT, RATE_TABLE, IN_SERVICE)
+
+
+def comparable(programme: str) -> tuple[str, ...]:
+    """Programmes whose results are of the same parameters, so that one is judged against the other."""
+    return CALIBRATIONS if programme in CALIBRATIONS else (programme,)
 
 
 @dataclass(frozen=True, eq=False)

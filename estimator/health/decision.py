@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtr
 
-from estimator.health.deviation import Deviation, axis_offset, deviation
+from estimator.health.deviation import NOT_SEEN, Deviation, axis_offset, deviation
 from estimator.health.disc import judge_length
 from estimator.health.rule import SESSION_LEVEL, UNDECIDABLE, critical_factors, state
-from estimator.results import Calibration, SensorCalibration
+from estimator.results import Calibration, Estimate, SensorCalibration
 
-PARAMETERS = ("scale", "bias", "quadratic", "axis")
+PARAMETERS = ("scale", "bias", "quadratic", "axis", "misalignment")
 FLOOR = 1e-9
 """Standard uncertainties below this part of the tolerance are taken as this part of it."""
 
@@ -76,7 +76,7 @@ def judge(
         (sensor, origins.get(sensor.name), parameter, tolerances[sensor.kind, parameter])
         for sensor in calibration.sensors
         for parameter in PARAMETERS
-        if (sensor.kind, parameter) in tolerances
+        if parameter in sensor.observable and (sensor.kind, parameter) in tolerances
     ]
     assessed = [None if reference is None else _assess(*case, coverage_factor) for case in cases]
     judged = sum(a is not None and coverage_factor * a.u <= case[3] for a, case in zip(assessed, cases, strict=True))
@@ -145,12 +145,17 @@ def _judgement(
     )
 
 
+def _value(sensor: SensorCalibration, parameter: str) -> float | None:
+    estimate: Estimate = getattr(sensor, parameter) or NOT_SEEN
+    return estimate.value
+
+
 def _values(
     sensor: SensorCalibration, origin: SensorCalibration | None, parameter: str
 ) -> tuple[float | None, float | None]:
     """Measured and reference value; a session that becomes the reference is its own origin."""
     if parameter != "axis":
-        return getattr(sensor, parameter).value, None if origin is None else getattr(origin, parameter).value
+        return _value(sensor, parameter), None if origin is None else _value(origin, parameter)
     if sensor.axis is None or origin is None or origin.axis is None:
         return None, None
     return float(np.hypot(*axis_offset(sensor.axis, origin.axis, origin.axis_tangents))), 0.0

@@ -8,6 +8,9 @@ from estimator.results import Estimate, SensorCalibration
 from estimator.session import Array
 
 
+NOT_SEEN = Estimate(None, None)
+
+
 @dataclass(frozen=True, eq=False)
 class Deviation:
     """A measured change."""
@@ -22,8 +25,8 @@ def deviation(current: SensorCalibration, reference: SensorCalibration, paramete
     """Change of a parameter since the reference; None when one of the sessions does not observe it."""
     if parameter == "axis":
         return _axis_deviation(current, reference)
-    now: Estimate = getattr(current, parameter)
-    then: Estimate = getattr(reference, parameter)
+    now: Estimate = getattr(current, parameter) or NOT_SEEN
+    then: Estimate = getattr(reference, parameter) or NOT_SEEN
     if now.value is None or then.value is None or now.sigma is None or then.sigma is None:
         return None
     if parameter == "scale" and then.value == 0:

@@ -1,0 +1,27 @@
+"""The one door to every programme: a session, whatever it is, to the calibration that its programme gives."""
+
+from estimator.alignment import align, rate_table
+from estimator.alignment.as_calibration import alignment_calibration, rate_table_calibration
+from estimator.calibration import calibrate as calibrate_block
+from estimator.results import Calibration
+from estimator.session import RATE_TABLE, ROTATION_ALIGNMENT, CalibrationSession
+
+
+def calibrate(session: CalibrationSession, *, quadratic: bool | None = None) -> Calibration:
+    """What a session says of its block's sensors.
+
+    Parameters
+    ----------
+    session : of any programme. Calibrations give every sensor's parameters; an alignment or a rate table gives zeros
+        and mounting errors of the block's axes; raw logs are averaged first.
+    quadratic : whether arbitrary orientations estimate the second-order term; None lets the orientations decide.
+
+    Raises
+    ------
+    ScheduleError : the rows cannot support the programme.
+    """
+    if session.programme == ROTATION_ALIGNMENT:
+        return alignment_calibration(align(session))
+    if session.programme == RATE_TABLE:
+        return rate_table_calibration(rate_table(session))
+    return calibrate_block(session, quadratic=quadratic)
