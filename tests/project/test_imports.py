@@ -28,7 +28,7 @@ ESTIMATOR_LAYERS = (
     {"forward", "writing"},
     {"causes"},
     {"simulate", "calibration", "alignment", "parity"},
-    {"diagnosis", "health"},
+    {"diagnosis", "health", "programmes"},
     {"planning"},
 )
 HOMES = {
