@@ -9,6 +9,9 @@ from estimator.results import Calibration, Residuals
 from estimator.session import CalibrationSession
 
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
+"""What a calibration gives of every sensor."""
+ALL_PARAMETERS = (*PARAMETERS, "misalignment")
+"""With what only a turntable shows."""
 
 
 class Verdict(StrEnum):

@@ -37,6 +37,7 @@ DEVIATION_UNITS = {
     ("gyroscope", "bias"): DeviationUnit("°/h", 3600 / DEGREE),
     ("gyroscope", "quadratic"): DeviationUnit("ppm/(°/s)", 1e6 * DEGREE),
     ("gyroscope", "axis"): ARCSEC,
+    ("gyroscope", "misalignment"): ARCSEC,
 }
 COARSE_UNITS = {
     ("accelerometer", "scale"): DeviationUnit("%", 1e2),
@@ -47,6 +48,7 @@ COARSE_UNITS = {
     ("gyroscope", "bias"): DeviationUnit("°/s", 1 / DEGREE),
     ("gyroscope", "quadratic"): DeviationUnit("%/(°/s)", 1e2 * DEGREE),
     ("gyroscope", "axis"): DeviationUnit("°", 1 / DEGREE),
+    ("gyroscope", "misalignment"): DeviationUnit("°", 1 / DEGREE),
 }
 """What to change to when the numbers of the fine unit would pass 9,999."""
 PER_G = DeviationUnit("per g", STANDARD_GRAVITY)

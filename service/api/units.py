@@ -38,7 +38,7 @@ from service.flows.unit_report import unit_report
 router = APIRouter(prefix="/units", tags=["units"])
 TABLE = {"type": "string", "format": "binary"}
 HISTORY_FORMATS = {"text/csv": {"schema": TABLE}, "application/vnd.apache.parquet": {"schema": TABLE}}
-Parameter = Literal["scale", "bias", "quadratic", "axis"]
+Parameter = Literal["scale", "bias", "quadratic", "axis", "misalignment"]
 
 
 @router.get("", responses=errors(422))

@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
-from estimator.calibration import calibrate
 from estimator.diagnosis.model import calibrate_extended
+from estimator.programmes import calibrate
 from estimator.results import Calibration
-from estimator.session import CalibrationSession
+from estimator.session import CALIBRATIONS, CalibrationSession
 from service.records import Model, ModelRevision
 from service.storage.store import Store
 
@@ -24,4 +24,5 @@ def model_for(store: Store, session: CalibrationSession) -> Model:
 
 def calibrated(session: CalibrationSession, model: Model) -> Calibration:
     """The calibration under a model; a session that a cause of it does not show is calibrated without that cause."""
-    return calibrate_extended(session, model.causes) if model.causes else calibrate(session)
+    extends = bool(model.causes) and session.programme in CALIBRATIONS
+    return calibrate_extended(session, model.causes) if extends else calibrate(session)

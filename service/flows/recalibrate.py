@@ -6,7 +6,7 @@ from datetime import datetime
 
 from estimator.errors import SessionError
 from estimator.results import Calibration
-from estimator.session import CalibrationSession
+from estimator.session import CalibrationSession, comparable
 from service.flows.judge import judge
 from service.flows.model_in_force import calibrated, model_of
 from service.flows.parameter_values import parameter_values
@@ -82,7 +82,8 @@ def _store(store: Store, new: Recomputed, now: datetime, coverage_factor: float,
 
 def _judged(store: Store, unit: int, new: Recomputed, coverage_factor: float) -> Judged:
     since, until = store.services.around(unit, new.stored.started_at)
-    reference = store.sessions.reference(unit, new.session.block, since, until)
+    alike = comparable(new.session.programme)
+    reference = store.sessions.reference(unit, new.session.block, since, until, alike)
     own = reference is None or new.stored.is_reference
     return judge(
         new.session,

@@ -41,11 +41,15 @@ def type_of(session: CalibrationSession, calibration: Calibration) -> UnitType:
 
 
 def tolerances_of(unit_type: UnitType) -> dict[tuple[str, str], float]:
-    """T by kind of sensor and parameter; defaults for a kind that the type says nothing of."""
+    """T by kind of sensor and parameter; defaults for a kind that the type says nothing of.
+
+    A gyro's misalignment is a part of its axis' direction and has the tolerance of the axis.
+    """
     stated = {**DEFAULTS, unit_type.block: unit_type.tolerances}
     if unit_type.gyro_tolerances is not None:
         stated[GYROSCOPE] = unit_type.gyro_tolerances
     by_name = {(kind, name): getattr(given, name) for kind, given in stated.items() for name in PARAMETERS}
+    by_name[GYROSCOPE, "misalignment"] = by_name[GYROSCOPE, "axis"]
     return {key: tolerance for key, tolerance in by_name.items() if tolerance is not None}
 
 
@@ -58,5 +62,10 @@ def _described(session: CalibrationSession) -> str:
 def _observed(kind: str, calibration: Calibration) -> Tolerances:
     """The defaults of a kind without those parameters that no sensor of it shows."""
     sensors = [sensor for sensor in calibration.sensors if sensor.kind == kind]
-    unseen = {name: None for name in PARAMETERS if not any(sensor.observable[name] for sensor in sensors)}
+    unseen = {name: None for name in PARAMETERS if _is_unseen([sensor.observable.get(name) for sensor in sensors])}
     return replace(DEFAULTS[kind], **unseen)
+
+
+def _is_unseen(observable: list[bool | None]) -> bool:
+    """Whether a session that speaks of a parameter shows it on no sensor."""
+    return any(seen is not None for seen in observable) and not any(observable)

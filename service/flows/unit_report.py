@@ -2,6 +2,7 @@
 
 from datetime import datetime
 
+from estimator.session import PROGRAMMES
 from service.errors import NotFoundError
 from service.records import UnitReport
 from service.storage.queries.services import epoch
@@ -22,7 +23,7 @@ def unit_report(store: Store, serial: str, now: datetime) -> UnitReport:
     return UnitReport(
         summary=summary,
         unit_type=unit_type,
-        reference_session=store.sessions.reference(unit, unit_type.block, since, until),
+        reference_session=store.sessions.reference(unit, unit_type.block, since, until, PROGRAMMES),
         sessions=store.sessions.page(serial, 0, LATEST),
         services=services,
     )

@@ -5,7 +5,7 @@ from datetime import datetime
 
 from estimator.errors import SessionError
 from estimator.results import Calibration
-from estimator.session import CalibrationSession
+from estimator.session import CalibrationSession, comparable
 from service.flows.judge import judge
 from service.flows.model_in_force import calibrated, model_for
 from service.flows.parameter_values import parameter_values
@@ -102,7 +102,8 @@ def _unit(store: Store, new: Upload) -> int:
 def _judged(store: Store, unit: int, new: Upload, coverage_factor: float) -> Judged:
     """The session, judged against the reference of the epoch that it was measured in."""
     since, until = store.services.around(unit, measured_at(new.session, new.at))
-    reference = store.sessions.reference(unit, new.session.block, since, until)
+    alike = comparable(new.session.programme)
+    reference = store.sessions.reference(unit, new.session.block, since, until, alike)
     return judge(
         new.session,
         new.calibration,

@@ -10,7 +10,7 @@ from service.pages.diagnosis import PENDING, TONES
 from service.pages.fit import FitWords, fit_in_words
 from service.pages.known import combination_in_words
 from service.pages.residual_table import ResidualTable, residual_table
-from service.records import PARAMETERS, Decision, DiagnosisSummary, SessionReport, StoredSession, Verdict
+from service.records import ALL_PARAMETERS, Decision, DiagnosisSummary, SessionReport, StoredSession, Verdict
 from service.units import (
     COVERAGE,
     HARD,
@@ -68,6 +68,8 @@ class SessionPage:
 
     session: StoredSession
     condition: Condition
+    parameters: tuple[str, ...]
+    """Of every row's cells, in their order."""
     sensors: tuple[SensorRow, ...]
     fit: FitWords
     charts: tuple[ChartSet, ...]
@@ -83,11 +85,13 @@ def session_page(report: SessionReport, diagnosis: DiagnosisSummary | None = Non
     """The page of a session."""
     calibration, decisions = report.calibration, report.decisions
     judged = {(d.sensor, d.parameter): d for d in decisions}
+    parameters = parameters_of(calibration)
     coverage = decisions[0].coverage_factor if decisions else COVERAGE
     return SessionPage(
         session=report.session,
         condition=condition_of(report.session.verdict, is_reference=report.session.is_reference),
-        sensors=tuple(_sensor(s, judged, coverage) for s in calibration.sensors),
+        parameters=parameters,
+        sensors=tuple(_sensor(s, parameters, judged, coverage) for s in calibration.sensors),
         fit=fit_in_words(calibration.fit),
         charts=residual_charts(calibration),
         residuals=residual_table(calibration),
@@ -107,21 +111,32 @@ def _method(calibration: Calibration) -> str:
     return calibration.method.replace("/", ", ").replace("-", " ")
 
 
-def _sensor(sensor: SensorCalibration, judged: Mapping[tuple[str, str], Decision], coverage: float) -> SensorRow:
+def parameters_of(calibration: Calibration) -> tuple[str, ...]:
+    """The parameters that a session speaks of."""
+    return tuple(p for p in ALL_PARAMETERS if any(p in sensor.observable for sensor in calibration.sensors))
+
+
+def _sensor(
+    sensor: SensorCalibration,
+    parameters: tuple[str, ...],
+    judged: Mapping[tuple[str, str], Decision],
+    coverage: float,
+) -> SensorRow:
     return SensorRow(
         name=sensor.name,
         kind=sensor.kind,
-        cells=tuple(_cell(sensor, p, judged.get((sensor.name, p)), coverage) for p in PARAMETERS),
+        cells=tuple(_cell(sensor, p, judged.get((sensor.name, p)), coverage) for p in parameters),
         known=tuple(combination_in_words(k, sensor.kind) for k in sensor.known),
     )
 
 
 def _cell(sensor: SensorCalibration, parameter: str, decision: Decision | None, coverage: float) -> Cell:
     observable = sensor.observable.get(parameter, False)
+    unseen = "not observable" if parameter in sensor.observable else ""
     return Cell(
         parameter=parameter,
         observable=observable,
-        value=_value(sensor, parameter, coverage) if observable else "not observable",
+        value=_value(sensor, parameter, coverage) if observable else unseen,
         deviation=_deviation(decision),
         tolerance=_tolerance(decision),
         probability=_probability(decision),

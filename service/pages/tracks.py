@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from service.pages.changes import Change, changes_of
-from service.records import PARAMETERS, HistoryPoint, Service
+from service.records import ALL_PARAMETERS, HistoryPoint, Service
 from service.units import DeviationUnit, deviation_unit, in_unit, limit, measured, signed
 from service.verdicts import NOT_JUDGED, Condition, condition_of
 
@@ -69,7 +69,7 @@ def tracks_of(history: Iterable[HistoryPoint], services: Sequence[Service]) -> t
     """The tracks of a unit, grouped by parameter and kind of sensor, sensors in the order they come."""
     groups: dict[tuple[int, str], dict[str, list[HistoryPoint]]] = {}
     for point in sorted(history, key=lambda p: p.at):
-        group = groups.setdefault((PARAMETERS.index(point.parameter), point.kind), {})
+        group = groups.setdefault((ALL_PARAMETERS.index(point.parameter), point.kind), {})
         group.setdefault(point.sensor, []).append(point)
     return tuple(_group(groups[key], services) for key in sorted(groups))
 

@@ -9,12 +9,19 @@ from service.pages.tracks import Track, TrackPoint, day_of, tolerance_text, trac
 from service.records import HistoryPoint, Service, StoredSession, UnitReport
 from service.verdicts import NOT_JUDGED, Condition, condition_of
 
-HEADINGS = {"scale": "Scale factor", "bias": "Bias", "quadratic": "Quadratic term", "axis": "Axis"}
+HEADINGS = {
+    "scale": "Scale factor",
+    "bias": "Bias",
+    "quadratic": "Quadratic term",
+    "axis": "Axis",
+    "misalignment": "Misalignment to the turn axis",
+}
 MEANINGS = {
     "scale": "Change of the scale factor from the reference of its time.",
     "bias": "Change of the zero offset from the reference of its time.",
     "quadratic": "Change of the second-order nonlinearity from the reference of its time.",
     "axis": "Angle between the input axis and its direction in the reference of its time.",
+    "misalignment": "Change of the input axis' turn toward a turntable's axis from the reference of its time.",
 }
 
 

@@ -50,6 +50,7 @@ def _sensor(entry: dict[str, Any]) -> SensorCalibration:
         axis_covariance=_numbers(axis["covariance"]),
         observable=dict(entry["observable"]),
         known=tuple(KnownCombination(**known) for known in entry["known_combinations"]),
+        misalignment=Estimate(**entry["misalignment"]) if "misalignment" in entry else None,
     )
 
 

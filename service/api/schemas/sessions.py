@@ -61,7 +61,7 @@ class DecisionSchema(BaseModel):
 
     sensor: str = Field(description="Name of the sensor.")
     kind: str = Field(description="`accelerometer` or `gyroscope`.")
-    parameter: str = Field(description="`scale`, `bias`, `quadratic` or `axis`.")
+    parameter: str = Field(description="`scale`, `bias`, `quadratic`, `axis` or `misalignment`.")
     value: float | None = Field(description="Measured, SI; for the axis the angle from the reference axis, rad.")
     reference: float | None = Field(description="The reference session's value, SI; 0 for the axis.")
     deviation: float | None = Field(description="y, from the reference: relative for scale, else SI.")

@@ -151,7 +151,7 @@ class HistoryPointSchema(BaseModel):
     at: datetime = Field(description="When it was measured, UTC.")
     sensor: str = Field(description="Name of the sensor.")
     kind: str = Field(description="`accelerometer` or `gyroscope`.")
-    parameter: str = Field(description="`scale`, `bias`, `quadratic` or `axis`.")
+    parameter: str = Field(description="`scale`, `bias`, `quadratic`, `axis` or `misalignment`.")
     value: float | None = Field(description="SI; for the axis the angle from the reference axis, rad.")
     u: float | None = Field(description="Standard uncertainty of the value.")
     lower: float | None = Field(description="Value minus expanded uncertainty.")

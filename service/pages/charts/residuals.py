@@ -32,7 +32,14 @@ def residual_charts(calibration: Calibration) -> tuple[ChartSet, ...]:
         _chart_set(calibration, kind, across, several=len(kinds) > 1)
         for across in _ways(calibration.residuals)
         for kind in kinds
+        if _columns(calibration, kind)
     )
+
+
+def _columns(calibration: Calibration, kind: str) -> list[int]:
+    """The sensors of a kind that have residuals."""
+    value = calibration.residuals.value
+    return [i for i, s in enumerate(calibration.sensors) if s.kind == kind and np.isfinite(value[:, i]).any()]
 
 
 def _ways(residuals: Residuals) -> tuple[_Across, ...]:
@@ -43,7 +50,7 @@ def _ways(residuals: Residuals) -> tuple[_Across, ...]:
 
 
 def _chart_set(calibration: Calibration, kind: str, across: _Across, several: bool) -> ChartSet:
-    columns = [i for i, s in enumerate(calibration.sensors) if s.kind == kind]
+    columns = _columns(calibration, kind)
     residuals = calibration.residuals
     edges = np.abs(np.stack([residuals.value[:, columns], 2 * residuals.sigma[:, columns]]))
     largest = float(np.max(edges, initial=0.0, where=np.isfinite(edges)))

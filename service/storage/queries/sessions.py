@@ -5,6 +5,7 @@ from datetime import datetime
 
 from sqlalchemy import Select, select, update
 
+from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
 from service.records import Decision, Judged, StoredSession, Verdict, Worst
 from service.storage.queries.base import Queries
@@ -33,10 +34,20 @@ class Sessions(Queries):
             query = query.where(UnitRow.serial == unit)
         return tuple(_session_record(*found) for found in self._session.execute(query.offset(offset).limit(limit)))
 
-    def reference(self, unit: int, block: str, since: datetime | None, until: datetime | None) -> str | None:
-        """The session that others of the block and epoch are judged against: the first stored as a reference."""
+    def reference(
+        self,
+        unit: int,
+        block: str,
+        since: datetime | None,
+        until: datetime | None,
+        programmes: tuple[str, ...] = CALIBRATIONS,
+    ) -> str | None:
+        """The session that others of the block, epoch and programmes are judged against: the first kept as one."""
         query = select(SessionRow.id).where(
-            SessionRow.unit_id == unit, SessionRow.block == block, SessionRow.is_reference
+            SessionRow.unit_id == unit,
+            SessionRow.block == block,
+            SessionRow.programme.in_(programmes),
+            SessionRow.is_reference,
         )
         if since is not None:
             query = query.where(SessionRow.started_at >= since)
