@@ -1,0 +1,27 @@
+"""Parity: the health of a redundant block from any recording, still or moving, without a stand.
+
+Theory
+------
+m > 3 sensors with input axes H (m, 3) measure one vector n (specific force; for gyros the rate). V (m, d), d = m − 3,
+spans the null space of Hᵀ, so with a = u/K − b − c·a² by the reference calibration, p = Vᵀa is free of the motion:
+
+    p(t) = Vᵀ·ΔA·x(t) + noise,      x = (1, n/g),      ΔA (m, 4) the sensors' changes since the reference
+
+Row i of ΔA is Δb·(1, 0) + Δln K·(b, g·e) + g·(0, Δe). Regression of p on x, block by block, gives Θ = Vᵀ·ΔA: d numbers
+for the change of bias and 3 d for those of scale and axes. ΔA = H·X with any X (3, 4) leaves no trace: three numbers of
+bias and nine of scale and axes, which a common bias, a turn, a stretch or a shear of the applied vector explains.
+
+reference   what the recording is compared with: H, V, and how a sensor's change shows
+ledger      recording → means of blocks, in bounded memory
+blocks      which blocks are used, and how they are grouped into stretches that can be taken for independent
+regression  Θ with its covariance: noise of any colour, from the recording itself, and the reference's own
+hypotheses  which sensor: generalised likelihood ratio, and what the recording could have found
+check       the whole
+Source: parity space for redundant inertial sensors, Potter and Suman (1977); generalised likelihood ratio, Daly, Gai
+and Harrison (1979).
+"""
+
+from estimator.parity.check import ParityAccumulator, parity_check
+from estimator.parity.results import ParityResult
+
+__all__ = ["ParityAccumulator", "ParityResult", "parity_check"]

@@ -1,0 +1,145 @@
+"""Which blocks of a recording are used, and how they are grouped.
+
+Left out: blocks in which a channel ran into the end of its range, and blocks in motion where motion spoils parity
+(sensors that do not sit in one point feel rotation differently, and none of the model's terms says so). Whether it does
+is read from the recording: the parity of its moving blocks scatters more than that of its still ones.
+
+Noise of any colour is allowed for by grouping: a group is a stretch long enough that groups can be taken for
+independent. A stretch at rest is one group, because whatever the model misses is the same all through it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from estimator.errors import Problem, ScheduleError
+from estimator.parity.ledger import Blocks, Ledger
+
+Mask = NDArray[np.bool_]
+
+AUTO, STILL, ANY = "auto", "still", "any"
+MOTIONS = (AUTO, STILL, ANY)
+
+FLOOR = 0.05
+"""Part of the blocks that is taken to be the stillest; its upper end is the floor."""
+
+MOVING = 3.0
+"""Variance within a block, in floors, from which it counts as moving."""
+
+SPOILT = 3.0
+"""Mean square of the parity of moving blocks, in that of still ones, from which moving blocks are left out."""
+
+ENOUGH_STILL = 12
+"""Still blocks from which the moving ones can be done without."""
+
+GROUPS = 32
+"""Groups that a long recording is cut into."""
+
+FEWEST_GROUPS = 8
+"""Groups below which the noise cannot be known from the recording."""
+
+
+@dataclass(frozen=True, eq=False)
+class Selection:
+    """The blocks that are used. B blocks, G groups."""
+
+    blocks: Blocks
+    group: NDArray[np.intp]
+    """(B,) number of the group of each block."""
+    still: NDArray[np.bool_]
+    """(B,)"""
+    saturated: tuple[str, ...]
+    """Channels that ran into the end of their range somewhere."""
+    left_out: dict[str, int]
+    """Blocks not used, by reason: ``saturated``, ``moving``."""
+    total: int
+    """Blocks of the recording."""
+
+    @property
+    def groups(self) -> int:
+        return int(self.group[-1]) + 1
+
+
+def select(ledger: Ledger, motion: str) -> Selection:
+    """The usable blocks of a recording.
+
+    Parameters
+    ----------
+    motion : ``still`` uses blocks at rest only, ``any`` all, ``auto`` leaves moving ones out where they spoil parity.
+
+    Raises
+    ------
+    ScheduleError : too short, no stretch at rest although asked for, or saturated most of the time.
+    """
+    blocks = ledger.blocks()
+    total = len(blocks)
+    if total < FEWEST_GROUPS:
+        raise ScheduleError([Problem("table", too_short(total, ledger))])
+    names = np.array(ledger.reference.names)
+    cut = (blocks.highest >= ledger.ends[0].limit) | (blocks.lowest <= ledger.ends[1].limit)
+    saturated = tuple(names[cut.any(axis=0)].tolist())
+    clean: Mask = np.asarray(~cut.any(axis=1))
+    if clean.sum() < max(FEWEST_GROUPS, total / 2):
+        raise ScheduleError([Problem(saturated[0], too_saturated(saturated, total, int(clean.sum())))])
+    floor = np.quantile(blocks.motion[clean], FLOOR)
+    still: Mask = np.asarray(blocks.motion <= MOVING * floor)
+    used = clean & wanted(blocks, ledger, still, clean, motion)
+    if used.sum() < FEWEST_GROUPS:
+        raise ScheduleError([Problem("table", never_still(int(used.sum()), total))])
+    left_out = {"saturated": int((~clean).sum()), "moving": int((clean & ~used).sum())}
+    chosen = blocks.at(used)
+    return Selection(chosen, grouped(chosen, still[used]), still[used], saturated, left_out, total)
+
+
+def wanted(blocks: Blocks, ledger: Ledger, still: Mask, clean: Mask, motion: str) -> Mask:
+    """(B,) bool: what the kind of motion asks for."""
+    if motion == ANY or ledger.averaged:
+        return np.ones_like(still)
+    if motion == STILL:
+        return still
+    rest, moving = clean & still, clean & ~still
+    if rest.sum() < ENOUGH_STILL or not moving.any():
+        return np.ones_like(still)
+    p = blocks.mean @ ledger.reference.parity
+    p = ((p - p[rest].mean(axis=0)) ** 2).sum(axis=1)
+    return still if p[moving].mean() > SPOILT * p[rest].mean() else np.ones_like(still)
+
+
+def grouped(blocks: Blocks, still: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """(B,) number of the group of each block: stretches of one kind, long ones cut, short ones joined."""
+    aim = max(len(blocks) / GROUPS, 1.0)
+    breaks = (np.diff(blocks.first) > 1) | (np.diff(still.astype(np.int8)) != 0)
+    edges = np.concatenate([[0], np.flatnonzero(breaks) + 1, [len(blocks)]])
+    lengths: list[int] = []
+    for length in np.diff(edges).tolist():
+        pieces = 1 if length <= 2 * aim else round(length / aim)
+        parts = np.diff(np.round(np.linspace(0, length, pieces + 1)).astype(int)).tolist()
+        if lengths and (lengths[-1] < aim / 2 or (length < aim / 2 and lengths[-1] < aim)):
+            lengths[-1] += parts.pop(0)
+        lengths.extend(parts)
+    return np.repeat(np.arange(len(lengths)), lengths)
+
+
+def too_short(total: int, ledger: Ledger) -> str:
+    """What is missing."""
+    if ledger.averaged:
+        return f"{total} rows are too few to know their noise; give {FEWEST_GROUPS} or more"
+    return f"the recording holds {total} blocks of one second; parity needs {FEWEST_GROUPS} or more: record longer"
+
+
+def too_saturated(saturated: tuple[str, ...], total: int, clean: int) -> str:
+    """Which channels."""
+    listed = ", ".join(saturated)
+    return (
+        f"{listed} stood at the end of the range in {total - clean} of {total} blocks; nothing can be judged from "
+        "readings that are cut off: repair the channel, or record with less motion or a wider range"
+    )
+
+
+def never_still(used: int, total: int) -> str:
+    """Nothing at rest."""
+    return (
+        f"only {used} of {total} blocks are at rest, {FEWEST_GROUPS} are needed; let the block stand still for a "
+        "while, or judge it in motion if its sensors sit in one point"
+    )

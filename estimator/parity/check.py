@@ -1,0 +1,149 @@
+"""A recording against its reference: the whole of it at once, or as it comes."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from estimator.errors import Problem, ScheduleError
+from estimator.parity.blocks import AUTO, MOTIONS, Selection, select
+from estimator.parity.hypotheses import Evidence
+from estimator.parity.ledger import BLOCK, Ledger
+from estimator.parity.reference import reference_of
+from estimator.parity.regression import Change, regress
+from estimator.parity.results import ParityResult
+from estimator.reference import gravity
+from estimator.results import Calibration
+from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor, Site
+
+FALSE_ALARM = 0.01
+
+COMMON = 12
+"""Dimensions that no recording shows: three of a common bias, nine of a linear map of the applied vector."""
+
+
+class ParityAccumulator:
+    """Takes a recording piece by piece, in memory that does not grow with its length.
+
+    Parameters
+    ----------
+    unit : whose recording it is.
+    sensors : all sensors of the recording, in the order of its columns.
+    calibration : the reference.
+    kind : which sensors are judged.
+    sample_rate : Hz; None when the rows are averages.
+    site : for the size of gravity.
+    count_time : s, when gyro readings are pulse counts.
+
+    Raises
+    ------
+    ScheduleError : the reference does not fit the sensors, or there is no redundancy.
+    """
+
+    def __init__(
+        self,
+        unit: str,
+        sensors: Sequence[Sensor],
+        calibration: Calibration,
+        *,
+        kind: str = ACCELEROMETER,
+        sample_rate: float | None = None,
+        site: Site | None = None,
+        count_time: float | None = None,
+    ) -> None:
+        self.unit = unit
+        self.reference = reference_of(sensors, calibration, kind)
+        self._norm = gravity(site or Site()) if kind == ACCELEROMETER else None
+        self._rate = sample_rate
+        self._period = np.where([s.kind != ACCELEROMETER for s in sensors], count_time or 1.0, 1.0)
+        self._samples = 0
+        length = 1 if sample_rate is None else max(round(BLOCK * sample_rate), 2)
+        self.ledger = Ledger(self.reference, length)
+
+    def add(self, readings: Array) -> None:
+        """The next rows (R, sensors), as in the file; ScheduleError where one is not a number."""
+        bad = np.flatnonzero(~np.isfinite(readings).all(axis=1))
+        if len(bad):
+            row = self._samples + int(bad[0]) + 1
+            raise ScheduleError([Problem("table", "holds a value that is not a finite number; take the row out", row)])
+        self._samples += len(readings)
+        self.ledger.add(readings / self._period)
+
+    def result(self, *, motion: str = AUTO, false_alarm: float = FALSE_ALARM) -> ParityResult:
+        """What the recording so far says; ScheduleError where it cannot say anything. More may be added after it.
+
+        Parameters
+        ----------
+        motion : ``still`` uses stretches at rest only, ``any`` everything, ``auto`` leaves moving stretches out where
+            they spoil parity.
+        false_alarm : chance that an unchanged block is called changed.
+        """
+        if motion not in MOTIONS:
+            raise ValueError(f"motion is {motion!r}; must be one of {', '.join(MOTIONS)}")
+        selection = select(self.ledger, motion)
+        change = regress(selection, self.reference, self._norm)
+        return self._judged(selection, change, Evidence(change), false_alarm)
+
+    def _judged(self, selection: Selection, change: Change, evidence: Evidence, false_alarm: float) -> ParityResult:
+        detected = evidence.detected(false_alarm)
+        found = evidence.candidates() if detected else []
+        named = {h.sensor for h in found}
+        m = len(self.reference.names)
+        whole = change.excited @ change.theta
+        spread = np.kron(change.excited, np.eye(change.theta.shape[1]))
+        return ParityResult(
+            unit=self.unit,
+            kind=self.reference.kind,
+            sensors=tuple(evidence.sensor(i, false_alarm) for i in range(m)),
+            chi2=evidence.chi2,
+            dof=len(evidence.seen),
+            p_value=evidence.p_value(evidence.chi2, len(evidence.seen)),
+            detected=detected,
+            false_alarm=false_alarm,
+            candidates=tuple(map(evidence.candidate, found)),
+            isolated=self.reference.names[found[0].sensor] if len(named) == 1 else None,
+            explained=not detected or evidence.explained(found[0]),
+            complete=change.complete,
+            constant=whole[0],
+            slope=whole[1:].T / change.norm,
+            covariance=spread @ change.covariance @ spread.T,
+            excited=change.excited,
+            unobservable=COMMON,
+            residual_rms=change.residual_rms,
+            blocks=selection.total,
+            used=len(selection.blocks),
+            groups=selection.groups,
+            left_out=selection.left_out,
+            saturated=selection.saturated,
+            block_seconds=None if self._rate is None else self.ledger.length / self._rate,
+            duration=None if self._rate is None else self._samples / self._rate,
+        )
+
+
+def parity_check(
+    session: CalibrationSession, calibration: Calibration, *, motion: str = AUTO, false_alarm: float = FALSE_ALARM
+) -> ParityResult:
+    """Compare a recording with the calibration that its unit's readings are corrected by.
+
+    Parameters
+    ----------
+    session : any rows of a block with more than three sensors of its kind, samples of a raw log or averages.
+    calibration : the reference.
+    motion, false_alarm : see `ParityAccumulator.result`.
+
+    Raises
+    ------
+    ScheduleError
+        No redundancy, a sensor that the reference does not know, too short, saturated most of the time, or not at rest
+        where rest is asked for.
+    """
+    accumulator = ParityAccumulator(
+        session.unit,
+        session.sensors,
+        calibration,
+        kind=session.block,
+        sample_rate=session.sample_rate,
+        site=session.site,
+        count_time=session.count_time,
+    )
+    accumulator.add(session.readings)
+    return accumulator.result(motion=motion, false_alarm=false_alarm)

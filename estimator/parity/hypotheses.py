@@ -1,0 +1,181 @@
+"""Has anything changed, and which sensor? χ² over all of parity, and the likelihood ratio of every single sensor.
+
+Detection takes half of the stated false-alarm rate for χ² of all q numbers, which sees any change, and half for the
+best single hypothesis (Bonferroni over sensors × kinds), which sees one sensor's change when q is large. Because the
+noise comes from the recording itself, χ² and the ratios are compared with distributions that are wider by what a
+variance from few groups adds.
+
+Isolation. Hypotheses with different numbers of unknowns are compared by the probability of their ratios. A rival whose
+score is less than Δ below the best stays a candidate; Δ is such that the true sensor loses by more than Δ with at most
+1 % probability, however alike two sensors look (a score difference of sensors at distance D is normal with mean −D²
+and variance 4D², whose tail beyond Δ is largest at D = √Δ).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import cho_solve, solve_triangular
+from scipy.stats import chi2, f, norm
+
+from estimator.parity.regression import Change
+from estimator.parity.results import AXIS, BIAS, KINDS, SCALE, SEVERAL, Candidate, SensorParity, Sight
+from estimator.session import Array
+
+ELEMENTS = {BIAS: [1], SCALE: [0], AXIS: [3, 4], SEVERAL: [1, 0, 3, 4]}
+"""Columns of `Reference.signatures` that a kind of change moves."""
+
+WRONG_SENSOR = 0.01
+POWER = 0.95
+ALIKE = 1e-4
+"""Share of a signature left after a rival's best fit below which the two are the same."""
+UNSEEN = 1e-6
+"""A signature of less than this share of a plain one leaves no trace."""
+
+
+@dataclass(frozen=True, eq=False)
+class Hypothesis:
+    """One sensor changed in one way."""
+
+    sensor: int
+    kind: str
+    whitened: Array
+    """(q, k) signature in units of sigma."""
+    basis: Array
+    """(q, r) orthonormal basis of it."""
+    ratio: float
+    score: float
+    """−2 ln of the probability of the ratio by chance."""
+    p_value: float
+
+
+class Evidence:
+    """A change, whitened, with all hypotheses tried."""
+
+    def __init__(self, change: Change) -> None:
+        self.change = change
+        root = np.linalg.cholesky(change.covariance)
+        self.seen = solve_triangular(root, change.theta.ravel(), lower=True)
+        self.own_noise = float(np.trace(cho_solve((root, True), change.noise))) / len(self.seen)
+        self.chi2 = float(self.seen @ self.seen)
+        shown = change.reference.signatures(change.norm)
+        columns = np.stack([change.signature(i, rows) for i, rows in enumerate(shown)])
+        whitened = [solve_triangular(root, own, lower=True) for own in columns]
+        self.all = [self._tried(i, kind, own[:, ELEMENTS[kind]]) for i, own in enumerate(whitened) for kind in KINDS]
+        self._single = [h for h in self.all if h.kind != SEVERAL]
+        self._left = separations(self._single)
+
+    @property
+    def dof(self) -> float:
+        """Of the noise; larger where the reference's error, which is known, is most of the uncertainty."""
+        return self.change.dof / max(self.own_noise, 1e-3)
+
+    def _tried(self, sensor: int, kind: str, whitened: Array) -> Hypothesis:
+        U, sizes, _ = np.linalg.svd(whitened, full_matrices=False)
+        basis = U[:, sizes > UNSEEN * max(sizes[0], np.finfo(float).tiny)]
+        ratio = float(((basis.T @ self.seen) ** 2).sum())
+        k = max(basis.shape[1], 1)
+        p, score = tail(ratio, k, self.dof)
+        return Hypothesis(sensor, kind, whitened, basis, ratio, score, p)
+
+    def p_value(self, left: float, dof: int) -> float:
+        """Probability of χ² this large over ``dof`` numbers, the noise's own uncertainty included."""
+        scale, effective = self.moments(dof)
+        return float(chi2.sf(left / scale, effective))
+
+    def moments(self, q: int) -> tuple[float, float]:
+        """χ² of q numbers as scale·χ²(dof): s numbers a sensor, with a covariance from few groups (Hotelling)."""
+        s = self.change.excited.shape[1]
+        nu = max(self.dof, s + 4.0)
+        second = nu - s + 1
+        one = s * nu / second
+        mean_one = one * second / (second - 2)
+        variance_one = one**2 * f.var(s, second) if second > 4 else 4.0 * s
+        parts = q / s
+        mean, variance = parts * mean_one, parts * variance_one
+        return variance / (2 * mean), 2 * mean**2 / variance
+
+    def detected(self, false_alarm: float) -> bool:
+        """Whether anything changed."""
+        best = min(h.p_value for h in self.all) * len(self.all)
+        return bool(min(self.p_value(self.chi2, len(self.seen)), best) < false_alarm / 2)
+
+    def candidates(self) -> list[Hypothesis]:
+        """The best hypotheses, best first: of every sensor the best kind, if it is no worse than Δ below the best."""
+        ranked = sorted(self.all, key=lambda h: -h.score)
+        own = {h.sensor: h for h in reversed(ranked)}
+        margin = self.margin
+        return [h for h in ranked if own[h.sensor] is h and h.score > ranked[0].score - margin]
+
+    @property
+    def margin(self) -> float:
+        """Δ"""
+        rivals = max(len(self.change.reference.names) - 1, 1)
+        return float(norm.isf(WRONG_SENSOR / rivals)) ** 2
+
+    def explained(self, best: Hypothesis) -> bool:
+        """Whether the best hypothesis leaves noise only."""
+        left = len(self.seen) - best.basis.shape[1]
+        return left < 1 or self.p_value(self.chi2 - best.ratio, left) > WRONG_SENSOR
+
+    def candidate(self, h: Hypothesis) -> Candidate:
+        """A hypothesis with its amplitude."""
+        inverse = np.linalg.pinv(h.whitened, rcond=UNSEEN)
+        return Candidate(
+            sensor=self.change.reference.names[h.sensor],
+            kind=h.kind,
+            amplitude=tuple((inverse @ self.seen).tolist()),
+            sigma=tuple(np.sqrt((inverse**2).sum(axis=1)).tolist()),
+            ratio=h.ratio,
+            p_value=h.p_value,
+        )
+
+    def sensor(self, index: int, false_alarm: float) -> SensorParity:
+        """What the recording shows of one sensor, and could have shown."""
+        reference = self.change.reference
+        own = {h.kind: h for h in self.all if h.sensor == index}
+        bias, scale, axis = (self.sight(own[kind], false_alarm) for kind in (BIAS, SCALE, AXIS))
+        return SensorParity(reference.names[index], float(reference.visible[index]), bias, scale, axis)
+
+    def sight(self, h: Hypothesis, false_alarm: float) -> Sight:
+        """Estimate and limits of one kind of change of one sensor."""
+        sizes = np.linalg.svd(h.whitened, compute_uv=False)
+        if sizes[-1] <= UNSEEN * self.plain(h):
+            return Sight(None, None, None, None)
+        amplitude = np.linalg.pinv(h.whitened) @ self.seen
+        change = float(amplitude[0]) if len(amplitude) == 1 else float(np.linalg.norm(amplitude))
+        sigma = float(1 / sizes[-1])
+        detectable = sigma * self.wanted(h.whitened.shape[1], false_alarm)
+        left = float(self._left[self._single.index(h)])
+        isolable = None
+        if left > ALIKE:
+            isolable = max(detectable, sigma * (np.sqrt(self.margin) + norm.ppf(POWER)) / np.sqrt(left))
+        return Sight(change, sigma, float(detectable), None if isolable is None else float(isolable))
+
+    def plain(self, h: Hypothesis) -> float:
+        """Size of the sensor's largest signature, any kind scaled to the size of the applied vector."""
+        own = [o for o in self.all if o.sensor == h.sensor and o.kind == SEVERAL]
+        return float(np.linalg.svd(own[0].whitened, compute_uv=False)[0])
+
+    def wanted(self, k: int, false_alarm: float) -> float:
+        """Sigmas of a change of k numbers that are detected with the power."""
+        level = false_alarm / 2 / len(self.all)
+        threshold = f.isf(level, k, self.dof) * k
+        return float(np.sqrt(threshold) + norm.ppf(POWER))
+
+
+def separations(hypotheses: list[Hypothesis]) -> Array:
+    """(n,) least share of each signature's energy that another sensor's change, no richer than it, leaves of it."""
+    q = len(hypotheses[0].basis)
+    bases = np.zeros((len(hypotheses), q, 2))
+    for h, basis in zip(hypotheses, bases, strict=True):
+        basis[:, : h.basis.shape[1]] = h.basis
+    overlap = np.linalg.svd(np.einsum("iqa,jqb->ijab", bases, bases, optimize=True), compute_uv=False)[..., 0]
+    sensor = np.array([h.sensor for h in hypotheses])
+    size = np.array([h.whitened.shape[1] for h in hypotheses])
+    rival = (sensor[:, None] != sensor) & (size <= size[:, None])
+    return np.asarray(1.0 - np.where(rival, overlap, 0.0).max(axis=1) ** 2)
+
+
+def tail(ratio: float, k: int, dof: float) -> tuple[float, float]:
+    """Probability of a ratio of k numbers by chance, noise known to ``dof``, and −2 ln of it for certain noise."""
+    return float(f.sf(ratio / k, k, dof)), float(-2.0 * chi2.logsf(ratio, k))

@@ -1,0 +1,172 @@
+"""A recording as means of blocks, in bounded memory: however long it is, no more than `MOST` blocks are kept.
+
+A block begins as `BLOCK` seconds of samples. When there are too many, neighbours are joined two by two and the blocks
+are twice as long from then on. A block keeps the mean of each sensor's input, how much the inputs moved within it, and
+the extreme readings, by which a channel that ran into its end is known.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from estimator.parity.reference import Reference
+from estimator.session import Array
+
+BLOCK = 1.0
+"""s of samples that make the first blocks."""
+
+MOST = 4096
+"""Blocks kept at most; even."""
+
+RAIL_SAMPLES = 10
+"""Samples at one extreme reading from which it may be the end of the converter's range."""
+
+RAIL_PEAK = 5
+"""How many times more often it must stand than the reading next to it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Blocks:
+    """B blocks in the order measured. m sensors."""
+
+    first: NDArray[np.int64]
+    """(B,) place of the block, in blocks since the start; a gap is a block that was left out."""
+    samples: Array
+    """(B,)"""
+    mean: Array
+    """(B, m) of the inputs, m/s² (rad/s)."""
+    motion: Array
+    """(B,) variance of the inputs within the block, averaged over the sensors; 0 for rows that are averages."""
+    lowest: Array
+    """(B, m) smallest reading."""
+    highest: Array
+    """(B, m) largest reading."""
+
+    def __len__(self) -> int:
+        return len(self.first)
+
+    def at(self, chosen: Array) -> "Blocks":
+        """Some of the blocks."""
+        return Blocks(*(column[chosen] for column in vars(self).values()))
+
+    def joined(self) -> "Blocks":
+        """Neighbours two by two; the number of blocks must be even."""
+        left, right = (vars(self.at(np.arange(k, len(self), 2))) for k in (0, 1))
+        samples = left["samples"] + right["samples"]
+        share = (right["samples"] / samples)[:, None]
+        return Blocks(
+            first=left["first"] // 2,
+            samples=samples,
+            mean=(1.0 - share) * left["mean"] + share * right["mean"],
+            motion=np.maximum(left["motion"], right["motion"]),
+            lowest=np.minimum(left["lowest"], right["lowest"]),
+            highest=np.maximum(left["highest"], right["highest"]),
+        )
+
+
+class Rails:
+    """The two outermost readings of each channel at one end, and how often each stood there."""
+
+    def __init__(self, sign: float, m: int) -> None:
+        self.sign = sign
+        self.value = np.full((2, m), -np.inf)
+        self.count = np.zeros((2, m), dtype=np.int64)
+
+    def add(self, readings: Array) -> None:
+        """Count samples (R, m) in."""
+        u = self.sign * readings
+        top = u.max(axis=0)
+        second = np.where(u < top, u, -np.inf).max(axis=0)
+        for value in (top, second):
+            self._merge(value, (u == value).sum(axis=0))
+
+    def _merge(self, value: Array, count: NDArray[np.int64]) -> None:
+        for place in (0, 1):
+            same = self.value[place] == value
+            self.count[place] += np.where(same, count, 0)
+            value = np.where(same, -np.inf, value)
+            larger = value > self.value[place]
+            kept, times = self.value[place].copy(), self.count[place].copy()
+            self.value[place], self.count[place] = np.where(larger, value, kept), np.where(larger, count, times)
+            value, count = np.where(larger, kept, value), np.where(larger, times, count)
+
+    @property
+    def limit(self) -> Array:
+        """(m,) the reading at which a channel is cut off, NaN where none is seen."""
+        cut = (self.count[0] >= RAIL_SAMPLES) & (self.count[0] > RAIL_PEAK * self.count[1])
+        return np.where(cut, self.sign * self.value[0], np.nan)
+
+
+class Ledger:
+    """Takes samples as they come and keeps blocks."""
+
+    def __init__(self, reference: Reference, length: int, most: int = MOST) -> None:
+        """``length`` is the number of samples of a block; 1 for rows that are averages."""
+        self.reference = reference
+        self.length = length
+        self.averaged = length == 1
+        self._most = most
+        self._waiting: list[Array] = []
+        self._kept: list[Blocks] = []
+        self._count = 0
+        self.ends = (Rails(1.0, len(reference.names)), Rails(-1.0, len(reference.names)))
+
+    def add(self, readings: Array) -> None:
+        """The next samples, (R, all sensors), in the order measured."""
+        self._waiting.append(np.asarray(readings, dtype=float))
+        waiting = np.concatenate(self._waiting)
+        whole = len(waiting) // self.length * self.length
+        self._waiting = [waiting[whole:].copy()]
+        step = self.length * max(self._most // 4, 1)
+        for start in range(0, whole, step):
+            self._take(waiting[start : min(start + step, whole)])
+
+    def _take(self, readings: Array) -> None:
+        """Whole blocks of samples, few enough to fit."""
+        length = self.length
+        chunks = readings.reshape(-1, length, readings.shape[1])
+        u = readings[:, self.reference.column]
+        for end in self.ends:
+            end.add(u)
+        a = self.reference.inputs(readings).reshape(len(chunks), length, -1)
+        own = u.reshape(len(chunks), length, -1)
+        self._kept.append(
+            Blocks(
+                first=self._count + np.arange(len(chunks)),
+                samples=np.full(len(chunks), float(length)),
+                mean=a.mean(axis=1),
+                motion=a.var(axis=1).mean(axis=1),
+                lowest=own.min(axis=1),
+                highest=own.max(axis=1),
+            )
+        )
+        self._count += len(chunks)
+        if self._count > self._most:
+            self._halve()
+
+    def _halve(self) -> None:
+        blocks = self.blocks()
+        even = len(blocks) // 2 * 2
+        left = blocks.at(np.arange(even, len(blocks)))
+        self._kept = [blocks.at(np.arange(even)).joined()]
+        self.length *= 2
+        self._count = even // 2
+        if len(left):
+            self._odd(left)
+
+    def _odd(self, left: Blocks) -> None:
+        """A block without a neighbour is kept as it is: half as long as the others, and weighted so."""
+        self._kept.append(Blocks(**{**vars(left), "first": np.array([self._count])}))
+        self._count += 1
+
+    def blocks(self) -> Blocks:
+        """All blocks so far."""
+        if not self._kept:
+            m = len(self.reference.names)
+            empty = np.empty((0, m))
+            return Blocks(np.empty(0, dtype=np.int64), np.empty(0), empty, np.empty(0), empty, empty)
+        parts = [vars(blocks) for blocks in self._kept]
+        joined = Blocks(**{name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
+        self._kept = [joined]
+        return joined

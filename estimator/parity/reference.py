@@ -1,0 +1,127 @@
+"""What a recording is compared with: the calibrated sensors, their parity space, how a change of one shows there."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import null_space
+
+from estimator.errors import Problem, ScheduleError
+from estimator.parameters import ELEMENTS
+from estimator.results import Calibration, SensorCalibration
+from estimator.session import Array, Sensor
+
+FEWEST = 4
+NEEDED = ("scale", "bias", "axis")
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """m calibrated sensors of one kind; d = m − 3."""
+
+    names: tuple[str, ...]
+    kind: str
+    column: NDArray[np.intp]
+    """(m,) place of each among the recording's sensors."""
+    scale: Array
+    """(m,)"""
+    bias: Array
+    """(m,)"""
+    quadratic: Array
+    """(m,) zero where the reference does not know it."""
+    offset: Array
+    """(m,) reading that stands for zero."""
+    axes: Array
+    """(m, 3) H"""
+    tangents: Array
+    """(m, 3, 2)"""
+    covariance: Array
+    """(5 m, 5 m) of the reference, scale relative; zero where it does not know an element."""
+    repeatability: Array
+    """(m,) one sigma of the zero from one use to the next."""
+    parity: Array
+    """(m, d) V, orthonormal."""
+
+    @property
+    def visible(self) -> Array:
+        """(m,) share of a sensor's change, in energy, that lies in parity space: 1 − eᵢᵀ(HᵀH)⁻¹eᵢ."""
+        return np.asarray((self.parity**2).sum(axis=1))
+
+    def inputs(self, readings: Array) -> Array:
+        """(R, m) what the sensors say was applied: u/K − b − c·a², from readings (R, all sensors)."""
+        w = (readings[:, self.column] - self.offset) / self.scale - self.bias
+        return 2.0 * w / (1.0 + np.sqrt(np.maximum(1.0 + 4.0 * self.quadratic * w, 0.0)))
+
+    def vector(self, inputs: Array) -> Array:
+        """(R, 3) the vector that fits the inputs best."""
+        return np.asarray(inputs @ np.linalg.pinv(self.axes).T)
+
+    def signatures(self, norm: float) -> Array:
+        """(m, 4, 5) change of a row of ΔA by each element of `parameters.ELEMENTS`, scale relative; ``norm`` is g.
+
+        The quadratic term is no straight line and stays zero here.
+        """
+        shown = np.zeros((len(self.names), 4, 5))
+        shown[:, 0, 0] = self.bias
+        shown[:, 1:, 0] = norm * self.axes
+        shown[:, 0, 1] = 1.0
+        shown[:, 1:, 3:] = norm * self.tangents
+        return shown
+
+
+def reference_of(sensors: Sequence[Sensor], calibration: Calibration, kind: str) -> Reference:
+    """The calibrated sensors of one kind that a recording shares with its reference.
+
+    Raises
+    ------
+    ScheduleError : a sensor that the reference does not have, or three usable ones or fewer.
+    """
+    own = [(k, s) for k, s in enumerate(sensors) if s.kind == kind]
+    known = {s.name: s for s in calibration.sensors if s.kind == kind}
+    strange = [
+        Problem(f"sensors[{k + 1}].name", f"{s.name} is not in the reference calibration; name sensors as there")
+        for k, s in own
+        if s.name not in known
+    ]
+    if strange:
+        raise ScheduleError(strange)
+    used = [(k, s, known[s.name]) for k, s in own if all(known[s.name].observable[part] for part in NEEDED)]
+    if len(used) < FEWEST:
+        raise ScheduleError([Problem("sensors", too_few(len(used), len(own), kind))])
+    return assembled(used, calibration, kind)
+
+
+def too_few(used: int, present: int, kind: str) -> str:
+    """Why there is no parity."""
+    if present >= FEWEST:
+        return (
+            f"the reference calibration knows scale, bias and axis of {used} of {present} {kind}s; parity needs "
+            f"{FEWEST}: calibrate the block first in a programme that shows all three"
+        )
+    return f"{present} {kind}s leave no redundancy; parity needs {FEWEST} or more, otherwise calibrate instead"
+
+
+def assembled(used: list[tuple[int, Sensor, SensorCalibration]], calibration: Calibration, kind: str) -> Reference:
+    """The arrays of the usable sensors."""
+    known = [s for _, _, s in used]
+    places = [calibration.names.index(f"{s.name}.{element}") for s in known for element in ELEMENTS]
+    scale = np.array([s.scale.value for s in known], dtype=float)
+    relative = np.ones((len(used), 5))
+    relative[:, 0] = 1.0 / scale
+    covariance = np.nan_to_num(calibration.covariance[np.ix_(places, places)])
+    axes = np.stack([np.asarray(s.axis) for s in known])
+    return Reference(
+        names=tuple(s.name for s in known),
+        kind=kind,
+        column=np.array([k for k, _, _ in used]),
+        scale=scale,
+        bias=np.array([s.bias.value for s in known], dtype=float),
+        quadratic=np.array([s.quadratic.value or 0.0 for s in known]),
+        offset=np.array([s.nominal_offset or 0.0 for _, s, _ in used]),
+        axes=axes,
+        tangents=np.stack([s.axis_tangents for s in known]),
+        covariance=covariance * np.outer(relative, relative),
+        repeatability=np.array([s.bias_repeatability for _, s, _ in used]),
+        parity=null_space(axes.T),
+    )

@@ -1,0 +1,176 @@
+"""Θ, the sensors' changes as parity sees them, with a covariance that is honest whatever the colour of the noise.
+
+Regression. p = Vᵀa of every block on z = Qᵀ(1, n/g), where Q (4, s) spans what the recording excites: the mean of
+(1, n/g), and those directions of n that change. A recording at one orientation has s = 1.
+
+Noise. Sensors are noisy independently of one another, each in its own way. The groups of `blocks` are left out one by
+one (jackknife); what that does to Θ, brought back to the sensors by V, gives each sensor an (s, s) covariance Ω_i:
+with P = V·Vᵀ, E[Σ D_ki D_kiᵀ] = Σ_j P_ij²·Ω_j. Where sensors cannot be told apart in parity (P∘P singular) it does not
+matter how the noise is shared out. Few groups make the Ω uncertain, so each is drawn towards their mean. Noise so slow
+that neighbouring groups still agree makes the jackknife too small: it is enlarged by (1 + ρ)/(1 − ρ), ρ the correlation
+of neighbouring groups of all sensors together, freed of the pull that the fit has on it.
+
+Reference. Its own error looks exactly like a change of the sensors: its covariance goes through the signatures. So does
+the repeatability of the zero from one use to the next, where the file states it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimator.errors import Problem, ScheduleError
+from estimator.parity.blocks import FEWEST_GROUPS, Selection
+from estimator.parity.reference import Reference
+from estimator.session import Array
+
+EXCITED = 0.02
+"""g (of the largest vector); a direction of n that changes less than this, root mean square, is not regressed on."""
+
+SLOWEST = 0.9
+"""Largest correlation of neighbouring groups that is believed."""
+
+LEAST_DOF = 5.0
+"""Of the noise, however slow it is."""
+
+DRAWN = 6.0
+"""Groups' worth of belief that all sensors are equally noisy."""
+
+
+@dataclass(frozen=True, eq=False)
+class Change:
+    """What parity says of the sensors' change since the reference. d = m − 3, s excited directions, q = s·d."""
+
+    reference: Reference
+    norm: float
+    """g, m/s²; for gyros the root mean square rate."""
+    excited: Array
+    """(4, s) Q, orthonormal columns."""
+    theta: Array
+    """(s, d)"""
+    noise: Array
+    """(q, q) covariance of θ.ravel() from the recording's noise."""
+    known: Array
+    """(q, q) from the reference calibration and the stated repeatability."""
+    dof: float
+    """Groups less what was fitted to each sensor."""
+    residual_rms: float
+    """Of the parity vector's elements after the fit, block means, m/s² (rad/s)."""
+    quadratic: Array
+    """(m, s) how a² runs along z: what a change of c looks like."""
+
+    @property
+    def covariance(self) -> Array:
+        return self.noise + self.known
+
+    @property
+    def complete(self) -> bool:
+        """Whether bias and scale can be told apart: all four of (1, n) are excited."""
+        return self.excited.shape[1] == 4
+
+    def signature(self, sensor: int, rows: Array) -> Array:
+        """(q, k) of one sensor, from k columns of its row of ΔA, rows (4, k)."""
+        z = self.excited.T @ rows
+        return np.einsum("sk,d->sdk", z, self.reference.parity[sensor]).reshape(-1, rows.shape[1])
+
+
+def regress(selection: Selection, reference: Reference, norm: float | None) -> Change:
+    """Θ and its covariance from the used blocks.
+
+    Parameters
+    ----------
+    norm : g; None takes the root mean square of the measured vector (gyros).
+
+    Raises
+    ------
+    ScheduleError : too few independent stretches to know the noise.
+    """
+    groups = selection.groups
+    if groups < FEWEST_GROUPS:
+        raise ScheduleError([Problem("table", f"{groups} separate stretches; {FEWEST_GROUPS} or more are needed")])
+    n = reference.vector(selection.blocks.mean)
+    w = selection.blocks.samples / selection.blocks.samples.mean()
+    size = norm or max(float(np.sqrt((n**2).sum(axis=1).mean())), np.finfo(float).tiny)
+    x = np.column_stack([np.ones(len(n)), n / size])
+    Q = excited(x, w, selection, groups)
+    z, p = x @ Q, selection.blocks.mean @ reference.parity
+    G = (w[:, None] * z).T @ z
+    theta = np.linalg.solve(G, (w[:, None] * z).T @ p)
+    residual = p - z @ theta
+    a2 = np.linalg.solve(G, (w[:, None] * z).T @ (n @ reference.axes.T) ** 2).T
+    rho = neighbours(w, residual, selection, z.shape[1])
+    slow = (1 + rho) / (1 - rho)
+    omega = slow * sensor_noise(jackknifed(z, w, residual, selection, G), reference.parity, groups)
+    noise = np.einsum("mst,md,me->sdte", omega, reference.parity, reference.parity)
+    q = theta.size
+    change = Change(
+        reference=reference,
+        norm=size,
+        excited=Q,
+        theta=theta,
+        noise=noise.reshape(q, q),
+        known=np.zeros((q, q)),
+        dof=float(max(groups / slow, LEAST_DOF + Q.shape[1]) - Q.shape[1]),
+        residual_rms=float(np.sqrt((w[:, None] * residual**2).mean())),
+        quadratic=a2,
+    )
+    return Change(**{**vars(change), "known": known_covariance(change)})
+
+
+def excited(x: Array, w: Array, selection: Selection, groups: int) -> Array:
+    """(4, s) orthonormal: the mean of x, and the directions of n that change, in several groups."""
+    mean = (w[:, None] * x).sum(axis=0) / w.sum()
+    apart = x[:, 1:] - mean[1:]
+    scatter = np.zeros((groups, 3, 3))
+    np.add.at(scatter, selection.group, w[:, None, None] * apart[:, :, None] * apart[:, None, :])
+    moments = scatter.sum(axis=0)
+    vectors = np.linalg.eigh(moments)[1]
+    along = np.einsum("ik,gij,jk->gk", vectors, scatter, vectors)
+    left = (along.sum(axis=0) - along.max(axis=0)) / w.sum()
+    seen = np.zeros((4, int((left > EXCITED**2).sum())))
+    seen[1:] = vectors[:, left > EXCITED**2]
+    return np.linalg.qr(np.column_stack([mean, seen]))[0]
+
+
+def jackknifed(z: Array, w: Array, residual: Array, selection: Selection, G: Array) -> Array:
+    """(groups, s, d) how Θ moves when a group is left out."""
+    groups, s = selection.groups, z.shape[1]
+    own = np.zeros((groups, s, s))
+    score = np.zeros((groups, s, residual.shape[1]))
+    np.add.at(own, selection.group, w[:, None, None] * z[:, :, None] * z[:, None, :])
+    np.add.at(score, selection.group, w[:, None, None] * z[:, :, None] * residual[:, None, :])
+    return np.sqrt((groups - 1) / groups) * np.linalg.solve(G - own, score)
+
+
+def neighbours(w: Array, residual: Array, selection: Selection, s: int) -> float:
+    """Correlation of the residuals of neighbouring groups, all sensors together; its downward bias taken off."""
+    G = selection.groups
+    total = np.zeros((G, residual.shape[1]))
+    np.add.at(total, selection.group, w[:, None] * residual)
+    mean = total / np.sqrt(np.bincount(selection.group, weights=w))[:, None]
+    found = float((mean[1:] * mean[:-1]).sum() / max((mean**2).sum(), np.finfo(float).tiny))
+    return float(np.clip(found + (s * (1 + found) + 2 * found) / G, 0.0, SLOWEST))
+
+
+def sensor_noise(moved: Array, V: Array, groups: int) -> Array:
+    """(m, s, s) covariance of Θ from each sensor's own noise."""
+    D = moved @ V.T
+    observed = np.einsum("gsm,gtm->mst", D, D)
+    shares = np.linalg.pinv((V @ V.T) ** 2, rcond=1e-9, hermitian=True)
+    omega = np.einsum("mj,jst->mst", shares, observed)
+    values, vectors = np.linalg.eigh(omega)
+    omega = np.einsum("msk,mk,mtk->mst", vectors, np.maximum(values, 0.0), vectors)
+    mean = observed.sum(axis=0) / (V**2).sum()
+    weight = (groups * (V**2).sum(axis=1))[:, None, None]
+    return (weight * omega + DRAWN * mean) / (weight + DRAWN)
+
+
+def known_covariance(change: Change) -> Array:
+    """(q, q) the reference's own error and the zero's repeatability, as changes of the sensors look."""
+    reference = change.reference
+    shown = reference.signatures(change.norm)
+    columns = [change.signature(i, rows) for i, rows in enumerate(shown)]
+    for i, column in enumerate(columns):
+        column[:, 2] = np.outer(change.quadratic[i], reference.parity[i]).ravel()
+    J = np.hstack(columns)
+    zero = J[:, 1::5] * reference.repeatability
+    return J @ reference.covariance @ J.T + zero @ zero.T

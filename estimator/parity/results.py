@@ -1,0 +1,116 @@
+"""What parity found; no algorithms. The JSON form is ``imu-parity/1``."""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from estimator.results import json_numbers
+from estimator.session import Array
+
+BIAS, SCALE, AXIS, SEVERAL = "bias", "scale", "axis", "several"
+KINDS = (BIAS, SCALE, AXIS, SEVERAL)
+"""``several``: bias, scale and axis of one sensor together."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One sensor that alone could have caused what was found."""
+
+    sensor: str
+    kind: str
+    """One of `KINDS`."""
+    amplitude: tuple[float, ...]
+    """bias m/s² (rad/s); scale relative; axis two turns, rad; several: bias, scale, axis."""
+    sigma: tuple[float, ...]
+    ratio: float
+    """Generalised likelihood ratio: the fall of χ²."""
+    p_value: float
+    """Of the ratio, for this hypothesis alone."""
+
+
+@dataclass(frozen=True)
+class Sight:
+    """What the recording could have shown of one parameter of one sensor, if that alone had changed."""
+
+    change: float | None
+    """Estimate of that change: m/s² (rad/s), relative, or rad (its length). None where it cannot be seen at all."""
+    sigma: float | None
+    """One sigma of the estimate; of the worse direction for an axis."""
+    detectable: float | None
+    """Size that is detected with 95 % power at the stated level."""
+    isolable: float | None
+    """Size that is also laid to this sensor with 95 % power; None where another sensor's change looks the same."""
+
+
+@dataclass(frozen=True)
+class SensorParity:
+    """One sensor, seen through parity."""
+
+    name: str
+    visible_share: float
+    """Of any change of this sensor, in energy: 1 − eᵢᵀ(HᵀH)⁻¹eᵢ. The rest looks like motion."""
+    bias: Sight
+    scale: Sight
+    axis: Sight
+
+
+@dataclass(frozen=True, eq=False)
+class ParityResult:
+    """A recording of a redundant block beside its reference calibration."""
+
+    unit: str
+    kind: str
+    sensors: tuple[SensorParity, ...]
+    chi2: float
+    dof: int
+    p_value: float
+    """Of χ² under no change."""
+    detected: bool
+    false_alarm: float
+    """Chance that an unchanged block is called changed."""
+    candidates: tuple[Candidate, ...]
+    """Single sensors that explain the finding about equally well, best first; empty when nothing is detected."""
+    isolated: str | None
+    """The sensor, when all candidates name the same one."""
+    explained: bool
+    """Whether the best candidate leaves nothing but noise."""
+    complete: bool
+    """Whether the recording turns enough to tell bias from scale and axis."""
+    constant: Array
+    """(d,) change of bias in parity space, m/s² (rad/s)."""
+    slope: Array
+    """(d, 3) change per unit of the applied vector in parity space."""
+    covariance: Array
+    """(4 d, 4 d) of (constant, g·slope columns); what is not excited is not known, see ``excited``."""
+    excited: Array
+    """(4, s) directions of (1, n/g) that the recording excites."""
+    unobservable: int
+    """Dimensions of the sensors' 4 m changes that no recording shows: those of a common bias and any linear map."""
+    residual_rms: float
+    blocks: int
+    used: int
+    groups: int
+    left_out: dict[str, int]
+    saturated: tuple[str, ...]
+    block_seconds: float | None
+    duration: float | None
+    """s"""
+
+    def sensor(self, name: str) -> SensorParity:
+        """The sensor called ``name``; KeyError if there is none."""
+        for sensor in self.sensors:
+            if sensor.name == name:
+                return sensor
+        raise KeyError(name)
+
+    def to_dict(self) -> dict[str, Any]:
+        """``imu-parity/1``."""
+        plain = {k: v for k, v in vars(self).items() if k not in ("sensors", "candidates")}
+        for name in ("constant", "slope", "covariance", "excited"):
+            plain[name] = json_numbers(plain[name])
+        return {
+            "format": "imu-parity/1",
+            **plain,
+            "saturated": list(self.saturated),
+            "candidates": [asdict(c) for c in self.candidates],
+            "sensors": [asdict(s) for s in self.sensors],
+        }
