@@ -31,7 +31,7 @@ DECISIVE = 4.0
 NAMELESS = 1.5
 """ln evidence by which structure without a name must beat the named causes."""
 
-DOUBT = 0.02
+DOUBT = 0.05
 """Level at which a scatter that seems too large is taken for uneven rather than for mere noise."""
 
 AGAIN = frozenset({"reading-outlier", "bias-jump"})
