@@ -17,12 +17,14 @@ from service.errors import ServiceError
 COMMANDS = {
     "serve": "serve.serve",
     "calibrate": "calibrate.calibrate_files",
+    "diagnose": "diagnose.diagnose_files",
     "upload": "upload.upload_files",
     "convert": "convert.convert_files",
     "fleet": "report.fleet",
     "report": "report.report",
     "simulate": "simulate.simulate_files",
     "plan": "plan.plan_session",
+    "recalibrate": "recalibrate.recalibrate_units",
     "db": "database.database",
 }
 """Every command, and where it is below `service.commands`: a function, or commands of its own."""
@@ -81,6 +83,7 @@ def main() -> None:
         typer.echo(fault.format_message(), err=True)
         sys.exit(FAILED)
     except (ServiceError, OSError) as fault:
-        say(f"imu-health: {fault}")
+        cause = getattr(fault.__cause__, "orig", None)
+        say(f"imu-health: {fault}" + (f" ({cause})" if cause else ""))
         sys.exit(FAILED)
     sys.exit(code if isinstance(code, int) else 0)
