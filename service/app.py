@@ -40,7 +40,7 @@ def create_app(settings: Settings, clock: Callable[[], datetime] = utc_now) -> F
         lifespan=_at_work(service),
     )
     app.state.service = service
-    api.mount(app)
+    api.mount(app, service.metrics)
     pages.mount(app)
     return app
 

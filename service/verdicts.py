@@ -20,8 +20,8 @@ class Condition:
 
     @property
     def rank(self) -> int:
-        """Place in the order of attention, 0 first."""
-        return CONDITIONS.index(self)
+        """Place in the order of attention, 0 first; what no rule judged comes last."""
+        return CONDITIONS.index(self) if self in CONDITIONS else len(CONDITIONS)
 
 
 UNFIT = Condition("fail", "Unfit", "fail", "square", "Out of tolerance, beyond doubt.")
@@ -38,6 +38,10 @@ PROBABLY_FIT = Condition(
     "Within tolerance, but closer to it than the uncertainty of the measurement.",
 )  # fmt: skip
 FIT = Condition("pass", "Fit", "pass", "circle", "Within tolerance, beyond doubt.")
+REFERENCE = Condition(
+    "reference", "Reference set", "reference", "triangle-right",
+    "The session that later ones are judged against; there was nothing to judge it by.",
+)  # fmt: skip
 NOT_MEASURED = Condition("none", "Not measured", "no session", "stroke", "No session has been uploaded yet.")
 NOT_JUDGED = Condition("none", "Not judged", "not judged", "circle", "No tolerance or no reference is set.")
 
@@ -53,6 +57,8 @@ _BY_VERDICT = {
 }
 
 
-def condition_of(verdict: Verdict | None) -> Condition:
-    """How a verdict is shown; None is a unit without a session."""
+def condition_of(verdict: Verdict | None, *, is_reference: bool = False) -> Condition:
+    """How a verdict is shown; None is a unit without a session. A reference is undecidable for a good reason."""
+    if is_reference and verdict is Verdict.UNDECIDABLE:
+        return REFERENCE
     return NOT_MEASURED if verdict is None else _BY_VERDICT[verdict]

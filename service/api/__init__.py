@@ -3,21 +3,21 @@
 from fastapi import APIRouter, FastAPI
 
 from service.api import diagnoses, fleet, models, operations, sessions, unit_types, units
-from service.api.metrics import Measured, Metrics
+from service.api.measured import Measured
 from service.api.openapi import describe
 from service.api.problems import add_problem_handlers
+from service.metrics import Metrics
 
 PREFIX = "/api/v1"
 
 
-def mount(app: FastAPI) -> None:
+def mount(app: FastAPI, metrics: Metrics) -> None:
     """Adds every route of the API, its error shape, its description and its figures to the application."""
     api = APIRouter(prefix=PREFIX)
     for resource in (sessions, diagnoses, units, unit_types, models, fleet):
         api.include_router(resource.router)
     app.include_router(api)
     app.include_router(operations.router)
-    app.state.metrics = Metrics()
-    app.add_middleware(Measured, metrics=app.state.metrics)
+    app.add_middleware(Measured, metrics=metrics)
     add_problem_handlers(app)
     describe(app)

@@ -14,15 +14,19 @@ TIME = pl.Datetime("us", "UTC")
 HISTORY_COLUMNS = {
     "session": pl.String(), "at": TIME, "sensor": pl.String(), "kind": pl.String(), "parameter": pl.String(),
     "value": pl.Float64(), "u": pl.Float64(), "lower": pl.Float64(), "upper": pl.Float64(),
-    "reference": pl.Float64(), "tolerance": pl.Float64(), "verdict": pl.String(),
+    "reference": pl.Float64(), "deviation": pl.Float64(), "expanded": pl.Float64(), "tolerance": pl.Float64(),
+    "verdict": pl.String(), "is_reference": pl.Boolean(),
     "axis_x": pl.Float64(), "axis_y": pl.Float64(), "axis_z": pl.Float64(), "revision": pl.Int64(),
 }  # fmt: skip
 FLEET_COLUMNS = {
     "serial": pl.String(), "unit_type": pl.String(), "simulated": pl.Boolean(), "sessions": pl.Int64(),
-    "last_session": pl.String(), "last_at": TIME, "verdict": pl.String(), "reason": pl.String(),
+    "last_session": pl.String(), "last_at": TIME, "verdict": pl.String(), "is_reference": pl.Boolean(),
+    "reason": pl.String(),
     "worst_sensor": pl.String(), "worst_parameter": pl.String(), "margin": pl.Float64(),
     "diagnosis": pl.String(),
 }  # fmt: skip
+FORMULA = r"^[=+\-@\t\r]"
+"""How a cell begins that a spreadsheet would work out instead of showing."""
 NO_AXIS = (None, None, None)
 
 
@@ -38,9 +42,15 @@ def fleet_table(units: Sequence[UnitSummary]) -> pl.DataFrame:
 
 
 def as_csv(table: pl.DataFrame, filename: str) -> Response:
-    """A line of names, then one line a row; times in ISO 8601."""
-    text = table.write_csv(datetime_format="%Y-%m-%dT%H:%M:%S%.6fZ")
+    """A line of names, then one line a row; times in ISO 8601. No text can pass for a formula of a spreadsheet."""
+    harmless = [_harmless(column.name) for column in table.iter_columns() if column.dtype == pl.String]
+    text = table.with_columns(harmless).write_csv(datetime_format="%Y-%m-%dT%H:%M:%S%.6fZ")
     return _file(text.encode(), "text/csv; charset=utf-8", filename)
+
+
+def _harmless(column: str) -> pl.Expr:
+    cell = pl.col(column)
+    return pl.when(cell.str.contains(FORMULA)).then(pl.concat_str(pl.lit("'"), cell)).otherwise(cell).alias(column)
 
 
 def as_parquet(table: pl.DataFrame, filename: str) -> Response:

@@ -1,11 +1,11 @@
 """What those who run the service ask: is it alive, is it ready, what are its figures."""
 
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, Response
 from prometheus_client import CONTENT_TYPE_LATEST
 from pydantic import BaseModel, Field
 
 from service.api.schemas.problem import errors
-from service.dependencies import StorageOf
+from service.dependencies import MetricsOf, StorageOf
 
 router = APIRouter(tags=["operations"])
 
@@ -30,6 +30,6 @@ def readiness(storage: StorageOf) -> State:
 
 
 @router.get("/metrics", responses={200: {"content": {"text/plain": {}}}}, response_class=Response)
-def metrics(request: Request) -> Response:
+def metrics(figures: MetricsOf) -> Response:
     """Figures for Prometheus."""
-    return Response(request.app.state.metrics.text(), media_type=CONTENT_TYPE_LATEST)
+    return Response(figures.text(), media_type=CONTENT_TYPE_LATEST)

@@ -5,12 +5,11 @@ from typing import Annotated, Any
 
 from fastapi import Depends, Request
 from starlette.datastructures import UploadFile
-from starlette.types import Message, Receive
 
 from estimator.errors import Problem
 from service.api.schemas.sessions import SessionFile
-from service.dependencies import SettingsOf
-from service.errors import RefusedError, TooLargeError
+from service.dependencies import SettingsOf, limited
+from service.errors import RefusedError
 
 ENVELOPE = 64 * 1024
 """Bytes that a multipart envelope may add to the file."""
@@ -27,13 +26,12 @@ class ReceivedFile:
 
 async def _received(request: Request, settings: SettingsOf) -> ReceivedFile:
     """The file, from the body or from the part `file` of a form."""
-    longest = settings.max_upload_bytes
     content_type = request.headers.get("content-type", "").lower()
     is_form = content_type.startswith("multipart/form-data")
-    limited = Request(request.scope, _limited(request.receive, longest + (ENVELOPE if is_form else 0), longest))
+    body = limited(request, settings.max_upload_bytes, ENVELOPE if is_form else 0)
     if is_form:
-        return await _from_form(limited)
-    return ReceivedFile(await limited.body(), "upload.csv" if "csv" in content_type else "upload.json")
+        return await _from_form(body)
+    return ReceivedFile(await body.body(), "upload.csv" if "csv" in content_type else "upload.json")
 
 
 async def _from_form(request: Request) -> ReceivedFile:
@@ -42,21 +40,6 @@ async def _from_form(request: Request) -> ReceivedFile:
         if not isinstance(file, UploadFile):
             raise RefusedError(NO_FILE, (Problem("file", "is missing from the form"),))
         return ReceivedFile(await file.read(), file.filename or "upload")
-
-
-def _limited(receive: Receive, most: int, limit: int) -> Receive:
-    """Stops a body that grows beyond the limit, whatever length it announced."""
-    seen = 0
-
-    async def counted() -> Message:
-        nonlocal seen
-        message = await receive()
-        seen += len(message.get("body", b""))
-        if seen > most:
-            raise TooLargeError(f"The upload is larger than {limit:,} bytes. Average or split it and send it again.")
-        return message
-
-    return counted
 
 
 Received = Annotated[ReceivedFile, Depends(_received)]

@@ -15,7 +15,7 @@ from service.api.schemas.sessions import (
     SessionReportSchema,
     SessionSchema,
 )
-from service.dependencies import DiagnoserOf, Now, Reading, SettingsOf, StorageOf
+from service.dependencies import DiagnoserOf, MetricsOf, Now, Reading, SettingsOf, StorageOf
 from service.flows.session_decisions import session_decisions
 from service.flows.session_list import session_list
 from service.flows.upload import upload
@@ -38,11 +38,12 @@ def upload_session(
     settings: SettingsOf,
     now: Now,
     diagnoser: DiagnoserOf,
+    metrics: MetricsOf,
 ) -> ReceiptSchema:
     """Upload a session file: it is checked, calibrated, judged, stored, diagnosed. The same bytes are stored once."""
     receipt = upload(storage, received.content, received.filename, now, coverage_factor=settings.coverage_factor)
     diagnoser.after_upload(receipt.id)
-    request.app.state.metrics.count_upload(receipt)
+    metrics.count_upload(receipt)
     url = str(request.url_for("read_session", id=receipt.id))
     response.status_code = 201 if receipt.created else 200
     response.headers["Location"] = url

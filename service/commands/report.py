@@ -62,7 +62,7 @@ def _table(units: list[dict[str, Any]]) -> Table:
         table.add_row(
             escape(unit["serial"]) + (" [dim](simulated)[/]" if unit["simulated"] else ""),
             escape(unit["unit_type"]),
-            coloured(unit["verdict"]) if unit["verdict"] else "",
+            coloured(unit["verdict"], unit["is_reference"]) if unit["verdict"] else "",
             number(unit["margin"], 2),
             (unit["last_at"] or "")[:10],
             str(unit["sessions"]),

@@ -28,11 +28,12 @@ def upload_files(files: Files, server: Server = DEFAULT_SERVER, as_json: AsJson 
 
 def _print_line(answer: dict[str, Any]) -> None:
     """``BA-017  Fit  …``"""
-    screen().print(f"[bold]{escape(answer['unit'])}[/]  {coloured(answer['verdict'])}  {escape(answer['reason'])}")
+    verdict = coloured(answer["verdict"], answer["is_reference"])
+    screen().print(f"[bold]{escape(answer['unit'])}[/]  {verdict}  {escape(answer['reason'])}")
 
 
-def coloured(word: str) -> str:
+def coloured(word: str, is_reference: bool = False) -> str:
     """A verdict as the pages word it, with their colour."""
     verdict = Verdict(word)
-    shown: Condition = condition_of(verdict)
+    shown: Condition = condition_of(verdict, is_reference=is_reference)
     return f"[{COLOURS[verdict]}]{shown.word}[/]"

@@ -137,4 +137,4 @@ def _session_record(new: Upload, judged: Judged) -> StoredSession:
 
 
 def _receipt(record: StoredSession, *, created: bool) -> Receipt:
-    return Receipt(record.id, record.unit, record.verdict, record.reason, created)
+    return Receipt(record.id, record.unit, record.verdict, record.reason, created, record.is_reference)

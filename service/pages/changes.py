@@ -17,23 +17,28 @@ class Change:
 
     @property
     def value(self) -> float | None:
-        """The change; None where the session does not observe the parameter."""
-        return self._from_origin(self.point.value)
+        """The change as it was judged; None where the session does not observe the parameter."""
+        if self.point.deviation is not None:
+            return self.point.deviation
+        return None if self.point.value is None else (self.point.value - self.origin) / self._one
 
     @property
     def lower(self) -> float | None:
         """Lower end of the band; an angle between axes is never below zero."""
-        low = self.point.lower
-        return self._from_origin(low if low is None or not self.is_angle else max(0.0, low))
+        if self.value is None or self.expanded is None:
+            return None
+        return max(0.0, self.value - self.expanded) if self.is_angle else self.value - self.expanded
 
     @property
     def upper(self) -> float | None:
         """Upper end of the band."""
-        return self._from_origin(self.point.upper)
+        return None if self.value is None or self.expanded is None else self.value + self.expanded
 
     @property
     def expanded(self) -> float | None:
-        """U of the value."""
+        """U of the change; of a reference, of the value itself."""
+        if self.point.expanded is not None:
+            return self.point.expanded
         if self.point.upper is None or self.point.value is None:
             return None
         return (self.point.upper - self.point.value) / self._one
@@ -58,9 +63,6 @@ class Change:
     @property
     def _one(self) -> float:
         return (abs(self.origin) or 1.0) if self.point.parameter == "scale" else 1.0
-
-    def _from_origin(self, value: float | None) -> float | None:
-        return None if value is None else (value - self.origin) / self._one
 
 
 def changes_of(points: Sequence[HistoryPoint], services: Sequence[Service]) -> tuple[Change, ...]:

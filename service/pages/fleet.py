@@ -6,7 +6,7 @@ from datetime import datetime
 from urllib.parse import urlencode
 
 from service.records import FleetCondition, UnitSummary
-from service.verdicts import UNDECIDED, Condition, condition_of
+from service.verdicts import REFERENCE, UNDECIDED, Condition, condition_of
 
 PAGE_SIZE = 50
 BAR_LIMIT = 150.0
@@ -109,14 +109,14 @@ def worst_in_words(unit: UnitSummary) -> str:
 
 
 def _row(unit: UnitSummary) -> FleetRow:
-    condition = condition_of(unit.verdict)
+    condition = condition_of(unit.verdict, is_reference=unit.is_reference)
     return FleetRow(
         serial=unit.serial,
         unit_type=unit.unit_type,
         condition=condition,
         reason=unit.reason,
         worst=worst_in_words(unit),
-        margin=None if condition is UNDECIDED else margin_of(unit.margin),
+        margin=None if condition in (UNDECIDED, REFERENCE) else margin_of(unit.margin),
         last_at=unit.last_at,
         last_session=unit.last_session,
         sessions=unit.sessions,

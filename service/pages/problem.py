@@ -4,10 +4,11 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
-from fastapi import Request
+from fastapi import FastAPI, Request, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from estimator.errors import Problem
+from service.pages.headers import HEADERS
 from service.pages.render import render
 
 PROBLEM = b"application/problem+json"
@@ -46,6 +47,22 @@ def problem_page(problem: dict[str, Any]) -> ProblemPage:
         ),
         advice=ADVICE.get(status, OTHERWISE),
     )
+
+
+def unexpected_pages(app: FastAPI) -> None:
+    """Answers what nobody foresaw with a page too: that handler stands outside of every middleware."""
+    answer = app.exception_handlers[Exception]
+
+    def unexpected(request: Request, error: Exception) -> Response:
+        response = answer(request, error)
+        assert isinstance(response, Response)
+        if _wants_page(request.scope):
+            page = problem_page(json.loads(bytes(response.body)))
+            response = render(request, "problem.html", page, page.status)
+        response.headers.update(HEADERS)
+        return response
+
+    app.add_exception_handler(Exception, unexpected)
 
 
 class ProblemPages:

@@ -104,7 +104,9 @@ def _point(change: Change, unit: DeviationUnit) -> TrackPoint:
         limit_upper=allowed,
         epoch=change.epoch,
         text=_text(change, unit),
-        condition=NOT_JUDGED if point.tolerance is None else condition_of(point.verdict),
+        condition=NOT_JUDGED
+        if point.tolerance is None
+        else condition_of(point.verdict, is_reference=point.is_reference),
     )
 
 

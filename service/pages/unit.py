@@ -76,9 +76,9 @@ def unit_page(report: UnitReport, history: Sequence[HistoryPoint]) -> UnitPage:
     kinds = {point.kind for point in history}
     return UnitPage(
         report=report,
-        condition=condition_of(report.summary.verdict),
+        condition=condition_of(report.summary.verdict, is_reference=report.summary.is_reference),
         sections=tuple(_section(tracks, report.services, several=len(kinds) > 1) for tracks in groups),
-        sessions=tuple(SessionLine(s, condition_of(s.verdict)) for s in report.sessions),
+        sessions=tuple(SessionLine(s, condition_of(s.verdict, is_reference=s.is_reference)) for s in report.sessions),
         reference=_reference(report),
     )
 

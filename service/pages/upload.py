@@ -19,7 +19,9 @@ class Outcome:
     @property
     def condition(self) -> Condition:
         """Of the stored session; a refused file has none."""
-        return condition_of(self.receipt.verdict if self.receipt else None)
+        if self.receipt is None:
+            return condition_of(None)
+        return condition_of(self.receipt.verdict, is_reference=self.receipt.is_reference)
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,10 @@ import sqlite3
 from pathlib import Path
 
 from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url
+from sqlalchemy.exc import ArgumentError
 from sqlalchemy.pool import ConnectionPoolEntry
+
+from service.errors import ServiceError
 
 BUSY_TIMEOUT_MS = 10_000
 WRITES = "imu_health_writes"
@@ -12,11 +15,21 @@ WRITES = "imu_health_writes"
 
 
 def normal_url(url: str) -> URL:
-    """The URL with psycopg 3 as PostgreSQL's driver, whatever spelling an operator used."""
-    parsed = make_url(url)
-    if parsed.drivername in ("postgres", "postgresql"):
+    """The URL with psycopg 3 as PostgreSQL's driver, whatever spelling an operator used; ServiceError for any other."""
+    try:
+        parsed = make_url(url)
+    except (ArgumentError, ValueError) as fault:
+        raise _unknown("It cannot be read") from fault
+    if parsed.drivername in ("postgres", "postgresql", "postgresql+psycopg"):
         return parsed.set(drivername="postgresql+psycopg")
+    if parsed.drivername != "sqlite":
+        raise _unknown(f"It names {parsed.drivername!r}")
     return parsed
+
+
+def _unknown(fault: str) -> ServiceError:
+    """The address itself may hold a password and is not repeated."""
+    return ServiceError(f"{fault}: a database's address is sqlite:///path or postgresql://user:password@host/name.")
 
 
 def open_engine(url: str) -> Engine:

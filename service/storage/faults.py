@@ -8,12 +8,14 @@ from contextlib import contextmanager
 from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeout
 
-from service.errors import AwayError, NoSpaceError
+from service.errors import AwayError, NoSpaceError, ServiceError
 
 FULL_SQLSTATES = frozenset({"53100"})
 """PostgreSQL: disk_full."""
+DAMAGED = frozenset({sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT})
 FULL_ERRNOS = frozenset({errno.ENOSPC, errno.EDQUOT})
 NO_SPACE = "The disk is full: nothing was stored. Free some space and send it again."
+NO_DATABASE = "The database's file is damaged, or is not an SQLite database."
 AWAY = "The database does not answer. Nothing was lost; try again in a few seconds."
 
 
@@ -27,6 +29,8 @@ def database_faults() -> Iterator[None]:
     except DBAPIError as fault:
         if _is_full(fault):
             raise NoSpaceError(NO_SPACE) from fault
+        if getattr(fault.orig, "sqlite_errorcode", None) in DAMAGED:
+            raise ServiceError(NO_DATABASE) from fault
         if fault.connection_invalidated or isinstance(fault, OperationalError | InterfaceError):
             raise AwayError(AWAY) from fault
         raise

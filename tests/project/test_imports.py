@@ -9,7 +9,7 @@ from tests.project.source import PACKAGES, Module, modules
 
 SERVICE_LAYERS = (
     {"settings", "records", "units", "errors"},
-    {"planning", "verdicts"},
+    {"metrics", "planning", "verdicts"},
     {"ingest", "storage"},
     {"flows"},
     {"dependencies"},

@@ -14,6 +14,7 @@ RECEIPT_EXAMPLE: JsonDict = {
     "verdict": "fail",
     "reason": "A3 bias moved +62 µg (U 8.1 µg) beyond the tolerance of 50 µg.",
     "created": True,
+    "is_reference": False,
     "url": "http://127.0.0.1:8000/api/v1/sessions/3f9a0c5be1d24786aa10",
 }
 
@@ -28,6 +29,9 @@ class ReceiptSchema(BaseModel):
     verdict: Verdict = Field(description="Of the session: the worst of its parameters.")
     reason: str = Field(description="Why, in one sentence.")
     created: bool = Field(description="False when the same bytes were already stored.")
+    is_reference: bool = Field(
+        description="Whether later sessions are judged against this one; then its own verdict is `undecidable`."
+    )
     url: str = Field(description="Where the session can be read.")
 
 

@@ -9,7 +9,7 @@ import altair as alt
 from service.pages.charts import DATA_FORM, ChartSet, Panel, padded, specification
 from service.pages.tracks import Track, TrackPoint
 from service.records import Service
-from service.verdicts import CONDITIONS, FIT, NOT_JUDGED
+from service.verdicts import CONDITIONS, FIT, NOT_JUDGED, REFERENCE
 
 HEIGHT = 150
 
@@ -106,7 +106,7 @@ def _breaks(services: alt.NamedData) -> alt.Chart:
 
 
 def _marks(base: alt.Chart, y: alt.Y) -> alt.Chart:
-    shown = (*CONDITIONS, NOT_JUDGED)
+    shown = (*CONDITIONS, REFERENCE, NOT_JUDGED)
     names = [c.formal for c in shown]
 
     def by_verdict(values: list[Any]) -> dict[str, Any]:

@@ -105,6 +105,7 @@ def _summary(row: Row[UnitRow, str, ConditionRow, SessionRow, DiagnosisRow]) -> 
         last_session=last.id,
         last_at=last.started_at,
         verdict=Verdict(last.verdict),
+        is_reference=last.is_reference,
         reason=last.reason,
         worst_sensor=last.worst_sensor,
         worst_parameter=last.worst_parameter,

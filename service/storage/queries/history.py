@@ -59,7 +59,7 @@ class History(Queries):
             & (DecisionRow.parameter == ParameterRow.parameter)
         )
         query = (
-            select(ParameterRow, DecisionRow)
+            select(ParameterRow, DecisionRow, SessionRow.is_reference)
             .join(SessionRow, SessionRow.id == ParameterRow.session_id)
             .outerjoin(DecisionRow, same)
             .where(ParameterRow.unit_id == unit, ParameterRow.revision == _revision(wanted.revision))
@@ -88,7 +88,7 @@ def _revision(wanted: int | None) -> ColumnElement[int]:
     )
 
 
-def _point(row: Row[ParameterRow, DecisionRow]) -> HistoryPoint:
+def _point(row: Row[ParameterRow, DecisionRow, bool]) -> HistoryPoint:
     parameter: ParameterRow = row[0]
     decision: DecisionRow | None = row[1]
     is_axis = parameter.parameter == "axis"
@@ -106,8 +106,11 @@ def _point(row: Row[ParameterRow, DecisionRow]) -> HistoryPoint:
         lower=None if value is None or expanded is None else value - expanded,
         upper=None if value is None or expanded is None else value + expanded,
         reference=None if decision is None else decision.reference,
+        deviation=None if decision is None else decision.deviation,
+        expanded=None if decision is None else decision.expanded,
         tolerance=None if decision is None else _tolerance(decision),
         verdict=Verdict.UNDECIDABLE if decision is None else Verdict(decision.verdict),
+        is_reference=row[2],
         axis=_axis(parameter),
         revision=parameter.revision,
     )

@@ -60,7 +60,7 @@ def test_a_missing_file_is_unusable_input(run: Run, address: str, tmp_path: Path
 def test_the_verdict_is_printed_in_words(run: Run, address: str, two_sessions: list[Path]) -> None:
     ran = run("upload", *two_sessions, "--server", address)
     assert ran.code == 0
-    assert [line.split("  ")[:2] for line in ran.out.splitlines()] == [["BA-017", "Undecided"], ["BA-017", "Fit"]]
+    assert [line.split("  ")[:2] for line in ran.out.splitlines()] == [["BA-017", "Reference set"], ["BA-017", "Fit"]]
 
 
 @pytest.mark.parametrize("server", ["http://127.0.0.1:1", "nonsense", "http://[", "http://127.0.0.1:1/" + "a" * 70_000])

@@ -35,6 +35,7 @@ def bias_point(day: int, value: float | None, *, reference: float | None = 0.0, 
         session=f"s{day}", at=NOON + timedelta(days=day), sensor=sensor, kind="accelerometer", parameter="bias",
         value=value, u=5e-5, lower=None if value is None else value - 1e-4,
         upper=None if value is None else value + 1e-4, reference=reference,
+        deviation=None, expanded=None, is_reference=False,
         tolerance=None if reference is None else 5e-4, verdict=Verdict.PASS, axis=None,
     )  # fmt: skip
 
@@ -43,5 +44,5 @@ def unit_summary(serial: str = "BA-017", verdict: Verdict = Verdict.PASS, margin
     """One line of the fleet."""
     return UnitSummary(
         serial=serial, unit_type="hex-cone", simulated=False, sessions=3, last_session="5e55", last_at=NOON,
-        verdict=verdict, reason="why", worst_sensor="A3", worst_parameter="bias", margin=margin,
+        verdict=verdict, is_reference=False, reason="why", worst_sensor="A3", worst_parameter="bias", margin=margin,
     )  # fmt: skip

@@ -6,7 +6,7 @@ import pytest
 
 from service.pages.assets import STATIC
 
-TONES = ("ink", "muted", "accent", "pass", "conditional-pass", "conditional-fail", "fail", "undecidable")
+TONES = ("ink", "muted", "accent", "pass", "conditional-pass", "conditional-fail", "fail", "undecidable", "reference")
 
 
 def palettes() -> dict[str, dict[str, str]]:

@@ -1,0 +1,37 @@
+"""Figures for Prometheus: requests by operation and status with their time, uploads by what became of them."""
+
+from prometheus_client import CollectorRegistry, Counter, Histogram, generate_latest
+
+from service.records import Receipt
+
+BUCKETS = (0.005, 0.02, 0.05, 0.1, 0.25, 0.5, 1, 2.5, 5, 15)
+
+
+class Metrics:
+    """The figures of one service."""
+
+    def __init__(self) -> None:
+        self._registry = CollectorRegistry()
+        self._requests = Histogram(
+            "imu_health_request_seconds",
+            "Time to answer.",
+            ("method", "operation", "status"),
+            registry=self._registry,
+            buckets=BUCKETS,
+        )
+        self._uploads = Counter(
+            "imu_health_uploads", "Uploads by what became of them.", ("result",), registry=self._registry
+        )
+
+    def count_upload(self, receipt: Receipt) -> None:
+        """A session that was stored, or was stored before."""
+        self._uploads.labels(receipt.verdict.value if receipt.created else "stored-before").inc()
+
+    def count_request(self, method: str, operation: str | None, status: int, seconds: float) -> None:
+        """One answer; requests that no route took are counted together."""
+        named = (method, operation) if operation else ("any", "none")
+        self._requests.labels(*named, str(status)).observe(seconds)
+
+    def text(self) -> bytes:
+        """All figures in Prometheus' form."""
+        return generate_latest(self._registry)
