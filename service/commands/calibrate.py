@@ -5,7 +5,7 @@ from pathlib import Path
 from estimator import Calibration, CalibrationSession, calibrate
 from service.commands.console import AsJson, Files, for_each, print_json, screen
 from service.commands.tables import calibration_view
-from service.ingest import read_upload
+from service.ingest import read_file
 
 Result = tuple[CalibrationSession, Calibration]
 
@@ -16,7 +16,7 @@ def calibrate_files(files: Files, as_json: AsJson = False) -> None:
 
 
 def _calibrated(file: Path) -> Result:
-    session = read_upload(file.read_bytes(), str(file))
+    session = read_file(file)
     return session, calibrate(session)
 
 

@@ -11,7 +11,7 @@ from estimator.errors import SessionError
 from service.commands.console import UNUSABLE, AsJson, Files, for_each, print_json, problem_line, say, screen
 from service.commands.diagnosis_tables import diagnosis_view
 from service.flows.diagnosis_in_words import document_of, state_of
-from service.ingest import read_upload
+from service.ingest import read_file
 from service.records import DiagnosisState
 
 Result = tuple[CalibrationSession, dict[str, Any], DiagnosisState]
@@ -31,7 +31,7 @@ def diagnose_files(files: Files, as_json: AsJson = False, history: History = Non
 def _earlier(file: Path) -> CalibrationSession:
     """A session of the history; without it the answer would be another one, so it must be readable."""
     try:
-        return _read(file)
+        return read_file(file)
     except SessionError as fault:
         say(problem_line(file, fault.problems))
     except OSError as fault:
@@ -39,12 +39,8 @@ def _earlier(file: Path) -> CalibrationSession:
     raise typer.Exit(UNUSABLE)
 
 
-def _read(file: Path) -> CalibrationSession:
-    return read_upload(file.read_bytes(), str(file))
-
-
 def _diagnosed(file: Path, earlier: list[CalibrationSession]) -> Result:
-    session = _read(file)
+    session = read_file(file)
     found = diagnose(session, history=earlier)
     return session, document_of(found), state_of(found)
 

@@ -16,7 +16,7 @@ from estimator.planning import OrientationRank, Plan, plan, proposed_orientation
 from estimator.planning.expected import head_kind, input_noise
 from estimator.session import ARBITRARY_ORIENTATIONS, Array, CalibrationSession
 from service.commands.console import UNUSABLE, AsJson, print_json, problem_line, say, screen
-from service.ingest import read_upload
+from service.ingest import read_file
 from service.planning.question import PlanQuestion
 from service.planning.words import (
     UNSEEN,
@@ -75,7 +75,7 @@ def plan_session(
         **dict(map(amount, tolerance or ())),
     )  # fmt: skip
     try:
-        like = question.cone() if file is None else read_upload(file.read_bytes(), str(file))
+        like = question.cone() if file is None else read_file(file)
         if orientations is not None or like.programme == ARBITRARY_ORIENTATIONS:
             _show(ranked(like, orientations), as_json)
         else:

@@ -1,6 +1,7 @@
 """Uploads of every accepted format → one checked session. The content decides what a file is, never its name."""
 
 from collections.abc import Callable
+from pathlib import Path
 
 from estimator.reading import read_session
 from estimator.session import CalibrationSession
@@ -23,3 +24,12 @@ def read_upload(content: bytes, filename: str) -> CalibrationSession:
         if content.startswith(magic):
             return read_session(read(content, filename), name=filename)
     return read_session(content, name=filename)
+
+
+def read_file(path: Path) -> CalibrationSession:
+    """The same for a file on this machine, where the metadata of a CSV table may stand in a JSON file beside it."""
+    with path.open("rb") as file:
+        start = file.read(max(len(magic) for magic, _ in READERS))
+    if any(start.startswith(magic) for magic, _ in READERS):
+        return read_upload(path.read_bytes(), str(path))
+    return read_session(path)

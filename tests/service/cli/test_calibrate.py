@@ -109,3 +109,13 @@ def test_a_command_that_is_none_is_told_what_it_may_have_been(run: Run) -> None:
     ran = run("calibrat")
     assert ran.code == 1
     assert "'calibrate'" in ran.err
+
+
+def test_a_csv_table_finds_its_metadata_in_the_json_file_beside_it(run: Run, tmp_path: Path) -> None:
+    document = accelerometer_block()
+    table = document.pop("table")
+    write(tmp_path, "x.json", document)
+    lines = [",".join(table), *(",".join(map(str, row)) for row in zip(*table.values(), strict=True))]
+    (tmp_path / "x.csv").write_text("\n".join(lines), encoding="utf-8")
+    ran = run("calibrate", tmp_path / "x.csv", "--json")
+    assert ran.documents == [calibrate(read_session(accelerometer_block())).to_dict()]
