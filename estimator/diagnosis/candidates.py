@@ -51,6 +51,14 @@ class Traces:
     """(S, n, q)"""
     raw: Array
     """(S, q) norm of every column before the baseline absorbed its share; 0 for columns that are no amplitude."""
+    places: int
+    """Number of shapes that are visible at all: what the cause's prior is shared among."""
+
+    def at(self, sensors: tuple[int, ...]) -> "Traces":
+        """The shapes on some sensors, and those of no sensor; the prior is still shared among all."""
+        own = [k for k, s in enumerate(self.shapes) if s.sensors in ((), sensors)]
+        kept = tuple(self.shapes[k] for k in own), tuple(self.lasting[k] for k in own)
+        return replace(self, shapes=kept[0], lasting=kept[1], columns=self.columns[own], raw=self.raw[own])
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +119,8 @@ def _version(evidence: Evidence, cause: Signature, shapes: tuple[Shape, ...], *,
     trace = evidence.trace(stacked, lasting=lasting)
     columns = np.moveaxis(trace.reshape(len(trace), len(shapes), q), 1, 0)
     raw = np.linalg.norm(evidence.raw(stacked), axis=0).reshape(len(shapes), q)
-    return Traces(cause, shapes, (lasting,) * len(shapes), columns, raw)
+    shown = (np.linalg.norm(columns, axis=1) > INVISIBLE * raw) & (raw > 0)
+    return Traces(cause, shapes, (lasting,) * len(shapes), columns, raw, int(shown.any(axis=-1).sum()))
 
 
 def freed(evidence: Evidence, traces: Traces) -> Traces | None:
@@ -131,7 +140,7 @@ def freed(evidence: Evidence, traces: Traces) -> Traces | None:
     blank = np.zeros((*traces.shapes[0].columns.shape[:2], 5))
     shapes = tuple(Shape(s.sensors, np.concatenate([s.columns, blank], axis=-1), s.nonlinear) for s in traces.shapes)
     raw = np.concatenate([traces.raw, np.zeros((S, 5))], axis=-1)
-    return Traces(traces.cause, shapes, traces.lasting, np.concatenate([traces.columns, own], axis=-1), raw)
+    return replace(traces, shapes=shapes, columns=np.concatenate([traces.columns, own], axis=-1), raw=raw)
 
 
 def score(evidence: Evidence, traces: Sequence[Traces], taken: Array) -> list[Scored]:
@@ -146,12 +155,12 @@ def score(evidence: Evidence, traces: Sequence[Traces], taken: Array) -> list[Sc
 def rescored(evidence: Evidence, scored: Scored, taken: Array) -> Scored:
     """One shape scored anew on what other findings leave."""
     raw = np.linalg.norm(evidence.raw(scored.shape.columns), axis=0)
-    alone = Traces(scored.cause, (scored.shape,), (scored.lasting,), scored.columns[None], raw[None])
+    alone = Traces(scored.cause, (scored.shape,), (scored.lasting,), scored.columns[None], raw[None], scored.places)
     z = evidence.z - taken @ (taken.T @ evidence.z)
     again = next(iter(_score(evidence, alone, taken, z)), None)
     if again is None:
         return replace(scored, statistic=0.0, evidence=-float(np.log(scored.places)), p_value=1.0)
-    return replace(again, evidence=again.evidence - float(np.log(scored.places)), places=scored.places)
+    return again
 
 
 def _score(evidence: Evidence, traces: Traces, taken: Array, z: Array) -> Iterable[Scored]:
@@ -165,7 +174,7 @@ def _score(evidence: Evidence, traces: Traces, taken: Array, z: Array) -> Iterab
     power, freedom = (along**2).sum(axis=-1), live.sum(axis=-1)
     inverse = np.where(live, 1 / np.where(live, size, 1.0), 0.0)
     amplitude = (turn.swapaxes(-1, -2) @ (along * inverse)[..., None])[..., 0] / np.where(shown, norms, np.inf)
-    places, used = int(visible.sum()), (taken**2).sum(axis=1)
+    places, used = max(traces.places, 1), (taken**2).sum(axis=1)
     for s in np.flatnonzero(visible):
         shape, q = traces.shapes[s], int(freedom[s])
         statistic = equivalent(evidence, shape, float(power[s]), q, z, used)

@@ -20,8 +20,9 @@ from estimator.diagnosis.nominal import WrongEntry, wrong_elevation
 from estimator.diagnosis.polish import polished
 from estimator.diagnosis.report import entry_finding, findings, slip_finding, structures
 from estimator.diagnosis.results import Diagnosis
-from estimator.diagnosis.search import Search, begin, search
+from estimator.diagnosis.search import search
 from estimator.diagnosis.slips import Slip, exchanged_rows, expected_axes, turned_record
+from estimator.diagnosis.state import Search, begin
 from estimator.session import TWO_AXIS_STAND, CalibrationSession
 
 

@@ -15,7 +15,8 @@ import numpy as np
 
 from estimator.calibration.calibrate import calibrate
 from estimator.diagnosis.candidates import INVISIBLE, Scored
-from estimator.diagnosis.search import DRIFT, Excess, Search
+from estimator.diagnosis.revise import DRIFT
+from estimator.diagnosis.state import Excess, Search
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 

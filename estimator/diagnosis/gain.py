@@ -8,7 +8,7 @@ import numpy as np
 
 from estimator.diagnosis.baseline import spread
 from estimator.diagnosis.results import Gain, Score
-from estimator.diagnosis.search import Search
+from estimator.diagnosis.state import Search
 from estimator.session import Array
 
 FOLDS = 6

@@ -14,7 +14,7 @@ from scipy.special import chdtri, chndtr
 from estimator.causes import Cause, Correction, Signature
 from estimator.diagnosis.candidates import INVISIBLE, Traces
 from estimator.diagnosis.results import Limit
-from estimator.diagnosis.search import LEVEL, Search
+from estimator.diagnosis.state import LEVEL, Search
 
 POWER = 0.95
 

@@ -9,7 +9,7 @@ from estimator.diagnosis.candidates import score
 from estimator.diagnosis.extend import amplitudes, extended_calibration
 from estimator.diagnosis.measured import baseline_of
 from estimator.diagnosis.polish import polished
-from estimator.diagnosis.search import Found, Search, begin
+from estimator.diagnosis.state import Found, Search, begin
 from estimator.results import Calibration
 from estimator.session import CalibrationSession
 

@@ -7,7 +7,7 @@ leaves nothing in parity space. A fault of one sensor cannot hide there: it leav
 import numpy as np
 
 from estimator.diagnosis.candidates import Scored
-from estimator.diagnosis.search import Found, Search
+from estimator.diagnosis.state import Found, Search
 from estimator.session import Array
 
 

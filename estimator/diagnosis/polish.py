@@ -6,7 +6,7 @@ import numpy as np
 
 from estimator.causes import Shape
 from estimator.diagnosis.candidates import Scored, rescored
-from estimator.diagnosis.search import Found, Search
+from estimator.diagnosis.state import Found, Search
 
 
 def polished(state: Search) -> Search:

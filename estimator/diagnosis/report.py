@@ -8,8 +8,8 @@ from estimator.diagnosis.nominal import WrongEntry
 from estimator.diagnosis.parity import parity_split
 from estimator.diagnosis.results import Finding, Rival, Structure
 from estimator.diagnosis.rivals import CREDIBLE, alternatives, ranking, separations
-from estimator.diagnosis.search import Excess, Found, Search
 from estimator.diagnosis.slips import Slip, posterior
+from estimator.diagnosis.state import Excess, Found, Search
 from estimator.diagnosis.structures import Structure as Pattern
 from estimator.session import ACCELEROMETER, CalibrationSession
 

@@ -11,7 +11,7 @@ from estimator.diagnosis.candidates import Scored
 from estimator.diagnosis.evidence import Evidence
 from estimator.diagnosis.planner import PROPOSALS
 from estimator.diagnosis.results import Rival, Separation
-from estimator.diagnosis.search import Found, Search
+from estimator.diagnosis.state import Found, Search
 from estimator.session import Array
 
 CREDIBLE = 0.995

@@ -15,7 +15,7 @@ from estimator.causes import CATALOGUE
 from estimator.diagnosis.limits import limits
 from estimator.diagnosis.measured import baseline_of
 from estimator.diagnosis.results import Limit
-from estimator.diagnosis.search import begin
+from estimator.diagnosis.state import begin
 from estimator.errors import Problem, ScheduleError
 from estimator.planning.elevation import conditioning, optimal_elevation
 from estimator.planning.expected import (

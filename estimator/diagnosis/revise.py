@@ -1,0 +1,91 @@
+"""Second thoughts: a cause found later may change what was named earlier.
+
+Every finding is chosen anew given the others until nothing changes; drift that another effect explains, two causes of
+the stand that a third one patched up, and names that structure without a name explains better are taken back.
+"""
+
+from dataclasses import replace
+from itertools import combinations
+
+from estimator.diagnosis.candidates import score
+from estimator.diagnosis.greedy import DECISIVE, causes, structures
+from estimator.diagnosis.state import Found, Search, strongest, total
+
+NAMELESS = 1.5
+"""ln evidence by which structure without a name must beat the named causes."""
+
+DRIFT = "sensor-drift"
+
+
+def settle(state: Search) -> Search:
+    """Choose every finding anew given the others, until nothing changes; drop what loses its significance."""
+    for _ in range(4 if state.found else 0):
+        groups = [f.best.group for f in state.found]
+        for old in state.found:
+            new = strongest(state, state.traces, without=old)
+            kept = tuple(new if f is old else f for f in state.found)
+            state = replace(state, found=tuple(f for f in kept if f is not None))
+        state = causes(state)
+        if [f.best.group for f in state.found] == groups:
+            break
+    return state
+
+
+def without_needless_drift(state: Search) -> Search:
+    """Take back a sensor's drift where another effect on that sensor, part of the history too, explains its move."""
+    for drift in [f for f in state.found if f.best.cause.identifier == DRIFT]:
+        sensors = drift.best.shape.sensors
+        others = [f for f in state.found if f is not drift and f.best.shape.sensors == sensors]
+        for other in others:
+            rest = replace(state, found=tuple(f for f in state.found if f is not drift))
+            again = strongest(rest, rest.traces, without=other)
+            if again is None or again.best.cause.identifier == DRIFT:
+                continue
+            rival = replace(rest, found=tuple(again if f is other else f for f in rest.found))
+            if total(rival) > total(state) - DECISIVE:
+                state = rival
+                break
+    return state
+
+
+def best_pair(state: Search) -> Search:
+    """Two causes of stand or fixture chosen together: one after another, the first may patch up both."""
+    common = [f for f in state.found if not f.best.shape.sensors]
+    if len(common) != 2:
+        return state
+    others = replace(state, found=tuple(f for f in state.found if f not in common))
+    scored = score(state.evidence, state.traces, others.taken())
+    known = {f.best.group for f in common}
+    best, weight = state, total(state)
+    for first, second in combinations([s for s in scored if not s.shape.sensors], 2):
+        if {first.group, second.group} == known or first.group == second.group:
+            continue
+        pair = tuple(Found(s, 0.0, ((s, s.evidence),)) for s in (first, second))
+        rival = replace(others, found=(*others.found, *pair))
+        if (value := total(rival)) > weight:
+            best, weight = rival, value
+    return best if best is state else settle(best)
+
+
+def judge_structures(state: Search) -> Search:
+    """Withdraw names when structure without them explains the session better.
+
+    Tried for every name alone, for all names of one sensor together, for those of no sensor, and for all names.
+    """
+    for group in groups(state):
+        if not all(f in state.found for f in group):
+            continue
+        kept = tuple(f for f in state.found if f not in group)
+        rival = structures(replace(state, found=kept, structures=()))
+        if rival.structures and total(rival) > total(state) + NAMELESS:
+            state = rival
+    return state
+
+
+def groups(state: Search) -> list[tuple[Found, ...]]:
+    """The sets of findings that structure may replace, the largest first."""
+    by_sensor: dict[tuple[int, ...], list[Found]] = {}
+    for f in state.found:
+        by_sensor.setdefault(f.best.shape.sensors, []).append(f)
+    sets = [state.found, *map(tuple, by_sensor.values()), *((f,) for f in state.found)]
+    return list(dict.fromkeys(s for s in sets if s))

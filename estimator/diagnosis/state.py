@@ -1,0 +1,145 @@
+"""Where a search for causes stands: the evidence, every signature that could explain it, and what was found so far.
+
+The family-wise level is held over the whole catalogue: Bonferroni over causes, and over the places and shapes of each.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from estimator.causes import CATALOGUE, Cause, Signature
+from estimator.diagnosis.baseline import Baseline
+from estimator.diagnosis.between import between_sessions
+from estimator.diagnosis.candidates import Scored, Traces, ranked, rescored, score, traces_of
+from estimator.diagnosis.evidence import Between, Evidence
+from estimator.diagnosis.serial import Serial
+from estimator.diagnosis.structures import STRUCTURES
+from estimator.session import Array
+
+LEVEL = 0.005
+"""Family-wise level: sessions without an effect that get a name; half of what is allowed, for safety."""
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """One selected signature with its rivals."""
+
+    best: Scored
+    p_family: float
+    ranking: tuple[tuple[Scored, float], ...]
+    """Every (cause, sensors) with its ln evidence, strongest first, given the other findings."""
+
+    def ranking_of(self, scored: Scored) -> tuple[tuple[Scored, float], ...]:
+        """The ranking as another sensor sees it: its own causes and those of no sensor."""
+        return tuple(pair for pair in self.ranking if pair[0].shape.sensors in ((), scored.shape.sensors))
+
+
+@dataclass(frozen=True)
+class Excess:
+    """A sensor noisier than stated."""
+
+    sensor: int
+    ratio: float
+    """Variance over the stated one."""
+    freedom: float
+    evidence: float
+    p_family: float
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """Where the search stands, and at its end what was found."""
+
+    baseline: Baseline
+    history: tuple[Baseline, ...]
+    catalogue: tuple[Cause, ...]
+    evidence: Evidence
+    traces: tuple[Traces, ...]
+    patterns: tuple[Traces, ...]
+    found: tuple[Found, ...] = ()
+    structures: tuple[Found, ...] = ()
+    excess: tuple[Excess, ...] = ()
+    serial: tuple[Serial, ...] = ()
+    """Sensors whose left-over is not white, though no pattern fits it."""
+
+    @property
+    def between(self) -> Between | None:
+        return self.evidence.between
+
+    @property
+    def spoken_for(self) -> set[int]:
+        """Sensors whose scatter is already known to be excess noise or uneven."""
+        return {e.sensor for e in self.excess} | {s.sensor for s in self.serial}
+
+    @property
+    def left(self) -> Array:
+        """(n,) what findings and structures leave."""
+        taken = self.taken()
+        return np.asarray(self.evidence.z - taken @ (taken.T @ self.evidence.z))
+
+    @property
+    def families(self) -> int:
+        """Number of causes that this session puts to the test."""
+        return len(self.traces) + 1
+
+    def taken(self, without: Found | None = None) -> Array:
+        """(n, f) orthonormal traces of the findings and structures, one left out."""
+        parts = [f.best.columns for f in (*self.found, *self.structures) if f is not without]
+        if not parts:
+            return np.zeros((len(self.evidence.z), 0))
+        columns = np.concatenate(parts, axis=1)
+        norms = np.linalg.norm(columns, axis=0)
+        left, size, _ = np.linalg.svd(columns[:, norms > 0] / norms[norms > 0], full_matrices=False)
+        return left[:, size > 1e-6 * size[0]]
+
+
+def begin(baseline: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause] = CATALOGUE) -> Search:
+    """A search with nothing found yet."""
+    evidence = Evidence.of(baseline, between_sessions(baseline, history))
+    signatures = [c for c in catalogue if isinstance(c, Signature)]
+    return Search(
+        baseline,
+        tuple(history),
+        tuple(catalogue),
+        evidence,
+        tuple(traces_of(evidence, signatures)),
+        tuple(traces_of(evidence, STRUCTURES)),
+    )
+
+
+def strongest(state: Search, traces: Sequence[Traces], without: Found | None = None) -> Found | None:
+    """The signature with the strongest evidence given the other findings; None if it is not significant.
+
+    ``without``: one finding is taken back and chosen anew, on its own sensor or common to all.
+    """
+    families = state.families if traces is state.traces else len(traces)
+    if without is not None and without.best.shape.sensors:
+        traces = [t.at(without.best.shape.sensors) for t in traces]
+    order = ranked(score(state.evidence, traces, state.taken(without)))
+    for best, _ in order[:3]:
+        p_family = min(1.0, best.p_value * best.places * max(families, 1))
+        if p_family < LEVEL:
+            return Found(best, p_family, tuple(order))
+    return None
+
+
+def companions(state: Search, best: Found, traces: Sequence[Traces]) -> list[Found]:
+    """The same cause on other sensors, where it is significant and leads that sensor's own ranking."""
+    leads: dict[tuple[int, ...], Scored] = {}
+    for scored, _ in best.ranking:
+        leads.setdefault(scored.shape.sensors, scored)
+    same = [s for sensors, s in leads.items() if sensors and sensors != best.best.shape.sensors]
+    same = [s for s in same if s.cause is best.best.cause]
+    families = state.families if traces is state.traces else len(traces)
+    levels = [(s, min(1.0, s.p_value * s.places * families)) for s in same]
+    return [Found(s, level, best.ranking_of(s)) for s, level in levels if level < LEVEL]
+
+
+def total(state: Search) -> float:
+    """ln evidence of everything found together, each weighed on what those before it leave."""
+    weight, before = 0.0, replace(state, found=(), structures=())
+    for member in (*state.found, *state.structures):
+        weight += rescored(state.evidence, member.best, before.taken()).evidence
+        before = replace(before, found=(*before.found, member))
+    return weight
