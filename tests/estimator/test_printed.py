@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from estimator.printed import Accuracy, Conditions, checked, gyro_conditions, printed
+from benchmarks.papers.half_sums import simulated
+from estimator.printed import Conditions, checked, gyro_conditions, printed
 from estimator.session import Array, StandErrors
 from tests.builders import ARCSEC, cone_axes
 
@@ -23,44 +24,12 @@ SOURCES = {
 }
 
 
-def applied(c: Conditions, rng: np.random.Generator, lift: Array, across: Array) -> Array:
-    """(trials, N, 3) reference vectors of one run, platform axes, from the geometry alone."""
-    beta = 2 * np.pi * np.arange(c.positions) / c.positions
-    beta = beta + rng.normal(0, c.stand.beta, (len(lift), c.positions))
-    y, z = np.sin(c.alpha + lift)[:, None], np.cos(c.alpha + lift)[:, None]
-    x = across[:, None]
-    return c.magnitude * np.stack(
-        [np.cos(beta) * x - np.sin(beta) * z, y + 0 * beta, np.sin(beta) * x + np.cos(beta) * z], -1
-    )
-
-
-def simulated(axes: Array, c: Conditions, seed: int = 0) -> Accuracy:
-    """Variances over simulated sessions by (18), (20), (22)–(24)."""
-    rng = np.random.default_rng(seed)
-    axes = axes / np.linalg.norm(axes, axis=1, keepdims=True)
-    lift = rng.normal(0, 1, TRIALS) * np.sqrt(c.raise_variance)
-    across = rng.normal(0, c.stand.theta_y, TRIALS)
-    beta, shape = 2 * np.pi * np.arange(c.positions) / c.positions, (TRIALS, c.positions, len(axes))
-    direct, flipped = (
-        (applied(c, rng, lift, across) * sign) @ axes.T + rng.normal(0, np.hypot(c.noise, c.bias_variation), shape)
-        for sign in (np.ones(3), np.array([-1, -1, 1]))
-    )
-    total, half = (direct + flipped) / 2, (direct - flipped) / 2
-    reach = 2 / (c.positions * c.magnitude * np.cos(c.alpha))
-    s1 = reach * np.einsum("j,tjm->tm", -np.sin(beta), half)
-    s3 = reach * np.einsum("j,tjm->tm", np.cos(beta), total)
-    s = np.stack([s1, half.mean(axis=1) / (c.magnitude * np.sin(c.alpha)), s3], axis=-1)
-    K = np.linalg.norm(s, axis=-1)
-    turned = ((s / K[..., None] - axes) ** 2).sum(axis=-1).mean(axis=0)
-    return Accuracy(((K - 1) ** 2).mean(axis=0), (total.mean(axis=1) ** 2).mean(axis=0), turned)
-
-
 @pytest.mark.parametrize("axes", [AXES, TILTED], ids=["cone", "tilted"])
 @pytest.mark.parametrize("source", SOURCES)
 def test_the_checked_propagation_is_what_happens(source: str, axes: Array) -> None:
     axes = axes / np.linalg.norm(axes, axis=1, keepdims=True)
     c = SOURCES[source]
-    found, expected = simulated(axes, c), checked(axes, c)
+    found, expected = simulated(axes, c, TRIALS, 0), checked(axes, c)
     for name, floor in (("scale", 1e-13), ("bias", 1e-13), ("axis", 1e-13)):
         assert getattr(expected, name) == pytest.approx(getattr(found, name), rel=0.06, abs=floor)
 
@@ -82,7 +51,7 @@ RATIOS = [
 def test_the_printed_formulas_are_off_by_this_much(source: str, parameter: str, ratio: float) -> None:
     """Printed over true variance, mean over the cone's six sensors."""
     c = SOURCES[source]
-    true = getattr(simulated(AXES, c, seed=1), parameter).mean()
+    true = getattr(simulated(AXES, c, TRIALS, 1), parameter).mean()
     assert getattr(printed(AXES, c), parameter).mean() / true == pytest.approx(ratio, rel=0.04)
 
 

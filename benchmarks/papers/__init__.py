@@ -1,0 +1,1 @@
+"""The tables and formulas of the papers beside ours: ``python -m benchmarks.papers``."""

@@ -1,0 +1,56 @@
+"""The papers' tables are reproduced, and docs/papers.md is what the command prints."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmarks.papers.formulas import instrument_only
+from benchmarks.papers.markdown import table
+from benchmarks.papers.planning import conditionings, orientation_sets
+from benchmarks.papers.published import ACCELEROMETERS, AXES, GYROS, Published
+from benchmarks.papers.tables import by_half_sums, fitted_noise, sessions, two_sigma
+from estimator.planning import optimal_elevation
+from estimator.printed import checked
+
+PAGE = (Path(__file__).parents[2] / "docs" / "papers.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("paper", "row", "ratios"),
+    [
+        (ACCELEROMETERS, 0, (1.15, 0.87, 1.0)),
+        (ACCELEROMETERS, 1, (1.10, 0.86, 1.0)),
+        (ACCELEROMETERS, 2, (2.35, 1.76, 1.98)),
+        (GYROS, 0, (0.97, 1.76, 5.1)),
+        (GYROS, 2, (1.96, 3.65, 10.6)),
+    ],
+)
+def test_simulated_over_printed(paper: Published, row: int, ratios: tuple[float, float, float]) -> None:
+    N, *stated = paper.rows[row]
+    found = two_sigma(by_half_sums(sessions(paper, N, fitted_noise(paper, checked), 100), paper), paper)
+    assert found / stated == pytest.approx(ratios, rel=0.08)
+
+
+def test_the_simulation_with_pulses_and_stand_agrees_with_the_propagation() -> None:
+    drawn = by_half_sums(sessions(GYROS, 24, 0.0, 200), GYROS)
+    expected = checked(AXES, GYROS.at(24, 0.0))
+    for name in ("scale", "bias", "axis"):
+        assert getattr(drawn, name).mean() == pytest.approx(getattr(expected, name).mean(), rel=0.1)
+
+
+def test_the_gyros_elevation_follows_from_31() -> None:
+    assert np.degrees(optimal_elevation(GYROS.conditions.stand, 24)) == pytest.approx(39.0, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    "printed",
+    [
+        conditionings,
+        orientation_sets,
+        lambda: table(("3σ, N = 12", "stated", "(28)–(30) as printed", "checked"), instrument_only()),
+    ],
+    ids=["conditioning", "orientations", "instrument"],
+)
+def test_the_page_holds_what_the_command_prints(printed: object) -> None:
+    assert printed() in PAGE  # type: ignore[operator]
