@@ -1,8 +1,8 @@
 """Alignment and rate-table results in the terms of a calibration, so that they are stored and judged like every other.
 
 The block's axes take the place of its sensors, because an alignment sees a block of any number of sensors as three
-axes: ``acc x`` and ``acc y`` with the bias ∇, ``gyro x``, ``gyro y``, ``gyro z`` with the bias ε, of which the first
-two have the misalignment E_xz and E_yz and the third the scale 1 + κ. What a programme does not speak of is in no key of
+axes: ``acc x`` and ``acc y`` with the bias ∇; ``gyro x``, ``gyro y``, ``gyro z`` with the bias ε, the first two with
+the misalignments E_xz and E_yz, the third with the scale 1 + κ. What a programme does not speak of is in no key of
 ``observable``: it is not judged.
 """
 

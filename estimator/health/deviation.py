@@ -7,7 +7,6 @@ import numpy as np
 from estimator.results import Estimate, SensorCalibration
 from estimator.session import Array
 
-
 NOT_SEEN = Estimate(None, None)
 
 
