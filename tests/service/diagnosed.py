@@ -1,0 +1,44 @@
+"""Sessions with a hidden effect, from the tests' own generator, given to the service over HTTP."""
+
+import json
+from typing import Any
+
+import httpx
+
+from tests.blind.case import Case
+from tests.blind.cases import draw_case
+
+LONGEST = 16
+TEMPERATURE = ("single", (77, 3), "bias-temperature")
+"""A5 follows the temperature, told apart from every rival by more than five standard errors."""
+ECCENTRIC = ("single", (77, 25), "beta-scale")
+UNEXPLAINED = ("outside", (5, 1), "fifth-harmonic")
+ALIASES = ("single", (77, 0), "cubic-nonlinearity")
+
+
+def drawn(what: tuple[str, tuple[int, ...], str | None]) -> Case:
+    """A case by its kind, seed and cause."""
+    return draw_case(*what, LONGEST)
+
+
+def send(client: httpx.Client, document: dict[str, Any]) -> str:
+    """Uploads a session and returns its id."""
+    answer = client.post("/api/v1/sessions", content=json.dumps(document))
+    assert answer.status_code in (200, 201), answer.text
+    return str(answer.json()["id"])
+
+
+def send_case(client: httpx.Client, case: Case) -> str:
+    """Uploads a case's history, then its session, as a unit of its own, and returns the session's id."""
+    own = {"unit": f"{case.session['unit']}-{case.label}"}
+    for earlier in case.history:
+        send(client, earlier | own)
+    return send(client, case.session | own)
+
+
+def diagnosis_of(client: httpx.Client, id: str) -> dict[str, Any]:
+    """imu-diagnosis/1 of a stored session."""
+    answer = client.get(f"/api/v1/sessions/{id}/diagnosis")
+    assert answer.status_code == 200, answer.text
+    document: dict[str, Any] = answer.json()
+    return document
