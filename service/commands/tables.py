@@ -9,10 +9,9 @@ from rich.table import Table
 from rich.text import Text
 
 from estimator.results import Calibration, Estimate, Fit, SensorCalibration
-from estimator.session import CalibrationSession, Sensor
+from estimator.session import CALIBRATIONS, CalibrationSession, Sensor
 from service.units import deviation_unit, in_unit, measured, number
 
-PARAMETERS = ("scale", "bias", "quadratic", "axis")
 UNSEEN = "not observable"
 UNLIKELY = 0.001
 DOUBTFUL = 0.05
@@ -32,12 +31,34 @@ def _heading(session: CalibrationSession, calibration: Calibration) -> Text:
 
 def _parameters(session: CalibrationSession, calibration: Calibration) -> RenderableType:
     """Two tables of one row a sensor: beside each other where there is room, else one below the other."""
+    if session.programme not in CALIBRATIONS:
+        return _axes_of_block(calibration)
     numbers = _table("sensor", "scale, off nominal", "bias", "quadratic")
     axes = _table("sensor", "axis, block axes", "±")
     for declared, sensor in zip(session.sensors, calibration.sensors, strict=True):
         numbers.add_row(escape(sensor.name), *_numbers(declared, sensor))
         axes.add_row(escape(sensor.name), *_axis(sensor))
     return Columns([numbers, axes], padding=(0, 3))
+
+
+def _axes_of_block(calibration: Calibration) -> RenderableType:
+    """One table of one row an axis of the block, for sessions on a turntable."""
+    table = _table("axis", "scale, off 1", "bias", "misalignment")
+    for sensor in calibration.sensors:
+        off = _off_nominal(sensor.scale, 1.0)
+        own = {"scale": off, "bias": sensor.bias, "misalignment": sensor.misalignment or off}
+        cells = (_cell(sensor, name, estimate) for name, estimate in own.items())
+        table.add_row(escape(sensor.name), *cells)
+    return table
+
+
+def _cell(sensor: SensorCalibration, parameter: str, estimate: Estimate) -> str:
+    """Empty where the session does not speak of the parameter."""
+    if parameter not in sensor.observable:
+        return ""
+    if estimate.value is None:
+        return UNSEEN
+    return measured(estimate.value, estimate.sigma, deviation_unit(sensor.kind, parameter, estimate.value))
 
 
 def _table(*headings: str) -> Table:
@@ -73,7 +94,7 @@ def _notes(calibration: Calibration) -> Iterator[Text]:
     yield Text(fit_in_words(calibration.fit))
     sensors: dict[str, list[str]] = {}
     for sensor in calibration.sensors:
-        unseen = ", ".join(name for name in PARAMETERS if not sensor.observable[name])
+        unseen = ", ".join(name for name, seen in sensor.observable.items() if not seen)
         sensors.setdefault(unseen, []).append(sensor.name)
     for unseen, names in sensors.items():
         if unseen:
