@@ -182,6 +182,8 @@ class Calibration:
     residuals: Residuals
     gauge: str
     """What holds the block's frame: ``stand``, ``directions`` or ``nominal-axes`` (no net turn of all axes)."""
+    parity: dict[str, Any] | None = None
+    """``imu-parity/1``, where the calibration is a reference moved by what a recording shows."""
 
     def sensor(self, name: str) -> SensorCalibration:
         """The calibration of the sensor called ``name``; KeyError if there is none."""
@@ -206,4 +208,5 @@ class Calibration:
                 "repeatability": json_numbers(self.repeatability),
             },
             "residuals": self.residuals.to_dict(),
+            **({} if self.parity is None else {"parity": self.parity}),
         }

@@ -87,20 +87,21 @@ class ParityAccumulator:
         detected = evidence.detected(false_alarm)
         found = evidence.candidates() if detected else []
         named = {h.sensor for h in found}
+        isolated = found[0] if len(named) == 1 else None
         m = len(self.reference.names)
         whole = change.excited @ change.theta
         spread = np.kron(change.excited, np.eye(change.theta.shape[1]))
         return ParityResult(
             unit=self.unit,
             kind=self.reference.kind,
-            sensors=tuple(evidence.sensor(i, false_alarm) for i in range(m)),
+            sensors=tuple(evidence.sensor(i, false_alarm, isolated) for i in range(m)),
             chi2=evidence.chi2,
             dof=len(evidence.seen),
             p_value=evidence.p_value(evidence.chi2, len(evidence.seen)),
             detected=detected,
             false_alarm=false_alarm,
             candidates=tuple(map(evidence.candidate, found)),
-            isolated=self.reference.names[found[0].sensor] if len(named) == 1 else None,
+            isolated=None if isolated is None else self.reference.names[isolated.sensor],
             explained=not detected or evidence.explained(found[0]),
             complete=change.complete,
             constant=whole[0],
@@ -116,7 +117,16 @@ class ParityAccumulator:
             saturated=selection.saturated,
             block_seconds=None if self._rate is None else self.ledger.length / self._rate,
             duration=None if self._rate is None else self._samples / self._rate,
+            course=change.course,
+            course_sigma=change.course_sigma,
+            course_time=self._middles(selection),
         )
+
+    def _middles(self, selection: Selection) -> Array:
+        """(groups,) s, or blocks."""
+        share = np.bincount(selection.group)
+        middle = np.bincount(selection.group, weights=selection.blocks.first + 0.5) / share
+        return np.asarray(middle if self._rate is None else middle * self.ledger.length / self._rate)
 
 
 def parity_check(

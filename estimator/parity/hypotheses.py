@@ -129,27 +129,44 @@ class Evidence:
             p_value=h.p_value,
         )
 
-    def sensor(self, index: int, false_alarm: float) -> SensorParity:
+    def sensor(self, index: int, false_alarm: float, isolated: Hypothesis | None) -> SensorParity:
         """What the recording shows of one sensor, and could have shown."""
         reference = self.change.reference
         own = {h.kind: h for h in self.all if h.sensor == index}
-        bias, scale, axis = (self.sight(own[kind], false_alarm) for kind in (BIAS, SCALE, AXIS))
+        bias, scale, axis = (self.sight(own[kind], false_alarm, isolated) for kind in (BIAS, SCALE, AXIS))
         return SensorParity(reference.names[index], float(reference.visible[index]), bias, scale, axis)
 
-    def sight(self, h: Hypothesis, false_alarm: float) -> Sight:
-        """Estimate and limits of one kind of change of one sensor."""
-        sizes = np.linalg.svd(h.whitened, compute_uv=False)
+    def sight(self, h: Hypothesis, false_alarm: float, isolated: Hypothesis | None) -> Sight:
+        """Estimate and limits of one kind of change of one sensor, beside a change that was isolated."""
+        beside = self.beside(h, isolated)
+        whitened = h.whitened - beside @ (beside.T @ h.whitened)
+        sizes = np.linalg.svd(whitened, compute_uv=False)
         if sizes[-1] <= UNSEEN * self.plain(h):
             return Sight(None, None, None, None)
-        amplitude = np.linalg.pinv(h.whitened) @ self.seen
-        change = float(amplitude[0]) if len(amplitude) == 1 else float(np.linalg.norm(amplitude))
+        inverse = np.linalg.pinv(whitened)
+        covariance = inverse @ inverse.T
         sigma = float(1 / sizes[-1])
-        detectable = sigma * self.wanted(h.whitened.shape[1], false_alarm)
+        detectable = sigma * self.wanted(whitened.shape[1], false_alarm)
         left = float(self._left[self._single.index(h)])
         isolable = None
         if left > ALIKE:
             isolable = max(detectable, sigma * (np.sqrt(self.margin) + norm.ppf(POWER)) / np.sqrt(left))
-        return Sight(change, sigma, float(detectable), None if isolable is None else float(isolable))
+        return Sight(
+            change=tuple((inverse @ self.seen).tolist()),
+            covariance=tuple(map(tuple, covariance.tolist())),
+            detectable=float(detectable),
+            isolable=None if isolable is None else float(isolable),
+        )
+
+    def beside(self, h: Hypothesis, isolated: Hypothesis | None) -> Array:
+        """(q, r) orthonormal basis of the change that stands beside a hypothesis: the isolated one's, less its own."""
+        if isolated is None or (h.sensor, h.kind) == (isolated.sensor, isolated.kind):
+            return np.empty((len(self.seen), 0))
+        if (h.sensor, isolated.kind) != (isolated.sensor, SEVERAL):
+            return isolated.basis
+        rest = [o.whitened for o in self._single if o.sensor == h.sensor and o.kind != h.kind]
+        U, sizes, _ = np.linalg.svd(np.hstack(rest), full_matrices=False)
+        return np.asarray(U[:, sizes > UNSEEN * sizes[0]])
 
     def plain(self, h: Hypothesis) -> float:
         """Size of the sensor's largest signature, any kind scaled to the size of the applied vector."""
@@ -178,4 +195,12 @@ def separations(hypotheses: list[Hypothesis]) -> Array:
 
 def tail(ratio: float, k: int, dof: float) -> tuple[float, float]:
     """Probability of a ratio of k numbers by chance, noise known to ``dof``, and −2 ln of it for certain noise."""
-    return float(f.sf(ratio / k, k, dof)), float(-2.0 * chi2.logsf(ratio, k))
+    return float(f.sf(ratio / k, k, dof)), -2.0 * log_tail(max(ratio, np.finfo(float).tiny), k)
+
+
+def log_tail(x: float, k: int) -> float:
+    """ln of the upper tail of χ² with k = 1 to 4 degrees of freedom, in closed form because x may be large."""
+    if k % 2 == 0:
+        return -x / 2 + (float(np.log1p(x / 2)) if k == 4 else 0.0)
+    first = float(np.log(2.0) + norm.logsf(np.sqrt(x)))
+    return first if k == 1 else float(np.logaddexp(first, 0.5 * np.log(2 * x / np.pi) - x / 2))

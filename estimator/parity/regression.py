@@ -29,8 +29,8 @@ EXCITED = 0.02
 SLOWEST = 0.9
 """Largest correlation of neighbouring groups that is believed."""
 
-LEAST_DOF = 5.0
-"""Of the noise, however slow it is."""
+LEAST_DOF = (4.0, 2.0, 16.0)
+"""Of the noise, however slow it is: the first and the second times d, at most the third; more sensors tell more."""
 
 DRAWN = 6.0
 """Groups' worth of belief that all sensors are equally noisy."""
@@ -57,6 +57,10 @@ class Change:
     """Of the parity vector's elements after the fit, block means, m/s² (rad/s)."""
     quadratic: Array
     """(m, s) how a² runs along z: what a change of c looks like."""
+    course: Array
+    """(groups, m) means over the groups of V·p."""
+    course_sigma: Array
+    """(m,) scatter of the groups' means about the fit."""
 
     @property
     def covariance(self) -> Array:
@@ -102,6 +106,7 @@ def regress(selection: Selection, reference: Reference, norm: float | None) -> C
     omega = slow * sensor_noise(jackknifed(z, w, residual, selection, G), reference.parity, groups)
     noise = np.einsum("mst,md,me->sdte", omega, reference.parity, reference.parity)
     q = theta.size
+    course, about = (group_means(w, part, selection) @ reference.parity.T for part in (p, residual))
     change = Change(
         reference=reference,
         norm=size,
@@ -109,9 +114,11 @@ def regress(selection: Selection, reference: Reference, norm: float | None) -> C
         theta=theta,
         noise=noise.reshape(q, q),
         known=np.zeros((q, q)),
-        dof=float(max(groups / slow, LEAST_DOF + Q.shape[1]) - Q.shape[1]),
+        dof=max(groups / slow - Q.shape[1], min(LEAST_DOF[0] + LEAST_DOF[1] * p.shape[1], LEAST_DOF[2])),
         residual_rms=float(np.sqrt((w[:, None] * residual**2).mean())),
         quadratic=a2,
+        course=course,
+        course_sigma=about.std(axis=0),
     )
     return Change(**{**vars(change), "known": known_covariance(change)})
 
@@ -141,12 +148,17 @@ def jackknifed(z: Array, w: Array, residual: Array, selection: Selection, G: Arr
     return np.sqrt((groups - 1) / groups) * np.linalg.solve(G - own, score)
 
 
+def group_means(w: Array, rows: Array, selection: Selection) -> Array:
+    """(groups, k) weighted means of rows (B, k)."""
+    total = np.zeros((selection.groups, rows.shape[1]))
+    np.add.at(total, selection.group, w[:, None] * rows)
+    return total / np.bincount(selection.group, weights=w)[:, None]
+
+
 def neighbours(w: Array, residual: Array, selection: Selection, s: int) -> float:
     """Correlation of the residuals of neighbouring groups, all sensors together; its downward bias taken off."""
     G = selection.groups
-    total = np.zeros((G, residual.shape[1]))
-    np.add.at(total, selection.group, w[:, None] * residual)
-    mean = total / np.sqrt(np.bincount(selection.group, weights=w))[:, None]
+    mean = group_means(w, residual, selection) * np.sqrt(np.bincount(selection.group, weights=w))[:, None]
     found = float((mean[1:] * mean[:-1]).sum() / max((mean**2).sum(), np.finfo(float).tiny))
     return float(np.clip(found + (s * (1 + found) + 2 * found) / G, 0.0, SLOWEST))
 

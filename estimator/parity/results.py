@@ -1,5 +1,6 @@
 """What parity found; no algorithms. The JSON form is ``imu-parity/1``."""
 
+import math
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -29,16 +30,30 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Sight:
-    """What the recording could have shown of one parameter of one sensor, if that alone had changed."""
+    """What the recording shows of one parameter of one sensor, if that alone has changed.
 
-    change: float | None
-    """Estimate of that change: m/s² (rad/s), relative, or rad (its length). None where it cannot be seen at all."""
-    sigma: float | None
-    """One sigma of the estimate; of the worse direction for an axis."""
+    Where another sensor was isolated, its change is taken out first. All None where nothing can be seen.
+    """
+
+    change: tuple[float, ...] | None
+    """Estimate: bias m/s² (rad/s), scale relative; axis two turns along the reference's tangents, rad."""
+    covariance: tuple[tuple[float, ...], ...] | None
     detectable: float | None
     """Size that is detected with 95 % power at the stated level."""
     isolable: float | None
     """Size that is also laid to this sensor with 95 % power; None where another sensor's change looks the same."""
+
+    @property
+    def size(self) -> float | None:
+        """Signed for one number, the length of two."""
+        if self.change is None:
+            return None
+        return self.change[0] if len(self.change) == 1 else math.hypot(*self.change)
+
+    @property
+    def sigma(self) -> float | None:
+        """One sigma; root of the trace for an axis."""
+        return None if self.covariance is None else math.sqrt(sum(row[k] for k, row in enumerate(self.covariance)))
 
 
 @dataclass(frozen=True)
@@ -94,6 +109,12 @@ class ParityResult:
     block_seconds: float | None
     duration: float | None
     """s"""
+    course: Array
+    """(groups, m) mean over every group of what parity shows of each sensor, V·Vᵀa, m/s² (rad/s)."""
+    course_sigma: Array
+    """(m,) scatter of the groups about the fit."""
+    course_time: Array
+    """(groups,) middle of each group, s since the start; blocks where no rate is known."""
 
     def sensor(self, name: str) -> SensorParity:
         """The sensor called ``name``; KeyError if there is none."""
@@ -105,7 +126,7 @@ class ParityResult:
     def to_dict(self) -> dict[str, Any]:
         """``imu-parity/1``."""
         plain = {k: v for k, v in vars(self).items() if k not in ("sensors", "candidates")}
-        for name in ("constant", "slope", "covariance", "excited"):
+        for name in ("constant", "slope", "covariance", "excited", "course", "course_sigma", "course_time"):
             plain[name] = json_numbers(plain[name])
         return {
             "format": "imu-parity/1",

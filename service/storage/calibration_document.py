@@ -29,6 +29,7 @@ def calibration_from_dict(document: dict[str, Any]) -> Calibration:
         fit=_fit(document["fit"]),
         residuals=residuals_from_dict(document["residuals"]),
         gauge=document["gauge"],
+        parity=document.get("parity"),
     )
 
 
