@@ -1,0 +1,60 @@
+"""``python -m benchmarks.catalogue`` writes the catalogue of causes into docs/diagnosis/causes.md."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from estimator.causes import CATALOGUE, Cause
+from estimator.diagnosis.model import can_be_modelled
+
+PAGE = Path(__file__).parents[1] / "docs" / "diagnosis" / "causes.md"
+HEAD = """# The catalogue of causes
+
+Made by `python -m benchmarks.catalogue` from `estimator/causes`, which the simulation, the diagnosis and the extended
+fit read too. a = e·n is the component of the applied vector n along the input axis e; p and o are unit vectors across
+it; t is the time since the start, T the temperature; a bar means the session's mean. Amplitudes are k, in SI; for a
+gyroscope read rad/s for m/s². A cause that can be *accepted* may become part of a unit's, unit type's or stand's model.
+"""
+SCOPES = {
+    "sensor": "One sensor",
+    "environment": "One sensor, with time or temperature",
+    "stand": "The stand, common to all sensors",
+    "fixture": "The fixture, common to all sensors",
+    "record": "The record",
+    "gyro": "Gyroscopes",
+}
+
+
+def page() -> str:
+    """Markdown: one table a scope."""
+    parts = [HEAD]
+    for scope, heading in SCOPES.items():
+        rows = [_row(cause) for cause in CATALOGUE if cause.scope == scope]
+        parts.append(f"## {heading}\n\n{_line(COLUMNS)}\n{RULE}\n" + "\n".join(rows) + "\n")
+    return "\n".join(parts)
+
+
+COLUMNS = ("identifier", "adds", "unit", "needs", "what it says, and what to do", "accepted")
+RULE = "| --- | --- | --- | --- | --- | --- |"
+
+
+def _row(cause: Cause) -> str:
+    sentence = cause.sentence.format(sensors="the sensor")
+    said = f"{sentence[0].upper()}{sentence[1:]} {cause.advice}"
+    needs = ", ".join(sorted(cause.needs)) or "–"
+    accepted = "yes" if can_be_modelled(cause.identifier) else "no"
+    units = ", ".join(dict.fromkeys(cause.units)) or "–"
+    return _line((f"`{cause.identifier}`", cause.equation, units, needs, said, accepted))
+
+
+def _line(cells: Iterable[str]) -> str:
+    """One line of a table; a bar within a cell is no border."""
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+
+def main() -> None:
+    """Write the page."""
+    PAGE.write_text(page(), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
