@@ -3,7 +3,7 @@
 from datetime import datetime
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Query, Response
+from fastapi import APIRouter, Query, Request, Response
 
 from service.api.exports import as_csv, as_parquet, history_table
 from service.api.schemas.fields import (
@@ -57,6 +57,7 @@ def list_units(
     response_model=HistoryPage,
 )
 def read_history(
+    request: Request,
     serial: Serial,
     store: Reading,
     parameter: Annotated[Parameter | None, Query(description="Only this parameter.")] = None,
@@ -68,7 +69,10 @@ def read_history(
     page: Page = 1,
     limit: Annotated[int, Query(ge=1, le=50_000, description="How many points on a page.")] = 10_000,
 ) -> Response:
-    """The parameters through time, oldest first: value, uncertainty, band, tolerance and verdict of every point."""
+    """The parameters through time, oldest first: value, uncertainty, band, tolerance and verdict of every point.
+
+    A table (CSV, Parquet) that is not the last has a `Link` header to the next.
+    """
     found = unit_history(
         store,
         serial,
@@ -80,15 +84,16 @@ def read_history(
         page=page,
         limit=limit,
     )
-    if format == "csv":
-        return as_csv(history_table(found), f"{serial}-history.csv")
-    if format == "parquet":
-        return as_parquet(history_table(found), f"{serial}-history.parquet")
-    points = [HistoryPointSchema.model_validate(point) for point in found]
-    answer = HistoryPage(
-        unit=serial, points=points, page=page, limit=limit, next_page=next_page(page, limit, len(points))
-    )
-    return Response(answer.model_dump_json(), media_type="application/json")
+    following = next_page(page, limit, len(found))
+    if format == "json":
+        points = [HistoryPointSchema.model_validate(point) for point in found]
+        answer = HistoryPage(unit=serial, points=points, page=page, limit=limit, next_page=following)
+        return Response(answer.model_dump_json(), media_type="application/json")
+    write = as_csv if format == "csv" else as_parquet
+    table = write(history_table(found), f"{serial}-history.{format}")
+    if following is not None:
+        table.headers["Link"] = f'<{request.url.include_query_params(page=following)}>; rel="next"'
+    return table
 
 
 @router.post("/{serial:path}/services", status_code=201, responses=errors(400, 404, 422))

@@ -1,10 +1,13 @@
-"""Flow: the parameters of one unit through time."""
+"""Flows: the parameters of one unit through time."""
 
 from datetime import datetime
 
 from service.records import HistoryPoint
 from service.storage.queries.history import HistoryQuery
 from service.storage.store import Store
+
+ALL = 1_000_000
+"""More points than one session can have."""
 
 
 def unit_history(
@@ -24,3 +27,10 @@ def unit_history(
     return store.history.points(
         unit, HistoryQuery(parameter, sensor, since, until, (page - 1) * limit, limit, revision)
     )
+
+
+def recent_history(store: Store, serial: str, most: int) -> tuple[HistoryPoint, ...]:
+    """The newest sessions of a unit's history, whole, with at most so many points; oldest first."""
+    unit = store.units.key(serial)
+    since = store.history.recent_start(unit, most)
+    return store.history.points(unit, HistoryQuery(since=since, limit=ALL))

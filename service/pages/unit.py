@@ -68,6 +68,8 @@ class UnitPage:
     sessions: tuple[SessionLine, ...]
     reference: str
     """What the next session is judged against, in words; empty when it becomes the reference itself."""
+    drawn: int
+    """How many sessions, the newest ones, the charts show."""
 
 
 def unit_page(report: UnitReport, history: Sequence[HistoryPoint]) -> UnitPage:
@@ -80,6 +82,7 @@ def unit_page(report: UnitReport, history: Sequence[HistoryPoint]) -> UnitPage:
         sections=tuple(_section(tracks, report.services, several=len(kinds) > 1) for tracks in groups),
         sessions=tuple(SessionLine(s, condition_of(s.verdict, is_reference=s.is_reference)) for s in report.sessions),
         reference=_reference(report),
+        drawn=len({point.session for point in history}),
     )
 
 

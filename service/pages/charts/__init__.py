@@ -4,6 +4,7 @@ A page carries the specification and the data as JSON; the browser joins and dra
 own style variables, so that charts follow light, dark and print.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +14,8 @@ from service.verdicts import Condition
 
 DATA_FORM = "points"
 """Name of the main data set of every specification."""
+UNIT, LEFT, RIGHT, LOW, HIGH = "{unit}", "{left}", "{right}", "{low}", "{high}"
+"""Blanks of a specification: the unit of y, and the ranges of x and y."""
 
 CONFIG: dict[str, Any] = {
     "background": "transparent",
@@ -60,6 +63,15 @@ def specification(layers: list[alt.Chart], height: int) -> dict[str, Any]:
     """Layers as Vega-Lite that fills the width of its place."""
     chart = alt.layer(*layers).properties(width="container", height=height)
     return {**chart.to_dict(), "config": CONFIG, "autosize": {"type": "fit-x", "contains": "padding"}}
+
+
+def filled(part: Any, values: Mapping[str, Any]) -> Any:
+    """A specification with its blanks filled in: Altair takes long to make one, so each kind is made once."""
+    if isinstance(part, dict):
+        return {key: filled(value, values) for key, value in part.items()}
+    if isinstance(part, list):
+        return [filled(value, values) for value in part]
+    return values.get(part, part) if isinstance(part, str) else part
 
 
 def padded(low: float, high: float) -> list[float]:

@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 from datetime import datetime, timedelta
+from functools import cache
 from typing import Any
 
 import altair as alt
 
-from service.pages.charts import DATA_FORM, ChartSet, Panel, padded, specification
+from service.pages.charts import DATA_FORM, HIGH, LEFT, LOW, RIGHT, UNIT, ChartSet, Panel, filled, padded, specification
 from service.pages.tracks import Track, TrackPoint
 from service.records import Service
 from service.verdicts import CONDITIONS, FIT, NOT_JUDGED, REFERENCE
@@ -20,7 +21,7 @@ def history_charts(tracks: Sequence[Track], services: Sequence[Service]) -> Char
     return ChartSet(
         name=tracks[0].name,
         heading=tracks[0].parameter,
-        spec=_spec(tracks, span),
+        spec=_filled(tracks, span),
         panels=tuple(_panel(track, services, span) for track in tracks),
     )
 
@@ -69,11 +70,19 @@ def _short(value: float | None) -> float | None:
     return None if value is None else float(f"{value:.6g}")
 
 
-def _spec(tracks: Sequence[Track], span: list[str]) -> dict[str, Any]:
-    unit = tracks[0].unit.label
+def _filled(tracks: Sequence[Track], span: list[str]) -> dict[str, Any]:
+    low, high = _range(tracks)
+    values = {UNIT: tracks[0].unit.label, LEFT: span[0], RIGHT: span[1], LOW: low, HIGH: high}
+    found: dict[str, Any] = filled(_spec(), values)
+    return found
+
+
+@cache
+def _spec() -> dict[str, Any]:
+    """With blanks for the unit and the ranges."""
     points, limits, services = (alt.NamedData(name=n) for n in (DATA_FORM, "limits", "services"))
-    x = alt.X("t:T", title=None, axis=alt.Axis(tickCount=4), scale=alt.Scale(type="utc", domain=span))
-    y = alt.Y("y:Q", title=unit, axis=alt.Axis(tickCount=5), scale=alt.Scale(domain=_range(tracks), zero=False))
+    x = alt.X("t:T", title=None, axis=alt.Axis(tickCount=4), scale=alt.Scale(type="utc", domain=[LEFT, RIGHT]))
+    y = alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=alt.Scale(domain=[LOW, HIGH], zero=False))
     base = alt.Chart(points).encode(x=x)
     bounds = alt.Chart(limits).encode(x=alt.X("from:T"), x2="to:T")
     return specification(

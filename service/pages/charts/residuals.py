@@ -1,6 +1,7 @@
 """Residuals of a session, a panel a sensor: by β with both runs, and in the order measured, with ±2σ bands."""
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import altair as alt
@@ -8,11 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.results import Calibration, Residuals
-from service.pages.charts import DATA_FORM, ChartSet, Panel, padded, specification
+from service.pages.charts import DATA_FORM, HIGH, LEFT, LOW, RIGHT, UNIT, ChartSet, Panel, filled, padded, specification
 from service.units import THIN, DeviationUnit, decimals, deviation_unit, number
 
 HEIGHT = 130
 RUNS = ("direct", "flipped")
+RESIDUAL, BAND = "{residual}", "{band}"
+"""Blanks: the names of the tooltip's numbers, with their unit."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +61,7 @@ def _chart_set(calibration: Calibration, kind: str, across: _Across, several: bo
     return ChartSet(
         name=f"residuals-{kind}-{across.name}",
         heading=f"{across.heading}, {kind}s" if several else across.heading,
-        spec=_spec(across, unit, largest * unit.factor),
+        spec=_filled(across, unit, largest * unit.factor),
         panels=tuple(_panel(calibration, i, across, unit) for i in columns),
     )
 
@@ -94,27 +97,37 @@ def _rows(residuals: Residuals, column: int, across: _Across, unit: DeviationUni
     ]
 
 
-def _spec(across: _Across, unit: DeviationUnit, largest: float) -> dict[str, Any]:
-    ticks = {"tickCount": 5} if across.name == "order" else {"values": [0, 90, 180, 270, 360]}
-    domain = [-12, 372] if across.name == "beta" else [0, len(across.values) + 1]
-    x = alt.X("x:Q", title=across.title, axis=alt.Axis(**ticks), scale=alt.Scale(domain=domain, nice=False))
-    y_scale = alt.Scale(domain=padded(-largest, largest))
-    y = alt.Y("y:Q", title=unit.label, axis=alt.Axis(tickCount=5), scale=y_scale)
+def _filled(across: _Across, unit: DeviationUnit, largest: float) -> dict[str, Any]:
+    left, right = (-12, 372) if across.name == "beta" else (0, len(across.values) + 1)
+    low, high = padded(-largest, largest)
+    ranges = {LEFT: left, RIGHT: right, LOW: low, HIGH: high}
+    texts = {UNIT: unit.label, RESIDUAL: f"residual, {unit.label}", BAND: f"2σ, {unit.label}"}
+    found: dict[str, Any] = filled(_spec(across.name, across.title), {**ranges, **texts})
+    return found
+
+
+@cache
+def _spec(name: str, title: str) -> dict[str, Any]:
+    """With blanks for the unit and the ranges."""
+    ticks = {"tickCount": 5} if name == "order" else {"values": [0, 90, 180, 270, 360]}
+    x = alt.X("x:Q", title=title, axis=alt.Axis(**ticks), scale=alt.Scale(domain=[LEFT, RIGHT], nice=False))
+    y_scale = alt.Scale(domain=[LOW, HIGH])
+    y = alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=y_scale)
     base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
-    shade = 0.07 if across.name == "beta" else 0.13
+    shade = 0.07 if name == "beta" else 0.13
     band = base.transform_calculate(low="-datum.band").mark_area(color="var(--accent)", opacity=shade)
     zero = alt.Chart(alt.InlineData(values=[{"zero": 0}])).mark_rule(color="var(--muted)").encode(y="zero:Q")
     return specification(
         [
             band.encode(y=alt.Y("low:Q", scale=y_scale), y2="band:Q", detail="run:N"),
             zero,
-            _marks(base, y, unit),
+            _marks(base, y),
         ],
         HEIGHT,
     )
 
 
-def _marks(base: alt.Chart, y: alt.Y, unit: DeviationUnit) -> alt.Chart:
+def _marks(base: alt.Chart, y: alt.Y) -> alt.Chart:
     chart: alt.Chart = base.mark_point(filled=True, opacity=1, size=36, stroke="var(--card)", strokeWidth=0.5).encode(
         y=y,
         color=alt.Color("run:N", legend=None, scale=alt.Scale(domain=RUNS, range=["var(--accent)", "var(--second)"])),
@@ -122,8 +135,8 @@ def _marks(base: alt.Chart, y: alt.Y, unit: DeviationUnit) -> alt.Chart:
         tooltip=[
             alt.Tooltip("row:Q", title="row"),
             alt.Tooltip("run:N", title="run"),
-            alt.Tooltip("y:Q", title=f"residual, {unit.label}"),
-            alt.Tooltip("band:Q", title=f"2σ, {unit.label}"),
+            alt.Tooltip("y:Q", title=RESIDUAL),
+            alt.Tooltip("band:Q", title=BAND),
         ],
     )
     return chart

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
+from itertools import accumulate
 
 from sqlalchemy import ColumnElement, Row, func, select
 
@@ -75,6 +76,22 @@ class History(Queries):
         order = (ParameterRow.at, ParameterRow.session_id, ParameterRow.sensor_index, ParameterRow.parameter)
         found = self._session.execute(query.order_by(*order).offset(wanted.offset).limit(wanted.limit))
         return tuple(_point(row) for row in found)
+
+    def recent_start(self, unit: int, most: int) -> datetime | None:
+        """The time of the earliest session such that it and all later ones hold at most ``most`` points; None if all.
+
+        At least the latest session is taken, however large it is.
+        """
+        counts = self._session.execute(
+            select(ParameterRow.at, func.count())
+            .join(SessionRow, SessionRow.id == ParameterRow.session_id)
+            .where(ParameterRow.unit_id == unit, ParameterRow.revision == SessionRow.revision)
+            .group_by(ParameterRow.at)
+            .order_by(ParameterRow.at.desc())
+        ).all()
+        totals = list(accumulate(count for _, count in counts))
+        within = max(1, sum(total <= most for total in totals))
+        return None if within >= len(counts) else counts[within - 1][0]
 
 
 def _revision(wanted: int | None) -> ColumnElement[int]:

@@ -71,6 +71,20 @@ def test_history_comes_page_by_page(measured: httpx.Client) -> None:
     assert len({(p["session"], p["sensor"], p["parameter"]) for p in points}) == 72
 
 
+def test_tables_of_a_history_lead_to_the_next_one(measured: httpx.Client) -> None:
+    first = measured.get(f"{UNIT}/history", params={"limit": 50, "format": "csv"})
+    second = measured.get(first.links["next"]["url"])
+    assert [len(pl.read_csv(table.content)) for table in (first, second)] == [50, 22]
+    assert "next" not in second.links
+
+
+def test_the_deviation_that_was_judged_stands_in_the_history(measured: httpx.Client) -> None:
+    reference, _, moved = measured.get(f"{UNIT}/history", params=BIAS).json()["points"]
+    assert (reference["is_reference"], reference["deviation"]) == (True, None)
+    assert moved["deviation"] == pytest.approx(moved["value"] - moved["reference"])
+    assert moved["expanded"] > moved["upper"] - moved["value"]
+
+
 @pytest.mark.parametrize("path", ["", "/history", "/services"])
 def test_an_unknown_unit_is_not_found(client: httpx.Client, path: str) -> None:
     call = client.post if path == "/services" else client.get

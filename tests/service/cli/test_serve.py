@@ -84,6 +84,20 @@ def test_a_database_that_does_not_answer_is_said_on_one_line(run: Run) -> None:
     assert (ran.code, ran.err.count("\n")) == (1, 1)
 
 
+@pytest.mark.parametrize("url", ["nonsense", "mysql://host/name", "postgresql://user:secret@host:port/name"])
+def test_an_address_that_is_none_is_told_what_one_looks_like(run: Run, url: str) -> None:
+    ran = run("db", "upgrade", "--database-url", url)
+    assert (ran.code, ran.err.count("\n")) == (1, 1)
+    assert "sqlite:///path" in ran.err
+    assert "secret" not in ran.err
+
+
+def test_a_file_that_is_no_database_is_said_on_one_line(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "notes.txt").write_text("not a database, but long enough to be taken for one " * 100)
+    ran = run("db", "upgrade", "--database-url", f"sqlite:///{tmp_path / 'notes.txt'}")
+    assert (ran.code, ran.err.count("\n")) == (1, 1)
+
+
 def test_a_setting_that_makes_no_sense_is_named(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("IMU_HEALTH_PORT", "many")
     ran = run("db", "upgrade")

@@ -43,6 +43,7 @@ def test_form_of_another_site_is_refused(client: httpx.Client, header: dict[str,
 def test_form_of_this_site_is_taken(client: httpx.Client) -> None:
     answer = post(client, session_bytes(), Origin=str(client.base_url).rstrip("/"))
     assert answer.status_code == 200
+    assert "</span> Reference set</h3>" in answer.text
     assert "First session of this unit" in answer.text
     assert [u["serial"] for u in client.get("/api/v1/units").json()["units"]] == ["BA-017"]
 
@@ -73,6 +74,22 @@ def test_errors_are_pages_for_people_and_problems_for_programs(client: httpx.Cli
     assert page.headers["content-type"].startswith("text/html")
     assert '<section id="problem"' in page.text
     assert problem.headers["content-type"] == "application/problem+json"
+
+
+def test_what_nobody_foresaw_is_a_page_too_and_says_nothing_of_the_inside(settings: Settings) -> None:
+    app = create_app(settings)
+
+    def fails() -> None:
+        raise RuntimeError("inside")
+
+    app.add_api_route("/fails", fails)
+    with http_client(app) as client:
+        page, problem = client.get("/fails", headers=HTML), client.get("/fails")
+    assert (page.status_code, problem.status_code) == (500, 500)
+    assert '<section id="problem"' in page.text
+    assert "inside" not in page.text
+    assert "default-src 'none'" in page.headers["content-security-policy"]
+    assert problem.json()["status"] == 500
 
 
 def test_page_without_database_says_when_to_come_back(tmp_path: Path) -> None:
