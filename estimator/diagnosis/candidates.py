@@ -233,6 +233,8 @@ def equivalent(evidence: Evidence, shape: Shape, power: float, q: int, z: Array,
     """
     unstated = evidence.baseline.unstated
     sensors = list(shape.sensors) or list(range(len(unstated)))
+    if evidence.shared:
+        sensors = list(range(len(unstated)))
     if q == 0 or not unstated[sensors].any():
         return power
     owned = np.isin(evidence.owner(), sensors)

@@ -117,6 +117,11 @@ class Evidence:
         return cls(baseline, whiten, basis, absorb[:P], z, between, freedom)
 
     @property
+    def shared(self) -> bool:
+        """Whether the left-over of a row is too little to part among its sensors (three to five, unknown direction)."""
+        return bool(np.isinf(self.baseline.row_sigma).any()) and len(self.baseline.unstated) <= 5
+
+    @property
     def readings(self) -> int:
         """Number of reading and prior rows."""
         return self.basis.shape[0]
