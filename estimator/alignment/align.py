@@ -16,7 +16,6 @@ from estimator.alignment.axes import Triad, triad
 from estimator.alignment.coarse import Coarse, coarse
 from estimator.alignment.filtering import (
     PRIOR,
-    SEEN,
     TABLE_SIGMA,
     Filtered,
     Measured,
@@ -179,7 +178,7 @@ def _result(record: Record, start: Coarse, computed: Strapdown, filtered: Filter
     estimate[EPS] += start.gyro_bias
     estimate[NABLA] += start.accelerometer_bias[:2]
     covariance = filtered.last.P * fit.covariance_factor
-    told = np.diag(relative(filtered.last.P)) < SEEN**2
+    told = np.diag(relative(filtered.last.P)) < 1
     correction = Rotation.from_rotvec(filtered.last.x[PHI]).as_matrix()
     course = Course(
         time=computed.path.step * np.arange(1, len(filtered.estimates) + 1),
@@ -228,7 +227,7 @@ def _fit(record: Record, filtered: Filtered) -> Fit:
         residual_rms=float(np.sqrt(np.mean(filtered.innovations**2)) / step),
         noise="stated" if record.noise.stated else "estimated",
         covariance_factor=factor,
-        rank=int(np.sum(values < SEEN**2)),
+        rank=int(np.sum(values < 1)),
         parameters=len(values),
         weakest=(STATES[2 + int(np.argmax(np.abs(vectors[:, -1])))], float(np.sqrt(values[-1]))),
         iterations=1,

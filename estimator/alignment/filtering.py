@@ -17,8 +17,11 @@ PRIOR = np.array(
 )  # fmt: skip
 """(19,) one sigma of every state before the session, SI: wide of what coarse alignment leaves. The deviation of a stop
 is drawn when the stop begins."""
-SEEN = 0.3
-"""A state is observable when its sigma is below this part of the prior's."""
+USEFUL = np.array(
+    [1e-2] * 2 + [60 * ARCSEC] * 2 + [1 * DEGREE] + [1 * DEGREE / 3600] * 3 + [3e-3] * 2
+    + [60 * ARCSEC] * 2 + [1e-3] + [60 * ARCSEC] * 3
+)  # fmt: skip
+"""(16,) sigma of every state, SI, from which a session counts as not telling it: 60″, 1°, 1 °/h, 0.3 mg, 60″, 0.1 %."""
 TABLE_SIGMA = 1.0 * ARCSEC
 """rad, where the session states none: wobble of the turn axis and error of the table's angle from stop to stop."""
 REST_SIGMA = 0.1 * ARCSEC
@@ -112,6 +115,6 @@ def drawn_anew(path: Path, Phi: Array, Q: Array, setting: Setting) -> tuple[Arra
 
 
 def relative(P: Array) -> Array:
-    """A covariance (n, n) in units of the prior; 1 on the diagonal means that nothing was learnt. ς is left out."""
-    prior = PRIOR[: min(len(P), STOP.start)]
-    return P[: len(prior), : len(prior)] / np.outer(prior, prior)
+    """A covariance (n, n) in units of what is of use: a state is observable below 1. ς is left out."""
+    useful = USEFUL[: len(P)]
+    return P[: len(useful), : len(useful)] / np.outer(useful, useful)

@@ -42,7 +42,7 @@ class AlignmentResult:
     covariance: Array
     """(n, n)"""
     observable: dict[str, bool]
-    """Of every state but the velocities: whether the session tells much more than was known before it."""
+    """Of φ, ε, ∇, E, κ: whether the session tells it well enough to be of use."""
     attitude: Array
     """(3, 3) C, block → east-north-up, at the end, corrected by φ."""
     positions: tuple[float, ...]
