@@ -1,0 +1,184 @@
+"""Every cause acted out: the stand really turned, the block really turned, the term of a sensor written out.
+
+The stand is the chain of rotations of the accuracy tests; none of the causes' own code is used.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from estimator import CalibrationSession
+from estimator.arrays import tangents
+from estimator.parameters import SensorParameters
+from estimator.session import ACCELEROMETER, GYROSCOPE, Array
+from tests.estimator.calibration.bound import Happened, applied
+
+SENSOR = 1
+"""Place of the sensor that sensor causes act on here."""
+
+
+@dataclass(frozen=True, eq=False)
+class World:
+    """A schedule and the sensors that it is measured with."""
+
+    session: CalibrationSession
+    truth: SensorParameters
+
+    def vectors(self, happened: Happened | None = None) -> Array:
+        """(R, m, 3) what is applied, block axes."""
+        found = {k: applied(self.session, k, happened or Happened({})) for k in {s.kind for s in self.session.sensors}}
+        return np.stack([found[s.kind] for s in self.session.sensors], axis=1)
+
+    def inputs(self, n: Array, p: SensorParameters | None = None) -> Array:
+        """(R, m) readings over the believed scale: (K'/K)·(a + b + c·a²)."""
+        p = p or self.truth
+        a = np.einsum("rmk,mk->rm", n, p.axis)
+        return p.scale / self.truth.scale * (a + p.bias + p.quadratic * a**2)
+
+    def of_kind(self, kind: str) -> Array:
+        """(m,) 1 for sensors of a kind, 0 for others."""
+        return np.array([s.kind == kind for s in self.session.sensors], dtype=float)
+
+
+Acted = Callable[[World, Array, int, tuple[float, ...]], Array]
+"""(world, amplitudes, sensor, nonlinear parameters) → (R, m) inputs with the effect in them."""
+
+
+def term(added: Callable[["Seen", tuple[float, ...]], tuple[Array, ...]]) -> Acted:
+    """A term inside the bracket of one sensor."""
+
+    def acted(world: World, k: Array, i: int, nonlinear: tuple[float, ...]) -> Array:
+        h = world.inputs(world.vectors())
+        h[:, i] += np.stack(added(Seen(world, i), nonlinear), axis=-1) @ k
+        return h
+
+    return acted
+
+
+class Seen:
+    """What one sensor goes through, in the letters of the table of causes."""
+
+    def __init__(self, world: World, i: int):
+        session, n = world.session, world.vectors()[:, i]
+        self.a = n @ world.truth.axis[i]
+        self.pn, self.on = (n @ tangents(world.truth.axis[i])).T
+        self.t, self.T, self.beta = session.time, session.temperature, session.beta
+        self.elapsed, self.warmth = self.t - np.mean(self.t), self.T - np.mean(self.T)
+        self.force = applied(session, ACCELEROMETER, Happened({}))
+        self.row, self.flipped = np.arange(len(n)), session.flipped
+
+    def risen(self) -> Array:
+        """sign(a_j − a_{j−1}), 0 at the first position of a run."""
+        signs = [0.0]
+        for j in range(1, len(self.a)):
+            signs.append(0.0 if self.flipped[j] != self.flipped[j - 1] else float(np.sign(self.a[j] - self.a[j - 1])))
+        return np.array(signs)
+
+    def rate(self) -> Array:
+        """dT/dt from neighbouring rows."""
+        return np.gradient(self.T, self.t)
+
+
+def turned_head(alpha: Callable[[CalibrationSession], Array], beta: Callable[[CalibrationSession], Array]) -> Acted:
+    """The head really stands elsewhere: α and β errors (R, q) per unit amplitude."""
+
+    def acted(world: World, k: Array, i: int, nonlinear: tuple[float, ...]) -> Array:
+        session = world.session
+        happened = Happened({"alpha": (alpha(session) @ k)[:, None]}, beta(session) @ k)
+        return world.inputs(world.vectors(happened))
+
+    return acted
+
+
+def still(session: CalibrationSession) -> Array:
+    """No error, whatever the amplitudes."""
+    return np.zeros((len(session.beta), 1))
+
+
+def both(order: int) -> Callable[[CalibrationSession], Array]:
+    """sin and cos of a multiple of β."""
+    return lambda s: np.stack([np.sin(order * s.beta), np.cos(order * s.beta)], axis=-1)
+
+
+def still_pair(session: CalibrationSession) -> Array:
+    """No error, for two amplitudes."""
+    return np.zeros((len(session.beta), 2))
+
+
+def constant(name: str, kind: str | None = None) -> Acted:
+    """One constant error of the stand, for sensors of a kind only where one is named."""
+
+    def acted(world: World, k: Array, i: int, nonlinear: tuple[float, ...]) -> Array:
+        n, moved = world.vectors(), world.vectors(Happened({name: float(k[0])}))
+        chosen = np.ones(n.shape[1]) if kind is None else world.of_kind(kind)
+        return world.inputs(n + (moved - n) * chosen[:, None])
+
+    return acted
+
+
+def flipped_block(world: World, k: Array, i: int, nonlinear: tuple[float, ...]) -> Array:
+    """The block sits turned by k in the flipped run: it meets a vector turned by −k."""
+    n = world.vectors()
+    flipped = world.session.flipped
+    n[flipped] = Rotation.from_rotvec(-k).apply(n[flipped].reshape(-1, 3)).reshape(n[flipped].shape)
+    return world.inputs(n)
+
+
+def remounted(world: World, k: Array, i: int, nonlinear: tuple[float, ...]) -> Array:
+    """All axes turned by k."""
+    return world.inputs(world.vectors(), replace(world.truth, axis=Rotation.from_rotvec(k).apply(world.truth.axis)))
+
+
+def heavier(world: World, k: Array, i: int, nonlinear: tuple[float, ...]) -> Array:
+    """Gravity is larger by the share k."""
+    return world.inputs(world.vectors() * (1 + k[0] * world.of_kind(ACCELEROMETER))[:, None])
+
+
+def moved_sensor(world: World, k: Array, i: int, nonlinear: tuple[float, ...]) -> Array:
+    """Relative scale, bias and the axis' two turns of one sensor, those that ``nonlinear`` lets move."""
+    k, p = k * np.array(nonlinear), world.truth
+    scale, bias, axis = p.scale.copy(), p.bias.copy(), p.axis.copy()
+    bias[i] = bias[i] + k[1]
+    scale[i] *= 1 + k[0]
+    turn = np.cross(p.axis[i], tangents(p.axis[i]) @ k[2:])
+    axis[i] = Rotation.from_rotvec(turn).apply(p.axis[i])
+    return world.inputs(world.vectors(), replace(p, scale=scale, bias=bias, axis=axis))
+
+
+ACTED: dict[str, Acted] = {
+    "cubic-nonlinearity": term(lambda s, x: (s.a**3,)),
+    "scale-asymmetry": term(lambda s, x: (np.abs(s.a),)),
+    "cross-coupling": term(lambda s, x: (s.a * s.pn, s.a * s.on)),
+    "bias-temperature": term(lambda s, x: (s.warmth,)),
+    "scale-temperature": term(lambda s, x: (s.warmth * s.a,)),
+    "bias-ramp": term(lambda s, x: (s.elapsed,)),
+    "warm-up": term(lambda s, x: (np.exp(-s.t / x[0]),)),
+    "bias-jump": term(lambda s, x: (np.where(s.row >= x[0], 1.0, 0.0),)),
+    "hysteresis": term(lambda s, x: (s.risen(),)),
+    "odd-quadratic": term(lambda s, x: (s.a * np.abs(s.a),)),
+    "bias-asymmetry": term(lambda s, x: (np.sign(s.a),)),
+    "cross-axis-quadratic": term(lambda s, x: (s.pn**2, s.pn * s.on)),
+    "scale-ramp": term(lambda s, x: (s.elapsed * s.a,)),
+    "axis-creep": term(lambda s, x: (s.pn * s.elapsed, s.on * s.elapsed)),
+    "temperature-rate": term(lambda s, x: (s.rate(),)),
+    "bias-per-position": term(lambda s, x: (np.sin(s.beta), np.cos(s.beta))),
+    "reading-outlier": term(lambda s, x: (np.where(s.row == x[0], 1.0, 0.0),)),
+    "g-sensitivity": term(lambda s, x: tuple(s.force.T)),
+    "beta-eccentricity": turned_head(still_pair, both(1)),
+    "beta-second-harmonic": turned_head(still_pair, both(2)),
+    "beta-scale": turned_head(still, lambda s: (s.beta - np.mean(s.beta))[:, None]),
+    "axis-wobble": turned_head(both(1), still_pair),
+    "alpha-shift": turned_head(lambda s: np.where(s.flipped, 1.0, 0.0)[:, None], still),
+    "stand-drift": turned_head(lambda s: (s.time - np.mean(s.time))[:, None], still),
+    "levelling-y": constant("theta_y"),
+    "meridian-error": constant("meridian", GYROSCOPE),
+    "latitude-entry": constant("latitude", GYROSCOPE),
+    "alpha-entry": constant("alpha", ACCELEROMETER),
+    "flip-misalignment": flipped_block,
+    "remount-rotation": remounted,
+    "gravity-entry": heavier,
+    "sensor-drift": moved_sensor,
+}
+"""Every cause with a signature; clipping, which is no small change, is acted out where it is tested."""
