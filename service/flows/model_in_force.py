@@ -6,6 +6,7 @@ from estimator.diagnosis.model import calibrate_extended
 from estimator.programmes import calibrate
 from estimator.results import Calibration
 from estimator.session import CALIBRATIONS, CalibrationSession
+from service.flows.tolerances import type_name
 from service.records import Model, ModelRevision
 from service.storage.store import Store
 
@@ -19,7 +20,7 @@ def model_of(revisions: Sequence[ModelRevision]) -> Model:
 def model_for(store: Store, session: CalibrationSession) -> Model:
     """The model for a session that is not stored yet."""
     stand = None if session.stand is None else session.stand.id
-    return model_of(store.models.for_upload(session.unit, session.unit_type, stand))
+    return model_of(store.models.for_upload(session.unit, type_name(session), stand))
 
 
 def calibrated(session: CalibrationSession, model: Model) -> Calibration:

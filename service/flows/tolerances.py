@@ -29,7 +29,7 @@ def type_of(session: CalibrationSession, calibration: Calibration) -> UnitType:
     """The unit type of a first session: what it says of itself, with the default tolerances."""
     kinds = {sensor.kind for sensor in session.sensors}
     return UnitType(
-        name=session.unit_type or _described(session),
+        name=type_name(session),
         block=session.block,
         sensors=tuple(sensor.name for sensor in session.sensors),
         nominal_axes=tuple((float(x), float(y), float(z)) for x, y, z in (s.nominal_axis for s in session.sensors)),
@@ -38,6 +38,11 @@ def type_of(session: CalibrationSession, calibration: Calibration) -> UnitType:
         gyro_tolerances=_observed(GYROSCOPE, calibration) if len(kinds) > 1 else None,
         revision=1,
     )
+
+
+def type_name(session: CalibrationSession) -> str:
+    """What a unit's type is called after its first session."""
+    return session.unit_type or _described(session)
 
 
 def tolerances_of(unit_type: UnitType) -> dict[tuple[str, str], float]:

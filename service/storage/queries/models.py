@@ -58,8 +58,8 @@ class Models(Queries):
             query = query.where(ModelRow.subject == wanted.subject)
         return tuple(map(_revision, self._session.scalars(query.offset(wanted.offset).limit(wanted.limit))))
 
-    def for_upload(self, unit: str, new_type: str | None, stand: str | None) -> tuple[ModelRevision, ...]:
-        """All revisions that concern a session yet to be stored, oldest first; a new unit has the type that it says."""
+    def for_upload(self, unit: str, new_type: str, stand: str | None) -> tuple[ModelRevision, ...]:
+        """All revisions that concern a session yet to be stored, oldest first; a new unit gets the new type."""
         known_type = (
             select(UnitTypeRow.name).join(UnitRow, UnitRow.unit_type_id == UnitTypeRow.id).where(UnitRow.serial == unit)
         )
@@ -67,7 +67,7 @@ class Models(Queries):
             and_(ModelRow.scope == Scope.UNIT, ModelRow.subject == unit),
             and_(
                 ModelRow.scope == Scope.UNIT_TYPE,
-                ModelRow.subject == func.coalesce(known_type.scalar_subquery(), new_type or ""),
+                ModelRow.subject == func.coalesce(known_type.scalar_subquery(), new_type),
             ),
             and_(ModelRow.scope == Scope.STAND, ModelRow.subject == (stand or "")),
         )
