@@ -71,10 +71,8 @@ class Seen:
 
     def risen(self) -> Array:
         """sign(a_j − a_{j−1}), 0 at the first position of a run."""
-        signs = [0.0]
-        for j in range(1, len(self.a)):
-            signs.append(0.0 if self.flipped[j] != self.flipped[j - 1] else float(np.sign(self.a[j] - self.a[j - 1])))
-        return np.array(signs)
+        turned = np.diff(self.flipped.astype(int)) != 0
+        return np.concatenate([[0.0], np.where(turned, 0.0, np.sign(np.diff(self.a)))])
 
     def rate(self) -> Array:
         """dT/dt from neighbouring rows."""

@@ -15,11 +15,47 @@ from tests.estimator.causes.worlds import truth_of, wandering
 
 SIGNATURES = [c for c in CATALOGUE if isinstance(c, Signature)]
 CORRECTIONS = [c for c in CATALOGUE if isinstance(c, Correction)]
-TABLE = """cubic-nonlinearity scale-asymmetry cross-coupling bias-temperature scale-temperature bias-ramp warm-up
-bias-jump hysteresis saturation odd-quadratic bias-asymmetry cross-axis-quadratic scale-ramp axis-creep temperature-rate
-bias-per-position reading-outlier excess-noise beta-eccentricity beta-second-harmonic beta-scale axis-wobble levelling-y
-alpha-shift flip-misalignment stand-drift positions-swapped channels-swapped sign-reversed runs-swapped beta-reversed
-alpha-entry gravity-entry sensor-drift remount-rotation g-sensitivity latitude-entry meridian-error""".split()
+TABLE = [
+    "cubic-nonlinearity",
+    "scale-asymmetry",
+    "cross-coupling",
+    "bias-temperature",
+    "scale-temperature",
+    "bias-ramp",
+    "warm-up",
+    "bias-jump",
+    "hysteresis",
+    "saturation",
+    "odd-quadratic",
+    "bias-asymmetry",
+    "cross-axis-quadratic",
+    "scale-ramp",
+    "axis-creep",
+    "temperature-rate",
+    "bias-per-position",
+    "reading-outlier",
+    "excess-noise",
+    "beta-eccentricity",
+    "beta-second-harmonic",
+    "beta-scale",
+    "axis-wobble",
+    "levelling-y",
+    "alpha-shift",
+    "flip-misalignment",
+    "stand-drift",
+    "positions-swapped",
+    "channels-swapped",
+    "sign-reversed",
+    "runs-swapped",
+    "beta-reversed",
+    "alpha-entry",
+    "gravity-entry",
+    "sensor-drift",
+    "remount-rotation",
+    "g-sensitivity",
+    "latitude-entry",
+    "meridian-error",
+]
 """The agreed identifiers."""
 NEEDS = {"time", "temperature", "stand", "both runs", "gravity", "nominal or history", "history"}
 every = pytest.mark.parametrize("known", CATALOGUE, ids=lambda c: c.identifier)
