@@ -5,7 +5,8 @@ from datetime import datetime
 
 from estimator.errors import SessionError
 from estimator.results import Calibration
-from estimator.session import CalibrationSession, comparable
+from estimator.session import IN_SERVICE, CalibrationSession, comparable
+from service.flows.in_service import Compared, compared, judge_recording, reference_in_force
 from service.flows.judge import judge
 from service.flows.model_in_force import calibrated, model_for
 from service.flows.parameter_values import parameter_values
@@ -34,6 +35,8 @@ class Upload:
     session: CalibrationSession
     model: Model
     calibration: Calibration
+    recording: Compared | None
+    """A recording in service beside its reference; None for every other programme."""
 
 
 def upload(
@@ -61,11 +64,13 @@ def upload(
         require_storable(session, now, filename)
         with storage.database.reading() as store:
             model = model_for(store, session)
-        calibration = calibrated(session, model)
+            reference = reference_in_force(store, session, now) if session.programme == IN_SERVICE else None
+        recording = None if reference is None else compared(session, reference)
+        calibration = calibrated(session, model) if recording is None else recording.calibration
     except SessionError as fault:
         raise refuse(storage, content, filename, fault.problems, now, who) from fault
     storage.files.keep(content)
-    new = Upload(digest, filename, len(content), now, who, simulated, session, model, calibration)
+    new = Upload(digest, filename, len(content), now, who, simulated, session, model, calibration, recording)
     with storage.database.writing() as store:
         return _store(store, new, coverage_factor)
 
@@ -101,6 +106,9 @@ def _unit(store: Store, new: Upload) -> int:
 
 def _judged(store: Store, unit: int, new: Upload, coverage_factor: float) -> Judged:
     """The session, judged against the reference of the epoch that it was measured in."""
+    if new.recording is not None:
+        unit_type = store.unit_types.of_unit(new.session.unit)
+        return judge_recording(new.session, new.recording, unit_type, coverage_factor)
     since, until = store.services.around(unit, measured_at(new.session, new.at))
     alike = comparable(new.session.programme)
     reference = store.sessions.reference(unit, new.session.block, since, until, alike)
