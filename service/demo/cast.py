@@ -5,6 +5,7 @@ from datetime import UTC, datetime
 
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.demo.changes import Change
+from service.demo.hidden import Hidden
 
 START = datetime(2023, 11, 14, 8, 30, tzinfo=UTC)
 END = datetime(2026, 11, 12, 8, 30, tzinfo=UTC)
@@ -46,6 +47,8 @@ class Member:
     services: tuple[Intervention, ...] = ()
     noise: dict[int, float] = field(default_factory=dict)
     """Factor on the reading noise of single sessions, by their number from 0; −1 is the last."""
+    hidden: Hidden | None = None
+    """What the simulation gets wrong about the latest session."""
 
 
 def _replaced(sensor: int, at: datetime) -> Intervention:
@@ -59,8 +62,14 @@ def _readjusted(at: datetime) -> Intervention:
 
 
 CAST = (
-    Member("BA-101", ACCELEROMETER, "stable", 14),
-    Member("BA-102", ACCELEROMETER, "stable", 12),
+    Member(
+        "BA-101", ACCELEROMETER, "stable; the head's angle scale was off centre in the last session", 14,
+        hidden=Hidden("beta-eccentricity", (60e-6, 25e-6)),
+    ),
+    Member(
+        "BA-102", ACCELEROMETER, "stable; the axis of A3 crept during the last session", 12,
+        hidden=Hidden("axis-creep", (5e-8, 3e-8), sensor=2),
+    ),
     Member(
         "BA-103", ACCELEROMETER, "bias of A3 drifts, still within tolerance", 13,
         drifts=(Drift(Change(2, "bias", 34.0)),),
@@ -87,7 +96,10 @@ CAST = (
         "BA-109", ACCELEROMETER, "stable; amplifiers adjusted half-way", 12,
         services=(_readjusted(datetime(2025, 2, 11, 9, 0, tzinfo=UTC)),),
     ),
-    Member("BA-110", ACCELEROMETER, "stable; joined the fleet last year", 6, joined=1.7),
+    Member(
+        "BA-110", ACCELEROMETER, "joined the fleet last year; A4 sticks since the last session", 6, joined=1.7,
+        hidden=Hidden("hysteresis", (3.5e-4,), sensor=3),
+    ),
     Member("BG-201", GYROSCOPE, "stable", 12),
     Member(
         "BG-202", GYROSCOPE, "bias of G2 drifts towards its tolerance", 13,

@@ -7,6 +7,7 @@ from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.demo.cast import CAST, START, Member
 from service.demo.history import files_of
 from service.demo.types import unit_type
+from service.flows.diagnose import diagnose
 from service.flows.fleet_condition import fleet_condition
 from service.flows.record_service import record_service
 from service.flows.upload import upload
@@ -42,5 +43,7 @@ def _upload_member(storage: Storage, member: Member, coverage_factor: float, adv
             done = waiting.pop(0)
             record_service(storage, member.serial, done.kind, done.at, done.note, done.at, who=WHO)
         at = file.at + UPLOADED_AFTER
-        upload(storage, file.content, file.name, at, coverage_factor=coverage_factor, simulated=True, who=WHO)
+        latest = upload(storage, file.content, file.name, at, coverage_factor=coverage_factor, simulated=True, who=WHO)
         advance()
+    # The service diagnoses the earlier ones beside its first requests.
+    diagnose(storage, latest.id, at)

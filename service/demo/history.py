@@ -15,6 +15,7 @@ from estimator.writing import session_document
 from service.demo.blocks import norms, schedule_of, sensors_of
 from service.demo.cast import CAST, END, START, YEARS, Member
 from service.demo.changes import DEGREE_PER_HOUR, Change, step_of
+from service.demo.hidden import with_effect
 from service.demo.types import SENSORS, TYPE_NAME
 
 SEED = 20261112
@@ -52,6 +53,8 @@ def files_of(member: Member) -> Iterator[DemoFile]:
         changed = step_of(_changes(member, at), SENSORS, member.kind)
         truth = start.stepped(walked + changed, norm)
         session = _measured(member, at, truth, NOISE[member.kind] * _roughness(member, number), rng)
+        if member.hidden is not None and number == member.sessions - 1:
+            session = with_effect(session, member.hidden)
         yield DemoFile(f"{member.serial}-{at:%Y-%m-%d}.json", _content(session), at)
 
 

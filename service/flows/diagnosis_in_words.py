@@ -1,5 +1,6 @@
 """Step: a diagnosis as JSON can hold it, what it came to, and that in one line."""
 
+from collections.abc import Sequence
 from math import isfinite
 from typing import Any
 
@@ -7,6 +8,7 @@ from estimator.diagnosis import Diagnosis, Finding
 from service.records import DiagnosisState
 
 NOTHING = "Nothing wrong found: the simulation explains the readings."
+MOST_NAMES = 3
 UNEXPLAINED = "Something is there that no known cause explains"
 
 
@@ -55,8 +57,15 @@ def in_words(identifier: str) -> str:
     return identifier.replace("-", " ")
 
 
+def listed(names: Sequence[str]) -> str:
+    """``a, b or c``; of many only the first three."""
+    if len(names) > MOST_NAMES:
+        return f"{', '.join(names[:MOST_NAMES])} or {len(names) - MOST_NAMES} more"
+    return f"{', '.join(names[:-1])} or {names[-1]}"
+
+
 def _choice(finding: Finding) -> str:
     """``Cannot tell which: bias ramp or warm up (A3).``"""
     names = [in_words(identifier) for identifier in (finding.cause, *finding.alternatives)]
     who = f" ({', '.join(finding.sensors)})" if finding.sensors else ""
-    return f"Cannot tell which: {', '.join(names[:-1])} or {names[-1]}{who}."
+    return f"Cannot tell which: {listed(names)}{who}."

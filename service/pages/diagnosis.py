@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from service.flows.diagnosis_in_words import listed
 from service.pages.charts import ChartSet
 from service.pages.charts.diagnosis import MOST_PANELS, Sides, diagnosis_charts
 from service.pages.findings import FindingView, chance, finding_view, in_words
@@ -135,7 +136,7 @@ def _headline(otherwise: str, findings: Sequence[FindingView]) -> str:
         return first.sentence
     names = [in_words(choice.cause) for choice in first.choices]
     who = f" ({', '.join(first.sensors)})" if first.sensors else ""
-    return f"Cannot tell which: {', '.join(names[:-1])} or {names[-1]}{who}"
+    return f"Cannot tell which: {listed(names)}{who}"
 
 
 def _what_to_do(state: DiagnosisState, findings: Sequence[FindingView]) -> str:

@@ -1,0 +1,58 @@
+"""`imu-health diagnose` and `recalibrate`: what they print, and their exit codes."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from service.flows.upload import upload
+from service.settings import Settings
+from service.storage import Database, Files, Storage
+from tests.databases import Databases
+from tests.service.cli.conftest import Run, write
+from tests.service.diagnosed import ALIASES, TEMPERATURE, UNEXPLAINED, drawn
+from tests.service.flows.test_diagnose import NOW
+
+
+@pytest.fixture
+def warm_file(tmp_path: Path) -> Path:
+    """A session in which A5 follows the temperature."""
+    return write(tmp_path, "warm.json", drawn(TEMPERATURE).session)
+
+
+def test_one_file_with_json_gives_the_object(run: Run, warm_file: Path) -> None:
+    ran = run("diagnose", warm_file, "--json")
+    (document,) = ran.documents
+    assert (ran.code, document["format"]) == (0, "imu-diagnosis/1")
+    assert [(f["cause"], f["sensors"]) for f in document["findings"]] == [("bias-temperature", ["A5"])]
+
+
+def test_people_read_the_cause_its_size_and_what_to_do(run: Run, warm_file: Path) -> None:
+    shown = run("diagnose", warm_file).out
+    for part in ("The zero of A5 follows the temperature.", "What to do:", "±", "µg/K", "Not seen"):
+        assert part in shown
+
+
+def test_a_choice_is_shown_with_what_would_decide_it(run: Run, tmp_path: Path) -> None:
+    shown = run("diagnose", write(tmp_path, "a.json", drawn(ALIASES).session)).out
+    assert "Cannot tell which" in shown
+    assert "apart)" in shown
+
+
+def test_structure_without_a_name_is_shown_where_it_lives(run: Run, tmp_path: Path) -> None:
+    assert "harmonic 5" in run("diagnose", write(tmp_path, "a.json", drawn(UNEXPLAINED).session)).out
+
+
+def test_a_history_that_cannot_be_read_is_unusable_input(run: Run, warm_file: Path, bad_file: Path) -> None:
+    ran = run("diagnose", warm_file, "--history", bad_file, "--json")
+    assert (ran.code, ran.out) == (2, "")
+    assert str(bad_file) in ran.err
+
+
+def test_recalibrate_works_on_the_database(run: Run, sqlite: Databases, tmp_path: Path) -> None:
+    settings = Settings(database_url=sqlite.migrated(), data_folder=tmp_path)
+    storage = Storage(Database(settings.database), Files(settings.files))
+    upload(storage, json.dumps(drawn(TEMPERATURE).session).encode(), "a.json", NOW)
+    storage.database.close()
+    ran = run("recalibrate", "--database-url", settings.database, "--data-folder", tmp_path, "--json")
+    assert [(d["sessions"], d["recomputed"], d["unchanged"]) for d in ran.documents] == [(1, 0, 1)]

@@ -1,0 +1,72 @@
+"""The page "What the simulation gets wrong" over HTTP: what it says first, and the forms that it holds."""
+
+import httpx
+import pytest
+
+from service.app import create_app
+from service.settings import Settings
+from tests.service.diagnosed import ALIASES, TEMPERATURE, UNEXPLAINED, drawn, send_case
+from tests.service.pages.test_http import HTML, MOST_QUERIES, counted
+from tests.service.sessions import session_bytes
+from tests.serving import http_client
+
+ACCEPT = {"cause": "bias-temperature", "scope": "unit", "by": "K. Ito", "note": "seen twice"}
+FIRST = {
+    "named": (TEMPERATURE, "The zero of A5 follows the temperature."),
+    "a choice": (ALIASES, "Cannot tell which: cubic nonlinearity"),
+    "unexplained": (UNEXPLAINED, "Something is there that no known cause explains"),
+}
+
+
+def page(client: httpx.Client, id: str) -> str:
+    """The diagnosis page of a session."""
+    answer = client.get(f"/sessions/{id}/diagnosis", headers=HTML)
+    assert answer.status_code == 200, answer.text
+    return answer.text
+
+
+@pytest.mark.parametrize("kind", FIRST)
+def test_the_page_says_first_what_is_wrong(client: httpx.Client, kind: str) -> None:
+    what, words = FIRST[kind]
+    text = page(client, send_case(client, drawn(what)))
+    assert words in text[text.index("<h1>") : text.index("</h1>")]
+
+
+def test_a_sound_session_has_nothing_wrong(client: httpx.Client) -> None:
+    id = client.post("/api/v1/sessions", content=session_bytes()).json()["id"]
+    assert "Nothing wrong found" in page(client, id)
+
+
+def test_session_and_unit_say_it_in_one_line(client: httpx.Client) -> None:
+    id = send_case(client, drawn(TEMPERATURE))
+    unit = client.get(f"/api/v1/sessions/{id}").json()["unit"]
+    for path in (f"/sessions/{id}", f"/units/{unit}"):
+        assert "The zero of A5 follows the temperature." in client.get(path, headers=HTML).text
+
+
+def test_an_accepted_cause_is_listed_and_the_unit_recomputed(client: httpx.Client) -> None:
+    id = send_case(client, drawn(TEMPERATURE))
+    accepted = client.post(f"/sessions/{id}/diagnosis/accept", data=ACCEPT, headers=HTML, follow_redirects=True)
+    assert "K. Ito" in accepted.text
+    assert "calibrated before it" in accepted.text
+    unit = client.get(f"/api/v1/sessions/{id}").json()["unit"]
+    assert client.post(f"/units/{unit}/recalibrate", headers=HTML).status_code == 303
+    assert "calibrated with it" in page(client, id)
+
+
+@pytest.mark.parametrize("path", ["/sessions/{id}/diagnosis/accept", "/units/{unit}/recalibrate"])
+def test_a_form_of_another_site_changes_nothing(client: httpx.Client, path: str) -> None:
+    id = send_case(client, drawn(TEMPERATURE))
+    unit = client.get(f"/api/v1/sessions/{id}").json()["unit"]
+    foreign = {"Origin": "https://elsewhere.example"}
+    assert client.post(path.format(id=id, unit=unit), data=ACCEPT, headers=HTML | foreign).status_code == 403
+    assert client.get("/api/v1/models").json()["models"] == []
+
+
+def test_the_page_asks_few_questions_and_stays_light(settings: Settings) -> None:
+    app = create_app(settings)
+    with http_client(app) as client, counted(app) as statements:
+        id = send_case(client, drawn(TEMPERATURE))
+        statements.clear()
+        assert len(page(client, id).encode()) < 500_000
+        assert len(statements) <= MOST_QUERIES
