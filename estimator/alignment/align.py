@@ -23,7 +23,7 @@ from estimator.alignment.filtering import (
     relative,
     run,
 )
-from estimator.alignment.noise import Noise, at_rest
+from estimator.alignment.noise import LEAST_DENSITY, Noise, at_rest
 from estimator.alignment.positions import (
     Stop,
     interval,
@@ -134,6 +134,8 @@ def _noise(found: list[Stop], gyros: Triad, accelerometers: Triad, row: float, p
         gyro = gyros.row_covariance * row
     if accelerometers.row_covariance is not None:
         accelerometer, sway = accelerometers.row_covariance * row, 0.0
+    accelerometer = accelerometer + LEAST_DENSITY["accelerometer"] ** 2 * np.eye(3)
+    gyro = gyro + LEAST_DENSITY["gyro"] ** 2 * np.eye(3)
     return Noise(accelerometer, gyro, float(np.sqrt(sway)), stated)
 
 

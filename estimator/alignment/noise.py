@@ -18,8 +18,11 @@ LEAST = 0.1
 """Part of the scatter that is taken for white noise at least: estimates of small numbers of steps stray."""
 SIGNIFICANT = 2.0
 """Standard deviations of chance from which neighbouring steps count as related."""
-TINY = 1e-9
+TINY = 1e-7
 """m/s; a computed velocity is taken for exact to this."""
+LEAST_DENSITY = {"accelerometer": 1e-7, "gyro": 1e-10}
+"""m/s²/√Hz, rad/s/√Hz: noise that the filter reckons with at least, far below that of any instrument, so that sessions
+without noise do not strain its arithmetic."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -110,7 +110,8 @@ def true_inputs(attitude: Array, row: float, latitude: float, g: float) -> tuple
     time = row * np.arange(len(attitude))
     inertial = Rotation.from_rotvec(time[:, None] * earth_rate(latitude)) * Rotation.from_matrix(attitude)
     steps = (inertial[:-1].inv() * inertial[1:]).as_rotvec()
-    middle = Rotation.from_matrix(attitude[1:]) * Rotation.from_rotvec(-0.5 * steps)
+    half_earth = Rotation.from_rotvec(0.5 * row * earth_rate(latitude))
+    middle = half_earth * Rotation.from_matrix(attitude[1:]) * Rotation.from_rotvec(-0.5 * steps)
     return np.asarray(steps / row), np.asarray(middle.inv().apply([0.0, 0.0, g]))
 
 

@@ -67,7 +67,7 @@ def strapdown(
     rates, forces = rates[:rows], forces[:rows]
     ends = attitudes(start, rates, row, latitude, per_step)
     back = Rotation.from_rotvec(-0.5 * row * rates).as_matrix().reshape(ends.shape)
-    middle = ends @ back
+    middle = Rotation.from_rotvec(0.5 * row * earth_rate(latitude)).as_matrix() @ ends @ back
     increments = (middle @ forces.reshape(steps, per_step, 3, 1))[..., 0].sum(axis=1) * row
     rate_z = rates[:, 2].reshape(steps, per_step, 1, 1)
     path = Path(
