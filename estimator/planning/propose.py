@@ -40,6 +40,9 @@ FEWEST = 6
 CUSTOMARY = 24
 """N where no tolerance asks for a number."""
 
+MOST_READINGS = 3000
+"""Readings beyond which the signatures of all causes at all places would fill the memory."""
+
 NEARLY = 1.1
 """Where no number reaches the tolerances: the fewest positions within this of what the most would give."""
 
@@ -176,5 +179,7 @@ def verdict(sigma: float, tolerance: float, request: Request) -> str:
 
 
 def detectable(session: CalibrationSession) -> tuple[Limit, ...]:
-    """Detection limits of the whole catalogue for a planned session."""
+    """Detection limits of the whole catalogue for a planned session; none beyond `MOST_READINGS`."""
+    if session.readings.size > MOST_READINGS:
+        return ()
     return limits(begin(baseline_of(session), ()), CATALOGUE)

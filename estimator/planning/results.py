@@ -123,7 +123,7 @@ class Plan:
     """The calibration that the session would give: sigmas, what is observable, what is known only together."""
     judged: tuple[Judged, ...]
     limits: tuple[Limit, ...]
-    """What the session would detect of every cause, and which it cannot see."""
+    """What the session would detect of every cause and which it cannot see; none beyond thousands of readings."""
     optimal: OptimalPositions
     over_positions: Sweep
     over_elevation: Sweep

@@ -26,6 +26,7 @@ from service.planning.words import (
     seen,
     sigma_in_words,
     tolerance_in_words,
+    unobserved,
 )
 from service.units import number
 
@@ -141,7 +142,10 @@ def plan_view(found: Plan) -> RenderableType:
         f"(formula for the stand alone: {number(float(np.degrees(found.formula_elevation)), 1)}°); "
         f"equal steps are {number(100 * found.optimal.efficiency, 1)} % as good as the best positions."
     )
-    return Group(heading, facts, Text(""), _parameters(found, coverage), Text(""), _limits(found), *_blind(found))
+    limits = (
+        _limits(found) if found.limits else Text("Too many readings to look for every cause in; plan fewer.", "yellow")
+    )
+    return Group(heading, facts, Text(""), _parameters(found, coverage), Text(""), limits, *_blind(found))
 
 
 def _parameters(found: Plan, coverage: str) -> Table:
@@ -173,8 +177,8 @@ def _blind(found: Plan) -> list[Text]:
     for limit in blind(found):
         reasons.setdefault(limit_in_words(limit, ""), []).append(limit.cause.replace("-", " "))
     lines = [Text(f"Cannot see {', '.join(causes)}: {reason}.", "yellow") for reason, causes in reasons.items()]
-    if found.unseen:
-        lines.append(Text(f"{UNSEEN.capitalize()}: {', '.join(found.unseen)}.", "yellow"))
+    if missing := unobserved(found):
+        lines.append(Text(f"{UNSEEN.capitalize()}: {missing}.", "yellow"))
     return lines
 
 

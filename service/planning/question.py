@@ -39,7 +39,10 @@ def _blank(value: object) -> object:
     return None if value == "" else value
 
 
-Amount = Annotated[float | None, BeforeValidator(_blank), Field(gt=0, le=1e9, allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0, le=1e9, allow_inf_nan=False)]
+Amount = Annotated[Positive | None, BeforeValidator(_blank)]
+Elevation = Annotated[float, Field(ge=1, le=89, allow_inf_nan=False)]
+Positions = Annotated[int, Field(ge=3, le=72)]
 Arcsec = Annotated[float, Field(ge=0, le=3600, allow_inf_nan=False)]
 
 
@@ -49,15 +52,15 @@ class PlanQuestion(BaseModel):
     model_config = ConfigDict(frozen=True)
 
     kind: Literal["accelerometer", "gyroscope"] = "accelerometer"
-    sensors: Annotated[int, Field(ge=3, le=24)] = 6
+    sensors: Annotated[int, Field(ge=3, le=12)] = 6
     latitude: Annotated[float, Field(ge=-90, le=90, allow_inf_nan=False)] = 55.81
     theta: Arcsec = 0.33
     alpha_error: Arcsec = 1.0
     beta_error: Arcsec = 1.0
     noise: Amount = None
     variation: Amount = None
-    elevation: Annotated[float | None, BeforeValidator(_blank), Field(ge=1, le=89, allow_inf_nan=False)] = None
-    positions: Annotated[int | None, BeforeValidator(_blank), Field(ge=3, le=360)] = None
+    elevation: Annotated[Elevation | None, BeforeValidator(_blank)] = None
+    positions: Annotated[Positions | None, BeforeValidator(_blank)] = None
     runs: Literal["both", "direct"] = "both"
     minutes: Annotated[float, Field(gt=0, le=1440, allow_inf_nan=False)] = 2.0
     scale: Amount = None

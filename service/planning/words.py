@@ -1,8 +1,10 @@
 """A plan in words and people's units: verdicts, detection limits, time."""
 
+from estimator.causes.gyro import GSensitivity, LatitudeEntry, OffMeridian
 from estimator.diagnosis.results import Limit
 from estimator.planning import Judged, Plan
-from estimator.session import ACCELEROMETER
+from estimator.planning.results import PARAMETERS
+from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.units import DEGREE, DEVIATION_UNITS, STANDARD_GRAVITY, THIN, DeviationUnit, in_unit, number
 
 VERDICTS = {
@@ -14,6 +16,7 @@ VERDICTS = {
 HOUR = 3600.0
 ANGLE = DEVIATION_UNITS["accelerometer", "axis"]
 UNSEEN = "not observable"
+OF_GYROS = {cause.identifier for cause in (GSensitivity, LatitudeEntry, OffMeridian)}
 
 
 def _limit_units(kind: str) -> dict[str, DeviationUnit]:
@@ -55,8 +58,23 @@ def seen(plan: Plan) -> tuple[Limit, ...]:
 
 
 def blind(plan: Plan) -> tuple[Limit, ...]:
-    """Causes that the plan cannot see."""
-    return tuple(limit for limit in plan.limits if limit.amplitude is None)
+    """Causes that the plan cannot see; what only gyros have is left out where there are none."""
+    has_gyros = any(s.kind == GYROSCOPE for s in plan.schedule.sensors)
+    return tuple(one for one in plan.limits if one.amplitude is None and (has_gyros or one.cause not in OF_GYROS))
+
+
+def unobserved(plan: Plan) -> str:
+    """``scale and axis of every sensor; bias of A2``: what the plan does not observe; empty where it observes all."""
+    sensors: dict[tuple[str, ...], list[str]] = {}
+    for name in PARAMETERS:
+        missing = tuple(j.sensor for j in plan.judged if j.parameter == name and j.sigma is None)
+        if missing:
+            sensors.setdefault(missing, []).append(name)
+    everyone = tuple(s.name for s in plan.schedule.sensors)
+    return "; ".join(
+        f"{' and '.join(parameters)} of {'every sensor' if missing == everyone else ', '.join(missing)}"
+        for missing, parameters in sensors.items()
+    )
 
 
 def sigma_in_words(judged: Judged, coverage: float) -> str:

@@ -16,7 +16,11 @@ PATHS = (
     "/units/GB-004",
     "/sessions/{unfit}",
     "/sessions/{loose}",
+    "/sessions/{unfit}/diagnosis",
+    "/sessions/{loose}/diagnosis",
     "/upload",
+    "/plan",
+    "/plan?kind=gyroscope&runs=direct&bias=0.05",
     "/units/nobody",
 )
 

@@ -1,0 +1,92 @@
+"""Expected uncertainty over the number of positions and over the elevation, a panel a parameter; conditioning."""
+
+from typing import Any
+
+import altair as alt
+import numpy as np
+
+from estimator.planning import Plan, Sweep
+from estimator.planning.results import PARAMETERS
+from service.pages.charts import DATA_FORM, ChartSet, Panel, specification
+from service.units import DEVIATION_UNITS, DeviationUnit
+
+HEIGHT = 150
+NAMES = {"scale": "Scale factor", "bias": "Bias", "quadratic": "Quadratic term", "axis": "Axis"}
+SERIES = ("total", "repeatability", "tolerance")
+COLOURS = ["var(--accent)", "var(--second)", "var(--tolerance)"]
+DASHES = [[1, 0], [4, 3], [5, 3]]
+
+
+def plan_charts(plan: Plan, kind: str) -> tuple[ChartSet, ChartSet]:
+    """Over N at the plan's elevation, and over the elevation at the plan's N."""
+    degrees = np.degrees(plan.over_elevation.at)
+    by_number = _parameters(plan, kind, plan.over_positions, plan.over_positions.at.astype(float), plan.positions)
+    by_angle = _parameters(plan, kind, plan.over_elevation, degrees, float(np.degrees(plan.elevation)))
+    return (
+        ChartSet("positions", "Over the number of positions", _spec("positions a run"), tuple(by_number)),
+        ChartSet(
+            "elevation", "Over the elevation of the head", _spec("elevation, °"), (*by_angle, *_rho(plan, degrees))
+        ),
+    )
+
+
+def _parameters(plan: Plan, kind: str, sweep: Sweep, at: Any, chosen: float) -> list[Panel]:
+    """One panel a parameter that is observed anywhere."""
+    wanted = plan.request.wanted.row() * plan.request.share
+    panels = []
+    for k, name in enumerate(PARAMETERS):
+        unit, coverage = DEVIATION_UNITS[kind, name], plan.request.coverage
+        pairs = [(series, getattr(sweep, series)[:, k] * coverage * unit.factor) for series in SERIES[:2]]
+        points = [p for series, values in pairs for p in _points(series, at, values)]
+        if points:
+            if np.isfinite(wanted[k]):
+                points += _points(SERIES[2], at, np.full(len(at), wanted[k] * unit.factor))
+            panels.append(_panel(NAMES[name], unit, points, chosen))
+    return panels
+
+
+def _panel(title: str, unit: DeviationUnit, points: list[dict[str, Any]], chosen: float) -> Panel:
+    words = f"U of the worst sensor, {unit.label}" if unit.label else "largest over smallest eigenvalue"
+    return Panel(
+        title=title,
+        description=words,
+        condition=None,
+        datasets={DATA_FORM: points, "chosen": [{"x": round(chosen, 2)}]},
+    )
+
+
+def _points(series: str, at: Any, values: Any) -> list[dict[str, Any]]:
+    return [
+        {"x": round(float(x), 2), "y": float(f"{y:.4g}"), "series": series}
+        for x, y in zip(at, values, strict=True)
+        if np.isfinite(y)
+    ]
+
+
+def _rho(plan: Plan, degrees: Any) -> list[Panel]:
+    """The conditioning, where it is finite."""
+    points = _points("total", degrees, plan.over_elevation.conditioning)
+    if not points:
+        return []
+    panel = _panel("Conditioning ρ", DeviationUnit("", 1.0), points, float(np.degrees(plan.elevation)))
+    return [panel]
+
+
+def _spec(across: str) -> dict[str, Any]:
+    points, chosen = (alt.NamedData(name=n) for n in (DATA_FORM, "chosen"))
+    x = alt.X("x:Q", title=across, axis=alt.Axis(tickCount=6), scale=alt.Scale(zero=False, nice=False))
+    y = alt.Y("y:Q", title=None, axis=alt.Axis(tickCount=5), scale=alt.Scale(zero=True))
+    colour = alt.Color("series:N", legend=None, scale=alt.Scale(domain=SERIES, range=COLOURS))
+    dash = alt.StrokeDash("series:N", legend=None, scale=alt.Scale(domain=SERIES, range=DASHES))
+    base = alt.Chart(points).encode(x=x, y=y, color=colour)
+    hints = [alt.Tooltip("x:Q", title=across), alt.Tooltip("y:Q", title="value"), alt.Tooltip("series:N", title="part")]
+    return specification(
+        [
+            alt.Chart(chosen).mark_rule(color="var(--ink)", strokeDash=[2, 2]).encode(x="x:Q"),
+            base.mark_line(strokeWidth=1.5).encode(strokeDash=dash),
+            base.transform_filter("datum.series != 'tolerance'")
+            .mark_point(filled=True, opacity=1, size=20)
+            .encode(tooltip=hints),
+        ],
+        HEIGHT,
+    )

@@ -1,0 +1,222 @@
+"""The page of a plan: what is asked, what the session would tell, what it cannot see."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimator.planning import Judged, Plan, proposed_orientations, rank_of_orientations
+from estimator.planning.expected import head_kind
+from estimator.planning.results import PARAMETERS
+from estimator.session import ACCELEROMETER
+from service.pages.charts import ChartSet
+from service.pages.charts.plan import NAMES, plan_charts
+from service.planning.question import NOISE, VARIATION, PlanQuestion
+from service.planning.words import (
+    UNSEEN,
+    VERDICTS,
+    blind,
+    duration,
+    headline,
+    limit_in_words,
+    seen,
+    sigma_in_words,
+    tolerance_in_words,
+    unobserved,
+)
+from service.units import DEVIATION_UNITS, number
+from service.verdicts import Condition
+
+CONDITIONS = {
+    "enough": Condition("pass", "Enough", "enough", "circle", VERDICTS["enough"]),
+    "usable": Condition("conditional-pass", "Usable", "usable", "triangle", VERDICTS["usable"]),
+    "undecidable": Condition("undecidable", "Undecidable", "undecidable", "cross", VERDICTS["undecidable"]),
+}
+REACHED = Condition("pass", "Reached", "reached", "circle", "Every tolerance is reached.")
+MISSED = Condition("undecidable", "Not reached", "not reached", "cross", "Some tolerance is not reached.")
+OPEN = Condition("none", "Not judged", "not judged", "circle", "No tolerance was given.")
+
+
+@dataclass(frozen=True)
+class Field:
+    """A number that the form asks for."""
+
+    name: str
+    label: str
+    value: str
+    hint: str
+    step: str = "any"
+
+
+@dataclass(frozen=True)
+class Cell:
+    """What is expected of one parameter of one sensor."""
+
+    heading: str
+    value: str
+    tolerance: str
+    condition: Condition | None
+
+
+@dataclass(frozen=True)
+class Row:
+    """One sensor, or several that are expected to be known alike."""
+
+    name: str
+    cells: tuple[Cell, ...]
+
+
+@dataclass(frozen=True)
+class Line:
+    """A cause and its size, or a reason and its causes."""
+
+    name: str
+    words: str
+
+
+@dataclass(frozen=True)
+class PlanPage:
+    """Everything the page of a plan shows."""
+
+    question: PlanQuestion
+    block: tuple[Field, ...]
+    session: tuple[Field, ...]
+    tolerances: tuple[Field, ...]
+    condition: Condition
+    headline: str
+    facts: tuple[Line, ...]
+    rows: tuple[Row, ...]
+    charts: tuple[ChartSet, ...]
+    over_positions: tuple[tuple[str, ...], ...]
+    over_elevation: tuple[tuple[str, ...], ...]
+    detected: tuple[Line, ...]
+    unseen: tuple[Line, ...]
+    optimal: tuple[Line, ...]
+    orientations: tuple[tuple[str, ...], ...]
+    """Without a stand: directions of up that identify everything; none for gyros."""
+    headings: tuple[str, ...]
+
+
+def plan_page(question: PlanQuestion, plan: Plan) -> PlanPage:
+    """The page of a planned session."""
+    kind = head_kind(plan.schedule)
+    return PlanPage(
+        question=question,
+        block=_block(question),
+        session=_session(question),
+        tolerances=_tolerances(question),
+        condition=OPEN if plan.reached is None else REACHED if plan.reached else MISSED,
+        headline=headline(plan),
+        facts=_facts(question, plan),
+        rows=_rows(plan),
+        charts=plan_charts(plan, kind),
+        over_positions=_sweep(plan, kind, "over_positions"),
+        over_elevation=_sweep(plan, kind, "over_elevation"),
+        detected=tuple(Line(_words(one.cause), limit_in_words(one, kind)) for one in seen(plan)),
+        unseen=_unseen(plan, kind),
+        optimal=_optimal(plan),
+        orientations=_orientations(plan),
+        headings=tuple(f"{NAMES[name]}, {DEVIATION_UNITS[kind, name].label}" for name in PARAMETERS),
+    )
+
+
+def _words(identifier: str) -> str:
+    return identifier.replace("-", " ")
+
+
+def _field(question: PlanQuestion, name: str, label: str, hint: str = "") -> Field:
+    value = getattr(question, name)
+    return Field(name, label, "" if value is None else f"{value:g}", hint)
+
+
+def _block(q: PlanQuestion) -> tuple[Field, ...]:
+    zero = DEVIATION_UNITS[q.kind, "bias"].label
+    return (
+        _field(q, "sensors", "Sensors on the cone"),
+        _field(q, "noise", f"Noise of a reading, 1σ, {zero}", f"{NOISE[q.kind]:g}"),
+        _field(q, "variation", f"Variation of the zero, 1σ, {zero}", f"{VARIATION[q.kind]:g}"),
+    )
+
+
+def _session(q: PlanQuestion) -> tuple[Field, ...]:
+    return (
+        _field(q, "elevation", "Elevation of the head, °", "proposed"),
+        _field(q, "positions", "Positions a run", "proposed"),
+        _field(q, "minutes", "Minutes a position"),
+        _field(q, "latitude", "Latitude, °"),
+        _field(q, "theta", "Levelling, 1σ, arcsec"),
+        _field(q, "alpha_error", "Elevation, 1σ, arcsec"),
+        _field(q, "beta_error", "Turn β, 1σ, arcsec"),
+    )
+
+
+def _tolerances(q: PlanQuestion) -> tuple[Field, ...]:
+    return tuple(
+        _field(q, name, f"{NAMES[name]}, {DEVIATION_UNITS[q.kind, name].label}", "not judged") for name in PARAMETERS
+    )
+
+
+def _facts(question: PlanQuestion, plan: Plan) -> tuple[Line, ...]:
+    proposed = "" if question.elevation is not None else ", proposed"
+    ours, formula = (number(float(np.degrees(a)), 1) for a in (plan.elevation, plan.formula_elevation))
+    return (
+        Line("Elevation of the head", f"{ours}°{proposed}"),
+        Line("By the formula for the stand alone", f"{formula}°"),
+        Line("Positions a run", f"{plan.positions}{'' if question.positions is not None else ', proposed'}"),
+        Line("Time", duration(plan.seconds)),
+        Line("Conditioning ρ", number(plan.conditioning, 1)),
+        Line("Equal steps against the best", f"{number(100 * plan.optimal.efficiency, 1)} %"),
+    )
+
+
+def _rows(plan: Plan) -> tuple[Row, ...]:
+    """Sensors whose cells read the same share a row."""
+    size, alike = len(PARAMETERS), dict[tuple[Cell, ...], list[str]]()
+    for i in range(0, len(plan.judged), size):
+        cells = tuple(_cell(one, plan.request.coverage) for one in plan.judged[i : i + size])
+        alike.setdefault(cells, []).append(plan.judged[i].sensor)
+    return tuple(Row(", ".join(names), cells) for cells, names in alike.items())
+
+
+def _cell(one: Judged, coverage: float) -> Cell:
+    return Cell(
+        NAMES[one.parameter], sigma_in_words(one, coverage), tolerance_in_words(one), CONDITIONS.get(one.verdict)
+    )
+
+
+def _sweep(plan: Plan, kind: str, name: str) -> tuple[tuple[str, ...], ...]:
+    """The numbers of a chart: where, U of every parameter, ρ."""
+    sweep = getattr(plan, name)
+    at = sweep.at if name == "over_positions" else np.degrees(sweep.at)
+    factors = np.array([DEVIATION_UNITS[kind, p].factor for p in PARAMETERS]) * plan.request.coverage
+    return tuple(
+        (number(float(x)), *(number(float(f"{u:.3g}")) for u in row), number(float(rho), 1))
+        for x, row, rho in zip(at, sweep.total * factors, sweep.conditioning, strict=True)
+    )
+
+
+def _unseen(plan: Plan, kind: str) -> tuple[Line, ...]:
+    """Reasons with their causes, and the parameters that are not observed."""
+    reasons: dict[str, list[str]] = {}
+    for one in blind(plan):
+        reasons.setdefault(limit_in_words(one, kind), []).append(_words(one.cause))
+    lines = [Line(", ".join(causes), reason) for reason, causes in reasons.items()]
+    missing = unobserved(plan)
+    return (*([Line(missing, UNSEEN)] if missing else []), *lines)
+
+
+def _optimal(plan: Plan) -> tuple[Line, ...]:
+    best = plan.optimal
+    degrees = np.round(np.degrees(best.beta)).astype(int)
+    return tuple(
+        Line(name, ", ".join(f"{d}°" for d in degrees[best.flipped == flipped]))
+        for name, flipped in (("direct", False), ("flipped", True))
+        if (best.flipped == flipped).any()
+    )
+
+
+def _orientations(plan: Plan) -> tuple[tuple[str, ...], ...]:
+    sensors = plan.schedule.sensors
+    if sum(s.kind == ACCELEROMETER for s in sensors) < 3:
+        return ()
+    proposed = rank_of_orientations(sensors, proposed_orientations(sensors)).directions
+    return tuple(tuple(number(float(x), 2) for x in direction) for direction in proposed)

@@ -1,0 +1,21 @@
+"""The address of the planning page: a form by GET, so that a plan can be linked to."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query, Request
+from fastapi.responses import HTMLResponse
+
+from estimator.planning import plan
+from service.pages.plan import plan_page
+from service.pages.render import render
+from service.planning.question import PlanQuestion
+
+router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
+
+
+@router.get("/plan")
+def show_plan(request: Request, question: Annotated[PlanQuestion, Query()]) -> HTMLResponse:
+    """What a session would tell before it is measured."""
+    like = question.cone()
+    found = plan(like, question.request(question.kind), sigma=question.sigma(like))
+    return render(request, "plan.html", plan_page(question, found))

@@ -1,0 +1,86 @@
+"""The planning page over HTTP: what is asked is answered, what is left empty is proposed, nonsense is refused."""
+
+import re
+
+import httpx
+import pytest
+
+HTML = {"Accept": "text/html"}
+
+
+def page(client: httpx.Client, **asked: object) -> str:
+    """The text of the page, tags taken out."""
+    answer = client.get("/plan", params=asked, headers=HTML)
+    assert answer.status_code == 200, answer.text
+    text = re.sub(r"<script.*?</script>", "", answer.text, flags=re.DOTALL)
+    return re.sub(r"\s+", " ", re.sub(r"<[^>]*>", " ", text))
+
+
+def test_nothing_asked_is_a_proposal(client: httpx.Client) -> None:
+    text = page(client)
+    assert "24 positions in both runs, 1 h 36 min: no tolerance was given" in text
+    assert "39.4°, proposed" in text
+    assert "A1, A2, A3, A4, A5, A6" in text
+
+
+def test_an_empty_field_is_proposed(client: httpx.Client) -> None:
+    assert page(client, elevation="", positions="", bias="") == page(client)
+
+
+def test_tolerances_are_judged(client: httpx.Client) -> None:
+    assert "reach every tolerance" in page(client, bias=12, scale=20)
+    unreachable = page(client, axis=0.5)
+    assert "Not reached" in unreachable
+    assert "do not reach the tolerance of axis" in unreachable
+
+
+def test_what_is_asked_is_kept_in_the_form(client: httpx.Client) -> None:
+    form = client.get("/plan", params={"elevation": 35, "positions": 8, "runs": "direct"}, headers=HTML).text
+    assert re.search(r'name="elevation"[^>]*value="35"', form)
+    assert re.search(r'<option value="direct" selected>', form)
+    assert "direct run" in form
+    assert "flipped run" not in form
+
+
+def test_one_run_says_what_it_does_not_see(client: httpx.Client) -> None:
+    assert "scale and bias and axis of every sensor: not observable" in page(client, runs="direct", positions=12)
+
+
+def test_gyros_are_planned_in_their_units(client: httpx.Client) -> None:
+    text = page(client, kind="gyroscope", bias=0.05)
+    assert "°/h of 0.05" in text.replace("\u202f", " ")
+    assert "Without a stand" not in text
+    assert "g sensitivity" in text
+
+
+def test_accelerometers_hear_nothing_of_gyros(client: httpx.Client) -> None:
+    assert "g sensitivity" not in page(client)
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("sensors", 2), ("sensors", 1000), ("elevation", 90), ("positions", 1), ("noise", -1), ("bias", "nan"),
+        ("kind", "magnetometer"), ("minutes", 0), ("theta", "1e308"), ("alpha_error", "x"), ("latitude", "inf"),
+    ],
+)  # fmt: skip
+def test_nonsense_is_refused_by_name(client: httpx.Client, field: str, value: object) -> None:
+    answer = client.get("/plan", params={field: value}, headers=HTML)
+    assert answer.status_code == 422
+    assert field in answer.text
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        {"sensors": 12, "positions": 72},
+        {"theta": 0, "alpha_error": 0, "beta_error": 0, "noise": 1e-9, "variation": 1e-9},
+        {"noise": 1e9, "bias": 1e-9},
+        {"elevation": 1, "positions": 3},
+        {"elevation": 89, "positions": 4, "runs": "direct"},
+        {"latitude": 90, "kind": "gyroscope", "sensors": 3},
+        {"minutes": 1440, "axis": 1e9},
+    ],
+)
+def test_the_edges_of_what_may_be_asked_are_answered(client: httpx.Client, asked: dict[str, object]) -> None:
+    assert "positions in" in page(client, **asked)
