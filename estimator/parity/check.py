@@ -87,7 +87,7 @@ class ParityAccumulator:
         detected = evidence.detected(false_alarm)
         found = evidence.candidates() if detected else []
         named = {h.sensor for h in found}
-        isolated = found[0] if len(named) == 1 else None
+        isolated = found if len(named) == 1 else []
         m = len(self.reference.names)
         whole = change.excited @ change.theta
         spread = np.kron(change.excited, np.eye(change.theta.shape[1]))
@@ -101,7 +101,7 @@ class ParityAccumulator:
             detected=detected,
             false_alarm=false_alarm,
             candidates=tuple(map(evidence.candidate, found)),
-            isolated=None if isolated is None else self.reference.names[isolated.sensor],
+            isolated=self.reference.names[isolated[0].sensor] if isolated else None,
             explained=not detected or evidence.explained(found[0]),
             complete=change.complete,
             constant=whole[0],

@@ -100,11 +100,11 @@ class Evidence:
         return bool(min(self.p_value(self.chi2, len(self.seen)), best) < false_alarm / 2)
 
     def candidates(self) -> list[Hypothesis]:
-        """The best hypotheses, best first: of every sensor the best kind, if it is no worse than Δ below the best."""
+        """Hypotheses no worse than Δ below the best, best first; of a sensor ``several`` only where nothing simpler."""
         ranked = sorted(self.all, key=lambda h: -h.score)
-        own = {h.sensor: h for h in reversed(ranked)}
-        margin = self.margin
-        return [h for h in ranked if own[h.sensor] is h and h.score > ranked[0].score - margin]
+        near = [h for h in ranked if h.score > ranked[0].score - self.margin]
+        plain = {h.sensor for h in near if h.kind != SEVERAL}
+        return [h for h in near if h.kind != SEVERAL or h.sensor not in plain]
 
     @property
     def margin(self) -> float:
@@ -129,15 +129,15 @@ class Evidence:
             p_value=h.p_value,
         )
 
-    def sensor(self, index: int, false_alarm: float, isolated: Hypothesis | None) -> SensorParity:
+    def sensor(self, index: int, false_alarm: float, isolated: list[Hypothesis]) -> SensorParity:
         """What the recording shows of one sensor, and could have shown."""
         reference = self.change.reference
         own = {h.kind: h for h in self.all if h.sensor == index}
         bias, scale, axis = (self.sight(own[kind], false_alarm, isolated) for kind in (BIAS, SCALE, AXIS))
         return SensorParity(reference.names[index], float(reference.visible[index]), bias, scale, axis)
 
-    def sight(self, h: Hypothesis, false_alarm: float, isolated: Hypothesis | None) -> Sight:
-        """Estimate and limits of one kind of change of one sensor, beside a change that was isolated."""
+    def sight(self, h: Hypothesis, false_alarm: float, isolated: list[Hypothesis]) -> Sight:
+        """Estimate and limits of one kind of change of one sensor, beside the change of an isolated one."""
         beside = self.beside(h, isolated)
         whitened = h.whitened - beside @ (beside.T @ h.whitened)
         sizes = np.linalg.svd(whitened, compute_uv=False)
@@ -158,12 +158,13 @@ class Evidence:
             isolable=None if isolable is None else float(isolable),
         )
 
-    def beside(self, h: Hypothesis, isolated: Hypothesis | None) -> Array:
-        """(q, r) orthonormal basis of the change that stands beside a hypothesis: the isolated one's, less its own."""
-        if isolated is None or (h.sensor, h.kind) == (isolated.sensor, isolated.kind):
+    def beside(self, h: Hypothesis, isolated: list[Hypothesis]) -> Array:
+        """(q, r) orthonormal basis of what stands beside a hypothesis: the isolated sensor's change, less its own."""
+        if not isolated or any(h is found for found in isolated):
             return np.empty((len(self.seen), 0))
-        if (h.sensor, isolated.kind) != (isolated.sensor, SEVERAL):
-            return isolated.basis
+        best = isolated[0]
+        if (h.sensor, best.kind) != (best.sensor, SEVERAL):
+            return best.basis
         rest = [o.whitened for o in self._single if o.sensor == h.sensor and o.kind != h.kind]
         U, sizes, _ = np.linalg.svd(np.hstack(rest), full_matrices=False)
         return np.asarray(U[:, sizes > UNSEEN * sizes[0]])

@@ -32,6 +32,9 @@ SLOWEST = 0.9
 LEAST_DOF = (4.0, 2.0, 16.0)
 """Of the noise, however slow it is: the first and the second times d, at most the third; more sensors tell more."""
 
+APART = 0.01
+"""Relative eigenvalue of P∘P below which sensors are not told apart; it matters as much as its square root."""
+
 DRAWN = 6.0
 """Groups' worth of belief that all sensors are equally noisy."""
 
@@ -167,7 +170,7 @@ def sensor_noise(moved: Array, V: Array, groups: int) -> Array:
     """(m, s, s) covariance of Θ from each sensor's own noise."""
     D = moved @ V.T
     observed = np.einsum("gsm,gtm->mst", D, D)
-    shares = np.linalg.pinv((V @ V.T) ** 2, rcond=1e-9, hermitian=True)
+    shares = np.linalg.pinv((V @ V.T) ** 2, rcond=APART, hermitian=True)
     omega = np.einsum("mj,jst->mst", shares, observed)
     values, vectors = np.linalg.eigh(omega)
     omega = np.einsum("msk,mk,mtk->mst", vectors, np.maximum(values, 0.0), vectors)

@@ -83,7 +83,7 @@ class ParityResult:
     false_alarm: float
     """Chance that an unchanged block is called changed."""
     candidates: tuple[Candidate, ...]
-    """Single sensors that explain the finding about equally well, best first; empty when nothing is detected."""
+    """Changes of single sensors that explain the finding about equally well, best first; none without a detection."""
     isolated: str | None
     """The sensor, when all candidates name the same one."""
     explained: bool
