@@ -6,9 +6,6 @@ from service.records import HistoryPoint
 from service.storage.queries.history import HistoryQuery
 from service.storage.store import Store
 
-ALL = 1_000_000
-"""More points than one session can have."""
-
 
 def unit_history(
     store: Store,
@@ -32,5 +29,7 @@ def unit_history(
 def recent_history(store: Store, serial: str, most: int) -> tuple[HistoryPoint, ...]:
     """The newest sessions of a unit's history, whole, with at most so many points; oldest first."""
     unit = store.units.key(serial)
-    since = store.history.recent_start(unit, most)
-    return store.history.points(unit, HistoryQuery(since=since, limit=ALL))
+    found = store.history.points(unit, HistoryQuery(limit=most + 1, newest=True))
+    if len(found) <= most:
+        return found
+    return tuple(point for point in found if point.session != found[0].session)

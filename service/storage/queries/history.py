@@ -3,7 +3,6 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
-from itertools import accumulate
 
 from sqlalchemy import ColumnElement, Row, func, select
 
@@ -24,6 +23,8 @@ class HistoryQuery:
     limit: int = 10_000
     revision: int | None = None
     """As computed under this model revision or the last one before it; None for what is in force."""
+    newest: bool = False
+    """Whether offset and limit count from the newest point back."""
 
 
 class History(Queries):
@@ -74,24 +75,9 @@ class History(Queries):
         if wanted.until is not None:
             query = query.where(ParameterRow.at < wanted.until)
         order = (ParameterRow.at, ParameterRow.session_id, ParameterRow.sensor_index, ParameterRow.parameter)
-        found = self._session.execute(query.order_by(*order).offset(wanted.offset).limit(wanted.limit))
-        return tuple(_point(row) for row in found)
-
-    def recent_start(self, unit: int, most: int) -> datetime | None:
-        """The time of the earliest session such that it and all later ones hold at most ``most`` points; None if all.
-
-        At least the latest session is taken, however large it is.
-        """
-        counts = self._session.execute(
-            select(ParameterRow.at, func.count())
-            .join(SessionRow, SessionRow.id == ParameterRow.session_id)
-            .where(ParameterRow.unit_id == unit, ParameterRow.revision == SessionRow.revision)
-            .group_by(ParameterRow.at)
-            .order_by(ParameterRow.at.desc())
-        ).all()
-        totals = list(accumulate(count for _, count in counts))
-        within = max(1, sum(total <= most for total in totals))
-        return None if within >= len(counts) else counts[within - 1][0]
+        query = query.order_by(*(column.desc() if wanted.newest else column for column in order))
+        found = [_point(row) for row in self._session.execute(query.offset(wanted.offset).limit(wanted.limit))]
+        return tuple(reversed(found)) if wanted.newest else tuple(found)
 
 
 def _revision(wanted: int | None) -> ColumnElement[int]:

@@ -22,9 +22,7 @@ def measured(storage: Storage) -> Storage:
     return storage
 
 
-@pytest.mark.parametrize(
-    ("most", "months"), [(3 * POINTS, [3, 5, 7]), (3 * POINTS - 1, [5, 7]), (POINTS, [7]), (1, [7])]
-)
+@pytest.mark.parametrize(("most", "months"), [(3 * POINTS, [3, 5, 7]), (3 * POINTS - 1, [5, 7]), (POINTS, [7])])
 def test_the_newest_sessions_that_fit_are_taken_whole(measured: Storage, most: int, months: list[int]) -> None:
     with measured.database.reading() as store:
         found = recent_history(store, "BA-017", most)
