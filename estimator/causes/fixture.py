@@ -31,7 +31,7 @@ class RemountRotation(CommonCause):
     scope = "fixture"
     equation = "all axes of the block turn together: e → e + k×e since the history"
     units = ("rad", "rad", "rad")
-    needs = frozenset({"history"})
+    needs = frozenset({"stand", "history"})
     between = True
     sentence = "The whole block sits turned in its fixture compared with earlier sessions; no sensor moved by itself."
     advice = "Reseat the block and repeat, or take the rotation into the mounting; the sensors need no attention."

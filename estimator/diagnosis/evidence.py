@@ -42,7 +42,8 @@ class Whitener:
         scaled = baseline.row * weight[..., None] * sigma[:, None, :]
         direction, size, _ = np.linalg.svd(scaled, full_matrices=False)
         removed = 1 - 1 / np.sqrt(1 + size**2)
-        return cls(weight, direction, np.where(open_ended.any(axis=1, keepdims=True), 1.0, removed))
+        acts = size > NOTHING * np.maximum(size[:, :1], np.finfo(float).tiny)
+        return cls(weight, direction, np.where(open_ended.any(axis=1, keepdims=True) & acts, 1.0, removed))
 
     def __call__(self, columns: Array) -> Array:
         """(R, m, q) columns whitened and laid out as (R·m, q)."""
@@ -110,7 +111,7 @@ class Evidence:
         data = np.concatenate([whiten(baseline.residual[..., None])[:, 0], np.zeros(k)])
         basis = left[:, kept]
         z = data - basis @ (basis.T @ data)
-        open_rows = int(np.isinf(baseline.row_sigma).sum())
+        open_rows = int((whiten.removed == 1).sum())
         if between is not None:
             z = np.concatenate([z, between.deviation])
         freedom = baseline.residual.size - open_rows - (int(kept.sum()) - k)
