@@ -14,6 +14,7 @@ Finding = dict[str, Any]
 TOLD_APART = 3.0
 """Expected separation below which a proposed measurement would not help."""
 SHOWN_SHARE = 5e-4
+DRIFTED = ("scale factor", "bias", "axis, first tangent", "axis, second tangent")
 SHAPES = {"warm-up": "time constant", "saturation": "limit", "bias-jump": "from", "reading-outlier": "at"}
 
 
@@ -94,11 +95,18 @@ def _amplitudes(finding: Finding) -> tuple[str, ...]:
     each = max(1, len(values) // max(1, len(finding["sensors"])))
     shown = []
     for k, (value, sigma, si_unit) in enumerate(zip(values, sigmas, units, strict=False)):
+        if not value and not sigma:
+            continue
         unit = amplitude_unit(finding["cause"], si_unit, max(abs(value or 0.0), sigma or 0.0))
         who = f"{finding['sensors'][k // each]}: " if len(finding["sensors"]) > 1 else ""
-        which = f"k{k % each + 1} = " if each > 1 else ""
+        which = f"{_part(finding['cause'], k % each)} " if each > 1 else ""
         shown.append(f"{who}{which}{measured(value, sigma, unit)}")
     return tuple(shown)
+
+
+def _part(cause: str, k: int) -> str:
+    """What one of several amplitudes is."""
+    return DRIFTED[k] if cause == "sensor-drift" else f"k{k + 1} ="
 
 
 def _shape(finding: Finding) -> str:
@@ -186,6 +194,8 @@ def _parity(split: dict[str, Any] | None) -> str:
     if split is None or any(split.get(k) is None for k in ("parity_before", "parity_after")):
         return ""
     before, after = (number(split[f"parity_{k}"], 0) for k in ("before", "after"))
+    if before == after:
+        return ""
     seen, left = (number(split[f"range_{k}"], 0) for k in ("before", "after"))
     return (
         f"χ² in parity space {before} → {after}, along the axes {seen} → {left}. "

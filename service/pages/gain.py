@@ -40,6 +40,8 @@ class GainView:
     """The gain of the extended model."""
 
     held_out: str
+    is_none: bool
+    """Whether the named causes show elsewhere than in the prediction of held-out readings."""
     rows: tuple[GainRow, ...]
     moved: tuple[Moved, ...]
     """Sensors of which anything moved."""
@@ -55,6 +57,7 @@ def gain_view(
     kinds = [sensor.kind for sensor in after.sensors]
     return GainView(
         held_out="positions that took no part in the fit" if gain["held_out"] == "positions" else "another session",
+        is_none=gain["before"] == gain["after"],
         rows=_rows(gain, "gyroscope" if kinds and set(kinds) == {GYROSCOPE} else "accelerometer"),
         moved=tuple(
             _moved(a, b)
