@@ -45,6 +45,7 @@ from estimator.alignment import AlignmentResult, RateTableResult, align, rate_ta
 from estimator.calibration import calibrate_many
 from estimator.diagnosis import Diagnosis, calibrate_extended, diagnose
 from estimator.errors import FormatError, Problem, ScheduleError, SessionError
+from estimator.parity import ParityAccumulator, ParityResult, parity_check
 from estimator.programmes import calibrate
 from estimator.reading import read_session
 from estimator.results import Calibration
@@ -56,6 +57,8 @@ __all__ = [
     "CalibrationSession",
     "Diagnosis",
     "FormatError",
+    "ParityAccumulator",
+    "ParityResult",
     "Problem",
     "RateTableResult",
     "ScheduleError",
@@ -69,6 +72,7 @@ __all__ = [
     "calibrate_extended",
     "calibrate_many",
     "diagnose",
+    "parity_check",
     "rate_table",
     "read_session",
 ]

@@ -24,6 +24,7 @@ COMMANDS = {
     "report": "report.report",
     "simulate": "simulate.simulate_files",
     "plan": "plan.plan_session",
+    "parity": "parity.parity",
     "recalibrate": "recalibrate.recalibrate_units",
     "db": "database.database",
 }

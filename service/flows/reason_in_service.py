@@ -12,7 +12,7 @@ NAMES = {"scale": "scale factor", "bias": "bias", "axis": "input axis", SEVERAL:
 
 def reason(result: ParityResult, decisions: tuple[Decision, ...]) -> str:
     """What was found, and what could not have been."""
-    found = _found(result)
+    found = found_in_words(result)
     unseen = [d for d in decisions if d.verdict is Verdict.UNDECIDABLE]
     if not decisions:
         return f"{found}. {NOTHING_JUDGED}"
@@ -21,7 +21,8 @@ def reason(result: ParityResult, decisions: tuple[Decision, ...]) -> str:
     return f"{found}, but {_limit(unseen)}."
 
 
-def _found(result: ParityResult) -> str:
+def found_in_words(result: ParityResult) -> str:
+    """What was found, without its full stop."""
     if not result.detected:
         return SAME
     best = result.candidates[0]

@@ -1,0 +1,97 @@
+"""`imu-health parity`: a recording of any length beside the calibration that its readings are corrected by."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from estimator import calibrate
+from estimator.errors import SessionError
+from estimator.parity import ParityAccumulator, ParityResult
+from estimator.parity.results import Sight
+from service.commands.console import UNUSABLE, AsJson, print_json, problem_line, say, screen
+from service.flows.reason_in_service import found_in_words
+from service.ingest import read_upload
+from service.ingest.stream import open_recording
+from service.units import in_words
+
+PARAMETERS = ("bias", "scale", "axis")
+
+File = Annotated[Path, typer.Argument(metavar="FILE", help="The recording.", show_default=False)]
+Reference = Annotated[Path, typer.Option(help="Session file of the calibration to compare with.", show_default=False)]
+Motion = Annotated[str, typer.Option(help="`still`, `any`, or `auto`: motion is left out where it spoils parity.")]
+FalseAlarm = Annotated[float, typer.Option(min=1e-9, max=0.5, help="Chance that an unchanged block is called changed.")]
+
+
+def parity(
+    file: File, reference: Reference, motion: Motion = "auto", false_alarm: FalseAlarm = 0.01, as_json: AsJson = False
+) -> None:
+    """Judge a recording in service by what the redundant sensors say of one another; no stand needed."""
+    if motion not in ("auto", "still", "any"):
+        raise typer.BadParameter(f"motion is {motion!r}; choose auto, still or any")
+    result = _result(file, reference, motion, false_alarm)
+    if as_json:
+        print_json(result.to_dict())
+    else:
+        screen().print(parity_view(result))
+
+
+def _result(file: Path, reference: Path, motion: str, false_alarm: float) -> ParityResult:
+    """Exit code 2 with one line when either file cannot be used."""
+    place = reference
+    try:
+        calibration = calibrate(read_upload(reference.read_bytes(), str(reference)))
+        place = file
+        recording = open_recording(file)
+        head = recording.head
+        accumulator = ParityAccumulator(
+            head.unit,
+            head.sensors,
+            calibration,
+            kind=head.block,
+            sample_rate=head.sample_rate,
+            site=head.site,
+            count_time=head.count_time,
+        )
+        for chunk in recording.chunks:
+            accumulator.add(chunk)
+        return accumulator.result(motion=motion, false_alarm=false_alarm)
+    except SessionError as fault:
+        say(problem_line(place, fault.problems))
+        raise typer.Exit(UNUSABLE) from fault
+    except OSError as fault:
+        say(f"{place}: file: {fault.strerror or fault}; check the name and that it can be read")
+        raise typer.Exit(UNUSABLE) from fault
+
+
+def parity_view(result: ParityResult) -> RenderableType:
+    """The finding in a sentence, then every sensor: what it seems to have moved, and what would have been seen."""
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    for heading in ("sensor", "visible", *(f"{name}{part}" for name in PARAMETERS for part in ("", ", seen from"))):
+        table.add_column(heading, justify="left" if heading == "sensor" else "right", no_wrap=True)
+    for sensor in result.sensors:
+        cells = [cell for name in PARAMETERS for cell in _cells(result.kind, name, getattr(sensor, name))]
+        table.add_row(sensor.name, f"{100 * sensor.visible_share:.0f} %", *cells)
+    return Group(
+        Text.assemble((result.unit, "bold"), f": {found_in_words(result)}."),
+        Text(f"χ² {result.chi2:.1f} of {result.dof} numbers, p = {result.p_value:.3g}; {_used(result)}."),
+        table,
+    )
+
+
+def _cells(kind: str, name: str, sight: Sight) -> tuple[str, str]:
+    if sight.size is None or sight.sigma is None or sight.detectable is None:
+        return "not seen", "—"
+    moved = in_words(kind, name, sight.size, signed=name != "axis")
+    return f"{moved} ± {in_words(kind, name, sight.sigma)}", in_words(kind, name, sight.detectable)
+
+
+def _used(result: ParityResult) -> str:
+    """Which part of the recording it rests on."""
+    left = [f"{count} {why}" for why, count in result.left_out.items() if count]
+    dropped = f" ({', '.join(left)} left out)" if left else ""
+    lasted = "" if result.duration is None else f", {result.duration:,.0f} s"
+    return f"{result.used} of {result.blocks} blocks used{dropped}{lasted}"
