@@ -15,7 +15,7 @@ from service.app import create_app
 from service.pages.assets import asset_url
 from service.settings import Settings
 from tests.service.sessions import session_bytes
-from tests.serving import http_client
+from tests.serving import http_client, running
 
 HTML = {"Accept": "text/html"}
 MOST_QUERIES = 8
@@ -83,8 +83,8 @@ def test_what_nobody_foresaw_is_a_page_too_and_says_nothing_of_the_inside(settin
         raise RuntimeError("inside")
 
     app.add_api_route("/fails", fails)
-    with http_client(app) as client:
-        page, problem = client.get("/fails", headers=HTML), client.get("/fails")
+    with running(app) as address:  # which closes the connection after each
+        page, problem = httpx.get(f"{address}/fails", headers=HTML), httpx.get(f"{address}/fails")
     assert (page.status_code, problem.status_code) == (500, 500)
     assert '<section id="problem"' in page.text
     assert "inside" not in page.text
