@@ -93,7 +93,7 @@ CAST = (
     ),
     Member("BA-108", ACCELEROMETER, "stable; the last session was too noisy to decide", 12, noise={-1: 60.0}),
     Member(
-        "BA-109", ACCELEROMETER, "stable; amplifiers adjusted half-way", 12,
+        "BA-109", ACCELEROMETER, "stable; amplifiers adjusted half-way", 11,
         services=(_readjusted(datetime(2025, 2, 11, 9, 0, tzinfo=UTC)),),
     ),
     Member(
