@@ -62,7 +62,7 @@ def end_values(ten: Errors, turntable: Errors) -> str:
         "The printed values are reproduced; they are rounded, for 4″ and 8″ of g are 19.4 and 38.8 µg. The ten-state "
         "filter does not know of the mounting errors: it is wrong by more than ten, for ∇_y forty, of its sigmas. "
         "Before the turn our curves lie nearer to zero than a single position allows, because coarse alignment looks "
-        "at both stops. Of the paper its text was at hand, not its pictures: of the curves only the end values compare.",
+        "at both stops. The paper's text was at hand, not its pictures: of the curves only the end values compare.",
     )
 
 

@@ -9,7 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from estimator.errors import Problem, ScheduleError
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
+
+LEAST_SHARE = 1e-4
+"""Part of the largest variance that a sensor is given at least."""
+TINY = 1e-12
+"""m/s² or rad/s."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +48,7 @@ def triad(session: CalibrationSession, kind: str, interval: float) -> Triad:
     Sensors are weighted by their stated standard errors, else by the scatter of their readings from row to row.
     """
     chosen = [i for i, s in enumerate(session.sensors) if s.kind == kind]
+    _require_alive(session, chosen)
     scale = np.array([session.sensors[i].nominal_scale for i in chosen])
     offset = np.array([session.sensors[i].nominal_offset or 0.0 for i in chosen])
     counted = kind != ACCELEROMETER and session.count_time is not None
@@ -56,8 +63,18 @@ def triad(session: CalibrationSession, kind: str, interval: float) -> Triad:
 
 
 def scatter(values: Array) -> Array:
-    """(m,) variance of white noise from third differences of (R, m), which no smooth motion reaches; never zero."""
+    """(m,) variance of white noise from third differences of (R, m), which no smooth motion reaches.
+
+    Never zero, and none so small beside the others that one channel would count for all.
+    """
     steps = np.diff(values, n=3, axis=0)
     quiet = np.median(np.abs(steps), axis=0) / 0.6745 if len(steps) else np.zeros(values.shape[1])
-    floor = np.max(np.abs(values), axis=0, initial=0.0) * 1e-12 + 1e-30
-    return quiet**2 / 20 + floor**2
+    variance = quiet**2 / 20
+    return np.maximum(variance, LEAST_SHARE * variance.max(initial=0.0)) + TINY**2
+
+
+def _require_alive(session: CalibrationSession, chosen: list[int]) -> None:
+    """ScheduleError for sensors that read the same in every row."""
+    stuck = [session.sensors[i].name for i in chosen if np.ptp(session.readings[:, i]) == 0]
+    if stuck:
+        raise ScheduleError([Problem(name, "reads the same in every row; check the channel") for name in stuck])

@@ -16,6 +16,8 @@ HALF = 0.5
 """s; half the time over which that is judged."""
 SHORTEST = 10.0
 """s that make a stop."""
+FEWEST_ROWS = 10
+"""Rows that make a stop."""
 APART = np.radians(20.0)
 """rad between stops that count as different positions."""
 DISAGREEMENT = (np.radians(1.0), 0.02)
@@ -76,7 +78,7 @@ def stops(angle: Array, row: float) -> list[Stop]:
     still = np.abs(padded[2 * reach :] - padded[: -2 * reach]) < STILL
     edges = np.flatnonzero(np.diff(np.concatenate([[False], still, [False]]).astype(np.int8)))
     found = zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
-    return [Stop(a, b, float(np.median(angle[a:b]))) for a, b in found if (b - a) * row >= SHORTEST]
+    return [Stop(a, b, float(np.median(angle[a:b]))) for a, b in found if b - a >= max(SHORTEST / row, FEWEST_ROWS)]
 
 
 def require_positions(found: list[Stop]) -> None:
@@ -85,7 +87,7 @@ def require_positions(found: list[Stop]) -> None:
     apart = [abs(np.exp(1j * stop.angle) - np.exp(1j * found[0].angle)) for stop in found]
     if not found or max(apart) < 2 * np.sin(APART / 2):
         where = f"only at {', '.join(f'{turn:g}°' for turn in sorted(turns))}" if turns else "nowhere"
-        advice = f"stop for {SHORTEST:g} s or longer at two angles or more, 180° apart at best"
+        advice = f"stop for {SHORTEST:g} s and {FEWEST_ROWS} rows or longer at two angles or more, 180° apart at best"
         raise ScheduleError([Problem("turn_angle_deg", f"the table stands {where}; {advice}")])
 
 

@@ -17,7 +17,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.stats import chi2 as chi2_distribution
 
-from estimator.alignment.axes import Triad, triad
+from estimator.alignment.axes import TINY, Triad, triad
 from estimator.alignment.positions import interval
 from estimator.alignment.results import RateTableResult
 from estimator.errors import Problem, ScheduleError
@@ -166,7 +166,7 @@ def _result(session: CalibrationSession, turns: Turns, gyros: Triad) -> RateTabl
 def _noise(gyros: Triad, scatter: Array, dof: int, rms: float, leverage: float) -> tuple[Array, Fit]:
     """Covariance (3, 3) of a row, and how the turns scatter about the model."""
     stated = gyros.row_covariance
-    covariance = scatter if stated is None else stated
+    covariance = (scatter if stated is None else stated) + TINY**2 * np.eye(3)
     axes = 3 if stated is not None else 1
     chi2 = axes * dof * float(np.trace(np.linalg.solve(covariance, scatter))) / 3
     p_value = None if stated is None else float(chi2_distribution.sf(chi2, axes * dof))

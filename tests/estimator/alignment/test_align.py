@@ -1,5 +1,6 @@
 """Sessions on a turntable: what goes in, what comes out, and what is refused."""
 
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -171,3 +172,32 @@ def test_a_file_without_gyros_is_refused() -> None:
         sensor.pop("kind", None)
     with pytest.raises(FormatError, match="none of kind gyroscope; rotation-alignment needs them"):
         read_session(document)
+
+
+def test_a_stuck_channel_is_named() -> None:
+    measured = given()
+    stuck = measured.readings.copy()
+    stuck[:, 4] = 0.0
+    with pytest.raises(ScheduleError, match="G2: reads the same in every row"):
+        align(replace(measured, readings=stuck))
+
+
+def senseless(measured: CalibrationSession, seed: int) -> CalibrationSession:
+    """Some channels coarse and out of scale, and one wild reading."""
+    rng = np.random.default_rng(seed)
+    readings = measured.readings.copy()
+    some = rng.integers(0, 2, 6).astype(bool)
+    readings[:, some] = np.round(readings[:, some], rng.integers(0, 6)) * 10.0 ** rng.integers(-6, 7)
+    readings[rng.integers(0, len(readings)), rng.integers(0, 6)] += 10.0 ** rng.integers(-6, 18)
+    return replace(measured, readings=readings)
+
+
+def test_senseless_readings_are_refused_or_give_numbers() -> None:
+    measured = given(Programme(dwell=30.0, row=0.5))
+    found = []
+    for seed in range(30):
+        with suppress(ScheduleError):
+            found.append(align(senseless(measured, seed)))
+    assert 0 < len(found) < 30
+    assert all(np.isfinite(result.estimate).all() for result in found)
+    assert all(np.linalg.eigvalsh(result.covariance).min() > -1e-12 for result in found)
