@@ -1,0 +1,80 @@
+"""P4: `diagnose` one session over the whole catalogue, against a refit by least squares for every cause and sensor.
+
+The peer refits the readings once for every cause and sensor that the session puts to the test: one sensor's five
+parameters and the cause's amplitudes for a cause of one sensor, all sensors' for a cause of the stand, with the
+signatures handed to it and only the middle of the grid where a cause has nonlinear parameters. It ranks causes by χ².
+What it leaves out and ours does: the stand's common errors, the grids, the second thoughts, the extended calibration,
+the held-out gain and the detection limits.
+"""
+
+from functools import partial
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from benchmarks.block import sessions
+from benchmarks.figures import Figure, side_by_side
+from estimator import CalibrationSession, diagnose
+from estimator.causes import CATALOGUE, Signature
+from estimator.diagnosis.baseline import Baseline
+from estimator.diagnosis.measured import baseline_of
+from estimator.forward import input_of
+from estimator.session import Array
+
+WORK = "diagnose one session, 6 sensors × 24 positions × 2 runs, whole catalogue"
+PEER = "scipy.optimize.least_squares once per cause and sensor"
+
+
+def hidden() -> CalibrationSession:
+    """The session of P1 with a bias ramp on its third sensor, about seventeen standard errors strong."""
+    session = sessions(1)[0]
+    assert session.time is not None
+    ramp = 2e-7 * (session.time - session.time.mean())
+    readings = session.readings.copy()
+    readings[:, 2] += 0.12 * ramp
+    return CalibrationSession(**{**vars(session), "readings": readings})
+
+
+def refit(baseline: Baseline, sensors: tuple[int, ...], columns: Array) -> float:
+    """χ² of the sensors' readings with the columns (R, m, q) in the model."""
+    own = list(sensors) or list(range(len(baseline.unstated)))
+    weight = 1 / np.sqrt(baseline.variance[:, own])
+    measured = baseline.residual + input_of(baseline.parameters, baseline.setting.n)
+    norm, P = baseline.setting.norm, 5 * len(own)
+
+    def residual(x: Array) -> Array:
+        step = np.zeros((len(baseline.unstated), 5))
+        step[own] = x[:P].reshape(-1, 5)
+        moved = baseline.parameters.stepped(step, norm)
+        change = measured * baseline.parameters.scale / moved.scale - input_of(moved, baseline.setting.n)
+        return ((change - columns @ x[P:])[:, own] * weight).ravel()
+
+    return float(2 * least_squares(residual, np.zeros(P + columns.shape[-1]), x_scale="jac").cost)
+
+
+def one_by_one(session: CalibrationSession) -> str:
+    """The cause whose refit gains most."""
+    baseline = baseline_of(session)
+    gains: dict[str, float] = {}
+    for cause in CATALOGUE:
+        if not isinstance(cause, Signature) or cause.between or not cause.available(baseline.setting):
+            continue
+        places: dict[tuple[int, ...], list[Array]] = {}
+        for shape in cause.shapes(baseline.setting):
+            places.setdefault(shape.sensors, []).append(shape.columns)
+        for sensors, grid in places.items():
+            own = list(sensors) or slice(None)
+            before = float((baseline.residual[:, own] ** 2 / baseline.variance[:, own]).sum())
+            gain = before - refit(baseline, sensors, grid[len(grid) // 2])
+            gains[cause.identifier] = max(gains.get(cause.identifier, 0.0), gain)
+    return max(gains, key=gains.__getitem__)
+
+
+def run() -> list[Figure]:
+    """Both must name the hidden cause."""
+    session = hidden()
+    named = diagnose(session).findings[0].cause, one_by_one(session)
+    if named != ("bias-ramp", "bias-ramp"):
+        raise AssertionError(f"the hidden bias ramp was called {named}")
+    times = side_by_side(partial(diagnose, session), partial(one_by_one, session), rounds=5)
+    return [Figure("P4", WORK, PEER, *times, "100")]
