@@ -10,6 +10,7 @@ from pathlib import Path
 import httpx
 import pytest
 
+from service.demo.fill import FILES
 from service.storage.database import Database
 from tests.databases import Databases
 from tests.service.cli.conftest import Run
@@ -45,7 +46,7 @@ def test_an_empty_database_is_filled_once_with_units_that_say_they_are_simulated
             assert httpx.get(f"{address}/readyz").status_code == 200
             fleet = httpx.get(f"{address}/api/v1/fleet").json()
             assert (fleet["units"], fleet["simulated"]) == (12, 12)
-            assert len(httpx.get(f"{address}/api/v1/sessions", params={"limit": 1000}).json()["sessions"]) == 151
+            assert len(httpx.get(f"{address}/api/v1/sessions", params={"limit": 1000}).json()["sessions"]) == FILES
 
 
 def test_without_demo_the_database_stays_empty(tmp_path: Path) -> None:
