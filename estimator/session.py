@@ -112,7 +112,7 @@ class CalibrationSession:
     temperature: Array | None = None
     """(R,) °C."""
     turn_angle: Array | None = None
-    """(R,) rad, of a turntable about the block's Z axis at the end of the row, positive turns as Z's right hand does."""
+    """(R,) rad, of a turntable about the block's Z axis at the end of the row, right-handed."""
     turn_rate: Array | None = None
     """(R,) rad/s, of a rate table about the block's Z axis during the row."""
     position: NDArray[np.int64] | None = None
