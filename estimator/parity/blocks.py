@@ -27,6 +27,9 @@ FLOOR = 0.05
 MOVING = 3.0
 """Variance within a block, in floors, from which it counts as moving."""
 
+RESTLESS = 25.0
+"""Variance within the quietest blocks, in that of neighbouring samples, from which even they are moving."""
+
 SPOILT = 3.0
 """Mean square of the parity of moving blocks, in that of still ones, from which moving blocks are left out."""
 
@@ -82,14 +85,22 @@ def select(ledger: Ledger, motion: str) -> Selection:
     clean: Mask = np.asarray(~cut.any(axis=1))
     if clean.sum() < max(FEWEST_GROUPS, total / 2):
         raise ScheduleError([Problem(saturated[0], too_saturated(saturated, total, int(clean.sum())))])
-    floor = np.quantile(blocks.motion[clean], FLOOR)
-    still: Mask = np.asarray(blocks.motion <= MOVING * floor)
+    still = at_rest(blocks, clean)
     used = clean & wanted(blocks, ledger, still, clean, motion)
     if used.sum() < FEWEST_GROUPS:
         raise ScheduleError([Problem("table", never_still(int(used.sum()), total))])
     left_out = {"saturated": int((~clean).sum()), "moving": int((clean & ~used).sum())}
     chosen = blocks.at(used)
     return Selection(chosen, grouped(chosen, still[used]), still[used], saturated, left_out, total)
+
+
+def at_rest(blocks: Blocks, clean: Mask) -> Mask:
+    """(B,) bool: as quiet as the quietest, if those are quiet: nothing but noise from one sample to the next."""
+    floor = np.quantile(blocks.motion[clean], FLOOR)
+    quietest = clean & (blocks.motion <= floor)
+    if floor > RESTLESS * np.median(blocks.jitter[quietest]):
+        return np.zeros(len(blocks), dtype=bool)
+    return np.asarray(blocks.motion <= MOVING * floor)
 
 
 def wanted(blocks: Blocks, ledger: Ledger, still: Mask, clean: Mask, motion: str) -> Mask:

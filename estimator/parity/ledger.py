@@ -38,6 +38,8 @@ class Blocks:
     """(B, m) of the inputs, m/s² (rad/s)."""
     motion: Array
     """(B,) variance of the inputs within the block, averaged over the sensors; 0 for rows that are averages."""
+    jitter: Array
+    """(B,) the same from the differences of neighbouring samples: noise shows in it, slow motion does not."""
     lowest: Array
     """(B, m) smallest reading."""
     highest: Array
@@ -60,6 +62,7 @@ class Blocks:
             samples=samples,
             mean=(1.0 - share) * left["mean"] + share * right["mean"],
             motion=np.maximum(left["motion"], right["motion"]),
+            jitter=np.maximum(left["jitter"], right["jitter"]),
             lowest=np.minimum(left["lowest"], right["lowest"]),
             highest=np.maximum(left["highest"], right["highest"]),
         )
@@ -137,6 +140,7 @@ class Ledger:
                 samples=np.full(len(chunks), float(length)),
                 mean=a.mean(axis=1),
                 motion=a.var(axis=1).mean(axis=1),
+                jitter=0.5 * (np.diff(a, axis=1) ** 2).sum(axis=(1, 2)) / (max(length - 1, 1) * a.shape[2]),
                 lowest=own.min(axis=1),
                 highest=own.max(axis=1),
             )
@@ -165,7 +169,8 @@ class Ledger:
         if not self._kept:
             m = len(self.reference.names)
             empty = np.empty((0, m))
-            return Blocks(np.empty(0, dtype=np.int64), np.empty(0), empty, np.empty(0), empty, empty)
+            none = np.empty(0)
+            return Blocks(np.empty(0, dtype=np.int64), none, empty, none, none, empty, empty)
         parts = [vars(blocks) for blocks in self._kept]
         joined = Blocks(**{name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
         self._kept = [joined]

@@ -3,12 +3,12 @@
 Regression. p = Vᵀa of every block on z = Qᵀ(1, n/g), where Q (4, s) spans what the recording excites: the mean of
 (1, n/g), and those directions of n that change. A recording at one orientation has s = 1.
 
-Noise. Sensors are noisy independently of one another, each in its own way. The groups of `blocks` are left out one by
-one (jackknife); what that does to Θ, brought back to the sensors by V, gives each sensor an (s, s) covariance Ω_i:
-with P = V·Vᵀ, E[Σ D_ki D_kiᵀ] = Σ_j P_ij²·Ω_j. Where sensors cannot be told apart in parity (P∘P singular) it does not
-matter how the noise is shared out. Few groups make the Ω uncertain, so each is drawn towards their mean. Noise so slow
-that neighbouring groups still agree makes the jackknife too small: it is enlarged by (1 + ρ)/(1 − ρ), ρ the correlation
-of neighbouring groups of all sensors together, freed of the pull that the fit has on it.
+Noise. Sensors are noisy independently of one another, each in its own way. Each group of `blocks` has its part D_k in
+the error of Θ, known from its residuals (cluster-robust, Bell and McCaffrey 2002); brought back to the sensors by V,
+the parts give each sensor an (s, s) covariance Ω_i: with P = V·Vᵀ, E[Σ D_ki D_kiᵀ] = Σ_j P_ij²·Ω_j. Where sensors
+cannot be told apart in parity (P∘P singular) it does not matter how noise is shared out. Few groups make Ω uncertain,
+so each is drawn towards their mean. Noise so slow that neighbouring groups still agree makes this too small: it is
+enlarged by (1 + ρ)/(1 − ρ), ρ the correlation of neighbouring groups of all sensors together.
 
 Reference. Its own error looks exactly like a change of the sensors: its covariance goes through the signatures. So does
 the repeatability of the zero from one use to the next, where the file states it.
@@ -25,6 +25,9 @@ from estimator.session import Array
 
 EXCITED = 0.02
 """g (of the largest vector); a direction of n that changes less than this, root mean square, is not regressed on."""
+
+LEAST_LEFT = 0.05
+"""Share of a direction that must lie outside a group; below it the group's residuals say nothing of it."""
 
 SLOWEST = 0.9
 """Largest correlation of neighbouring groups that is believed."""
@@ -104,9 +107,9 @@ def regress(selection: Selection, reference: Reference, norm: float | None) -> C
     theta = np.linalg.solve(G, (w[:, None] * z).T @ p)
     residual = p - z @ theta
     a2 = np.linalg.solve(G, (w[:, None] * z).T @ (n @ reference.axes.T) ** 2).T
-    rho = neighbours(w, residual, selection, z.shape[1])
+    rho = neighbours(z, w, residual, selection, G)
     slow = (1 + rho) / (1 - rho)
-    omega = slow * sensor_noise(jackknifed(z, w, residual, selection, G), reference.parity, groups)
+    omega = slow * sensor_noise(scores(z, w, residual, selection, G), reference.parity, groups)
     noise = np.einsum("mst,md,me->sdte", omega, reference.parity, reference.parity)
     q = theta.size
     course, about = (group_means(w, part, selection) @ reference.parity.T for part in (p, residual))
@@ -141,14 +144,18 @@ def excited(x: Array, w: Array, selection: Selection, groups: int) -> Array:
     return np.linalg.qr(np.column_stack([mean, seen]))[0]
 
 
-def jackknifed(z: Array, w: Array, residual: Array, selection: Selection, G: Array) -> Array:
-    """(groups, s, d) how Θ moves when a group is left out."""
+def scores(z: Array, w: Array, residual: Array, selection: Selection, G: Array) -> Array:
+    """(groups, s, d) each group's part in the error of Θ; residuals freed of what the fit took from them (CR2)."""
     groups, s = selection.groups, z.shape[1]
+    root = np.linalg.cholesky(G)
+    white = np.linalg.solve(root, z.T).T
     own = np.zeros((groups, s, s))
     score = np.zeros((groups, s, residual.shape[1]))
-    np.add.at(own, selection.group, w[:, None, None] * z[:, :, None] * z[:, None, :])
-    np.add.at(score, selection.group, w[:, None, None] * z[:, :, None] * residual[:, None, :])
-    return np.sqrt((groups - 1) / groups) * np.linalg.solve(G - own, score)
+    np.add.at(own, selection.group, w[:, None, None] * white[:, :, None] * white[:, None, :])
+    np.add.at(score, selection.group, w[:, None, None] * white[:, :, None] * residual[:, None, :])
+    values, vectors = np.linalg.eigh(np.eye(s) - own)
+    freed = (vectors / np.sqrt(np.maximum(values, LEAST_LEFT))[:, None, :]) @ np.swapaxes(vectors, 1, 2)
+    return np.linalg.solve(root.T, freed @ score)
 
 
 def group_means(w: Array, rows: Array, selection: Selection) -> Array:
@@ -158,12 +165,18 @@ def group_means(w: Array, rows: Array, selection: Selection) -> Array:
     return total / np.bincount(selection.group, weights=w)[:, None]
 
 
-def neighbours(w: Array, residual: Array, selection: Selection, s: int) -> float:
-    """Correlation of the residuals of neighbouring groups, all sensors together; its downward bias taken off."""
-    G = selection.groups
-    mean = group_means(w, residual, selection) * np.sqrt(np.bincount(selection.group, weights=w))[:, None]
+def neighbours(z: Array, w: Array, residual: Array, selection: Selection, G: Array) -> float:
+    """Correlation of the residuals of neighbouring groups, all sensors together, without what the fit adds to it.
+
+    The fit alone makes neighbours differ: by the hat matrix of the groups' means, and by 2ρ/groups as any correlation.
+    """
+    size = np.sqrt(np.bincount(selection.group, weights=w))[:, None]
+    mean = group_means(w, residual, selection) * size
+    fitted = group_means(w, z, selection) * size
+    hat = fitted @ np.linalg.solve(G, fitted.T)
+    pull = -float(np.trace(hat, offset=1)) / (len(hat) - float(np.trace(hat)))
     found = float((mean[1:] * mean[:-1]).sum() / max((mean**2).sum(), np.finfo(float).tiny))
-    return float(np.clip(found + (s * (1 + found) + 2 * found) / G, 0.0, SLOWEST))
+    return float(np.clip(found - pull + 2 * max(found - pull, 0.0) / selection.groups, 0.0, SLOWEST))
 
 
 def sensor_noise(moved: Array, V: Array, groups: int) -> Array:
