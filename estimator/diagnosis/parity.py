@@ -2,17 +2,21 @@
 
 An error of the applied vector moves all sensors as some vector would: it lies in the range of H (m×3, the axes) and
 leaves nothing in parity space. A fault of one sensor cannot hide there: it leaves its share in both.
+
+Sensor by sensor the baseline absorbs its own share of an effect, and what it leaves of a stand error is no vector any
+more. So *before* is taken at the parameters of the extended model: what that leaves, plus the whole effect.
 """
 
 import numpy as np
 
 from estimator.diagnosis.candidates import Scored
+from estimator.diagnosis.rivals import amplitude
 from estimator.diagnosis.state import Found, Search
 from estimator.session import Array
 
 
 def parity_split(state: Search, found: Found) -> dict[str, float] | None:
-    """χ² of the left-over in parity space and in the range of the axes, before and after the finding.
+    """χ² in parity space and in the range of the axes, with the effect left in and taken out.
 
     None for three sensors, which have no parity.
     """
@@ -20,8 +24,11 @@ def parity_split(state: Search, found: Found) -> dict[str, float] | None:
     m = len(kinds)
     if m <= 3 or len(set(kinds)) > 1:
         return None
-    before = state.evidence.z - (t := state.taken(without=found)) @ (t.T @ state.evidence.z)
-    after = state.evidence.z - (t := state.taken()) @ (t.T @ state.evidence.z)
+    taken = state.taken()
+    after = state.evidence.z - taken @ (taken.T @ state.evidence.z)
+    effect = state.evidence.raw(found.best.shape.columns) @ amplitude(state, found)
+    before = after.copy()
+    before[: len(effect)] += effect
     own = signature_share(state, found.best)
     parity_before, range_before = energies(state, before)
     parity_after, range_after = energies(state, after)
