@@ -3,8 +3,10 @@ PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; 
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 BIN := .venv/bin
 STAMP := .venv/.complete
+# Sessions are small matrices: several threads of BLAS only get in each other's way.
+export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: setup run test lint format bench study browser lock clean
+.PHONY: setup run test lint format bench study pictures browser lock clean
 
 setup: $(STAMP)
 
@@ -39,6 +41,9 @@ bench: setup
 
 study: setup
 	$(BIN)/python -m benchmarks.study --sessions 2000 --seed 1
+
+pictures: setup browser
+	IMU_HEALTH_PICTURES=1 $(BIN)/pytest tests/end_to_end/browser/test_pictures.py
 
 lock: setup
 	$(BIN)/pip install --quiet uv
