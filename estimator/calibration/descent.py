@@ -50,6 +50,7 @@ def descend(
     start: Array | None = None,
     *,
     below: float = 0.0,
+    finest: float = STILL,
     most: int = MOST_ITERATIONS,
     step: float = FIRST_STEP,
     grow: float = GROW,
@@ -60,7 +61,8 @@ def descend(
     Parameters
     ----------
     start : (P,); the nominal values, all zero, unless given.
-    below : functional, (m/s²)², at which to stop; the search also ends when every step is down to rounding.
+    below : functional, (m/s²)², at which to stop.
+    finest : step at which to stop, when every parameter's is down to it; rounding unless given.
     most : iterations.
     step : of every parameter at first, dimensionless.
     grow, shrink : factors of a parameter's step after success and failure.
@@ -69,7 +71,7 @@ def descend(
     steps = np.full(len(x), step)
     best, evaluations = problem.functional(x), 1
     path: list[Array] = []
-    while len(path) < most and best > below and steps.max() > STILL:
+    while len(path) < most and best > below and steps.max() > finest:
         for p in range(len(x)):
             here = x[p]
             for side in (1.0, -1.0):
@@ -85,7 +87,7 @@ def descend(
                 continue
             steps[p] *= grow
         path.append(x.copy())
-    ended = best <= below or bool(steps.max() <= STILL)
+    ended = best <= below or bool(steps.max() <= finest)
     return Search(x, problem.parameters(x), best, len(path), evaluations, ended, np.array(path).reshape(-1, len(x)))
 
 

@@ -106,7 +106,7 @@ def accelerometer_rows(session: CalibrationSession, chosen: Mask, g: float) -> t
     directions, prior = stated_directions(session)
     repeatability = np.array([s.bias_repeatability for s in sensors]) / g
     rows = Rows(y, np.full(y.shape, UNSTATED_NOISE), directions, prior, axes)
-    gain = np.exp(start(rows).log_scale)
+    gain = np.exp(start(rows).log_scale) if repeatability.any() else 1.0
     sigma = np.hypot(errors[:, chosen] / np.abs(unit), gain * repeatability)
     if np.all(np.isfinite(sigma) & (sigma > 0)):
         return rows.weighted(sigma), True

@@ -1,0 +1,84 @@
+"""P3: arbitrary orientations, 4 and 6 sensors, 12 to 100 orientations: `calibrate` with its full covariance.
+
+Peers: the published adaptive coordinate descent, from the nominal values to 0.001 % of its own optimum (which is told
+it, so that it goes on no further than it must); `scipy.optimize.least_squares` with its numeric Jacobian on our
+likelihood, orientations included, which ends at our optimum; and, with an optimum of its own, the same on the triples
+functional, which knows no noise and gives no covariance.
+"""
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from benchmarks.figures import Figure, side_by_side
+from benchmarks.orientations import case, sphere
+from estimator import calibrate
+from estimator.arrays import tangents, unit
+from estimator.calibration.descent import descend, levenberg_marquardt
+from estimator.calibration.free import accelerometer_rows
+from estimator.calibration.free.model import Rows, State, predicted
+from estimator.calibration.free.solve import held_frame
+from estimator.calibration.triples import Triples, triples_of
+from estimator.session import Array
+
+SETS = ((4, 12), (4, 36), (4, 100), (6, 12), (6, 36), (6, 100))
+ACCURACY = 1e-5
+
+
+def published(problem: Triples) -> Callable[[], object]:
+    """Descent to where every parameter is within 0.001 % of the optimum."""
+    best = levenberg_marquardt(problem)
+    path = descend(problem).path
+    far = np.abs(path - best.x).max(axis=1) >= ACCURACY
+    needed = int(np.flatnonzero(far)[-1]) + 2 if far.any() else 1
+    return lambda: descend(problem, most=needed)
+
+
+def likelihood(rows: Rows) -> Callable[[], Array]:
+    """(4 m,) ln scale, offset and axes by `least_squares`, orientations among the unknowns; from the nominal values."""
+    m, R = len(rows.nominal_axes), len(rows.y)
+    directions = unit(rows.y @ np.linalg.pinv(rows.nominal_axes).T)
+    frames, turns = tangents(rows.nominal_axes), tangents(directions)
+
+    def state(x: Array) -> State:
+        own, moved = x[: 4 * m].reshape(m, 4), x[4 * m :].reshape(R, 2)
+        axes = unit(rows.nominal_axes + (frames @ own[:, 2:, None])[..., 0])
+        return State(own[:, 0], own[:, 1], np.zeros(m), axes, unit(directions + (turns @ moved[..., None])[..., 0]))
+
+    def misses(x: Array) -> Array:
+        return ((rows.y - predicted(state(x))) / rows.sigma).ravel()
+
+    def solve() -> Array:
+        found = least_squares(misses, np.zeros(4 * m + 2 * R), xtol=1e-10, ftol=1e-12)
+        held = held_frame(rows, state(found.x))
+        return np.concatenate([held.log_scale, held.offset, held.axes.ravel()])
+
+    return solve
+
+
+def of_set(m: int, count: int) -> list[Figure]:
+    """One set, every peer."""
+    rng = np.random.default_rng(100 * m + count)
+    session = case(m, sphere(count, rng), rng).measured(rng)
+    problem = triples_of(session)
+    rows, _ = accelerometer_rows(session, np.ones(m, dtype=bool), problem.g)
+    start = np.zeros(len(problem.free))
+    numeric = "least_squares, numeric Jacobian"
+    peers = (
+        ("descent", "published coordinate descent to 0.001 %", published(problem), "100", 3),
+        ("triples", f"{numeric}, triples", partial(least_squares, problem.misses, start), "—", 5),
+        ("likelihood", f"{numeric}, same likelihood", likelihood(rows), "10", 3),
+    )
+    work = f"calibrate, {m} sensors × {count} orientations, full covariance"
+    ours = partial(calibrate, session, quadratic=False)
+    return [
+        Figure(f"P3, {m} × {count}, {name}", work, peer, *side_by_side(ours, theirs, rounds), target)
+        for name, peer, theirs, target, rounds in peers
+    ]
+
+
+def run() -> list[Figure]:
+    """Every set."""
+    return [figure for m, count in SETS for figure in of_set(m, count)]
