@@ -26,6 +26,9 @@ from estimator.session import Array
 FAINT = 0.02
 """A direction of a signature counts when its trace is above this share of the strongest direction's."""
 
+FAINTEST_TAIL = 1e-280
+"""Tail probability below which its logarithm is taken from the residuals themselves."""
+
 LARGEST = 0.3
 """Largest part of the applied vector that an effect on a stand may be."""
 
@@ -245,7 +248,9 @@ def equivalent(evidence: Evidence, shape: Shape, power: float, q: int, z: Array,
         return 0.0
     rest = max(total - power, 1e-6 * max(total, 1e-300))
     tail = float(fdtrc(q, freedom - q, power / q / (rest / (freedom - q))))
-    return float(chdtri(q, max(tail, 1e-290)))
+    if tail < FAINTEST_TAIL:
+        return float((freedom - q) * np.log(total / rest))
+    return float(chdtri(q, tail))
 
 
 def ranked(scored: Sequence[Scored]) -> list[tuple[Scored, float]]:

@@ -46,7 +46,7 @@ def alternatives(state: Search, found: Found) -> list[Scored]:
 
 def merely_contains(state: Search, rival: Scored, found: Found) -> bool:
     """Whether the rival has more amplitudes and its span holds the simpler cause's signature."""
-    if rival.freedom <= found.best.freedom:
+    if len(rival.cause.units) <= len(found.best.cause.units) or rival.freedom <= found.best.freedom:
         return False
     taken = state.taken(without=found)
     signature = fitted_trace(state, found, taken)

@@ -17,8 +17,8 @@ from estimator.diagnosis.serial import Serial
 from estimator.diagnosis.structures import STRUCTURES
 from estimator.session import Array
 
-LEVEL = 0.005
-"""Family-wise level: sessions without an effect that get a name; half of what is allowed, for safety."""
+LEVEL = 0.003
+"""Family-wise level: sessions without an effect that get a name; a third of what is allowed, for safety."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -113,6 +113,21 @@ class TemperatureCurve(Structure):
             yield from one_sensor(setting, np.polynomial.legendre.legvander(scaled, 4)[:, 1:], ())
 
 
+class TemperatureWave(Structure):
+    identifier = "temperature-wave"
+    needs = frozenset({"temperature"})
+    sentence = "a wave of {0} half periods over the temperature's range"
+
+    def shapes(self, setting: Setting) -> Iterator[Shape]:
+        assert setting.temperature is not None
+        t = setting.temperature
+        place = np.pi * (t - t.min()) / np.ptp(t)
+        for order in range(2, min(10, len(np.unique(t)) // 2) + 1):
+            yield from one_sensor(
+                setting, np.stack([np.sin(order * place), np.cos(order * place)], -1), (float(order),)
+            )
+
+
 class TemperatureStep(Structure):
     identifier = "temperature-step"
     needs = frozenset({"temperature"})
@@ -190,6 +205,7 @@ STRUCTURES: tuple[Structure, ...] = (
     SensorPeriodic(),
     SensorTrend(),
     TemperatureCurve(),
+    TemperatureWave(),
     TemperatureStep(),
     InputCurve(),
     TurningScale(),
