@@ -64,7 +64,8 @@ class Seen:
         session, n = world.session, world.vectors()[:, i]
         self.a = n @ world.truth.axis[i]
         self.pn, self.on = (n @ tangents(world.truth.axis[i])).T
-        self.t, self.T, self.beta = session.time, session.temperature, session.beta
+        self.t, self.beta = session.time, session.beta
+        self.T = np.zeros_like(self.t) if session.temperature is None else session.temperature
         self.elapsed, self.warmth = self.t - np.mean(self.t), self.T - np.mean(self.T)
         self.force = applied(session, ACCELEROMETER, Happened({}))
         self.row, self.flipped = np.arange(len(n)), session.flipped

@@ -1,0 +1,47 @@
+"""The page of a recording and the index of all."""
+
+from pathlib import Path
+
+from benchmarks.diagnosed_recordings.pictures import draw
+from benchmarks.diagnosed_recordings.subjects import Diagnosed
+from benchmarks.diagnosed_recordings.words import section, summary, table
+
+COMMAND = "python -m benchmarks.diagnosed_recordings"
+PHYSICS = Path(__file__).parent / "physics"
+"""What is argued of each recording, written by hand; the figures on the page are made by the command."""
+INDEX = f"""# Real recordings: what the simulation gets wrong
+
+Made by `{COMMAND}` from the recordings that
+[Real recordings](../recordings.md) describes. Each is diagnosed as it is, with the noise that its averaging states;
+nothing is tuned to it. Nobody knows the truth here: what a page says of the physics is an argument, and where it is
+inference it says so. The score of held-out positions is the evidence that a named cause predicts readings it has not
+seen. Accelerometers of a single position are no calibration and are refused; the pages say where.
+"""
+
+
+def page(name: str, made: list[Diagnosed], out: Path) -> None:
+    """Write one page and its pictures."""
+    title, argued = (PHYSICS / f"{name}.md").read_text(encoding="utf-8").split("\n", 1)
+    parts = [title, f"Made by `{COMMAND} {name}`.", argued.strip()]
+    for k, one in enumerate(made, 1):
+        picture = f"{name}-{k}.png"
+        draw(one.subject.session, one.diagnosis, out / picture)
+        parts += [f"## {one.subject.title}", section(one.diagnosis), f"![measured minus simulated]({picture})"]
+    (out / f"{name}.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
+
+
+def index(made: dict[str, list[Diagnosed]]) -> str:
+    """One table over all recordings."""
+    body = [
+        (
+            f"[{one.subject.title}](recordings/{name}.md)",
+            f"{len(one.subject.session.readings)} × {len(one.subject.session.sensors)}",
+            summary(one.diagnosis),
+            f"{one.diagnosis.gain.before.chi2_per_dof:.2f} → {one.diagnosis.gain.after.chi2_per_dof:.2f}",
+            f"{one.diagnosis.gain.before.log_score:.2f} → {one.diagnosis.gain.after.log_score:.2f}",
+        )
+        for name, several in made.items()
+        for one in several
+    ]
+    head = ("recording", "rows × sensors", "what the simulation gets wrong", "held-out χ²/dof", "held-out log score")
+    return f"{INDEX}\n{table(head, body)}\n"
