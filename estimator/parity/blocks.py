@@ -4,8 +4,9 @@ Left out: blocks in which a channel ran into the end of its range, and blocks in
 (sensors that do not sit in one point feel rotation differently, and none of the model's terms says so). Whether it does
 is read from the recording: the parity of its moving blocks scatters more than that of its still ones.
 
-Noise of any colour is allowed for by grouping: a group is a stretch long enough that groups can be taken for
-independent. A stretch at rest is one group, because whatever the model misses is the same all through it.
+Noise of any colour is allowed for by grouping: a group is a stretch of about a thirtieth of the recording. A stretch at
+rest up to twice as long is one group, because whatever the model misses is the same all through it; what still agrees
+between neighbouring groups is measured in `regression`.
 """
 
 from dataclasses import dataclass

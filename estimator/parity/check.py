@@ -87,7 +87,8 @@ class ParityAccumulator:
         detected = evidence.detected(false_alarm)
         found = evidence.candidates() if detected else []
         named = {h.sensor for h in found}
-        isolated = found if len(named) == 1 else []
+        explained = not detected or evidence.explained(found[0])
+        isolated = found if explained and len(named) == 1 else []
         m = len(self.reference.names)
         whole = change.excited @ change.theta
         spread = np.kron(change.excited, np.eye(change.theta.shape[1]))
@@ -102,7 +103,7 @@ class ParityAccumulator:
             false_alarm=false_alarm,
             candidates=tuple(map(evidence.candidate, found)),
             isolated=self.reference.names[isolated[0].sensor] if isolated else None,
-            explained=not detected or evidence.explained(found[0]),
+            explained=explained,
             complete=change.complete,
             constant=whole[0],
             slope=whole[1:].T / change.norm,

@@ -85,7 +85,7 @@ class ParityResult:
     candidates: tuple[Candidate, ...]
     """Changes of single sensors that explain the finding about equally well, best first; none without a detection."""
     isolated: str | None
-    """The sensor, when all candidates name the same one."""
+    """The sensor, when all candidates name the same one and it explains the finding."""
     explained: bool
     """Whether the best candidate leaves nothing but noise."""
     complete: bool
