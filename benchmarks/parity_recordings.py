@@ -142,12 +142,13 @@ def across_sessions() -> Table:
     for i, j in ((0, 1), (1, 0), (1, 2), (2, 1)):
         r = parity_check(replace(raw("kth-mimu")[j], programme=IN_SERVICE), known[i], motion="still")
         found, expected = np.vstack([r.constant, MILLI_G * 1e3 * r.slope.T]), between(known[i], known[j])
-        rows.append((f"{names[j]} by {names[i]}", f"{r.p_value:.1e}", "yes" if r.detected else "no", "yes" if r.explained else "no",
+        answers = ("yes" if answer else "no" for answer in (r.detected, r.explained))
+        rows.append((f"{names[j]} by {names[i]}", f"{r.p_value:.1e}", *answers,
                      *(f"{rms(x[0]) / MILLI_G:.2f}" for x in (found, expected)),
                      f"{np.corrcoef(found[0], expected[0])[0, 1]:.3f}",
                      f"{np.corrcoef(found[1:].ravel(), expected[1:].ravel())[0, 1]:.3f}"))  # fmt: skip
-    columns = ("recording by reference", "p", "change", "one sensor explains it", "bias by parity, mg", "by calibrating, mg",
-               "correlation of biases", "of scales and axes")  # fmt: skip
+    columns = ("recording by reference", "p", "change", "one sensor explains it",
+               "bias by parity, mg", "by calibrating, mg", "correlation of biases", "of scales and axes")  # fmt: skip
     return table("Sessions of one board: change of bias in parity space, rms", columns, rows)
 
 
