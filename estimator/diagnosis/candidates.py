@@ -26,6 +26,9 @@ from estimator.session import Array
 FAINT = 0.02
 """A direction of a signature counts when its trace is above this share of the strongest direction's."""
 
+MANY = 16
+"""Sensors from which on effects are not tried both as lasting and as new since the history."""
+
 FAINTEST_TAIL = 1e-280
 """Tail probability below which its logarithm is taken from the residuals themselves."""
 
@@ -107,10 +110,16 @@ def traces_of(evidence: Evidence, causes: Iterable[Signature]) -> list[Traces]:
 
 
 def _all_traces(evidence: Evidence, cause: Signature, shapes: tuple[Shape, ...]) -> list[Traces]:
-    """Traces of one cause. With history: as lasting since then, as new, and with the sensor's own move left open."""
+    """Traces of one cause. With history: as lasting since then, as new, and with the sensor's own move left open.
+
+    In a block of many sensors the versions would cost gigabytes: there an effect is taken as lasting, and what it
+    moved if it is new shows as the sensors' drift.
+    """
     if cause.between or cause.nameless or evidence.between is None:
         return [_version(evidence, cause, shapes, lasting=not cause.between)]
     lasting = _version(evidence, cause, shapes, lasting=True)
+    if len(evidence.baseline.unstated) > MANY:
+        return [lasting]
     versions = [lasting, _version(evidence, cause, shapes, lasting=False), freed(evidence, lasting)]
     return [v for v in versions if v is not None]
 

@@ -7,7 +7,7 @@ the stand that a third one patched up, and names that structure without a name e
 from dataclasses import replace
 from itertools import combinations
 
-from estimator.diagnosis.candidates import score
+from estimator.diagnosis.candidates import MANY, score
 from estimator.diagnosis.greedy import DECISIVE, causes, structures
 from estimator.diagnosis.state import Found, Search, strongest, total
 
@@ -19,7 +19,8 @@ DRIFT = "sensor-drift"
 
 def settle(state: Search) -> Search:
     """Choose every finding anew given the others, until nothing changes; drop what loses its significance."""
-    for _ in range(4 if state.found else 0):
+    rounds = 1 if len(state.baseline.unstated) > MANY else 4
+    for _ in range(rounds if state.found else 0):
         groups = [f.best.group for f in state.found]
         for old in state.found:
             new = strongest(state, state.traces, without=old)
@@ -70,16 +71,35 @@ def best_pair(state: Search) -> Search:
 def judge_structures(state: Search) -> Search:
     """Withdraw names when structure without them explains the session better.
 
-    Tried for every name alone, for all names of one sensor together, for those of no sensor, and for all names.
+    Tried for every name alone, for all names of one sensor together, for those of no sensor, and for all names; in a
+    block of many sensors only where structure was left.
     """
+    crowded = len(state.baseline.unstated) > MANY
     for group in groups(state):
-        if not all(f in state.found for f in group):
+        if not all(f in state.found for f in group) or (crowded and not overlaps(group, state.structures)):
             continue
         kept = tuple(f for f in state.found if f not in group)
-        rival = structures(replace(state, found=kept, structures=()))
+        rival = without_names(state, kept, {f.best.shape.sensors for f in group})
         if rival.structures and total(rival) > total(state) + NAMELESS:
             state = rival
     return state
+
+
+def overlaps(group: tuple[Found, ...], structures: tuple[Found, ...]) -> bool:
+    """Whether structure was left on a sensor of the group."""
+    return bool({f.best.shape.sensors for f in group} & {s.best.shape.sensors for s in structures})
+
+
+def without_names(state: Search, kept: tuple[Found, ...], touched: set[tuple[int, ...]]) -> Search:
+    """The search with only the findings ``kept``, and structure where the others were; elsewhere as it was."""
+    own = next(iter(touched)) if len(touched) == 1 else ()
+    if not own:
+        return structures(replace(state, found=kept, structures=()))
+    elsewhere = tuple(s for s in state.structures if s.best.shape.sensors != own)
+    there = tuple(t.at(own) for t in state.patterns)
+    return replace(
+        structures(replace(state, found=kept, structures=elsewhere, patterns=there)), patterns=state.patterns
+    )
 
 
 def groups(state: Search) -> list[tuple[Found, ...]]:
