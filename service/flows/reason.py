@@ -81,7 +81,7 @@ def _unseen(worst: Decision, decisions: tuple[Decision, ...]) -> str:
 
 
 def _name(decision: Decision) -> str:
-    return {"scale": "scale factor", "quadratic": "second-order term", "axis": "input axis"}.get(
+    return {"scale": "scale factor", "quadratic": "quadratic term", "axis": "input axis"}.get(
         decision.parameter, decision.parameter
     )
 

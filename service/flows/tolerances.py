@@ -1,7 +1,7 @@
 """The tolerances that hold until an engineer sets others, and the unit type that a first session is given.
 
 Accelerometers: what a navigation-grade unit keeps between calibrations. Gyros: what a calibration by the Earth's
-rotation can decide; it cannot see their second-order term, which is therefore not judged. A parameter that the first
+rotation can decide; it cannot see their quadratic term, which is therefore not judged. A parameter that the first
 session of a type does not observe on any sensor is not judged either, until an engineer gives it a tolerance.
 """
 

@@ -11,7 +11,7 @@ from markupsafe import Markup
 
 from service.pages.assets import asset_url
 from service.pages.tracks import day_of
-from service.verdicts import CONDITIONS
+from service.verdicts import CONDITIONS, REFERENCE
 
 TEMPLATES = Path(__file__).parent / "templates"
 
@@ -30,7 +30,7 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.globals.update(asset=asset_url, conditions=CONDITIONS)
+    environment.globals.update(asset=asset_url, conditions=CONDITIONS, explained=(*CONDITIONS, REFERENCE))
     environment.filters["day"] = day_of
     environment.filters["embed"] = embed
     return environment

@@ -19,7 +19,7 @@ HEADINGS = {
 MEANINGS = {
     "scale": "Change of the scale factor from the reference of its time.",
     "bias": "Change of the zero offset from the reference of its time.",
-    "quadratic": "Change of the second-order nonlinearity from the reference of its time.",
+    "quadratic": "Change of the quadratic nonlinearity from the reference of its time.",
     "axis": "Angle between the input axis and its direction in the reference of its time.",
     "misalignment": "Change of the input axis' turn toward a turntable's axis from the reference of its time.",
 }
