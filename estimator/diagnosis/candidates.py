@@ -21,7 +21,7 @@ from scipy.special import chdtrc, chdtri, fdtrc
 
 from estimator.causes import Shape, Signature
 from estimator.diagnosis.evidence import Evidence
-from estimator.session import Array
+from estimator.session import ACCELEROMETER, Array
 
 FAINT = 0.02
 """A direction of a signature counts when its trace is above this share of the strongest direction's."""
@@ -244,14 +244,12 @@ def equivalent(evidence: Evidence, shape: Shape, power: float, q: int, z: Array,
     far have taken out of z.
     """
     unstated = evidence.baseline.unstated
-    sensors = list(shape.sensors) or list(range(len(unstated)))
-    if evidence.shared:
-        sensors = list(range(len(unstated)))
+    sensors = sharing(evidence, shape.sensors)
     if q == 0 or not unstated[sensors].any():
         return power
     owned = np.isin(evidence.owner(), sensors)
     total = float((z[owned] ** 2).sum())
-    freedom = evidence.freedom * len(sensors) / len(unstated) + float(owned[evidence.readings :].sum())
+    freedom = float(evidence.spare[owned[: evidence.readings]].sum()) + float(owned[evidence.readings :].sum())
     freedom -= float(used[owned].sum())
     if freedom <= q + 1:
         return 0.0
@@ -260,6 +258,17 @@ def equivalent(evidence: Evidence, shape: Shape, power: float, q: int, z: Array,
     if tail < FAINTEST_TAIL:
         return float((freedom - q) * np.log(total / rest))
     return float(chdtri(q, tail))
+
+
+def sharing(evidence: Evidence, sensors: tuple[int, ...]) -> list[int]:
+    """The sensors out of whose scatter a signature must stand: its own, or all accelerometers that share the estimate
+    of a row's direction, since what one of them has moves the left-over of the others."""
+    setting = evidence.baseline.setting
+    chosen = list(sensors) or list(range(len(setting.kinds)))
+    coupled = [i for i, kind in enumerate(setting.kinds) if kind == ACCELEROMETER]
+    if np.isinf(evidence.baseline.row_sigma).any() and not set(chosen).isdisjoint(coupled):
+        return sorted({*chosen, *coupled})
+    return chosen
 
 
 def ranked(scored: Sequence[Scored]) -> list[tuple[Scored, float]]:

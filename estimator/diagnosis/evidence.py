@@ -12,6 +12,7 @@ have moved them. A fit's left-over and its parameters are independent, so both k
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -117,10 +118,13 @@ class Evidence:
         freedom = baseline.residual.size - open_rows - (int(kept.sum()) - k)
         return cls(baseline, whiten, basis, absorb[:P], z, between, freedom)
 
-    @property
-    def shared(self) -> bool:
-        """Whether the left-over of a row is too little to part among its sensors (three to five, unknown direction)."""
-        return bool(np.isinf(self.baseline.row_sigma).any()) and len(self.baseline.unstated) <= 5
+    @cached_property
+    def spare(self) -> Array:
+        """(R·m + k,) share of every row's energy that neither directions nor the baseline take from the noise."""
+        known = np.ones(self.readings)
+        taken = (self.whiten.direction**2 * (self.whiten.removed == 1)[:, None, :]).sum(axis=-1)
+        known[: taken.size] -= taken.ravel()
+        return known - (self.basis**2).sum(axis=1)
 
     @property
     def readings(self) -> int:
