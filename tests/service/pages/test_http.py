@@ -58,7 +58,7 @@ def test_unusable_file_is_422_with_its_problems(client: httpx.Client) -> None:
     document["table"]["A3"][6] = None
     answer = post(client, json.dumps(document).encode())
     assert answer.status_code == 422
-    assert "<code>A3</code></td><td>7</td>" in answer.text
+    assert '<code>A3</code></td><td data-label="Row">7</td>' in answer.text
 
 
 def test_upload_beyond_the_limit_is_refused(settings: Settings) -> None:
