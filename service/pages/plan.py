@@ -8,8 +8,8 @@ from estimator.planning import Judged, Plan, proposed_orientations, rank_of_orie
 from estimator.planning.expected import head_kind
 from estimator.planning.results import PARAMETERS
 from estimator.session import ACCELEROMETER
-from service.pages.charts import ChartSet
-from service.pages.charts.plan import NAMES, plan_charts
+from service.charts import ChartSet
+from service.charts.plan import NAMES, plan_charts
 from service.planning.question import NOISE, VARIATION, PlanQuestion
 from service.planning.words import (
     UNSEEN,

@@ -9,8 +9,8 @@ from fastapi.responses import HTMLResponse
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from service.charts.tracks import day_of
 from service.pages.assets import asset_url
-from service.pages.tracks import day_of
 from service.verdicts import CONDITIONS, REFERENCE
 
 TEMPLATES = Path(__file__).parent / "templates"

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from estimator.results import Calibration, Estimate, SensorCalibration
-from service.pages.charts import ChartSet
-from service.pages.charts.residuals import residual_charts
+from service.charts import ChartSet
+from service.charts.residuals import residual_charts
+from service.flows.fit_in_words import FitWords, fit_in_words
 from service.pages.diagnosis import PENDING, TONES
-from service.pages.fit import FitWords, fit_in_words
 from service.pages.known import combination_in_words
 from service.pages.residual_table import ResidualTable, residual_table
 from service.records import ALL_PARAMETERS, Decision, DiagnosisSummary, SessionReport, StoredSession, Verdict

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from service.pages.charts import ChartSet
-from service.pages.charts.history import history_charts
-from service.pages.tracks import Track, TrackPoint, day_of, tolerance_text, tracks_of
+from service.charts import ChartSet
+from service.charts.history import history_charts
+from service.charts.tracks import Track, TrackPoint, day_of, tolerance_text, tracks_of
 from service.records import HistoryPoint, Service, StoredSession, UnitReport
 from service.verdicts import NOT_JUDGED, Condition, condition_of
 

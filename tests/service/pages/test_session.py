@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from estimator.results import KnownCombination
-from service.pages.fit import fit_in_words
+from service.flows.fit_in_words import fit_in_words
 from service.pages.known import combination_in_words
 from service.pages.session import session_page
 from tests.builders import accelerometer_block

@@ -3,8 +3,8 @@
 from dataclasses import replace
 from datetime import timedelta
 
-from service.pages.charts.history import history_charts
-from service.pages.tracks import tracks_of
+from service.charts.history import history_charts
+from service.charts.tracks import tracks_of
 from service.records import Service
 from tests.service.pages.records import NOON, bias_point
 

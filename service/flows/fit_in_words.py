@@ -1,4 +1,4 @@
-"""How well the model explains the readings, in words."""
+"""Step: how well the model explains the readings, in words."""
 
 from dataclasses import dataclass
 from math import isfinite, sqrt

@@ -7,8 +7,8 @@ from typing import Any
 
 import altair as alt
 
-from service.pages.charts import DATA_FORM, HIGH, LEFT, LOW, RIGHT, UNIT, ChartSet, Panel, filled, padded, specification
-from service.pages.tracks import Track, TrackPoint
+from service.charts import DATA_FORM, HIGH, LEFT, LOW, RIGHT, UNIT, ChartSet, Panel, filled, padded, specification
+from service.charts.tracks import Track, TrackPoint
 from service.records import Service
 from service.verdicts import CONDITIONS, FIT, NOT_JUDGED, REFERENCE
 

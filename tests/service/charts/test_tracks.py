@@ -5,7 +5,7 @@ from datetime import timedelta
 
 import pytest
 
-from service.pages.tracks import Track, tolerance_text, tracks_of
+from service.charts.tracks import Track, tolerance_text, tracks_of
 from service.records import Service
 from tests.service.pages.records import NOON, bias_point
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.results import Residuals, SensorCalibration
-from service.pages.charts import DATA_FORM, ChartSet, Panel, padded, specification
+from service.charts import DATA_FORM, ChartSet, Panel, padded, specification
 from service.units import THIN, DeviationUnit, decimals, deviation_unit, number
 
 HEIGHT = 130

@@ -7,7 +7,7 @@ import numpy as np
 
 from estimator.planning import Plan, Sweep
 from estimator.planning.results import PARAMETERS
-from service.pages.charts import DATA_FORM, ChartSet, Panel, specification
+from service.charts import DATA_FORM, ChartSet, Panel, specification
 from service.units import DEVIATION_UNITS, DeviationUnit
 
 HEIGHT = 150

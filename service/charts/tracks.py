@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
-from service.pages.changes import Change, changes_of
+from service.charts.changes import Change, changes_of
 from service.records import ALL_PARAMETERS, HistoryPoint, Service
 from service.units import DeviationUnit, deviation_unit, in_unit, limit, measured, signed
 from service.verdicts import NOT_JUDGED, Condition, condition_of
