@@ -5,6 +5,7 @@ from datetime import datetime
 from enum import StrEnum
 from typing import Any
 
+from estimator.health.common_motion import CommonMotion
 from estimator.results import Calibration, Residuals
 from estimator.session import CalibrationSession
 
@@ -56,6 +57,8 @@ class UnitType:
     """For the gyros of a mixed block; None when the block has one kind of sensor."""
     revision: int
     """Counts up with every change of tolerances; decisions name the revision they were made under."""
+    maximum_interval_days: float = 365.0
+    """Longest time from a session to the next calibration."""
 
 
 @dataclass(frozen=True)
@@ -107,9 +110,20 @@ class Decision:
     """Probability that the true deviation is out of tolerance."""
     verdict: Verdict
     rule: str
-    """Name, version and the revision of the tolerances, ``ILAC-G8-four-state/1 (hex-cone rev 2)``."""
+    """Name, version and the revision of the tolerances, ``ILAC-G8-four-state/2 (hex-cone rev 2)``."""
     critical: float | None = None
     """Smallest deviation that counts as a change at all, at the 1 % level over all judged numbers of the session."""
+    change: tuple[float, ...] | None = None
+    """The deviation with its sign and direction: one number; two along the reference's tangents for the axis, rad."""
+    change_own: tuple[float, ...] | None = None
+    """Standard uncertainty that this session brings to each number of the change."""
+    change_origin: tuple[float, ...] | None = None
+    """The same of the reference session."""
+    common: float | None = None
+    """What all sensors did together, taken off first: angle of the turn for the axis, rad; relative for scale."""
+    common_sigma: float | None = None
+    common_p: float | None = None
+    """Chance of a common change as large when nothing moved together."""
 
 
 @dataclass(frozen=True)
@@ -234,6 +248,8 @@ class SessionReport:
     calibration: Calibration
     """As computed at upload; `storage` rebuilds it from what it kept."""
     decisions: tuple[Decision, ...]
+    motions: tuple[CommonMotion, ...] = ()
+    """What all sensors did together since the reference."""
 
 
 @dataclass(frozen=True)
@@ -247,6 +263,8 @@ class Judged:
     reason: str
     worst: Worst
     is_reference: bool
+    motions: tuple[CommonMotion, ...] = ()
+    """What all sensors did together since the reference."""
 
 
 @dataclass(frozen=True)

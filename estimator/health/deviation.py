@@ -16,8 +16,15 @@ class Deviation:
 
     vector: Array
     """(1,) for scale (relative), bias, quadratic; (2,) for the axis, along the tangents of the reference axis, rad."""
-    covariance: Array
-    """(1, 1) or (2, 2), of both sessions."""
+    own: Array
+    """(1, 1) or (2, 2), the share of this session in the covariance."""
+    origin: Array
+    """(1, 1) or (2, 2), the share of the reference session, which all sessions judged against it have in common."""
+
+    @property
+    def covariance(self) -> Array:
+        """(1, 1) or (2, 2), of both sessions."""
+        return self.own + self.origin
 
 
 def deviation(current: SensorCalibration, reference: SensorCalibration, parameter: str) -> Deviation | None:
@@ -32,9 +39,12 @@ def deviation(current: SensorCalibration, reference: SensorCalibration, paramete
         return None
     if parameter == "scale":
         ratio = now.value / then.value
-        u = np.hypot(now.sigma / then.value, ratio * then.sigma / then.value)
-        return Deviation(np.array([ratio - 1]), np.array([[u**2]]))
-    return Deviation(np.array([now.value - then.value]), np.array([[now.sigma**2 + then.sigma**2]]))
+        return _scalar(ratio - 1, now.sigma / then.value, ratio * then.sigma / then.value)
+    return _scalar(now.value - then.value, now.sigma, then.sigma)
+
+
+def _scalar(change: float, own: float, origin: float) -> Deviation:
+    return Deviation(np.array([change]), np.array([[own**2]]), np.array([[origin**2]]))
 
 
 def _axis_deviation(current: SensorCalibration, reference: SensorCalibration) -> Deviation | None:
@@ -46,8 +56,8 @@ def _axis_deviation(current: SensorCalibration, reference: SensorCalibration) ->
         return None
     basis = reference.axis_tangents
     turn = basis.T @ current.axis_tangents
-    covariance = reference.axis_covariance + turn @ current.axis_covariance @ turn.T
-    return Deviation(axis_offset(current.axis, reference.axis, basis), covariance)
+    own = turn @ current.axis_covariance @ turn.T
+    return Deviation(axis_offset(current.axis, reference.axis, basis), own, reference.axis_covariance)
 
 
 def axis_offset(axis: Array, reference: Array, tangents: Array) -> Array:

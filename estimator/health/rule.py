@@ -37,7 +37,8 @@ CONDITIONAL_PASS = "conditional-pass"
 UNDECIDABLE = "undecidable"
 CONDITIONAL_FAIL = "conditional-fail"
 FAIL = "fail"
-RULE = "ILAC-G8-four-state/1"
+RULE = "ILAC-G8-four-state/2"
+"""2: what all sensors of the block did together is taken off before a sensor is judged."""
 SESSION_LEVEL = 0.01
 
 

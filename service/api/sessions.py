@@ -9,6 +9,7 @@ from service.api.schemas.fields import Limit, Page, Revision, SessionId, Text, n
 from service.api.schemas.problem import errors
 from service.api.schemas.sessions import (
     CalibrationDocument,
+    CommonMotionSchema,
     DecisionSchema,
     ReceiptSchema,
     SessionPage,
@@ -66,9 +67,10 @@ def list_sessions(
 @router.get("/{id}", responses=errors(404, 422))
 def read_session(id: SessionId, store: Reading) -> SessionReportSchema:
     """One session with the decision on every parameter."""
-    session, decisions = session_decisions(store, id)
+    session, decisions, motions = session_decisions(store, id)
     judged = [DecisionSchema.model_validate(decision) for decision in decisions]
-    return SessionReportSchema(**vars(session), decisions=judged)
+    together = [CommonMotionSchema.model_validate(motion) for motion in motions]
+    return SessionReportSchema(**vars(session), decisions=judged, common_motion=together)
 
 
 @router.get("/{id}/calibration", responses=errors(404, 422), response_model=CalibrationDocument)

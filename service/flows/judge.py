@@ -4,6 +4,7 @@ from dataclasses import asdict
 
 from estimator.health import Judgement
 from estimator.health import judge as judge_parameters
+from estimator.health.common_motion import common_motion
 from estimator.health.rule import RULE
 from estimator.results import Calibration
 from estimator.session import CalibrationSession
@@ -24,7 +25,9 @@ def judge(
     after_service: bool = False,
 ) -> Judged:
     """Every parameter judged, and the session by its worst; without a reference it becomes the reference."""
-    found = judge_parameters(calibration, reference, tolerances_of(unit_type), coverage_factor=coverage_factor)
+    splits = () if reference is None else common_motion(calibration, reference)
+    tolerances = tolerances_of(unit_type)
+    found = judge_parameters(calibration, reference, tolerances, coverage_factor=coverage_factor, splits=splits)
     decisions = tuple(_decision(judgement, unit_type, coverage_factor) for judgement in found)
     worst = worst_of(decisions)
     return Judged(
@@ -35,6 +38,7 @@ def judge(
         reason=reason(decisions) if reference else NEW_EPOCH if after_service else FIRST_SESSION,
         worst=NONE_YET if reference is None else worst_record(decisions),
         is_reference=reference is None,
+        motions=tuple(split.motion for split in splits),
     )
 
 

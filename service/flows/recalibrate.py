@@ -76,6 +76,7 @@ def _store(store: Store, new: Recomputed, now: datetime, coverage_factor: float,
     store.sessions.put_in_force(id, revision, judged)
     store.history.add(unit, store.sessions.get(id), parameter_values(new.calibration))
     store.sessions.add_decisions(id, judged.decisions, revision)
+    store.sessions.add_motions(id, judged.motions, revision)
     details = {"revision": revision, "verdict": judged.verdict.value, "before": current.verdict.value}
     store.log.audit(now, who, "recalibrate", id, details)
 

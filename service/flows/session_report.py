@@ -10,4 +10,5 @@ def session_report(store: Store, id: str) -> SessionReport:
         session=store.sessions.get(id),
         calibration=store.calibrations.get(id),
         decisions=store.sessions.decisions(id),
+        motions=store.sessions.motions(id),
     )

@@ -88,6 +88,7 @@ def _store(store: Store, new: Upload, coverage_factor: float) -> Receipt:
     store.calibrations.add(record.id, record.revision, judged, new.at)
     store.history.add(unit, record, parameter_values(new.calibration))
     store.sessions.add_decisions(record.id, judged.decisions, record.revision)
+    store.sessions.add_motions(record.id, judged.motions, record.revision)
     store.fleet.refresh(unit)
     details = {"unit": record.unit, "verdict": record.verdict.value, "revision": record.revision}
     store.log.audit(new.at, new.who, "upload", record.id, details)

@@ -9,6 +9,7 @@ from service.charts.residuals import residual_charts
 from service.flows.fit_in_words import FitWords, fit_in_words
 from service.pages.diagnosis import PENDING, TONES
 from service.pages.known import combination_in_words
+from service.pages.motion import MotionLine, motions_in_words
 from service.pages.residual_table import ResidualTable, residual_table
 from service.records import ALL_PARAMETERS, Decision, DiagnosisSummary, SessionReport, StoredSession, Verdict
 from service.units import (
@@ -79,6 +80,8 @@ class SessionPage:
     coverage: str
     size: str
     diagnosis: DiagnosisLine
+    motions: tuple[MotionLine, ...]
+    """What all sensors did together, in words."""
 
 
 def session_page(report: SessionReport, diagnosis: DiagnosisSummary | None = None) -> SessionPage:
@@ -100,6 +103,7 @@ def session_page(report: SessionReport, diagnosis: DiagnosisSummary | None = Non
         coverage=number(coverage),
         size=size_in_words(report.session.size),
         diagnosis=_diagnosis(diagnosis),
+        motions=motions_in_words(report.motions, coverage),
     )
 
 

@@ -1,13 +1,15 @@
 """The tables. What was measured and computed is written once. Only summaries that can be rebuilt are ever updated:
-`conditions`, and of a session the revision in force with its verdict, which repeat those of its calibration.
+`conditions`, `outlooks`, and of a session the revision in force with its verdict, which repeat its calibration's.
 
 unit_types ──< tolerance_revisions          stands
     └──< units ──< services                   │
            ├──1 conditions                    │
+           ├──1 outlooks                      │
            └──< sessions >────────────────────┘
                    ├──< calibrations          refusals   what was turned away
                    ├──< parameters            audit      who did what when, append-only
                    ├──< decisions
+                   ├──< common_motions
                    ├──1 diagnoses
                    └──< model_revisions       causes that engineers accepted, numbered through
 """
@@ -51,6 +53,7 @@ class UnitTypeRow(Base):
     nominal_axes: Mapped[list[Any]]
     nominal_scales: Mapped[list[Any]]
     revision: Mapped[int]
+    maximum_interval_days: Mapped[float]
 
 
 class ToleranceRow(Base):
@@ -72,6 +75,7 @@ class UnitRow(Base):
     serial: Mapped[str] = mapped_column(String(200), unique=True)
     unit_type_id: Mapped[int] = mapped_column(ForeignKey("unit_types.id"), index=True)
     simulated: Mapped[bool]
+    lot: Mapped[str | None] = mapped_column(String(200))
 
 
 class StandRow(Base):
@@ -167,6 +171,28 @@ class DecisionRow(Base):
     verdict: Mapped[str] = mapped_column(String(20))
     rule: Mapped[str]
     critical: Mapped[float | None]
+    change: Mapped[list[Any] | None] = mapped_column(JSON(none_as_null=True))
+    change_own: Mapped[list[Any] | None] = mapped_column(JSON(none_as_null=True))
+    change_origin: Mapped[list[Any] | None] = mapped_column(JSON(none_as_null=True))
+    common: Mapped[float | None]
+    common_sigma: Mapped[float | None]
+    common_p: Mapped[float | None]
+
+
+class CommonMotionRow(Base):
+    """What the axes, or the scales, of all sensors of one kind did together since the reference."""
+
+    __tablename__ = "common_motions"
+    session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), primary_key=True)
+    revision: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    kind: Mapped[str] = mapped_column(String(20), primary_key=True)
+    quantity: Mapped[str] = mapped_column(String(20), primary_key=True)
+    state: Mapped[str] = mapped_column(String(20))
+    value: Mapped[list[Any]]
+    covariance: Mapped[list[Any]]
+    p_value: Mapped[float | None]
+    sensors: Mapped[list[Any]]
+    left_out: Mapped[list[Any]]
 
 
 class DiagnosisRow(Base):
@@ -210,6 +236,14 @@ class ConditionRow(Base):
     last_session: Mapped[str] = mapped_column(ForeignKey("sessions.id"))
     severity: Mapped[int]
     margin: Mapped[float | None]
+
+
+class OutlookRow(Base):
+    """When a unit must come back and why, rewritten when its history changes: drift, forecast, risk."""
+
+    __tablename__ = "outlooks"
+    unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), primary_key=True, autoincrement=False)
+    document: Mapped[dict[str, Any]]
 
 
 class ServiceRow(Base):

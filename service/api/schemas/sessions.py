@@ -80,12 +80,44 @@ class DecisionSchema(BaseModel):
     )
     verdict: Verdict = Field(description="The state of this parameter.")
     rule: str = Field(description="Name and version of the rule, and the type and revision of its tolerances.")
+    change: list[float] | None = Field(
+        description="The deviation with sign and direction; for the axis along the two tangents of the reference axis."
+    )
+    change_own: list[float] | None = Field(description="Standard uncertainty of it that this session brings.")
+    change_origin: list[float] | None = Field(description="The same of the reference session.")
+    common: float | None = Field(
+        description="What all sensors did together, taken off first: turn of the block for the axis (rad), "
+        "relative change of all scales."
+    )
+    common_sigma: float | None = Field(description="Standard uncertainty of it.")
+    common_p: float | None = Field(description="Chance of a common change as large when nothing moved together.")
+
+
+class CommonMotionSchema(BaseModel):
+    """What the axes, or the scales, of all sensors of one kind did together since the reference."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    kind: str = Field(description="`accelerometer` or `gyroscope`.")
+    quantity: str = Field(description="`axes` or `scales`.")
+    state: str = Field(
+        description="`separated`; `too-few-sensors` or `unclear`: nothing was taken off, every sensor was judged on "
+        "its whole change."
+    )
+    value: list[float] = Field(description="Rotation vector in block axes, rad, or relative change of all scales.")
+    covariance: list[list[float]] = Field(description="Of the value, both sessions.")
+    p_value: float | None = Field(description="Chance of a common change as large when nothing moved together.")
+    sensors: list[str] = Field(description="That it rests on.")
+    left_out: list[str] = Field(description="That moved on their own.")
 
 
 class SessionReportSchema(SessionSchema):
     """One stored session with its decisions."""
 
     decisions: list[DecisionSchema] = Field(description="Every judged parameter, sensor after sensor.")
+    common_motion: list[CommonMotionSchema] = Field(
+        description="What all sensors did together; empty for a reference and for sessions judged before this was kept."
+    )
 
 
 class SessionPage(BaseModel):

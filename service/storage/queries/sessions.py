@@ -2,14 +2,16 @@
 
 from dataclasses import asdict, fields
 from datetime import datetime
+from typing import Any
 
 from sqlalchemy import Select, select, update
 
+from estimator.health.common_motion import CommonMotion
 from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
 from service.records import Decision, Judged, StoredSession, Verdict, Worst
 from service.storage.queries.base import Queries
-from service.storage.tables import DecisionRow, DiagnosisRow, SessionRow, StandRow, UnitRow
+from service.storage.tables import CommonMotionRow, DecisionRow, DiagnosisRow, SessionRow, StandRow, UnitRow
 
 
 class Sessions(Queries):
@@ -98,6 +100,21 @@ class Sessions(Queries):
         )
         self._session.flush()
 
+    def add_motions(self, id: str, motions: tuple[CommonMotion, ...], revision: int) -> None:
+        """Stores what all sensors of a session did together under a model revision."""
+        self._session.add_all(CommonMotionRow(session_id=id, revision=revision, **asdict(motion)) for motion in motions)
+        self._session.flush()
+
+    def motions(self, id: str) -> tuple[CommonMotion, ...]:
+        """What all sensors of a session did together under the revision in force."""
+        rows = self._session.scalars(
+            select(CommonMotionRow)
+            .join(SessionRow, SessionRow.id == CommonMotionRow.session_id)
+            .where(CommonMotionRow.session_id == id, CommonMotionRow.revision == SessionRow.revision)
+            .order_by(CommonMotionRow.kind, CommonMotionRow.quantity)
+        )
+        return tuple(motion_record(row) for row in rows)
+
     def decisions(self, id: str) -> tuple[Decision, ...]:
         """What was decided of a session's parameters under the revision in force, in the order of its sensors."""
         rows = self._session.scalars(
@@ -127,5 +144,15 @@ def _session_record(row: SessionRow, unit: str, stand: str | None) -> StoredSess
 
 
 def _decision(row: DecisionRow) -> Decision:
-    own = {f.name: getattr(row, f.name) for f in fields(Decision) if f.name != "verdict"}
+    own = {f.name: _plain(getattr(row, f.name)) for f in fields(Decision) if f.name != "verdict"}
     return Decision(verdict=Verdict(row.verdict), **own)
+
+
+def motion_record(row: CommonMotionRow) -> CommonMotion:
+    """A stored common motion."""
+    return CommonMotion(**{f.name: _plain(getattr(row, f.name)) for f in fields(CommonMotion)})
+
+
+def _plain(value: Any) -> Any:
+    """JSON's lists are the tuples that they were."""
+    return tuple(map(_plain, value)) if isinstance(value, list) else value

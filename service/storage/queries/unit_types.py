@@ -24,6 +24,7 @@ class UnitTypes(Queries):
             nominal_axes=[list(axis) for axis in unit_type.nominal_axes],
             nominal_scales=list(unit_type.nominal_scales),
             revision=unit_type.revision,
+            maximum_interval_days=unit_type.maximum_interval_days,
         )
         if added:
             self._add_tolerances(self._row(unit_type.name), unit_type.tolerances, unit_type.gyro_tolerances, now)
@@ -107,4 +108,5 @@ def _unit_type(row: UnitTypeRow, tolerances: ToleranceRow) -> UnitType:
         tolerances=Tolerances(**tolerances.tolerances),
         gyro_tolerances=None if gyro is None else Tolerances(**gyro),
         revision=row.revision,
+        maximum_interval_days=row.maximum_interval_days,
     )

@@ -1,7 +1,12 @@
 """Calibrations with chosen parameters and uncertainties, for the tests of decisions."""
 
-import numpy as np
+from dataclasses import replace
 
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from estimator.arrays import tangents
+from estimator.parameters import ELEMENTS
 from estimator.results import Calibration, Estimate, Fit, Residuals, SensorCalibration
 from estimator.session import ACCELEROMETER, Array
 
@@ -61,4 +66,30 @@ def calibration(*sensors: SensorCalibration, noise: str = "stated", dof: int = 5
         fit=Fit(float(dof), dof, 0.5, 0.0, noise, 1.0, count, count, ("", 0.0), 1, True),
         residuals=Residuals(nothing, nothing, None, None, None, None),
         gauge="stand",
+    )
+
+
+def block(axes: Array, change: Array, covariance: Array, turn: Array, gauge: str = "stand") -> Calibration:
+    """Sensors A1, A2, … on axes (m, 3), each changed by (m, 5) SI elements, the block turned by a rotation vector."""
+    basis = tangents(axes)
+    moved = axes + (basis @ change[:, 3:, None])[..., 0]
+    moved /= np.linalg.norm(moved, axis=1, keepdims=True)
+    basis = basis - moved[..., None] @ (moved[:, None, :] @ basis)
+    turned = Rotation.from_rotvec(turn)
+    sensors = tuple(_sensor(i, turned.apply(moved[i]), turned.apply(basis[i].T).T, change[i], covariance)
+                    for i in range(len(axes)))  # fmt: skip
+    made = calibration(*sensors)
+    names = tuple(f"{s.name}.{element}" for s in sensors for element in ELEMENTS)
+    return replace(made, names=names, covariance=covariance, gauge=gauge)
+
+
+def _sensor(i: int, axis: Array, basis: Array, change: Array, covariance: Array) -> SensorCalibration:
+    sigma = np.sqrt(np.diagonal(covariance)[5 * i : 5 * i + 5])
+    return replace(
+        sensor(f"A{i + 1}", covariance=covariance[5 * i + 3 : 5 * i + 5, 5 * i + 3 : 5 * i + 5]),
+        scale=Estimate(0.12 + change[0], sigma[0]),
+        bias=Estimate(change[1], sigma[1]),
+        quadratic=Estimate(change[2], sigma[2]),
+        axis=axis,
+        axis_tangents=basis,
     )

@@ -55,6 +55,24 @@ def test_the_audit_refuses_to_be_changed(store_url: str) -> None:
     engine.dispose()
 
 
+def test_decisions_outlive_the_split_into_common_and_own_parts(store_url: str, storage: Storage) -> None:
+    now = datetime(2026, 11, 21, tzinfo=UTC)
+    upload(storage, session_bytes(), "a.json", now)
+    id = upload(storage, session_bytes(seed=2, month=5), "b.json", now).id
+    with storage.database.reading() as store:
+        before, motions = store.sessions.decisions(id), store.sessions.motions(id)
+    assert {(m.quantity, m.state) for m in motions} == {("axes", "separated"), ("scales", "separated")}
+    storage.database.close()
+    downgrade(store_url, "0002")
+    upgrade(store_url)
+    with storage.database.reading() as store:
+        after, gone = store.sessions.decisions(id), store.sessions.motions(id)
+    assert [(d.verdict, d.deviation) for d in after] == [(d.verdict, d.deviation) for d in before]
+    assert all(d.change is not None for d in before)
+    assert all(d.change is None for d in after)
+    assert gone == ()
+
+
 def test_down_to_nothing_and_up_again_with_data(store_url: str, storage: Storage) -> None:
     now = datetime(2026, 11, 21, tzinfo=UTC)
     upload(storage, session_bytes(), "a.json", now)
