@@ -289,7 +289,8 @@ class DiagnosisState(StrEnum):
     UNDECIDED = "cannot tell which"
     UNEXPLAINED = "unexplained"
     FAILED = "failed"
-    """The session cannot be diagnosed."""
+    NOT_APPLICABLE = "not applicable"
+    """No causes are looked for in sessions of its programme."""
 
     @property
     def is_wrong(self) -> bool:
