@@ -282,7 +282,7 @@ class Receipt:
 
 
 class DiagnosisState(StrEnum):
-    """What a diagnosis came to."""
+    """What a diagnosis came to; not applicable: no causes are looked for in sessions of its programme."""
 
     NOTHING = "nothing wrong"
     NAMED = "named"
@@ -290,7 +290,6 @@ class DiagnosisState(StrEnum):
     UNEXPLAINED = "unexplained"
     FAILED = "failed"
     NOT_APPLICABLE = "not applicable"
-    """No causes are looked for in sessions of its programme."""
 
     @property
     def is_wrong(self) -> bool:
