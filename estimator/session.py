@@ -19,6 +19,8 @@ IN_SERVICE = "in-service"
 CALIBRATIONS = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS)
 """Programmes that calibrate every sensor of a block."""
 PROGRAMMES = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, ROTATION_ALIGNMENT, RATE_TABLE, IN_SERVICE)
+AS_FOUND, AS_LEFT = "as-found", "as-left"
+STAGES = (AS_FOUND, AS_LEFT)
 
 
 def comparable(programme: str) -> tuple[str, ...]:
@@ -130,6 +132,8 @@ class CalibrationSession:
     """ISO 8601."""
     operator: str = ""
     notes: str = ""
+    stage: str | None = None
+    """``as-found`` or ``as-left``: before or after the unit was worked on; None when the file does not say."""
 
     @property
     def is_raw(self) -> bool:

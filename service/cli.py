@@ -22,6 +22,7 @@ COMMANDS = {
     "convert": "convert.convert_files",
     "fleet": "report.fleet",
     "report": "report.report",
+    "flags": "flags.flags",
     "simulate": "simulate.simulate_files",
     "plan": "plan.plan_session",
     "parity": "parity.parity",

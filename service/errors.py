@@ -2,6 +2,7 @@
 
 ServiceError (500)
 ├── NotFoundError (404)       no such session, unit or unit type
+├── ConflictError (409)       what is asked for does not fit what was done before
 ├── RefusedError (422)        an upload or a request that cannot be used; holds every problem with its place
 ├── TooLargeError (413)       an upload beyond the limit
 ├── NoSpaceError (507)        the disk is full; nothing was stored
@@ -32,6 +33,12 @@ class NotFoundError(ServiceError):
     """There is no such session, unit or unit type."""
 
     status = HTTPStatus.NOT_FOUND
+
+
+class ConflictError(ServiceError):
+    """What is asked for does not fit what was done before."""
+
+    status = HTTPStatus.CONFLICT
 
 
 class RefusedError(ServiceError):

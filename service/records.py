@@ -84,6 +84,8 @@ class StoredSession:
     simulated: bool
     revision: int = 0
     """The model revision that the calibration in force was made under; 0 is the baseline."""
+    stage: str | None = None
+    """``as-found`` before the unit was worked on, ``as-left`` after; None where neither was said."""
 
 
 @dataclass(frozen=True)
@@ -191,6 +193,9 @@ class Service:
     at: datetime
     kind: str
     note: str
+    who: str = ""
+    sensor: str = ""
+    """That it concerns; empty for the whole unit."""
 
 
 @dataclass(frozen=True)
@@ -214,6 +219,8 @@ class UnitSummary:
     """1 − (|d| + U)/T of the worst parameter: 1 is spotless, 0 the edge of pass, negative beyond."""
     diagnosis: str = ""
     """What the simulation gets wrong about the latest session, in one line; empty where nothing is wrong."""
+    flags: int = 0
+    """How many are open."""
 
 
 @dataclass(frozen=True)
@@ -224,6 +231,8 @@ class FleetCondition:
     verdicts: dict[Verdict, int]
     """Every verdict is a key."""
     simulated: int
+    flags: int = 0
+    """How many are open on all units together."""
 
 
 @dataclass(frozen=True)
@@ -282,14 +291,14 @@ class Receipt:
 
 
 class DiagnosisState(StrEnum):
-    """What a diagnosis came to; not applicable: no causes are looked for in sessions of its programme."""
+    """What a diagnosis came to."""
 
     NOTHING = "nothing wrong"
     NAMED = "named"
     UNDECIDED = "cannot tell which"
     UNEXPLAINED = "unexplained"
     FAILED = "failed"
-    NOT_APPLICABLE = "not applicable"
+    """The session cannot be diagnosed."""
 
     @property
     def is_wrong(self) -> bool:
@@ -383,18 +392,3 @@ class Model:
     """The latest revision that concerns the session; 0 for the baseline alone."""
     causes: tuple[tuple[str, tuple[str, ...]], ...]
     """Identifier and sensors of each."""
-
-
-@dataclass(frozen=True)
-class Recalibrated:
-    """What became of a unit's stored sessions under the model in force."""
-
-    unit: str
-    sessions: int
-    recomputed: int
-    unchanged: int
-    """Computed under this model before."""
-    left: int
-    """Sessions that cannot be calibrated under it; they keep what they have."""
-    revision: int
-    """The latest revision that any of them rests on."""

@@ -12,7 +12,7 @@ from itertools import islice
 from estimator.reading.fields import Fields
 
 TOP = (
-    "format", "unit", "unit_type", "block", "programme", "started_at", "operator", "notes", "site", "stand",
+    "format", "unit", "unit_type", "block", "programme", "started_at", "operator", "notes", "stage", "site", "stand",
     "mounting", "sensors", "table", "count_time_s", "sample_rate_hz", "direction_sigma_deg",
 )  # fmt: skip
 SITE = ("latitude_deg", "height_m", "gravity_m_s2")

@@ -11,7 +11,7 @@ from estimator.reading.sensors import KINDS, check_pulses, read_sensors
 from estimator.reading.setting import read_mounting, read_site, read_stand, read_started_at
 from estimator.reading.source import display_name, load
 from estimator.reading.table import read_table
-from estimator.session import PROGRAMMES, CalibrationSession
+from estimator.session import PROGRAMMES, STAGES, CalibrationSession
 
 FORMAT = "imu-session/1"
 SAMPLE_RATE = Interval(0, 1e9, "Hz", above=True)
@@ -56,6 +56,7 @@ def _assemble(document: Fields) -> CalibrationSession:
     check_pulses(document, sensors, programme)
     sample_rate = document.optional_number("sample_rate_hz", SAMPLE_RATE)
     count_time = document.optional_number("count_time_s", COUNT_TIME)
+    stage = document.choice("stage", STAGES) if document.has("stage") else None
     texts = {key: document.optional_text(key) for key in ("unit_type", "operator", "notes")}
     table = read_table(document, programme, sensors)
     if table is not None:
@@ -77,6 +78,7 @@ def _assemble(document: Fields) -> CalibrationSession:
         started_at=started_at,
         operator=texts["operator"] or "",
         notes=texts["notes"] or "",
+        stage=stage,
     )
 
 

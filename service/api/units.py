@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Query, Request, Response
 
 from service.api.exports import as_csv, as_parquet, history_table
+from service.api.flags import WantedState, flag_page
 from service.api.schemas.fields import (
     Limit,
     Moment,
@@ -17,6 +18,7 @@ from service.api.schemas.fields import (
     WantedVerdict,
     next_page,
 )
+from service.api.schemas.flags import FlagPage
 from service.api.schemas.models import RecalibratedSchema
 from service.api.schemas.problem import errors
 from service.api.schemas.units import (
@@ -94,6 +96,14 @@ def read_history(
     if following is not None:
         table.headers["Link"] = f'<{request.url.include_query_params(page=following)}>; rel="next"'
     return table
+
+
+@router.get("/{serial:path}/flags", responses=errors(404, 422))
+def read_flags(
+    serial: Serial, store: Reading, state: WantedState = None, page: Page = 1, limit: Limit = 100
+) -> FlagPage:
+    """The unit's flags with their lives, open ones first."""
+    return flag_page(store, serial, state, page, limit)
 
 
 @router.post("/{serial:path}/services", status_code=201, responses=errors(400, 404, 422))

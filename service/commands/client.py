@@ -43,6 +43,11 @@ class Client:
         """Reads a resource below /api/v1."""
         return self._answer("GET", path, params=query)
 
+    def post(self, path: str, body: dict[str, Any]) -> dict[str, Any]:
+        """Sends JSON to a resource below /api/v1."""
+        answer: dict[str, Any] = self._answer("POST", path, json=body).json()
+        return answer
+
     def _answer(self, method: str, path: str, **request: Any) -> httpx.Response:
         """The answer, or the error that it states."""
         try:

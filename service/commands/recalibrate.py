@@ -8,8 +8,7 @@ import typer
 from service.commands.console import AsJson, print_json, progress, screen
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.flows.fleet import fleet_overview
-from service.flows.recalibrate import recalibrate
-from service.records import Recalibrated
+from service.flows.recalibrate import Recalibrated, recalibrate
 from service.storage import Database, Files, Storage
 
 PAGE = 1000

@@ -6,19 +6,32 @@ from datetime import datetime
 
 from estimator.errors import SessionError
 from estimator.results import Calibration
-from estimator.session import IN_SERVICE, RATE_TABLE, ROTATION_ALIGNMENT, CalibrationSession, comparable
-from service.flows.in_service import Compared, compared, judge_recording, reference_in_force
+from estimator.session import CalibrationSession, comparable
+from service.flows.flagging.verdict import flag_verdict
 from service.flows.judge import judge
 from service.flows.model_in_force import calibrated, model_of
 from service.flows.parameter_values import parameter_values
 from service.ingest import read_upload
-from service.records import Judged, Model, Recalibrated, StoredSession
+from service.records import Judged, Model, StoredSession
 from service.storage import Storage
 from service.storage.store import Store
 
-WITHOUT_MODEL = (ROTATION_ALIGNMENT, RATE_TABLE)
-"""Programmes that no accepted cause changes."""
 RECOMPUTED, UNCHANGED, LEFT = "recomputed", "unchanged", "left"
+
+
+@dataclass(frozen=True)
+class Recalibrated:
+    """What became of a unit's stored sessions under the model in force."""
+
+    unit: str
+    sessions: int
+    recomputed: int
+    unchanged: int
+    """Computed under this model before."""
+    left: int
+    """Sessions that cannot be calibrated under it; they keep what they have."""
+    revision: int
+    """The latest revision that any of them rests on."""
 
 
 @dataclass(frozen=True)
@@ -29,8 +42,6 @@ class Recomputed:
     session: CalibrationSession
     model: Model
     calibration: Calibration
-    recording: Compared | None
-    """A recording in service beside its unit's reference as it is now; None for every other programme."""
 
 
 def recalibrate(
@@ -48,8 +59,16 @@ def recalibrate(
         revision = max(revision, used)
     if outcome[RECOMPUTED]:
         with storage.database.writing() as store:
-            store.fleet.refresh(store.units.hold(serial))
+            _settle_flags(store, serial, now)
     return Recalibrated(serial, len(stored), outcome[RECOMPUTED], outcome[UNCHANGED], outcome[LEFT], revision)
+
+
+def _settle_flags(store: Store, serial: str, now: datetime) -> None:
+    """The unit's latest session may have another verdict now."""
+    unit = store.units.hold(serial)
+    was = store.fleet.refresh(unit)
+    latest = was.last_session
+    flag_verdict(store, unit, store.sessions.get(latest), store.sessions.decisions(latest), was, now)
 
 
 def _recalibrate(
@@ -58,26 +77,16 @@ def _recalibrate(
     """One session: what became of it and the revision that it now rests on."""
     with storage.database.reading() as store:
         model = model_of(store.models.of_session(stored.id))
-    if model.revision == stored.revision or stored.programme in WITHOUT_MODEL:
+    if model.revision == stored.revision:
         return UNCHANGED, stored.revision
     try:
-        new = _recomputed(storage, stored, model)
+        session = read_upload(storage.files.read(stored.sha256), stored.filename)
+        new = Recomputed(stored, session, model, calibrated(session, model))
     except SessionError:
         return LEFT, stored.revision
     with storage.database.writing() as store:
         _store(store, new, now, coverage_factor, who)
     return RECOMPUTED, model.revision
-
-
-def _recomputed(storage: Storage, stored: StoredSession, model: Model) -> Recomputed:
-    """The stored bytes read and computed again; a recording is compared with the reference that was computed again."""
-    session = read_upload(storage.files.read(stored.sha256), stored.filename)
-    if session.programme != IN_SERVICE:
-        return Recomputed(stored, session, model, calibrated(session, model), None)
-    with storage.database.reading() as store:
-        reference = reference_in_force(store, session, stored.started_at)
-    recording = compared(session, reference)
-    return Recomputed(stored, session, model, recording.calibration, recording)
 
 
 def _store(store: Store, new: Recomputed, now: datetime, coverage_factor: float, who: str) -> None:
@@ -97,9 +106,6 @@ def _store(store: Store, new: Recomputed, now: datetime, coverage_factor: float,
 
 
 def _judged(store: Store, unit: int, new: Recomputed, coverage_factor: float) -> Judged:
-    if new.recording is not None:
-        unit_type = store.unit_types.of_unit(new.session.unit)
-        return judge_recording(new.session, new.recording, unit_type, coverage_factor)
     since, until = store.services.around(unit, new.stored.started_at)
     alike = comparable(new.session.programme)
     reference = store.sessions.reference(unit, new.session.block, since, until, alike)

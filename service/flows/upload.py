@@ -6,6 +6,7 @@ from datetime import datetime
 from estimator.errors import SessionError
 from estimator.results import Calibration
 from estimator.session import IN_SERVICE, CalibrationSession, comparable
+from service.flows.flagging.verdict import flag_verdict
 from service.flows.in_service import Compared, compared, judge_recording, reference_in_force
 from service.flows.judge import judge
 from service.flows.model_in_force import calibrated, model_for
@@ -89,7 +90,7 @@ def _store(store: Store, new: Upload, coverage_factor: float) -> Receipt:
     store.history.add(unit, record, parameter_values(new.calibration))
     store.sessions.add_decisions(record.id, judged.decisions, record.revision)
     store.sessions.add_motions(record.id, judged.motions, record.revision)
-    store.fleet.refresh(unit)
+    flag_verdict(store, unit, record, judged.decisions, store.fleet.refresh(unit), new.at)
     details = {"unit": record.unit, "verdict": record.verdict.value, "revision": record.revision}
     store.log.audit(new.at, new.who, "upload", record.id, details)
     return _receipt(record, created=True)
@@ -142,6 +143,7 @@ def _session_record(new: Upload, judged: Judged) -> StoredSession:
         is_reference=judged.is_reference,
         simulated=new.simulated,
         revision=new.model.revision,
+        stage=session.stage,
     )
 
 

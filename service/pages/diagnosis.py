@@ -20,7 +20,6 @@ HEADLINES = {
     DiagnosisState.UNDECIDED: "Cannot tell which",
     DiagnosisState.UNEXPLAINED: "Something is there that no known cause explains",
     DiagnosisState.FAILED: "This session cannot be diagnosed",
-    DiagnosisState.NOT_APPLICABLE: "Not applicable to this programme",
 }
 """A named cause speaks for itself."""
 TONES = {
@@ -29,7 +28,6 @@ TONES = {
     DiagnosisState.UNDECIDED: "undecidable",
     DiagnosisState.UNEXPLAINED: "undecidable",
     DiagnosisState.FAILED: "none",
-    DiagnosisState.NOT_APPLICABLE: "none",
 }
 """Style and icon, in the tones of the verdicts: how much it asks for attention."""
 SOUND = "Measurement and simulation agree within the noise: no cause of the catalogue and no other structure shows."
@@ -99,10 +97,8 @@ def diagnosis_page(report: DiagnosisReport) -> DiagnosisPage:
         scopes=_scopes(session),
         made="" if found is None else f"Made by estimator {found.estimator_version}",
     )  # fmt: skip
-    if found is None:
-        return page
-    if document is None or found.state is DiagnosisState.NOT_APPLICABLE:
-        return replace(page, what_to_do=found.summary)
+    if found is None or document is None:
+        return page if found is None else replace(page, what_to_do=found.summary)
     return _with_evidence(page, report, document)
 
 

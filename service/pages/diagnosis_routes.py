@@ -3,7 +3,7 @@
 from typing import Annotated
 from urllib.parse import quote
 
-from fastapi import APIRouter, Depends, Form, HTTPException, Path, Request
+from fastapi import APIRouter, Form, Request
 from fastapi.responses import HTMLResponse, RedirectResponse
 
 from service.dependencies import DiagnoserOf, Now, Reading, SettingsOf, StorageOf
@@ -12,21 +12,10 @@ from service.flows.diagnose import diagnose
 from service.flows.diagnosis_report import diagnosis_report
 from service.flows.recalibrate import recalibrate
 from service.pages.diagnosis import diagnosis_page
-from service.pages.headers import sent_by_this_site
+from service.pages.forms import NO_NUL, OWN_FORM, SEE_OTHER, Key
 from service.pages.render import render
 from service.records import NewModel, Scope
 
-SEE_OTHER = 303
-NO_NUL = r"^[^\x00]*$"
-
-
-def _own_form(request: Request) -> None:
-    if not sent_by_this_site(request):
-        raise HTTPException(403, "This form was sent by another site, so nothing was changed.")
-
-
-Key = Annotated[str, Path(max_length=200, pattern=r"^[^\x00]+$")]
-OWN_FORM = [Depends(_own_form)]
 router = APIRouter(include_in_schema=False)
 
 

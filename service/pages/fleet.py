@@ -51,6 +51,8 @@ class FleetRow:
     last_session: str | None
     sessions: int
     simulated: bool
+    flags: str
+    """``2 flags``; empty where none is open."""
 
 
 @dataclass(frozen=True)
@@ -74,6 +76,8 @@ class FleetPage:
     more: bool
     """Whether there is a next page."""
     simulated: int
+    flags: str
+    """How many are open on all units together, in words; empty where none is."""
 
     @property
     def first(self) -> int:
@@ -95,12 +99,18 @@ def fleet_page(condition: FleetCondition, units: Sequence[UnitSummary], more: bo
         total=condition.units,
         more=more,
         simulated=condition.simulated,
+        flags=flags_in_words(condition.flags),
     )
 
 
 def _tile(condition: Condition, count: int, view: FleetView) -> Tile:
     chosen = view.condition == condition.key
     return Tile(condition, count, chosen, view.url(condition="" if chosen else condition.key, page=1))
+
+
+def flags_in_words(count: int) -> str:
+    """``2 flags``; empty for none."""
+    return f"{count} flag{'' if count == 1 else 's'}" if count else ""
 
 
 def worst_in_words(unit: UnitSummary) -> str:
@@ -121,6 +131,7 @@ def _row(unit: UnitSummary) -> FleetRow:
         last_session=unit.last_session,
         sessions=unit.sessions,
         simulated=unit.simulated,
+        flags=flags_in_words(unit.flags),
     )
 
 

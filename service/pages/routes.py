@@ -3,11 +3,12 @@
 from datetime import datetime
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Query, Request
+from fastapi import APIRouter, Query, Request
 from fastapi.responses import HTMLResponse
 
 from service.dependencies import DiagnoserOf, MetricsOf, Now, Reading, SettingsOf, StorageOf
 from service.errors import RefusedError
+from service.flows.flag_list import flag_list
 from service.flows.fleet import fleet_overview
 from service.flows.fleet_condition import fleet_condition
 from service.flows.history import recent_history
@@ -15,6 +16,7 @@ from service.flows.session_report import session_report
 from service.flows.unit_report import unit_report
 from service.flows.upload import upload
 from service.pages.fleet import PAGE_SIZE, FleetView, fleet_page
+from service.pages.forms import Key
 from service.pages.received import FormFile, FormFiles
 from service.pages.render import render
 from service.pages.session import session_page
@@ -25,10 +27,10 @@ from service.settings import Settings
 
 HISTORY_LIMIT = 10_000
 """Points of one unit's history that a page draws, of its newest sessions: 400 of six sensors, 50 of 48."""
+FLAG_LIMIT = 50
+"""Flags of a unit that its page lists: open ones, then the newest of those that are resolved."""
 FEW = 4
 """Files whose diagnosis an upload waits for; those of more files are made after the answer."""
-
-Key = Annotated[str, Path(max_length=200, pattern=r"^[^\x00]+$")]
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 
@@ -53,7 +55,8 @@ def show_fleet(
 def show_unit(request: Request, store: Reading, now: Now, serial: Key) -> HTMLResponse:
     """One unit with the history of its parameters."""
     report = unit_report(store, serial, now)
-    return render(request, "unit.html", unit_page(report, recent_history(store, serial, HISTORY_LIMIT)))
+    history, flags = recent_history(store, serial, HISTORY_LIMIT), flag_list(store, unit=serial, limit=FLAG_LIMIT)
+    return render(request, "unit.html", unit_page(report, history, flags))
 
 
 @router.get("/sessions/{id}")

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from service.charts import ChartSet
 from service.charts.history import history_charts
 from service.charts.tracks import Track, TrackPoint, day_of, tolerance_text, tracks_of
+from service.flag_records import Flag
+from service.pages.flags import FlagCard, flag_cards
 from service.records import HistoryPoint, Service, StoredSession, UnitReport
 from service.verdicts import NOT_JUDGED, Condition, condition_of
 
@@ -70,10 +72,12 @@ class UnitPage:
     """What the next session is judged against, in words; empty when it becomes the reference itself."""
     drawn: int
     """How many sessions, the newest ones, the charts show."""
+    flags: tuple[FlagCard, ...]
+    """Open ones first."""
 
 
-def unit_page(report: UnitReport, history: Sequence[HistoryPoint]) -> UnitPage:
-    """The page of a unit with its history."""
+def unit_page(report: UnitReport, history: Sequence[HistoryPoint], flags: Sequence[Flag] = ()) -> UnitPage:
+    """The page of a unit with its history and flags."""
     groups = tracks_of(history, report.services)
     kinds = {point.kind for point in history}
     return UnitPage(
@@ -83,6 +87,7 @@ def unit_page(report: UnitReport, history: Sequence[HistoryPoint]) -> UnitPage:
         sessions=tuple(SessionLine(s, condition_of(s.verdict, is_reference=s.is_reference)) for s in report.sessions),
         reference=_reference(report),
         drawn=len({point.session for point in history}),
+        flags=flag_cards(flags),
     )
 
 

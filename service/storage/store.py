@@ -6,10 +6,13 @@ from sqlalchemy.orm import Session
 
 from service.storage.queries.calibrations import Calibrations
 from service.storage.queries.diagnoses import Diagnoses
+from service.storage.queries.flags import Flags
 from service.storage.queries.fleet import Fleet
 from service.storage.queries.history import History
 from service.storage.queries.log import Log
 from service.storage.queries.models import Models
+from service.storage.queries.notes import Notes
+from service.storage.queries.notices import Notices
 from service.storage.queries.services import Services
 from service.storage.queries.sessions import Sessions
 from service.storage.queries.unit_types import UnitTypes
@@ -61,6 +64,21 @@ class Store:
     def services(self) -> Services:
         """Known breaks of units' histories."""
         return Services(self._session)
+
+    @cached_property
+    def notes(self) -> Notes:
+        """Remarks on units' histories."""
+        return Notes(self._session)
+
+    @cached_property
+    def flags(self) -> Flags:
+        """Matters that somebody must look after."""
+        return Flags(self._session)
+
+    @cached_property
+    def notices(self) -> Notices:
+        """What happened to flags and verdicts."""
+        return Notices(self._session)
 
     @cached_property
     def fleet(self) -> Fleet:

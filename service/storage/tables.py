@@ -1,8 +1,12 @@
 """The tables. What was measured and computed is written once. Only summaries that can be rebuilt are ever updated:
-`conditions`, `outlooks`, and of a session the revision in force with its verdict, which repeat its calibration's.
+`conditions`, `outlooks`, `flags`, which repeat their notices, and of a session the revision in force with its verdict,
+which repeat its calibration's, and its stage, whose changes are in the audit. A delivery says how far it has come.
 
 unit_types ──< tolerance_revisions          stands
     └──< units ──< services                   │
+           ├──< notes ──1 note_withdrawals    │
+           ├──< flags ──┐                     │
+           ├──< notices ┴──< deliveries >── webhooks
            ├──1 conditions                    │
            ├──1 outlooks                      │
            └──< sessions >────────────────────┘
@@ -17,10 +21,17 @@ unit_types ──< tolerance_revisions          stands
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import JSON, ForeignKey, Index, LargeBinary, MetaData, String, UniqueConstraint
+from sqlalchemy import JSON, ForeignKey, Index, LargeBinary, MetaData, String, UniqueConstraint, text
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 from service.storage.columns import UtcDateTime
+
+IS_OPEN, IS_WAITING = "state <> 'resolved'", "state = 'waiting'"
+
+
+def only_where(condition: str) -> dict[str, Any]:
+    """An index of those rows only, on both engines."""
+    return {"sqlite_where": text(condition), "postgresql_where": text(condition)}
 
 
 class Base(DeclarativeBase):
@@ -111,6 +122,7 @@ class SessionRow(Base):
     is_reference: Mapped[bool]
     simulated: Mapped[bool]
     revision: Mapped[int]
+    stage: Mapped[str | None] = mapped_column(String(20))
 
 
 class CalibrationRow(Base):
@@ -236,6 +248,7 @@ class ConditionRow(Base):
     last_session: Mapped[str] = mapped_column(ForeignKey("sessions.id"))
     severity: Mapped[int]
     margin: Mapped[float | None]
+    flags: Mapped[int]
 
 
 class OutlookRow(Base):
@@ -250,13 +263,103 @@ class ServiceRow(Base):
     """A known break in a unit's history."""
 
     __tablename__ = "services"
-    __table_args__ = (UniqueConstraint("unit_id", "at", "kind"),)
+    __table_args__ = (UniqueConstraint("unit_id", "at", "kind", "sensor"),)
     id: Mapped[int] = mapped_column(primary_key=True)
     unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"))
     at: Mapped[datetime]
     kind: Mapped[str] = mapped_column(String(40))
     note: Mapped[str]
     recorded_at: Mapped[datetime]
+    who: Mapped[str]
+    sensor: Mapped[str] = mapped_column(String(200))
+
+
+class NoteRow(Base):
+    """A remark on a unit's history; the database itself refuses to change or delete one."""
+
+    __tablename__ = "notes"
+    id: Mapped[int] = mapped_column(primary_key=True)
+    unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), index=True)
+    at: Mapped[datetime]
+    text: Mapped[str]
+    who: Mapped[str]
+    recorded_at: Mapped[datetime]
+
+
+class WithdrawalRow(Base):
+    """Why a note no longer holds; append-only too."""
+
+    __tablename__ = "note_withdrawals"
+    note_id: Mapped[int] = mapped_column(ForeignKey("notes.id"), primary_key=True, autoincrement=False)
+    at: Mapped[datetime]
+    who: Mapped[str]
+    why: Mapped[str]
+
+
+class FlagRow(Base):
+    """A matter that somebody must look after, as its notices left it; of one matter only one flag is open."""
+
+    __tablename__ = "flags"
+    __table_args__ = (
+        Index("ix_flags_unit_id", "unit_id", "id"),
+        Index("ix_flags_state", "state", "id"),
+        Index("uq_flags_open", "unit_id", "matter", "place", unique=True, **only_where(IS_OPEN)),
+    )
+    id: Mapped[int] = mapped_column(primary_key=True)
+    unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"))
+    matter: Mapped[str] = mapped_column(String(20))
+    place: Mapped[str] = mapped_column(String(200))
+    state: Mapped[str] = mapped_column(String(20))
+    severity: Mapped[int]
+    summary: Mapped[str]
+    proposal: Mapped[str]
+    session_id: Mapped[str | None] = mapped_column(ForeignKey("sessions.id"))
+    raised_at: Mapped[datetime]
+    changed_at: Mapped[datetime]
+
+
+class NoticeRow(Base):
+    """What happened to a flag or to a unit's verdict, when and through whom; append-only."""
+
+    __tablename__ = "notices"
+    __table_args__ = (Index("ix_notices_flag_id", "flag_id", "id"),)
+    id: Mapped[int] = mapped_column(primary_key=True)
+    unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"))
+    flag_id: Mapped[int | None] = mapped_column(ForeignKey("flags.id"))
+    kind: Mapped[str] = mapped_column(String(20))
+    at: Mapped[datetime]
+    who: Mapped[str]
+    text: Mapped[str]
+    session_id: Mapped[str | None] = mapped_column(ForeignKey("sessions.id"))
+
+
+class WebhookRow(Base):
+    """An address that is told of notices; one that was removed keeps its deliveries."""
+
+    __tablename__ = "webhooks"
+    id: Mapped[int] = mapped_column(primary_key=True)
+    url: Mapped[str]
+    secret: Mapped[str]
+    who: Mapped[str]
+    created_at: Mapped[datetime]
+    removed_at: Mapped[datetime | None]
+
+
+class DeliveryRow(Base):
+    """One notice on its way to one address: the outbox."""
+
+    __tablename__ = "deliveries"
+    __table_args__ = (
+        UniqueConstraint("webhook_id", "notice_id"),
+        Index("ix_deliveries_next_at", "next_at", **only_where(IS_WAITING)),
+    )
+    id: Mapped[int] = mapped_column(primary_key=True)
+    notice_id: Mapped[int] = mapped_column(ForeignKey("notices.id"))
+    webhook_id: Mapped[int] = mapped_column(ForeignKey("webhooks.id"))
+    state: Mapped[str] = mapped_column(String(20))
+    attempts: Mapped[int]
+    next_at: Mapped[datetime]
+    outcome: Mapped[str]
 
 
 class RefusalRow(Base):

@@ -11,10 +11,14 @@ from service.settings import Settings
 from tests.serving import http_client
 
 EXAMPLES = {"serial": "BA-017", "id": "3f9a0c5be1d24786aa10", "name": "hex"}
+NUMBERED = {"/api/v1/flags/{id}/acknowledge", "/api/v1/flags/{id}/resolve"}
+"""Where the id is a number."""
 NEEDS_NO_DATABASE = {"/healthz", "/metrics"}
 BODIES: dict[str, Any] = {
     "/api/v1/sessions/{id}/diagnosis/accept": {"cause": "bias-ramp", "scope": "unit", "by": "K. Ito"},
     "/api/v1/units/{serial}/services": {"kind": "repair"},
+    "/api/v1/flags/{id}/acknowledge": {"by": "K. Ito", "why": "seen"},
+    "/api/v1/flags/{id}/resolve": {"by": "K. Ito", "why": "done"},
     "/api/v1/unit-types/{name}": {"tolerances": {"scale": 1e-4, "bias": 1e-4, "quadratic": None, "axis": 1e-4}},
     "/api/v1/sessions": {"format": "imu-session/2"},
 }
@@ -76,7 +80,7 @@ def test_a_wrong_method_has_the_one_shape_on_every_route(
 def ask(client: httpx.Client, method: str, path: str) -> httpx.Response:
     """A request that any route takes seriously."""
     body = BODIES.get(path) if method in ("POST", "PUT") else None
-    return client.request(method, path.format(**EXAMPLES), json=body)
+    return client.request(method, path.format(**EXAMPLES | ({"id": "1"} if path in NUMBERED else {})), json=body)
 
 
 def assert_problem(answer: httpx.Response, status: int) -> None:

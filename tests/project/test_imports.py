@@ -8,8 +8,8 @@ import pytest
 from tests.project.source import PACKAGES, Module, modules
 
 SERVICE_LAYERS = (
-    {"settings", "records", "units", "errors"},
-    {"advice", "metrics", "planning", "verdicts"},
+    {"settings", "records", "flag_records", "units", "errors"},
+    {"metrics", "planning", "verdicts"},
     {"ingest", "storage"},
     {"flows", "charts"},
     {"reports"},

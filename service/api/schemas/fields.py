@@ -24,6 +24,10 @@ Moment = Annotated[datetime, AfterValidator(_in_utc)]
 """A time; without a zone it is UTC."""
 Text = Annotated[str, StringConstraints(pattern=TEXT, max_length=200)]
 LongText = Annotated[str, StringConstraints(pattern=TEXT, max_length=2000)]
+Name = Annotated[str, StringConstraints(pattern=TEXT, min_length=1, max_length=200)]
+Reason = Annotated[str, StringConstraints(pattern=r"^[^\x00]*\S[^\x00]*$", max_length=2000)]
+"""A text that says something."""
+Number = Annotated[int, Path(ge=1, le=2_000_000_000, description="Number of the entry.", examples=[1])]
 
 SessionId = Annotated[
     str,

@@ -3,9 +3,9 @@
 from datetime import datetime
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
-from service.api.schemas.fields import TEXT, LongText
+from service.api.schemas.fields import LongText, Name
 from service.records import DiagnosisState, Scope, Verdict
 
 
@@ -15,7 +15,6 @@ def _with_a_space(scope: Any) -> Any:
 
 
 AnyScope = Annotated[Scope, BeforeValidator(_with_a_space)]
-Name = Annotated[str, StringConstraints(pattern=TEXT, min_length=1, max_length=200)]
 
 
 class DiagnosisDocument(BaseModel):
@@ -29,16 +28,10 @@ class DiagnosisDocument(BaseModel):
     )
     unexplained: bool = Field(description="Whether there is structure that no known cause explains.")
     structures: list[dict[str, Any]] = Field(description="Where that structure lives.")
-    gain: dict[str, Any] | None = Field(
-        description="Prediction of readings that were held out, before and after; null where causes are not looked for."
-    )
+    gain: dict[str, Any] = Field(description="Prediction of readings that were held out, before and after.")
     limits: list[dict[str, Any]] = Field(description="Smallest amplitude of each cause that would have been found.")
-    calibration: dict[str, Any] | None = Field(
-        description="imu-calibration/1 under the model with the named causes; null where causes are not looked for."
-    )
-    residuals_before: dict[str, Any] | None = Field(
-        description="Measured minus simulated under the baseline model; null where causes are not looked for."
-    )
+    calibration: dict[str, Any] = Field(description="imu-calibration/1 under the model with the named causes.")
+    residuals_before: dict[str, Any] = Field(description="Measured minus simulated under the baseline model.")
     notes: list[str] = Field(description="What else is worth knowing.")
     session: str = Field(description="Id of the session.")
     state: DiagnosisState = Field(description="What it came to.")

@@ -56,6 +56,7 @@ class SessionSchema(BaseModel):
     is_reference: bool = Field(description="Whether later sessions are judged against this one.")
     simulated: bool = Field(description="Whether it belongs to the demonstration fleet.")
     revision: int = Field(description="Model revision that its calibration in force was made under; 0 is the baseline.")
+    stage: str | None = Field(description="`as-found`, `as-left`, or null where neither was said.")
 
 
 class DecisionSchema(BaseModel):

@@ -78,6 +78,7 @@ class UnitSummarySchema(BaseModel):
         description="1 − (|d| + U)/T of it: 1 is spotless, 0 the edge of pass, negative beyond."
     )
     diagnosis: str = Field(description="What the simulation gets wrong about the latest session; empty if nothing.")
+    flags: int = Field(description="How many flags are open.")
 
 
 class UnitPage(BaseModel):
@@ -97,6 +98,7 @@ class FleetSchema(BaseModel):
     units: int = Field(description="How many units there are.")
     verdicts: dict[Verdict, int] = Field(description="How many of them have each verdict.")
     simulated: int = Field(description="How many of them belong to the demonstration fleet.")
+    flags: int = Field(description="How many flags are open.")
 
 
 ServiceKind = Literal["adjustment", "repair", "sensor swap", "new reference"]

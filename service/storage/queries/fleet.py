@@ -2,12 +2,13 @@
 
 from dataclasses import dataclass
 
-from sqlalchemy import Row, Select, func, select
+from sqlalchemy import Row, Select, func, select, update
 from sqlalchemy.orm import defer
 
+from service.flag_records import FlagState
 from service.records import DiagnosisState, FleetCondition, UnitSummary, Verdict
 from service.storage.queries.base import Queries
-from service.storage.tables import ConditionRow, DiagnosisRow, SessionRow, UnitRow, UnitTypeRow
+from service.storage.tables import ConditionRow, DiagnosisRow, FlagRow, SessionRow, UnitRow, UnitTypeRow
 
 Summaries = Select[UnitRow, str, ConditionRow, SessionRow, DiagnosisRow]
 
@@ -23,11 +24,23 @@ class FleetQuery:
     limit: int = 100
 
 
+@dataclass(frozen=True)
+class Refreshed:
+    """A unit's row, and what it said before."""
+
+    last_session: str
+    before: Verdict | None
+    """None where there was no row."""
+    was_reference: bool
+    """Whether the latest session was one that later ones are judged against, where its verdict was another."""
+
+
 class Fleet(Queries):
     """All units at a glance."""
 
-    def refresh(self, unit: int) -> None:
+    def refresh(self, unit: int) -> Refreshed:
         """Rewrites a unit's row from its latest session."""
+        row = self._session.get(ConditionRow, unit)
         own = SessionRow.unit_id == unit
         count = self._session.scalar(select(func.count()).select_from(SessionRow).where(own))
         last = self._session.scalars(
@@ -36,16 +49,27 @@ class Fleet(Queries):
             .order_by(SessionRow.started_at.desc(), SessionRow.uploaded_at.desc(), SessionRow.id)
             .limit(1)
         ).one()
-        self._session.merge(
-            ConditionRow(
-                unit_id=unit,
-                sessions=count or 0,
-                last_session=last.id,
-                severity=Verdict(last.verdict).severity,
-                margin=last.margin,
-            )
+        changed = row is not None and row.severity != Verdict(last.verdict).severity
+        before = self._session.get_one(SessionRow, row.last_session) if row is not None and changed else None
+        refreshed = Refreshed(
+            last_session=last.id,
+            before=None if row is None else list(Verdict)[row.severity],
+            was_reference=before is not None and before.is_reference,
         )
+        if row is None:
+            row = ConditionRow(unit_id=unit, flags=0)
+            self._session.add(row)
+        row.sessions, row.last_session = count or 0, last.id
+        row.severity, row.margin = Verdict(last.verdict).severity, last.margin
         self._session.flush()
+        return refreshed
+
+    def count_flags(self, unit: int) -> None:
+        """Rewrites how many flags of a unit are open."""
+        opened = select(func.count()).where(FlagRow.unit_id == unit, FlagRow.state != FlagState.RESOLVED)
+        self._session.execute(
+            update(ConditionRow).where(ConditionRow.unit_id == unit).values(flags=opened.scalar_subquery())
+        )
 
     def units(self, wanted: FleetQuery) -> tuple[UnitSummary, ...]:
         """The wanted units, worst first, in one query."""
@@ -62,15 +86,16 @@ class Fleet(Queries):
     def condition(self) -> FleetCondition:
         """How many units are in which condition."""
         rows = self._session.execute(
-            select(ConditionRow.severity, UnitRow.simulated, func.count())
+            select(ConditionRow.severity, UnitRow.simulated, func.count(), func.sum(ConditionRow.flags))
             .join(UnitRow, UnitRow.id == ConditionRow.unit_id)
             .group_by(ConditionRow.severity, UnitRow.simulated)
         ).all()
         verdicts = {
-            verdict: sum(count for severity, _, count in rows if severity == verdict.severity) for verdict in Verdict
+            verdict: sum(count for severity, _, count, _ in rows if severity == verdict.severity) for verdict in Verdict
         }
-        simulated = sum(count for _, is_simulated, count in rows if is_simulated)
-        return FleetCondition(units=sum(verdicts.values()), verdicts=verdicts, simulated=simulated)
+        simulated = sum(count for _, is_simulated, count, _ in rows if is_simulated)
+        flags = sum(row[3] for row in rows)
+        return FleetCondition(units=sum(verdicts.values()), verdicts=verdicts, simulated=simulated, flags=flags)
 
 
 def _summaries() -> Summaries:
@@ -111,6 +136,7 @@ def _summary(row: Row[UnitRow, str, ConditionRow, SessionRow, DiagnosisRow]) -> 
         worst_parameter=last.worst_parameter,
         margin=last.margin,
         diagnosis=_diagnosis(row[4]),
+        flags=condition.flags,
     )
 
 

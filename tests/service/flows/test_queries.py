@@ -7,6 +7,7 @@ from datetime import UTC, datetime
 import pytest
 from sqlalchemy import event
 
+from service.flows.flag_list import flag_list
 from service.flows.fleet import fleet_overview
 from service.flows.fleet_condition import fleet_condition
 from service.flows.history import unit_history
@@ -27,6 +28,8 @@ PAGES: dict[str, tuple[int, Page]] = {
     "history": (2, lambda store: unit_history(store, "BA-000")),
     "unit": (8, lambda store: unit_report(store, "BA-000", NOW)),
     "sessions": (1, session_list),
+    "flags": (1, flag_list),
+    "flags of a unit": (2, lambda store: flag_list(store, unit="BA-000")),
     "types": (1, unit_types),
 }
 

@@ -1,0 +1,82 @@
+"""`imu-health flags`: what somebody must look after, and what people do about it."""
+
+from typing import Annotated, Any
+
+import typer
+from rich.markup import escape
+from rich.table import Table
+
+from service.commands.client import connected
+from service.commands.console import DEFAULT_SERVER, AsJson, Server, print_json, screen
+from service.flag_records import FlagState
+
+COLOURS = {FlagState.RAISED: "red", FlagState.ACKNOWLEDGED: "yellow", FlagState.RESOLVED: "green"}
+flags = typer.Typer(
+    name="flags",
+    add_completion=False,
+    invoke_without_command=True,
+    help="Show what somebody must look after; acknowledge or resolve it.",
+)
+By = Annotated[str, typer.Option("--by", help="Your name.")]
+Why = Annotated[str, typer.Option("--why", help="Why; what was found or done.")]
+Id = Annotated[int, typer.Argument(metavar="FLAG", help="Number of the flag.")]
+
+
+@flags.callback()
+def list_flags(
+    context: typer.Context,
+    unit: Annotated[str | None, typer.Option(help="Only of this serial number.")] = None,
+    state: Annotated[FlagState | None, typer.Option(help="Only in this state.", show_default="open ones")] = None,
+    server: Server = DEFAULT_SERVER,
+    as_json: AsJson = False,
+) -> None:
+    """Show flags; without a state those that are open."""
+    if context.invoked_subcommand is not None:
+        return
+    wanted = {"unit": unit, "state": None if state is None else state.value}
+    with connected(server) as client:
+        found = client.get("/flags", limit="1000", **{k: v for k, v in wanted.items() if v}).json()["flags"]
+    shown = [flag for flag in found if state is not None or flag["state"] != FlagState.RESOLVED]
+    if as_json:
+        for flag in shown:
+            print_json(flag)
+    else:
+        screen().print(_table(shown) if shown else "No flag is open." if state is None else "There is none.")
+
+
+@flags.command("acknowledge")
+def acknowledge(id: Id, by: By, why: Why, server: Server = DEFAULT_SERVER) -> None:
+    """Say that somebody looks after the flag, and why it can stay for now."""
+    _handle(id, "acknowledge", by, why, server)
+
+
+@flags.command("resolve")
+def resolve(id: Id, by: By, why: Why, server: Server = DEFAULT_SERVER) -> None:
+    """Say that the matter is settled, and how."""
+    _handle(id, "resolve", by, why, server)
+
+
+def _handle(id: int, what: str, by: str, why: str, server: str) -> None:
+    with connected(server) as client:
+        flag = client.post(f"/flags/{id}/{what}", {"by": by, "why": why})
+    screen().print(_line(flag))
+
+
+def _line(flag: dict[str, Any]) -> str:
+    return f"Flag {flag['id']}  [bold]{escape(flag['unit'])}[/]  {_state(flag)}  {escape(flag['summary'])}"
+
+
+def _state(flag: dict[str, Any]) -> str:
+    state = FlagState(flag["state"])
+    return f"[{COLOURS[state]}]{state.value}[/]"
+
+
+def _table(found: list[dict[str, Any]]) -> Table:
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    for heading in ("flag", "unit", "state", "since", "where", "what"):
+        table.add_column(heading, justify="right" if heading == "flag" else "left")
+    for flag in found:
+        what = f"{flag['summary']} {flag['proposal']}".strip()
+        since, place = flag["raised_at"][:10], escape(flag["place"])
+        table.add_row(str(flag["id"]), escape(flag["unit"]), _state(flag), since, place, escape(what))
+    return table

@@ -1,0 +1,77 @@
+"""Step: what the diagnosis of a unit's latest session means for its flags."""
+
+from collections.abc import Iterator
+from datetime import datetime
+from typing import Any
+
+from estimator.causes.catalogue import cause
+from service.flag_records import Concern, Flag, Matter
+from service.flows.diagnosis_in_words import UNEXPLAINED, in_words, listed
+from service.flows.flagging.settle import Found, settle
+from service.records import ModelRevision, StoredDiagnosis, StoredSession
+from service.storage.store import Store
+
+ABOUT_SENSORS = ("sensor", "environment", "gyro")
+"""Scopes of causes that act on a sensor; a slip in the record or the fixture's turn is no matter of the unit."""
+MATTERS = (Matter.CAUSE, Matter.UNEXPLAINED, Matter.STAND)
+GONE = "The diagnosis of the session of {day} no longer finds it."
+
+
+def flag_diagnosis(store: Store, made: StoredDiagnosis, at: datetime) -> None:
+    """Settles the unit's flags; the diagnosis of an older session than its latest, or a failed one, says nothing."""
+    session = store.sessions.get(made.session)
+    summary = store.fleet.unit(session.unit)
+    if made.document is None or summary is None or summary.last_session != session.id:
+        return
+    unit = store.units.hold(session.unit)
+    opened = tuple(flag for flag in store.flags.open_of(unit) if flag.matter in MATTERS)
+    concerns = tuple(_concerns(made.document, session, store.models.of_session(session.id)))
+    gone = GONE.format(day=f"{session.started_at:%Y-%m-%d}")
+    clear = {flag.key: gone for flag in opened if _speaks_of(session, flag)}
+    settle(store, unit, opened, Found(concerns, clear), session.id, at)
+
+
+def _speaks_of(session: StoredSession, flag: Flag) -> bool:
+    """A session on one stand says nothing of another."""
+    return flag.matter is not Matter.STAND or flag.place == session.stand
+
+
+def _concerns(
+    document: dict[str, Any], session: StoredSession, accepted: tuple[ModelRevision, ...]
+) -> Iterator[Concern]:
+    """At most one a matter and place; what an engineer accepted into the model is known and raises nothing."""
+    known = {(revision.cause, sensor) for revision in accepted for sensor in revision.sensors or ("",)}
+    done: set[tuple[str, str]] = set()
+    for finding in document["findings"]:
+        for concern in _of_finding(finding, session, known):
+            if concern.key not in done:
+                done.add(concern.key)
+                yield concern
+    if document["unexplained"]:
+        yield Concern(Matter.UNEXPLAINED, "", 1, _unexplained(document["structures"]))
+
+
+def _of_finding(finding: dict[str, Any], session: StoredSession, known: set[tuple[str, str]]) -> Iterator[Concern]:
+    """A mere change since earlier sessions is left to the tolerances: they say whether it matters."""
+    name = finding["cause"]
+    scope = cause(name).scope
+    if scope in ABOUT_SENSORS and not cause(name).between:
+        for sensor in finding["sensors"]:
+            if (name, sensor) not in known:
+                yield Concern(Matter.CAUSE, sensor, 1, _sentence(finding))
+    elif scope == "stand" and session.stand is not None and (name, "") not in known:
+        yield Concern(Matter.STAND, session.stand, 1, _sentence(finding))
+
+
+def _sentence(finding: dict[str, Any]) -> str:
+    """What is wrong; of several equal causes their names."""
+    if not finding["alternatives"]:
+        return str(finding["sentence"])
+    names = [in_words(name) for name in (finding["cause"], *finding["alternatives"])]
+    who = f" ({', '.join(finding['sensors'])})" if finding["sensors"] else ""
+    return f"Cannot tell which: {listed(names)}{who}."
+
+
+def _unexplained(structures: list[dict[str, Any]]) -> str:
+    sensors = sorted({sensor for structure in structures for sensor in structure["sensors"]})
+    return f"{UNEXPLAINED}{' in ' + ', '.join(sensors) if sensors else ''}."

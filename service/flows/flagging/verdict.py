@@ -1,0 +1,74 @@
+"""Step: what the decisions of a unit's latest session mean for its verdict and its flags."""
+
+from datetime import datetime
+
+from estimator.session import CALIBRATIONS
+from service.flag_records import Concern, Flag, FlagState, Matter, NoticeKind
+from service.flows.flagging.settle import SERVICE, Found, settle
+from service.flows.reason import reason, worst_of
+from service.records import Decision, StoredSession, Verdict
+from service.storage.queries.fleet import Refreshed
+from service.storage.store import Store
+from service.verdicts import condition_of
+
+FAILS = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
+PASSES = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
+WITHIN = "The session of {day} finds every parameter of {sensor} within its tolerance."
+NEW_REFERENCE = "The session of {day}, after a service, is the new reference."
+
+
+def flag_verdict(
+    store: Store, unit: int, session: StoredSession, decisions: tuple[Decision, ...], was: Refreshed, at: datetime
+) -> None:
+    """Tells of another verdict of the unit and settles its flags; an older session than its latest says nothing."""
+    if was.last_session != session.id:
+        return
+    if was.before is not None and was.before is not session.verdict:
+        before = condition_of(was.before, is_reference=was.was_reference).word
+        now = condition_of(session.verdict, is_reference=session.is_reference).word
+        text = f"{before} → {now}. {session.reason}"
+        store.notices.add(unit, NoticeKind.VERDICT, at, SERVICE, text, session=session.id)
+    opened = store.flags.open_of(unit)
+    settle(store, unit, opened, found_by(session, decisions), session.id, at)
+    if session.programme in CALIBRATIONS:
+        _no_longer_overdue(store, unit, opened, session, at)
+
+
+def found_by(session: StoredSession, decisions: tuple[Decision, ...]) -> Found:
+    """One concern a sensor that is out of tolerance; a sensor that is wholly within it is clear."""
+    by_sensor: dict[str, list[Decision]] = {}
+    for decision in decisions:
+        by_sensor.setdefault(decision.sensor, []).append(decision)
+    day = f"{session.started_at:%Y-%m-%d}"
+    concerns, clear = [], {}
+    for sensor, own in by_sensor.items():
+        failed = tuple(d for d in own if d.verdict in FAILS)
+        if failed:
+            concerns.append(_concern(sensor, failed))
+        elif session.is_reference:
+            clear[(Matter.TOLERANCE.value, sensor)] = NEW_REFERENCE.format(day=day)
+        elif all(d.verdict in PASSES for d in own):
+            clear[(Matter.TOLERANCE.value, sensor)] = WITHIN.format(day=day, sensor=sensor)
+    return Found(tuple(concerns), clear)
+
+
+def _concern(sensor: str, failed: tuple[Decision, ...]) -> Concern:
+    """The worst parameter in a sentence, the others by name."""
+    severity = max(d.verdict.severity for d in failed)
+    others = [d.parameter for d in failed if d is not worst_of(failed)]
+    more = f" Also out of tolerance: {', '.join(others)}." if others else ""
+    return Concern(Matter.TOLERANCE, sensor, severity, reason(failed) + more)
+
+
+def _no_longer_overdue(store: Store, unit: int, opened: tuple[Flag, ...], session: StoredSession, at: datetime) -> None:
+    """The one matter that resolves itself: the calibration that was due has been done."""
+    for flag in opened:
+        if flag.matter is Matter.OVERDUE:
+            resolve_as_done(store, unit, flag, f"Calibrated on {session.started_at:%Y-%m-%d}.", at, session.id)
+
+
+def resolve_as_done(store: Store, unit: int, flag: Flag, why: str, at: datetime, session: str | None) -> None:
+    """Resolves a flag by the service itself."""
+    store.flags.put(flag.id, at, state=FlagState.RESOLVED, proposal="")
+    store.notices.add(unit, NoticeKind.RESOLVED, at, SERVICE, why, flag=flag.id, session=session)
+    store.fleet.count_flags(unit)

@@ -1,0 +1,84 @@
+"""Flags as people read them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from service.flag_records import Flag, FlagState, Matter, Notice, NoticeKind
+from service.verdicts import FIT, NOT_JUDGED, UNDECIDED, UNFIT, Condition
+
+MATTERS = {
+    Matter.TOLERANCE: "Out of tolerance",
+    Matter.CAUSE: "Cause found",
+    Matter.UNEXPLAINED: "Unexplained",
+    Matter.STAND: "Stand at fault",
+    Matter.OVERDUE: "Calibration overdue",
+}
+STATES = {FlagState.RAISED: "open", FlagState.ACKNOWLEDGED: "acknowledged", FlagState.RESOLVED: "resolved"}
+DONE = {
+    NoticeKind.RAISED: "raised",
+    NoticeKind.SEEN: "seen again",
+    NoticeKind.CLEAR: "no longer seen",
+    NoticeKind.ACKNOWLEDGED: "acknowledged",
+    NoticeKind.RESOLVED: "resolved",
+    NoticeKind.VERDICT: "verdict changed",
+}
+TONES: dict[FlagState, Condition] = {
+    FlagState.RAISED: UNFIT, FlagState.ACKNOWLEDGED: UNDECIDED, FlagState.RESOLVED: FIT,
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class FlagCard:
+    """One flag."""
+
+    flag: Flag
+    heading: str
+    """``A3 out of tolerance``."""
+    state: str
+    tone: str
+    """Name of the style and the icon."""
+    life: tuple[tuple[Notice, str], ...]
+    """What happened and the word for it, newest first."""
+
+    @property
+    def is_open(self) -> bool:
+        """Whether somebody has yet to act."""
+        return self.flag.state is not FlagState.RESOLVED
+
+    @property
+    def is_raised(self) -> bool:
+        """Whether nobody has acknowledged it."""
+        return self.flag.state is FlagState.RAISED
+
+
+@dataclass(frozen=True)
+class FlagsPage:
+    """Everything the page of all open flags shows."""
+
+    cards: tuple[FlagCard, ...]
+    more: bool
+    """Whether there are more than the page lists."""
+
+
+def flags_page(flags: Sequence[Flag], most: int) -> FlagsPage:
+    """The page of the fleet's open flags."""
+    return FlagsPage(flag_cards(flags[:most]), len(flags) > most)
+
+
+def flag_cards(flags: Sequence[Flag]) -> tuple[FlagCard, ...]:
+    """Cards in the order of the flags."""
+    return tuple(
+        FlagCard(
+            flag=flag,
+            heading=_heading(flag),
+            state=STATES[flag.state],
+            tone=TONES.get(flag.state, NOT_JUDGED).key,
+            life=tuple((change, DONE[change.kind]) for change in reversed(flag.changes)),
+        )
+        for flag in flags
+    )
+
+
+def _heading(flag: Flag) -> str:
+    matter = MATTERS[flag.matter]
+    return f"{flag.place}: {matter[0].lower()}{matter[1:]}" if flag.place else matter

@@ -1,0 +1,129 @@
+"""Flags: one row a flag, as its notices left it."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from datetime import datetime
+from itertools import groupby
+
+from sqlalchemy import Row, select, update
+
+from service.errors import NotFoundError
+from service.flag_records import Concern, Flag, FlagState, Matter, Notice
+from service.storage.queries.base import Queries
+from service.storage.queries.notices import notice_of
+from service.storage.tables import FlagRow, NoticeRow, UnitRow
+
+
+@dataclass(frozen=True)
+class FlagQuery:
+    """Which flags are wanted."""
+
+    unit: str | None = None
+    state: FlagState | None = None
+    offset: int = 0
+    limit: int = 100
+
+
+class Flags(Queries):
+    """Flags by unit and state."""
+
+    def open_of(self, unit: int) -> tuple[Flag, ...]:
+        """The flags of a unit that are not resolved, without their lives."""
+        query = select(FlagRow, UnitRow.serial).join(UnitRow, UnitRow.id == FlagRow.unit_id)
+        found = self._session.execute(query.where(FlagRow.unit_id == unit, FlagRow.state != FlagState.RESOLVED))
+        return tuple(_flag(row, serial) for row, serial in found)
+
+    def open_about(self, matter: Matter) -> tuple[Flag, ...]:
+        """All flags on a matter that are not resolved, without their lives."""
+        query = select(FlagRow, UnitRow.serial).join(UnitRow, UnitRow.id == FlagRow.unit_id)
+        found = self._session.execute(query.where(FlagRow.matter == matter, FlagRow.state != FlagState.RESOLVED))
+        return tuple(_flag(row, serial) for row, serial in found)
+
+    def unit_of(self, id: int) -> str:
+        """Serial number of a flag's unit."""
+        query = select(UnitRow.serial).join(FlagRow, FlagRow.unit_id == UnitRow.id).where(FlagRow.id == id)
+        serial = self._session.scalar(query)
+        if serial is None:
+            raise NotFoundError(f"There is no flag {id}.")
+        return serial
+
+    def get(self, id: int) -> Flag:
+        """One flag with its life."""
+        query = (
+            select(FlagRow, UnitRow.serial, NoticeRow)
+            .join(UnitRow, UnitRow.id == FlagRow.unit_id)
+            .join(NoticeRow, NoticeRow.flag_id == FlagRow.id)
+            .where(FlagRow.id == id)
+            .order_by(NoticeRow.id)
+        )
+        found = _with_lives(self._session.execute(query))
+        if not found:
+            raise NotFoundError(f"There is no flag {id}.")
+        return found[0]
+
+    def page(self, wanted: FlagQuery) -> tuple[Flag, ...]:
+        """Flags with their lives, open ones first, newest first, in one query."""
+        resolved = FlagRow.state == FlagState.RESOLVED
+        chosen = select(FlagRow.id).order_by(resolved, FlagRow.id.desc())
+        if wanted.unit is not None:
+            chosen = chosen.join(UnitRow, UnitRow.id == FlagRow.unit_id).where(UnitRow.serial == wanted.unit)
+        if wanted.state is not None:
+            chosen = chosen.where(FlagRow.state == wanted.state)
+        ids = chosen.offset(wanted.offset).limit(wanted.limit).subquery()
+        query = (
+            select(FlagRow, UnitRow.serial, NoticeRow)
+            .join(ids, ids.c.id == FlagRow.id)
+            .join(UnitRow, UnitRow.id == FlagRow.unit_id)
+            .join(NoticeRow, NoticeRow.flag_id == FlagRow.id)
+            .order_by(resolved, FlagRow.id.desc(), NoticeRow.id)
+        )
+        return _with_lives(self._session.execute(query))
+
+    def add(self, unit: int, concern: Concern, session: str | None, at: datetime) -> int:
+        """Stores a raised flag and returns its number."""
+        row = FlagRow(
+            unit_id=unit,
+            matter=concern.matter,
+            place=concern.place,
+            state=FlagState.RAISED,
+            severity=concern.severity,
+            summary=concern.summary,
+            proposal="",
+            session_id=session,
+            raised_at=at,
+            changed_at=at,
+        )
+        self._session.add(row)
+        self._session.flush()
+        return row.id
+
+    def put(self, id: int, at: datetime, **changed: str | int | None) -> None:
+        """Writes what a notice changed."""
+        self._session.execute(update(FlagRow).where(FlagRow.id == id).values(changed_at=at, **changed))
+        self._session.expire_all()
+
+
+def _with_lives(rows: Iterable[Row[FlagRow, str, NoticeRow]]) -> tuple[Flag, ...]:
+    return tuple(_grouped(list(own)) for _, own in groupby(rows, key=lambda row: row[0].id))
+
+
+def _grouped(rows: list[Row[FlagRow, str, NoticeRow]]) -> Flag:
+    flag, serial, _ = rows[0]
+    return _flag(flag, serial, tuple(notice_of(notice, serial) for _, _, notice in rows))
+
+
+def _flag(row: FlagRow, serial: str, changes: tuple[Notice, ...] = ()) -> Flag:
+    return Flag(
+        id=row.id,
+        unit=serial,
+        matter=Matter(row.matter),
+        place=row.place,
+        state=FlagState(row.state),
+        severity=row.severity,
+        summary=row.summary,
+        proposal=row.proposal,
+        session=row.session_id,
+        raised_at=row.raised_at,
+        changed_at=row.changed_at,
+        changes=changes,
+    )

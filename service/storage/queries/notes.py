@@ -1,0 +1,57 @@
+"""Remarks on units' histories, and their withdrawals."""
+
+from datetime import datetime
+
+from sqlalchemy import Select, select
+
+from service.errors import NotFoundError
+from service.flag_records import Note, Withdrawal
+from service.storage.queries.base import Queries
+from service.storage.tables import NoteRow, UnitRow, WithdrawalRow
+
+
+class Notes(Queries):
+    """Notes by unit; a row is written once."""
+
+    def add(self, unit: int, at: datetime, text: str, who: str, now: datetime) -> int:
+        """Stores a note and returns its number."""
+        row = NoteRow(unit_id=unit, at=at, text=text, who=who, recorded_at=now)
+        self._session.add(row)
+        self._session.flush()
+        return row.id
+
+    def withdraw(self, id: int, who: str, why: str, now: datetime) -> bool:
+        """Stores that a note no longer holds, and returns whether that is new; the first reason stays."""
+        return self.insert_once(WithdrawalRow, note_id=id, at=now, who=who, why=why)
+
+    def get(self, id: int) -> Note:
+        """One note."""
+        found = self._session.execute(_notes().where(NoteRow.id == id)).one_or_none()
+        if found is None:
+            raise NotFoundError(f"There is no note {id}.")
+        return _note(*found)
+
+    def of_unit(self, serial: str) -> tuple[Note, ...]:
+        """All notes of a unit, withdrawn ones too, oldest first."""
+        found = self._session.execute(_notes().where(UnitRow.serial == serial).order_by(NoteRow.at, NoteRow.id))
+        return tuple(_note(*row) for row in found)
+
+
+def _notes() -> Select[NoteRow, str, WithdrawalRow]:
+    return (
+        select(NoteRow, UnitRow.serial, WithdrawalRow)
+        .join(UnitRow, UnitRow.id == NoteRow.unit_id)
+        .outerjoin(WithdrawalRow, WithdrawalRow.note_id == NoteRow.id)
+    )
+
+
+def _note(row: NoteRow, serial: str, withdrawn: WithdrawalRow | None) -> Note:
+    return Note(
+        id=row.id,
+        unit=serial,
+        at=row.at,
+        text=row.text,
+        who=row.who,
+        recorded_at=row.recorded_at,
+        withdrawal=None if withdrawn is None else Withdrawal(withdrawn.at, withdrawn.who, withdrawn.why),
+    )

@@ -1,0 +1,43 @@
+"""`imu-health flags` against a running service."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+
+from service.settings import Settings
+from tests.databases import Databases
+from tests.service.cli.conftest import Run
+from tests.service.sessions import session_bytes
+from tests.serving import serving
+
+
+@pytest.fixture
+def address(sqlite: Databases, tmp_path: Path) -> Iterator[str]:
+    """A running service with one flag."""
+    with serving(Settings(database_url=sqlite.migrated(), data_folder=tmp_path / "data")) as address:
+        for month, moved in ((1, 0.0), (2, 90.0)):
+            content = session_bytes(seed=month, month=month, a3_moved=moved)
+            httpx.post(f"{address}/api/v1/sessions", content=content).raise_for_status()
+        yield address
+
+
+def test_open_flags_are_shown(run: Run, address: str) -> None:
+    ran = run("flags", "--server", address)
+    assert ran.code == 0
+    assert ran.out.splitlines()[1].split()[:3] == ["1", "BA-017", "raised"]
+
+
+def test_a_flag_is_handled_and_then_no_longer_open(run: Run, address: str) -> None:
+    own = ("--by", "K. Ito", "--why", "A3 replaced", "--server", address)
+    assert "acknowledged" in run("flags", "acknowledge", 1, *own).out
+    assert "resolved" in run("flags", "resolve", 1, *own).out
+    assert run("flags", "--server", address).out == "No flag is open.\n"
+    [flag] = run("flags", "--state", "resolved", "--json", "--server", address).documents
+    assert [change["who"] for change in flag["changes"]] == ["imu-health", "K. Ito", "K. Ito"]
+
+
+def test_what_cannot_be_done_is_said_on_one_line(run: Run, address: str) -> None:
+    ran = run("flags", "resolve", 7, "--by", "K. Ito", "--why", "gone", "--server", address)
+    assert (ran.code, ran.out, ran.err) == (1, "", "imu-health: There is no flag 7.\n")
