@@ -13,6 +13,7 @@ from service.flows.certificate import CertifiedSession
 from service.flows.finding_in_words import FindingView, finding_view, in_words
 from service.flows.fit_in_words import FitWords, fit_in_words
 from service.flows.known_in_words import combination_in_words
+from service.flows.motion_in_words import motions_in_words
 from service.flows.reason import margin_of
 from service.records import Decision, StoredDiagnosis
 from service.reports.pictures import picture
@@ -89,6 +90,8 @@ class Certificate:
     rule: str
     states: tuple[State, ...]
     tables: tuple[ResultTable, ...]
+    together: tuple[str, ...]
+    """What all sensors did together since the reference."""
     known: tuple[Fact, ...]
     """What is known of parameters that the session cannot tell apart."""
     diagnosis: str
@@ -126,6 +129,7 @@ def certificate(found: CertifiedSession) -> Certificate:
         rule=decisions[0].rule if decisions else "",
         states=tuple(State(c.formal, c.meaning, c.key) for c in reversed(CONDITIONS)),
         tables=tuple(_with_reading_unit(t, found.source) for t in _tables(found, k)),
+        together=tuple(line.text for line in motions_in_words(found.report.motions, k)),
         known=tuple(Fact(name, words) for name, words in known),
         diagnosis=found.diagnosis.summary,
         causes=_causes(found.diagnosis, found),

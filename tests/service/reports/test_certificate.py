@@ -7,6 +7,7 @@ from typing import Any
 import httpx
 import pytest
 
+from estimator.health.rule import RULE
 from service.flows.upload import upload
 from service.storage import Storage
 from service.verdicts import condition_of
@@ -46,7 +47,7 @@ def test_it_states_input_verdict_rule_and_model(client: httpx.Client, failed: di
     for stated in (
         "Unfit",
         digest,
-        "ILAC-G8-four-state/1",
+        RULE,
         "baseline (0)",
         "imu-health 0.",
         "BA-017",
