@@ -114,6 +114,8 @@ class Fit:
     """The least known direction: the parameter that leads it and its one sigma, relative to what it could be."""
     iterations: int
     converged: bool
+    add: tuple[tuple[float, float, float], ...] = ()
+    """Directions of up, block axes, of still orientations that would complete a set that leaves something open."""
 
     def to_dict(self) -> dict[str, Any]:
         return {
@@ -128,6 +130,7 @@ class Fit:
             "weakest": {"parameter": self.weakest[0], "sigma": self.weakest[1]},
             "iterations": self.iterations,
             "converged": self.converged,
+            "add": [list(direction) for direction in self.add],
         }
 
 

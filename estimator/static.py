@@ -51,6 +51,18 @@ RESTLESS = 3.0
 """Scatter of an interval's block means, in usual ones, from which the interval has a standard error of its own."""
 
 
+STANDARD_GRAVITY = 9.8
+"""m/s²; near enough to say what moves."""
+
+MOTION = 0.02
+"""g; change of a reading from quarter to quarter of a stretch from which the block moves."""
+
+PIECES = 4
+
+DISTINCT = 30.0
+"""Standard errors of a quarter's mean by the noise from sample to sample, which that change must exceed as well."""
+
+
 @dataclass(frozen=True, eq=False)
 class Intervals:
     """Stretches of a log in which the block stood still, in order, not touching."""
@@ -67,6 +79,10 @@ class Intervals:
     def samples(self) -> Indices:
         """(n,) number of samples."""
         return self.stop - self.start
+
+    def at(self, chosen: NDArray[np.bool_]) -> "Intervals":
+        """Some of the stretches."""
+        return Intervals(self.start[chosen], self.stop[chosen])
 
     def sums(self, values: Array) -> Array:
         """(n, ...) sums of values (R, ...) over each interval."""
@@ -103,11 +119,11 @@ def average(session: CalibrationSession, residual: Callable[[CalibrationSession]
         The log holds no position, or too few that stand still.
     """
     if session.position is not None:
-        return averaged(session, labelled(session.position))
+        return averaged(session, at_rest(session, labelled(session.position)))
     if session.beta is not None and session.flipped is not None:
         setting = np.column_stack([session.beta, session.flipped])
         changed = np.any(np.diff(setting, axis=0) != 0, axis=1)
-        return averaged(session, labelled(np.concatenate([[0], np.cumsum(changed)])))
+        return averaged(session, at_rest(session, labelled(np.concatenate([[0], np.cumsum(changed)]))))
     return chosen(session, residual)
 
 
@@ -122,6 +138,44 @@ def labelled(position: NDArray[np.int64]) -> Intervals:
         raise ScheduleError([Problem("position", "no sample belongs to a position; label the still stretches 0, 1, …")])
     trim = (TRIM * (stop - start)).astype(np.intp)
     return Intervals(start + trim, stop - trim)
+
+
+def at_rest(session: CalibrationSession, found: Intervals) -> Intervals:
+    """The labelled stretches; ScheduleError where the block moves in most of them."""
+    moves = moving(session, found)
+    if 2 * np.count_nonzero(moves) <= len(found):
+        return found
+    rows = ", ".join(f"{a + 1} to {b}" for a, b in zip(found.start[moves][:3], found.stop[moves][:3], strict=True))
+    raise ScheduleError(
+        [
+            Problem(
+                "table",
+                f"the block moves in {np.count_nonzero(moves)} of {len(found)} positions (samples {rows}, …): it turns "
+                f"by more than {MOTION:g} rad while it should rest; label still samples only, or check sample_rate_hz",
+            )
+        ]
+    )
+
+
+def moving(session: CalibrationSession, found: Intervals) -> NDArray[np.bool_]:
+    """(n,) whether the block turns in a stretch: an accelerometer drifts by more than `MOTION` g, far beyond its noise.
+
+    A slow turn is as quiet as rest to a short window; over a whole stretch it is not.
+    """
+    moves = np.zeros(len(found), dtype=bool)
+    if not len(found) or found.samples.min() < 2 * PIECES:
+        return moves
+    quarter = found.samples // PIECES
+    pieces = [Intervals(found.start + k * quarter, found.start + (k + 1) * quarter) for k in range(PIECES)]
+    for i, sensor in enumerate(session.sensors):
+        if sensor.kind == ACCELEROMETER:
+            values = session.readings[:, i]
+            drift = np.ptp([piece.means(values) for piece in pieces], axis=0)
+            far = drift > MOTION * STANDARD_GRAVITY * sensor.nominal_scale
+            if far.any():
+                jitter = found.sums(np.diff(values, append=values[-1]) ** 2) / (2 * found.samples)
+                moves |= far & (drift > DISTINCT * np.sqrt(jitter / quarter))
+    return moves
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,6 +239,7 @@ def chosen(session: CalibrationSession, residual: Callable[[CalibrationSession],
     tried: dict[tuple[int, ...], tuple[float, CalibrationSession]] = {}
     for threshold in THRESHOLDS:
         found = still(quiet, threshold, session.sample_rate)
+        found = found.at(~moving(session, found))
         key = (*found.start.tolist(), *found.stop.tolist())
         if len(found) >= FEWEST and key not in tried:
             candidate = averaged(session, found)
@@ -197,7 +252,7 @@ def chosen(session: CalibrationSession, residual: Callable[[CalibrationSession],
 def none_found(session: CalibrationSession) -> str:
     """What to tell the person whose log never stands still."""
     return (
-        f"found fewer than {FEWEST} stretches of {len(session.readings)} samples in which the block stands still for "
+        f"found fewer than {FEWEST} stretches in {len(session.readings)} samples in which the block stands still for "
         f"{WINDOW + SHORTEST:g} s; rest longer in each orientation, check sample_rate_hz, or label the still samples "
         "in a position column"
     )

@@ -291,14 +291,14 @@ class Receipt:
 
 
 class DiagnosisState(StrEnum):
-    """What a diagnosis came to."""
+    """What a diagnosis came to; not applicable: no causes are looked for in sessions of its programme."""
 
     NOTHING = "nothing wrong"
     NAMED = "named"
     UNDECIDED = "cannot tell which"
     UNEXPLAINED = "unexplained"
     FAILED = "failed"
-    """The session cannot be diagnosed."""
+    NOT_APPLICABLE = "not applicable"
 
     @property
     def is_wrong(self) -> bool:

@@ -1,10 +1,11 @@
 """The one door to every calibrator."""
 
+from estimator.calibration.cut_off import require_whole_range
 from estimator.calibration.free import calibrate_free, residual_per_freedom
 from estimator.calibration.stand import calibrate_stand
 from estimator.errors import Problem, ScheduleError
 from estimator.results import Calibration
-from estimator.session import ARBITRARY_ORIENTATIONS, TWO_AXIS_STAND, CalibrationSession
+from estimator.session import CALIBRATIONS, IN_SERVICE, TWO_AXIS_STAND, CalibrationSession
 from estimator.static import average
 
 
@@ -28,6 +29,9 @@ def calibrate(session: CalibrationSession, *, quadratic: bool | None = None) -> 
 
 def averaged(session: CalibrationSession) -> CalibrationSession:
     """The session with one row a position; ScheduleError where its programme does not calibrate."""
-    if session.programme not in (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS):
-        raise ScheduleError([Problem("programme", f"{session.programme} does not calibrate a block")])
-    return average(session, residual_per_freedom) if session.is_raw else session
+    if session.programme not in CALIBRATIONS:
+        hint = "; compare it with a calibration: imu-health parity" if session.programme == IN_SERVICE else ""
+        raise ScheduleError([Problem("programme", f"{session.programme} does not calibrate a block{hint}")])
+    rows = average(session, residual_per_freedom) if session.is_raw else session
+    require_whole_range(rows)
+    return rows

@@ -8,9 +8,10 @@ import typer
 
 from estimator import CalibrationSession, diagnose
 from estimator.errors import SessionError
+from estimator.session import CALIBRATIONS
 from service.commands.console import UNUSABLE, AsJson, Files, for_each, print_json, problem_line, say, screen
 from service.commands.diagnosis_tables import diagnosis_view
-from service.flows.diagnosis_in_words import document_of, state_of
+from service.flows.diagnosis_in_words import document_of, inapplicable, state_of
 from service.ingest import read_file
 from service.records import DiagnosisState
 
@@ -41,6 +42,8 @@ def _earlier(file: Path) -> CalibrationSession:
 
 def _diagnosed(file: Path, earlier: list[CalibrationSession]) -> Result:
     session = read_file(file)
+    if session.programme not in CALIBRATIONS:
+        return session, inapplicable(session.unit), DiagnosisState.NOT_APPLICABLE
     found = diagnose(session, history=earlier)
     return session, document_of(found), state_of(found)
 

@@ -9,18 +9,18 @@ from rich.table import Table
 from rich.text import Text
 
 from estimator.session import CalibrationSession
-from service.flows.diagnosis_in_words import NOTHING, UNEXPLAINED
-from service.flows.finding_in_words import FindingView, finding_view
+from service.flows.diagnosis_in_words import NOT_APPLICABLE, NOTHING, UNEXPLAINED
+from service.pages.findings import FindingView, finding_view
 from service.pages.limits import limits_view
 from service.records import DiagnosisState
 from service.units import number
 
 COLOURS = {
-    DiagnosisState.NOTHING: "green",
     DiagnosisState.NAMED: "dark_orange",
     DiagnosisState.UNDECIDED: "blue",
     DiagnosisState.UNEXPLAINED: "magenta",
 }
+UNNAMED = {DiagnosisState.NOTHING: (NOTHING, "green"), DiagnosisState.NOT_APPLICABLE: (NOT_APPLICABLE, "yellow")}
 
 
 def diagnosis_view(session: CalibrationSession, document: dict[str, Any], state: DiagnosisState) -> RenderableType:
@@ -32,8 +32,8 @@ def diagnosis_view(session: CalibrationSession, document: dict[str, Any], state:
         parts += _finding(finding, COLOURS[state])
     for structure in document["structures"]:
         parts.append(Text(_structure(structure), COLOURS[DiagnosisState.UNEXPLAINED]))
-    if state is DiagnosisState.NOTHING:
-        parts.append(Text(NOTHING, COLOURS[state]))
+    if state in UNNAMED:
+        parts.append(Text(*UNNAMED[state]))
     if findings:
         parts.append(Text(_gain(document["gain"])))
     return Group(*parts, *_unseen(document["limits"]), Text(""))

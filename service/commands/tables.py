@@ -10,6 +10,7 @@ from rich.text import Text
 
 from estimator.results import Calibration, Estimate, Fit, SensorCalibration
 from estimator.session import CALIBRATIONS, CalibrationSession, Sensor
+from service.advice import what_to_add
 from service.units import deviation_unit, in_unit, measured, number
 
 UNSEEN = "not observable"
@@ -99,6 +100,10 @@ def _notes(calibration: Calibration) -> Iterator[Text]:
     for unseen, names in sensors.items():
         if unseen:
             yield Text(f"{', '.join(names)}: this session does not observe {unseen}.", "yellow")
+    fit = calibration.fit
+    if fit.rank < fit.parameters:
+        advice = what_to_add(calibration)
+        yield Text(f"{fit.rank} of {fit.parameters} parameters are told, {fit.weakest[0]} least: {advice}.", "yellow")
 
 
 def fit_in_words(fit: Fit) -> str:

@@ -10,13 +10,14 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from importlib.metadata import version
 from threading import Lock
+from typing import Any
 
 from estimator.diagnosis import Diagnosis
 from estimator.diagnosis import diagnose as find_causes
 from estimator.errors import SessionError
-from estimator.session import CalibrationSession
+from estimator.session import CALIBRATIONS, CalibrationSession
 from service.errors import NotFoundError
-from service.flows.diagnosis_in_words import document_of, state_of, summary_of
+from service.flows.diagnosis_in_words import NOT_APPLICABLE, document_of, inapplicable, state_of, summary_of
 from service.flows.flagging.diagnosis import flag_diagnosis
 from service.flows.judge import judge
 from service.ingest import read_upload
@@ -45,6 +46,8 @@ class Task:
     @property
     def is_quick(self) -> bool:
         """Whether it is made within a request."""
+        if self.session.programme not in CALIBRATIONS:
+            return True
         earlier = sum(past.size for past in self.earlier)
         return self.session.size <= QUICK_BYTES and earlier <= QUICK_EARLIER_BYTES
 
@@ -110,25 +113,33 @@ def diagnose_now_or_later(
 
 
 def _made(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
-    """Reads the stored bytes again and looks for causes."""
+    """Reads the stored bytes again and looks for causes, where the programme is one that calibrates."""
+    if task.session.programme not in CALIBRATIONS:
+        nothing = inapplicable(task.session.unit)
+        return _stored(task, DiagnosisState.NOT_APPLICABLE, NOT_APPLICABLE, nothing, None, now)
     try:
         session = _read(storage.files, task.session)
         found = find_causes(session, _comparable(storage.files, task, session))
         verdict = _verdict_after(storage, task, session, found)
     except BREAKDOWNS as fault:
         return _stored(task, DiagnosisState.FAILED, f"The session cannot be diagnosed: {fault}", None, None, now)
-    return _stored(task, state_of(found), summary_of(found), found, verdict, now)
+    return _stored(task, state_of(found), summary_of(found), document_of(found), verdict, now)
 
 
 def _stored(
-    task: Task, state: DiagnosisState, summary: str, found: Diagnosis | None, verdict: Verdict | None, now: datetime
+    task: Task,
+    state: DiagnosisState,
+    summary: str,
+    document: dict[str, Any] | None,
+    verdict: Verdict | None,
+    now: datetime,
 ) -> StoredDiagnosis:
     return StoredDiagnosis(
         session=task.session.id,
         model_revision=task.model_revision,
         state=state,
         summary=summary,
-        document=None if found is None else document_of(found),
+        document=document,
         verdict_after=verdict,
         estimator_version=VERSION,
         created_at=now,
@@ -147,7 +158,7 @@ def _comparable(files: Files, task: Task, session: CalibrationSession) -> list[C
             earlier = _read(files, past)
         except (NotFoundError, SessionError):
             continue
-        if earlier.programme == session.programme and _sensors(earlier) == _sensors(session):
+        if _sensors(earlier) == _sensors(session):
             found.append(earlier)
     return found
 

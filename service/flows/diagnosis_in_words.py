@@ -7,6 +7,9 @@ from typing import Any
 from estimator.diagnosis import Diagnosis, Finding
 from service.records import DiagnosisState
 
+NOT_APPLICABLE = (
+    "Not applicable to this programme: causes are looked for in calibrations, on a stand or in still orientations."
+)
 NOTHING = "Nothing wrong found: the simulation explains the readings."
 MOST_NAMES = 3
 UNEXPLAINED = "Something is there that no known cause explains"
@@ -16,6 +19,13 @@ def document_of(diagnosis: Diagnosis) -> dict[str, Any]:
     """imu-diagnosis/1; a number that is not finite becomes null."""
     document: dict[str, Any] = _finite(diagnosis.to_dict())
     return document
+
+
+def inapplicable(unit: str) -> dict[str, Any]:
+    """imu-diagnosis/1 of a session of a programme in which no causes are looked for."""
+    empty: dict[str, Any] = {"findings": [], "unexplained": False, "structures": [], "limits": []}
+    unmade = dict.fromkeys(("gain", "calibration", "residuals_before"))
+    return {"format": "imu-diagnosis/1", "unit": unit, **empty, **unmade, "notes": [NOT_APPLICABLE]}
 
 
 def _finite(value: Any) -> Any:

@@ -1,13 +1,14 @@
 """Flow: everything that a session's diagnosis page shows."""
 
-from service.records import DiagnosisReport, StoredDiagnosis
+from service.records import DiagnosisReport, DiagnosisState, StoredDiagnosis
 from service.storage.calibration_document import calibration_from_dict, residuals_from_dict
 from service.storage.store import Store
 
 
 def diagnosis_report(store: Store, id: str, diagnosis: StoredDiagnosis | None) -> DiagnosisReport:
     """The session, its diagnosis, its calibration in force and the model revisions that concern it."""
-    document = None if diagnosis is None else diagnosis.document
+    made = diagnosis is not None and diagnosis.state is not DiagnosisState.NOT_APPLICABLE
+    document = diagnosis.document if diagnosis is not None and made else None
     return DiagnosisReport(
         session=store.sessions.get(id),
         diagnosis=diagnosis,

@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from math import isfinite, sqrt
 
-from estimator.results import Fit
+from estimator.results import Calibration, Fit
+from service.advice import what_to_add
 from service.units import number
 
 
@@ -16,9 +17,10 @@ class FitWords:
     warnings: tuple[str, ...]
 
 
-def fit_in_words(fit: Fit) -> FitWords:
+def fit_in_words(calibration: Calibration) -> FitWords:
     """What χ² and its probability say, and what to be careful of."""
-    return FitWords(_headline(fit), _detail(fit), tuple(_warnings(fit)))
+    fit = calibration.fit
+    return FitWords(_headline(fit), _detail(fit), (*_warnings(fit), *_open(calibration)))
 
 
 def _headline(fit: Fit) -> str:
@@ -48,11 +50,17 @@ def _warnings(fit: Fit) -> list[str]:
             f"All uncertainties were enlarged {number(sqrt(fit.covariance_factor), 2)} times, because the stated "
             "noise cannot explain the residuals. Look for structure in them below."
         )
-    if fit.rank < fit.parameters:
-        found.append(
-            f"The session determines {fit.rank} of {fit.parameters} parameters. The least known is "
-            f"{fit.weakest[0]}; more or other positions would tell it."
-        )
     if not fit.converged:
         found.append(f"The fit did not settle within {fit.iterations} iterations: do not rely on these numbers.")
     return found
+
+
+def _open(calibration: Calibration) -> list[str]:
+    """What the session leaves open, and what to add."""
+    fit = calibration.fit
+    if fit.rank >= fit.parameters:
+        return []
+    return [
+        f"The session determines {fit.rank} of {fit.parameters} parameters. The least known is {fit.weakest[0]}; "
+        f"{what_to_add(calibration)}."
+    ]

@@ -6,8 +6,9 @@ from datetime import datetime
 
 from estimator.errors import SessionError
 from estimator.results import Calibration
-from estimator.session import CalibrationSession, comparable
+from estimator.session import IN_SERVICE, RATE_TABLE, ROTATION_ALIGNMENT, CalibrationSession, comparable
 from service.flows.flagging.verdict import flag_verdict
+from service.flows.in_service import Compared, compared, judge_recording, reference_in_force
 from service.flows.judge import judge
 from service.flows.model_in_force import calibrated, model_of
 from service.flows.parameter_values import parameter_values
@@ -16,6 +17,8 @@ from service.records import Judged, Model, StoredSession
 from service.storage import Storage
 from service.storage.store import Store
 
+WITHOUT_MODEL = (ROTATION_ALIGNMENT, RATE_TABLE)
+"""Programmes that no accepted cause changes."""
 RECOMPUTED, UNCHANGED, LEFT = "recomputed", "unchanged", "left"
 
 
@@ -42,6 +45,8 @@ class Recomputed:
     session: CalibrationSession
     model: Model
     calibration: Calibration
+    recording: Compared | None
+    """A recording in service beside its unit's reference as it is now; None for every other programme."""
 
 
 def recalibrate(
@@ -77,16 +82,26 @@ def _recalibrate(
     """One session: what became of it and the revision that it now rests on."""
     with storage.database.reading() as store:
         model = model_of(store.models.of_session(stored.id))
-    if model.revision == stored.revision:
+    if model.revision == stored.revision or stored.programme in WITHOUT_MODEL:
         return UNCHANGED, stored.revision
     try:
-        session = read_upload(storage.files.read(stored.sha256), stored.filename)
-        new = Recomputed(stored, session, model, calibrated(session, model))
+        new = _recomputed(storage, stored, model)
     except SessionError:
         return LEFT, stored.revision
     with storage.database.writing() as store:
         _store(store, new, now, coverage_factor, who)
     return RECOMPUTED, model.revision
+
+
+def _recomputed(storage: Storage, stored: StoredSession, model: Model) -> Recomputed:
+    """The stored bytes read and computed again; a recording is compared with the reference that was computed again."""
+    session = read_upload(storage.files.read(stored.sha256), stored.filename)
+    if session.programme != IN_SERVICE:
+        return Recomputed(stored, session, model, calibrated(session, model), None)
+    with storage.database.reading() as store:
+        reference = reference_in_force(store, session, stored.started_at)
+    recording = compared(session, reference)
+    return Recomputed(stored, session, model, recording.calibration, recording)
 
 
 def _store(store: Store, new: Recomputed, now: datetime, coverage_factor: float, who: str) -> None:
@@ -106,6 +121,9 @@ def _store(store: Store, new: Recomputed, now: datetime, coverage_factor: float,
 
 
 def _judged(store: Store, unit: int, new: Recomputed, coverage_factor: float) -> Judged:
+    if new.recording is not None:
+        unit_type = store.unit_types.of_unit(new.session.unit)
+        return judge_recording(new.session, new.recording, unit_type, coverage_factor)
     since, until = store.services.around(unit, new.stored.started_at)
     alike = comparable(new.session.programme)
     reference = store.sessions.reference(unit, new.session.block, since, until, alike)

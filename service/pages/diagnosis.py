@@ -7,7 +7,7 @@ from typing import Any
 from service.charts import ChartSet
 from service.charts.diagnosis import MOST_PANELS, Sides, diagnosis_charts
 from service.flows.diagnosis_in_words import listed
-from service.flows.finding_in_words import FindingView, chance, finding_view, in_words
+from service.pages.findings import FindingView, chance, finding_view, in_words
 from service.pages.gain import GainView, gain_view
 from service.pages.limits import LimitsView, limits_view
 from service.pages.residual_table import ResidualTable, residual_table
@@ -20,6 +20,7 @@ HEADLINES = {
     DiagnosisState.UNDECIDED: "Cannot tell which",
     DiagnosisState.UNEXPLAINED: "Something is there that no known cause explains",
     DiagnosisState.FAILED: "This session cannot be diagnosed",
+    DiagnosisState.NOT_APPLICABLE: "Not applicable to this programme",
 }
 """A named cause speaks for itself."""
 TONES = {
@@ -28,6 +29,7 @@ TONES = {
     DiagnosisState.UNDECIDED: "undecidable",
     DiagnosisState.UNEXPLAINED: "undecidable",
     DiagnosisState.FAILED: "none",
+    DiagnosisState.NOT_APPLICABLE: "none",
 }
 """Style and icon, in the tones of the verdicts: how much it asks for attention."""
 SOUND = "Measurement and simulation agree within the noise: no cause of the catalogue and no other structure shows."
@@ -97,8 +99,10 @@ def diagnosis_page(report: DiagnosisReport) -> DiagnosisPage:
         scopes=_scopes(session),
         made="" if found is None else f"Made by estimator {found.estimator_version}",
     )  # fmt: skip
-    if found is None or document is None:
-        return page if found is None else replace(page, what_to_do=found.summary)
+    if found is None:
+        return page
+    if document is None or found.state is DiagnosisState.NOT_APPLICABLE:
+        return replace(page, what_to_do=found.summary)
     return _with_evidence(page, report, document)
 
 

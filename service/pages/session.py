@@ -7,9 +7,10 @@ from estimator.results import Calibration, Estimate, SensorCalibration
 from service.charts import ChartSet
 from service.charts.residuals import residual_charts
 from service.flows.fit_in_words import FitWords, fit_in_words
-from service.flows.known_in_words import combination_in_words
-from service.flows.motion_in_words import MotionLine, motions_in_words
 from service.pages.diagnosis import PENDING, TONES
+from service.pages.known import combination_in_words
+from service.pages.motion import MotionLine, motions_in_words
+from service.pages.parity import ParityView, parity_in_words, parity_view
 from service.pages.residual_table import ResidualTable, residual_table
 from service.records import ALL_PARAMETERS, Decision, DiagnosisSummary, SessionReport, StoredSession, Verdict
 from service.units import (
@@ -73,6 +74,8 @@ class SessionPage:
     """Of every row's cells, in their order."""
     sensors: tuple[SensorRow, ...]
     fit: FitWords
+    parity: ParityView | None
+    """Of a recording in service only."""
     charts: tuple[ChartSet, ...]
     residuals: ResidualTable
     method: str
@@ -95,7 +98,8 @@ def session_page(report: SessionReport, diagnosis: DiagnosisSummary | None = Non
         condition=condition_of(report.session.verdict, is_reference=report.session.is_reference),
         parameters=parameters,
         sensors=tuple(_sensor(s, parameters, judged, coverage) for s in calibration.sensors),
-        fit=fit_in_words(calibration.fit),
+        fit=fit_in_words(calibration) if calibration.parity is None else parity_in_words(calibration.parity),
+        parity=None if calibration.parity is None else parity_view(calibration.parity),
         charts=residual_charts(calibration),
         residuals=residual_table(calibration),
         method=_method(calibration),

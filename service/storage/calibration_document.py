@@ -57,7 +57,8 @@ def _sensor(entry: dict[str, Any]) -> SensorCalibration:
 
 def _fit(entry: dict[str, Any]) -> Fit:
     weakest = entry["weakest"]
-    return Fit(**{**entry, "weakest": (weakest["parameter"], weakest["sigma"])})
+    add = tuple(tuple(direction) for direction in entry.get("add", ()))
+    return Fit(**{**entry, "weakest": (weakest["parameter"], weakest["sigma"]), "add": add})
 
 
 def residuals_from_dict(entry: dict[str, Any]) -> Residuals:

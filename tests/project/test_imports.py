@@ -9,7 +9,7 @@ from tests.project.source import PACKAGES, Module, modules
 
 SERVICE_LAYERS = (
     {"settings", "records", "flag_records", "units", "errors"},
-    {"metrics", "planning", "verdicts"},
+    {"advice", "metrics", "planning", "verdicts"},
     {"ingest", "storage"},
     {"flows", "charts"},
     {"reports"},

@@ -3,6 +3,7 @@
 import numpy as np
 
 from estimator.arrays import tangents
+from estimator.calibration.free.completion import completion
 from estimator.calibration.free.excess import p_value
 from estimator.calibration.free.gyros import GyroBiases
 from estimator.calibration.free.knowledge import Knowledge
@@ -38,7 +39,16 @@ def fit_of_accelerometers(
         weakest=(element_names[lead], sigma),
         iterations=used.iterations,
         converged=used.converged,
+        add=() if used.knowledge.full else to_add(used),
     )
+
+
+def to_add(solution: Solution) -> tuple[tuple[float, float, float], ...]:
+    """Directions of up that complete what the orientations leave open."""
+    rows, up = solution.rows, solution.state.directions
+    sigma = None if not rows.held else float(rows.prior.max() ** -0.5)
+    found = completion(rows.nominal_axes, up, quadratic=solution.quadratic, direction_sigma=sigma)
+    return tuple((float(x), float(y), float(z)) for x, y, z in found)
 
 
 def fit_of_gyros(gyros: GyroBiases, element_names: tuple[str, ...]) -> Fit:

@@ -28,10 +28,16 @@ class DiagnosisDocument(BaseModel):
     )
     unexplained: bool = Field(description="Whether there is structure that no known cause explains.")
     structures: list[dict[str, Any]] = Field(description="Where that structure lives.")
-    gain: dict[str, Any] = Field(description="Prediction of readings that were held out, before and after.")
+    gain: dict[str, Any] | None = Field(
+        description="Prediction of readings that were held out, before and after; null where causes are not looked for."
+    )
     limits: list[dict[str, Any]] = Field(description="Smallest amplitude of each cause that would have been found.")
-    calibration: dict[str, Any] = Field(description="imu-calibration/1 under the model with the named causes.")
-    residuals_before: dict[str, Any] = Field(description="Measured minus simulated under the baseline model.")
+    calibration: dict[str, Any] | None = Field(
+        description="imu-calibration/1 under the model with the named causes; null where causes are not looked for."
+    )
+    residuals_before: dict[str, Any] | None = Field(
+        description="Measured minus simulated under the baseline model; null where causes are not looked for."
+    )
     notes: list[str] = Field(description="What else is worth knowing.")
     session: str = Field(description="Id of the session.")
     state: DiagnosisState = Field(description="What it came to.")

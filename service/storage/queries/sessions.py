@@ -70,8 +70,12 @@ class Sessions(Queries):
         return tuple(_session_record(*found) for found in self._session.execute(query))
 
     def before(self, session: StoredSession, since: datetime | None, most: int) -> tuple[StoredSession, ...]:
-        """The last sessions of the unit measured before one and not before a time, oldest first."""
-        query = _sessions().where(UnitRow.serial == session.unit, SessionRow.started_at < session.started_at)
+        """The last sessions of the unit's same programme before one and not before a time, oldest first."""
+        query = _sessions().where(
+            UnitRow.serial == session.unit,
+            SessionRow.programme == session.programme,
+            SessionRow.started_at < session.started_at,
+        )
         if since is not None:
             query = query.where(SessionRow.started_at >= since)
         latest = query.order_by(SessionRow.started_at.desc(), SessionRow.id.desc()).limit(most)

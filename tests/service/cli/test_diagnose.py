@@ -12,6 +12,7 @@ from tests.databases import Databases
 from tests.service.cli.conftest import Run, write
 from tests.service.diagnosed import ALIASES, TEMPERATURE, UNEXPLAINED, drawn
 from tests.service.flows.test_diagnose import NOW
+from tests.service.recordings import recording_document
 
 
 @pytest.fixture
@@ -31,6 +32,14 @@ def test_people_read_the_cause_its_size_and_what_to_do(run: Run, warm_file: Path
     shown = run("diagnose", warm_file).out
     for part in ("The zero of A5 follows the temperature.", "What to do:", "±", "µg/K", "Not seen"):
         assert part in shown
+
+
+def test_a_programme_in_which_no_causes_are_looked_for_is_no_fault(run: Run, tmp_path: Path) -> None:
+    file = write(tmp_path, "flight.json", recording_document())
+    shown = run("diagnose", file)
+    assert (shown.code, "Not applicable to this programme" in shown.out) == (0, True)
+    (document,) = run("diagnose", file, "--json").documents
+    assert (document["findings"], document["unexplained"], document["gain"]) == ([], False, None)
 
 
 def test_a_choice_is_shown_with_what_would_decide_it(run: Run, tmp_path: Path) -> None:

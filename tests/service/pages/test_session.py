@@ -2,11 +2,12 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from estimator.results import KnownCombination
 from service.flows.fit_in_words import fit_in_words
-from service.flows.known_in_words import combination_in_words
+from service.pages.known import combination_in_words
 from service.pages.session import session_page
 from tests.builders import accelerometer_block
 from tests.service.pages.records import session_report
@@ -51,13 +52,29 @@ def test_known_readings_are_written_per_g() -> None:
     ("p", "says"), [(0.6, "explains"), (0.01, "larger than usual"), (1e-6, "more than"), (None, "no standard errors")]
 )
 def test_fit_is_judged_in_words(p: float | None, says: str) -> None:
-    fit = replace(session_report().calibration.fit, p_value=p)
-    assert says in fit_in_words(fit).headline
+    known = session_report().calibration
+    calibration = replace(known, fit=replace(known.fit, p_value=p))
+    assert says in fit_in_words(calibration).headline
 
 
 def test_enlarged_uncertainties_are_a_warning() -> None:
-    fit = replace(session_report().calibration.fit, covariance_factor=4.0)
-    assert any("2.00 times" in w for w in fit_in_words(fit).warnings)
+    known = session_report().calibration
+    calibration = replace(known, fit=replace(known.fit, covariance_factor=4.0))
+    assert any("2.00 times" in w for w in fit_in_words(calibration).warnings)
+
+
+def test_orientations_that_are_missing_are_a_warning() -> None:
+    known = session_report().calibration
+    calibration = replace(known, fit=replace(known.fit, rank=29, add=((0.0, -0.6, 0.8),)))
+    (warning,) = fit_in_words(calibration).warnings
+    assert "29 of 30 parameters" in warning
+
+
+def test_one_run_is_told_to_measure_the_other() -> None:
+    known = session_report().calibration
+    one_run = replace(known.residuals, flipped=np.zeros(24, dtype=bool))
+    calibration = replace(known, fit=replace(known.fit, rank=29), residuals=one_run)
+    assert fit_in_words(calibration).warnings[0].endswith("measure the same positions in the other run too.")
 
 
 def test_residuals_are_charted_by_angle_and_in_order() -> None:

@@ -1,4 +1,4 @@
-"""Step: a finding of a diagnosis in words and people's units."""
+"""A finding of a diagnosis in words and people's units."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

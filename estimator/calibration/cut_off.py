@@ -1,0 +1,62 @@
+"""A channel that stood at the end of its range: told from the readings of the other sensors, before anything is fitted.
+
+A few clipped readings are a cause that the diagnosis names. A channel that is cut off in a good part of the rows spoils
+every parameter of the block, so such a session is refused.
+"""
+
+import numpy as np
+
+from estimator.errors import Problem, ScheduleError
+from estimator.session import ACCELEROMETER, Array, CalibrationSession
+
+SHARE = 0.2
+"""Part of the rows at one and the same extreme reading from which a channel is looked at, …"""
+
+FEWEST = 4
+"""… and their least number."""
+
+CHANGED = 1.0
+"""m/s²; range of what the other sensors say of its input in those rows, from which it was cut off."""
+
+SHOWN = 6
+"""Rows that are named."""
+
+
+def require_whole_range(session: CalibrationSession) -> None:
+    """ScheduleError with every accelerometer that was cut off; blocks of three cannot tell."""
+    u = session.readings
+    enough = max(FEWEST, SHARE * len(u))
+    ends = (u.min(axis=0), u.max(axis=0))
+    problems = []
+    for end in ends:
+        stood = u == end
+        for i in np.flatnonzero((stood.sum(axis=0) >= enough) & (ends[0] < ends[1])):
+            seen = expected(session, int(i))
+            rows = np.flatnonzero(stood[:, i])
+            if seen is not None and np.ptp(seen[rows]) > CHANGED:
+                problems.append(
+                    Problem(session.sensors[i].name, cut_off(float(end[i]), rows, float(np.ptp(seen[rows]))))
+                )
+    if problems:
+        raise ScheduleError(problems)
+
+
+def expected(session: CalibrationSession, i: int) -> Array | None:
+    """(R,) input of sensor i by the others' nominal axes, up to a constant; None where they do not tell it."""
+    others = [k for k, s in enumerate(session.sensors) if k != i and s.kind == ACCELEROMETER]
+    if session.sensors[i].kind != ACCELEROMETER or len(others) < 3:
+        return None
+    axes = np.stack([session.sensors[k].nominal_axis for k in others])
+    if np.linalg.matrix_rank(axes, tol=0.1) < 3:
+        return None
+    inputs = session.readings[:, others] / [session.sensors[k].nominal_scale for k in others]
+    return np.asarray(inputs @ np.linalg.pinv(axes).T @ session.sensors[i].nominal_axis)
+
+
+def cut_off(end: float, rows: Array, change: float) -> str:
+    """What happened, and what to do."""
+    named = ", ".join(str(row + 1) for row in rows[:SHOWN]) + (", …" if len(rows) > SHOWN else "")
+    return (
+        f"reads exactly {end:g} in {len(rows)} rows ({named}) while the other sensors show its input change by "
+        f"{change:.2g} m/s²: the channel is at the end of its range; widen the range, or leave these rows out"
+    )

@@ -1,0 +1,94 @@
+"""Which still orientations to add to a set so that it identifies everything, told from the block's nominal axes.
+
+An orientation's share of the information is the Schur complement of its own two unknown turns; shares add up.
+Orientations are taken one by one from a fine grid of directions, each the one that raises ln|information + plausible
+range| most: a direction nothing tells of yet counts for most. What a set lacks does not depend on the number of sensors
+(the readings lie on an ellipsoid), so of a large block a few sensors are asked.
+"""
+
+import numpy as np
+from scipy.linalg import qr
+
+from estimator.calibration.free.information import movable, unseen_below
+from estimator.calibration.free.model import Rows, State, linearise
+from estimator.parameters import PLAUSIBLE
+from estimator.session import Array
+
+GRID = 120
+"""Directions to choose from."""
+
+LEAST = 9
+"""Generic orientations that identify everything but the quadratic terms."""
+
+ASKED = 12
+"""Sensors of a block that are asked at most."""
+
+NOISE = 1e-5
+"""g; of a reading where none is stated."""
+
+
+def planned_rows(
+    axes: Array, directions: Array, noise: float = NOISE, direction_sigma: float | None = None
+) -> tuple[Rows, State]:
+    """Orientations (R, 3) still to be measured by sensors along axes (m, 3), at the nominal parameters."""
+    R = len(directions)
+    prior = np.full(R, 0.0 if direction_sigma is None else direction_sigma**-2.0)
+    stated = directions if direction_sigma is not None else np.zeros((R, 3))
+    zero = np.zeros(len(axes))
+    rows = Rows(directions @ axes.T, np.full((R, len(axes)), noise), stated, prior, axes)
+    return rows, State(zero, zero, zero, axes, directions)
+
+
+def shares(rows: Rows, state: State) -> Array:
+    """(R, 5 m, 5 m) what each orientation adds to the information."""
+    linear = linearise(rows, state)
+    R, m = rows.y.shape
+    full = np.zeros((R, m, 5, m, 5))
+    each = np.arange(m)
+    full[:, each, :, each] = np.einsum("rmi,rmj->mrij", linear.own, linear.own)
+    return full.reshape(R, 5 * m, 5 * m) - linear.coupling @ linear.inverse @ np.swapaxes(linear.coupling, 1, 2)
+
+
+def grid(count: int = GRID) -> Array:
+    """(count, 3) directions evenly spread over the sphere (golden spiral)."""
+    k = np.arange(count) + 0.5
+    height, turn = 1 - 2 * k / count, np.pi * (1 + 5**0.5) * k
+    side = np.sqrt(1 - height**2)
+    return np.stack([side * np.cos(turn), side * np.sin(turn), height], axis=-1)
+
+
+def asked(axes: Array) -> Array:
+    """(≤ ASKED, 3) axes that stand for a block: three that span space best, and the first of the others."""
+    if len(axes) <= ASKED:
+        return axes
+    best = qr(axes.T, pivoting=True, mode="r")[1][:3]
+    others = np.setdiff1d(np.arange(len(axes)), best)[: ASKED - 3]
+    return np.asarray(axes[np.sort(np.concatenate([best, others]))])
+
+
+def completion(
+    axes: Array,
+    directions: Array,
+    *,
+    noise: float = NOISE,
+    quadratic: bool = False,
+    direction_sigma: float | None = None,
+    at_least: int = 0,
+) -> Array:
+    """(k, 3) directions that bring a set to full rank, fewest first; none where it has it, or cannot get it."""
+    known = asked(axes)
+    rows, state = planned_rows(known, directions, noise, direction_sigma)
+    candidates = grid()
+    basis = movable(rows.nominal_axes, state.axes, rows.held, quadratic)
+    own = basis.T @ shares(rows, state).sum(axis=0) @ basis
+    offered = basis.T @ shares(*planned_rows(known, candidates, noise, direction_sigma)) @ basis
+    ridge = PLAUSIBLE**-2 * np.eye(basis.shape[1])
+    chosen: list[int] = []
+    for _ in range(max(at_least, 4 * LEAST)):
+        values = np.linalg.eigvalsh(own)
+        if len(chosen) >= at_least and values[0] > unseen_below(values):
+            break
+        best = int(np.argmax(np.linalg.slogdet(own + offered + ridge)[1]))
+        chosen.append(best)
+        own = own + offered[best]
+    return candidates[chosen].reshape(-1, 3)

@@ -1,0 +1,84 @@
+"""Alignments, rate tables and recordings in service through the flows that were made for calibrations."""
+
+from datetime import UTC, datetime
+
+import httpx
+import pytest
+
+from service.flows.diagnose import diagnose, task_of
+from service.flows.recalibrate import recalibrate
+from service.flows.upload import upload
+from service.records import DiagnosisState, NewModel, Scope, Verdict
+from service.storage import Storage
+from tests.service.recordings import recording_bytes
+from tests.service.sessions import session_bytes
+from tests.service.turntable import alignment_bytes, rate_table_bytes
+
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
+CUBIC = NewModel("cubic-nonlinearity", Scope.UNIT, "K. Ito", "seen in three sessions")
+OTHERS = {"alignment": alignment_bytes(unit="BA-017"), "rate table": rate_table_bytes(unit="BA-017")}
+OTHERS["recording"] = recording_bytes()
+
+
+def stored(storage: Storage, content: bytes) -> str:
+    """The id of an upload."""
+    return upload(storage, content, "a.json", NOW).id
+
+
+def accepted(storage: Storage, session: str) -> None:
+    """A cause of A3 in the unit's model."""
+    with storage.database.writing() as store:
+        store.models.add(CUBIC, "BA-017", ("A3",), session, {}, NOW)
+
+
+@pytest.mark.parametrize("programme", OTHERS)
+def test_causes_are_not_looked_for_and_that_is_no_failure(storage: Storage, programme: str) -> None:
+    stored(storage, session_bytes())
+    found = diagnose(storage, stored(storage, OTHERS[programme]), NOW)
+    assert found.state is DiagnosisState.NOT_APPLICABLE
+    assert found.summary.startswith("Not applicable to this programme")
+
+
+@pytest.mark.parametrize("programme", OTHERS)
+def test_pages_and_answers_say_so(client: httpx.Client, programme: str) -> None:
+    client.post("/api/v1/sessions", content=session_bytes())
+    id = client.post("/api/v1/sessions", content=OTHERS[programme]).json()["id"]
+    answer = client.get(f"/api/v1/sessions/{id}/diagnosis")
+    document = answer.json()
+    assert answer.status_code == 200
+    assert (document["state"], document["findings"], document["gain"]) == ("not applicable", [], None)
+    for page in (f"/sessions/{id}", f"/sessions/{id}/diagnosis"):
+        assert "Not applicable to this programme" in client.get(page).text
+
+
+def test_recordings_between_two_calibrations_do_not_hide_the_earlier_one(storage: Storage) -> None:
+    first = stored(storage, session_bytes())
+    for seed in range(12):
+        stored(storage, recording_bytes(seed=seed, seconds=20))
+    last = stored(storage, session_bytes(seed=2, month=6))
+    with storage.database.reading() as store:
+        assert [past.id for past in task_of(store, last).earlier] == [first]
+
+
+def test_a_recording_is_compared_again_with_the_reference_under_its_new_model(storage: Storage) -> None:
+    reference, recording = stored(storage, session_bytes()), stored(storage, recording_bytes(a3_moved=400.0))
+    accepted(storage, reference)
+    done = recalibrate(storage, "BA-017", NOW)
+    assert (done.recomputed, done.left) == (2, 0)
+    with storage.database.reading() as store:
+        assert store.calibrations.revisions(recording) == (0, 1)
+        before, after = (store.calibrations.get(recording, revision) for revision in (0, 1))
+        assert store.sessions.get(recording).verdict is Verdict.FAIL
+    assert before.parity is not None
+    assert after.parity is not None
+    assert after.parity["isolated"] == "A3"
+    assert before.parity["chi2"] != after.parity["chi2"]
+
+
+def test_no_accepted_cause_changes_an_alignment(storage: Storage) -> None:
+    reference, alignment = stored(storage, session_bytes()), stored(storage, OTHERS["alignment"])
+    accepted(storage, reference)
+    done = recalibrate(storage, "BA-017", NOW)
+    assert (done.recomputed, done.unchanged) == (1, 1)
+    with storage.database.reading() as store:
+        assert store.calibrations.revisions(alignment) == (0,)
