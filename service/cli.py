@@ -23,6 +23,7 @@ COMMANDS = {
     "fleet": "report.fleet",
     "report": "report.report",
     "flags": "flags.flags",
+    "certificate": "certificate.certificate",
     "simulate": "simulate.simulate_files",
     "plan": "plan.plan_session",
     "parity": "parity.parity",

@@ -45,7 +45,7 @@ def as_csv(table: pl.DataFrame, filename: str) -> Response:
     """A line of names, then one line a row; times in ISO 8601. No text can pass for a formula of a spreadsheet."""
     harmless = [_harmless(column.name) for column in table.iter_columns() if column.dtype == pl.String]
     text = table.with_columns(harmless).write_csv(datetime_format="%Y-%m-%dT%H:%M:%S%.6fZ")
-    return _file(text.encode(), "text/csv; charset=utf-8", filename)
+    return as_file(text.encode(), "text/csv; charset=utf-8", filename)
 
 
 def _harmless(column: str) -> pl.Expr:
@@ -57,7 +57,7 @@ def as_parquet(table: pl.DataFrame, filename: str) -> Response:
     """Parquet."""
     target = io.BytesIO()
     table.write_parquet(target)
-    return _file(target.getvalue(), "application/vnd.apache.parquet", filename)
+    return as_file(target.getvalue(), "application/vnd.apache.parquet", filename)
 
 
 def _table(rows: Sequence[Mapping[str, Any]], columns: Mapping[str, pl.DataType]) -> pl.DataFrame:
@@ -70,6 +70,7 @@ def _plain(value: Any) -> Any:
     return str(value) if isinstance(value, str) else value
 
 
-def _file(content: bytes, media_type: str, filename: str) -> Response:
+def as_file(content: bytes, media_type: str, filename: str) -> Response:
+    """Bytes that a browser keeps as a file of this name."""
     disposition = f"attachment; filename*=UTF-8''{quote(filename, safe='')}"
     return Response(content, media_type=media_type, headers={"Content-Disposition": disposition})

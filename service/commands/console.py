@@ -23,6 +23,7 @@ T = TypeVar("T")
 Files = Annotated[list[Path], typer.Argument(metavar="FILE", help="Session files.", show_default=False)]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON: one object; with several files one a line.")]
 Server = Annotated[str, typer.Option(help="Address of the service.", envvar="IMU_HEALTH_SERVER")]
+Out = Annotated[Path | None, typer.Option(help="File to write.", show_default="standard output")]
 WIDE = 160
 """Columns of a table that goes to a file or another program."""
 DEFAULT_SERVER = "http://127.0.0.1:8000"
@@ -41,6 +42,14 @@ def say(line: str) -> None:
 def print_json(document: Any) -> None:
     """One JSON document on one line of standard output."""
     typer.echo(json.dumps(document, ensure_ascii=False, allow_nan=False))
+
+
+def deliver(content: bytes, out: Path | None) -> None:
+    """A document to a file, or to standard output."""
+    if out is None:
+        typer.echo(content, nl=False)
+    else:
+        out.write_bytes(content)
 
 
 def problem_line(file: Path, problems: Iterable[Problem]) -> str:

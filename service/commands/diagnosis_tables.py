@@ -10,7 +10,7 @@ from rich.text import Text
 
 from estimator.session import CalibrationSession
 from service.flows.diagnosis_in_words import NOT_APPLICABLE, NOTHING, UNEXPLAINED
-from service.pages.findings import FindingView, finding_view
+from service.flows.finding_in_words import FindingView, finding_view
 from service.pages.limits import limits_view
 from service.records import DiagnosisState
 from service.units import number

@@ -1,7 +1,6 @@
 """`imu-health fleet` and `imu-health report`: the fleet's condition from a running service."""
 
 from enum import StrEnum
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -9,7 +8,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from service.commands.client import connected
-from service.commands.console import DEFAULT_SERVER, AsJson, Server, print_json, screen
+from service.commands.console import DEFAULT_SERVER, AsJson, Out, Server, deliver, print_json, screen
 from service.commands.upload import coloured
 from service.records import Verdict
 from service.units import number
@@ -35,15 +34,11 @@ def fleet(server: Server = DEFAULT_SERVER, as_json: AsJson = False) -> None:
 def report(
     server: Server = DEFAULT_SERVER,
     format: Annotated[Format, typer.Option("--format", help="json or csv.")] = Format.CSV,
-    out: Annotated[Path | None, typer.Option(help="File to write.", show_default="standard output")] = None,
+    out: Out = None,
 ) -> None:
     """Write the fleet's condition as a file for other programs."""
     with connected(server) as client:
-        content = client.get("/fleet/report", format=format.value).content
-    if out is None:
-        typer.echo(content, nl=False)
-    else:
-        out.write_bytes(content)
+        deliver(client.get("/fleet/report", format=format.value).content, out)
 
 
 def _summary(condition: dict[str, Any]) -> str:

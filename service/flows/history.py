@@ -26,10 +26,10 @@ def unit_history(
     )
 
 
-def recent_history(store: Store, serial: str, most: int) -> tuple[HistoryPoint, ...]:
-    """The newest sessions of a unit's history, whole, with at most so many points; oldest first."""
+def recent_history(store: Store, serial: str, most: int, *, until: datetime | None = None) -> tuple[HistoryPoint, ...]:
+    """The newest sessions of a unit's history before a time, whole, with at most so many points; oldest first."""
     unit = store.units.key(serial)
-    found = store.history.points(unit, HistoryQuery(limit=most + 1, newest=True))
+    found = store.history.points(unit, HistoryQuery(until=until, limit=most + 1, newest=True))
     if len(found) <= most:
         return found
     return tuple(point for point in found if point.session != found[0].session)

@@ -7,7 +7,7 @@ from typing import Any
 from service.charts import ChartSet
 from service.charts.diagnosis import MOST_PANELS, Sides, diagnosis_charts
 from service.flows.diagnosis_in_words import listed
-from service.pages.findings import FindingView, chance, finding_view, in_words
+from service.flows.finding_in_words import FindingView, chance, finding_view, in_words
 from service.pages.gain import GainView, gain_view
 from service.pages.limits import LimitsView, limits_view
 from service.pages.residual_table import ResidualTable, residual_table

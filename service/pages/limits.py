@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from service.pages.findings import in_words
+from service.flows.finding_in_words import in_words
 from service.units import THIN, amplitude_unit, number
 
 

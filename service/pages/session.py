@@ -7,9 +7,9 @@ from estimator.results import Calibration, Estimate, SensorCalibration
 from service.charts import ChartSet
 from service.charts.residuals import residual_charts
 from service.flows.fit_in_words import FitWords, fit_in_words
+from service.flows.known_in_words import combination_in_words
+from service.flows.motion_in_words import MotionLine, motions_in_words
 from service.pages.diagnosis import PENDING, TONES
-from service.pages.known import combination_in_words
-from service.pages.motion import MotionLine, motions_in_words
 from service.pages.parity import ParityView, parity_in_words, parity_view
 from service.pages.residual_table import ResidualTable, residual_table
 from service.records import ALL_PARAMETERS, Decision, DiagnosisSummary, SessionReport, StoredSession, Verdict

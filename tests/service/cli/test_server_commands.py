@@ -90,3 +90,12 @@ def test_the_report_is_a_table_for_other_programs(run: Run, address: str, good_f
     assert pl.read_csv(target)["serial"].to_list() == ["BA-017"]
     [report] = run("report", "--server", address, "--format", "json").documents
     assert report["units"][0]["serial"] == "BA-017"
+
+
+def test_a_certificate_is_written_as_pdf(run: Run, address: str, good_file: Path, tmp_path: Path) -> None:
+    [receipt] = run("upload", good_file, "--server", address, "--json").documents
+    target = tmp_path / "certificate.pdf"
+    assert run("certificate", receipt["id"], "--server", address, "--out", target).code == 0
+    assert target.read_bytes().startswith(b"%PDF")
+    ran = run("certificate", "../none", "--server", address)
+    assert (ran.code, ran.out, ran.err.count("\n")) == (1, "", 1)

@@ -7,7 +7,7 @@ import pytest
 
 from estimator.results import KnownCombination
 from service.flows.fit_in_words import fit_in_words
-from service.pages.known import combination_in_words
+from service.flows.known_in_words import combination_in_words
 from service.pages.session import session_page
 from tests.builders import accelerometer_block
 from tests.service.pages.records import session_report

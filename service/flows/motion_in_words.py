@@ -1,4 +1,4 @@
-"""What all sensors of a block did together since the reference, in plain sentences."""
+"""Step: what all sensors of a block did together since the reference, in plain sentences."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What is known of parameters that a session cannot tell apart, as a sum in people's units."""
+"""Step: what is known of parameters that a session cannot tell apart, as a sum in people's units."""
 
 from dataclasses import dataclass
 

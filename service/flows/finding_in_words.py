@@ -1,4 +1,4 @@
-"""A finding of a diagnosis in words and people's units."""
+"""Step: a finding of a diagnosis in words and people's units."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

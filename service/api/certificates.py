@@ -1,0 +1,32 @@
+"""What is handed on of a session: its certificate."""
+
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Query, Response
+
+from service.api.exports import as_file
+from service.api.schemas.fields import SessionId
+from service.api.schemas.problem import errors
+from service.dependencies import Now, StorageOf
+from service.flows.certificate import certified_session
+from service.reports.certificate import certificate_pdf
+
+router = APIRouter(prefix="/sessions", tags=["handing on"])
+PDF = "application/pdf"
+
+
+@router.get(
+    "/{id}/certificate",
+    responses={200: {"content": {PDF: {"schema": {"type": "string", "format": "binary"}}}}, **errors(404, 422, 507)},
+    response_class=Response,
+)
+def read_certificate(
+    id: SessionId,
+    storage: StorageOf,
+    now: Now,
+    format: Annotated[Literal["pdf"], Query(description="Form of the certificate.")] = "pdf",
+) -> Response:
+    """The session's certificate, for people to sign; the same record gives the same bytes."""
+    found = certified_session(storage, id, now)
+    name = f"{found.report.session.unit}-{id[:8]}-certificate"
+    return as_file(certificate_pdf(found), PDF, f"{name}.pdf")

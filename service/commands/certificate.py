@@ -1,0 +1,30 @@
+"""`imu-health certificate`: the certificate of a stored session, from a running service."""
+
+from enum import StrEnum
+from typing import Annotated
+from urllib.parse import quote
+
+import typer
+
+from service.commands.client import connected
+from service.commands.console import DEFAULT_SERVER, Out, Server, deliver
+
+
+class Form(StrEnum):
+    """What a certificate can be written as."""
+
+    PDF = "pdf"
+
+
+Session = Annotated[str, typer.Argument(metavar="SESSION", help="The session's id, as its page's address ends.")]
+
+
+def certificate(
+    session: Session,
+    server: Server = DEFAULT_SERVER,
+    format: Annotated[Form, typer.Option("--format", help="pdf, for people to sign.")] = Form.PDF,
+    out: Out = None,
+) -> None:
+    """Write the certificate of a session."""
+    with connected(server) as client:
+        deliver(client.get(f"/sessions/{quote(session, safe='')}/certificate", format=format.value).content, out)

@@ -1,0 +1,87 @@
+"""Flow: everything that a certificate of a session states, read from what is stored."""
+
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+
+from estimator.results import Calibration
+from estimator.session import CALIBRATIONS, IN_SERVICE, CalibrationSession, comparable
+from service.flows.diagnose import VERSION, diagnose
+from service.flows.history import recent_history
+from service.flows.session_report import session_report
+from service.ingest import read_upload
+from service.records import (
+    HistoryPoint,
+    ModelRevision,
+    Service,
+    SessionReport,
+    StoredDiagnosis,
+    StoredSession,
+    UnitType,
+)
+from service.storage import Storage
+from service.storage.store import Store
+
+MOST_POINTS = 10_000
+"""Points of the unit's history that are read, of the newest sessions up to the certified one."""
+JUST_AFTER = timedelta(microseconds=1)
+
+
+@dataclass(frozen=True)
+class ReferenceSession:
+    """The session that another was judged against."""
+
+    session: StoredSession
+    calibration: Calibration
+
+
+@dataclass(frozen=True)
+class CertifiedSession:
+    """Everything that a certificate states. It rests on the session and on what came before it, never on later ones."""
+
+    report: SessionReport
+    source: CalibrationSession
+    """What the file says."""
+    unit_type: UnitType
+    reference: ReferenceSession | None
+    """None of a session that is the reference itself."""
+    diagnosis: StoredDiagnosis
+    revisions: tuple[ModelRevision, ...]
+    """The accepted causes that its calibration takes into account."""
+    services: tuple[Service, ...]
+    """Of the unit, up to the session."""
+    history: tuple[HistoryPoint, ...]
+    software: str
+    """Version."""
+
+
+def certified_session(storage: Storage, id: str, now: datetime) -> CertifiedSession:
+    """The session with all that its certificate needs; its diagnosis is made first where it is pending."""
+    diagnosis = diagnose(storage, id, now)
+    with storage.database.reading() as store:
+        report = session_report(store, id)
+        stored = report.session
+        until = stored.started_at + JUST_AFTER
+        return CertifiedSession(
+            report=report,
+            source=read_upload(storage.files.read(stored.sha256), stored.filename),
+            unit_type=store.unit_types.of_unit(stored.unit),
+            reference=_reference(store, stored),
+            diagnosis=diagnosis,
+            revisions=tuple(r for r in store.models.of_session(id) if r.id <= stored.revision),
+            services=tuple(s for s in store.services.of_unit(stored.unit) if s.at < until),
+            history=recent_history(store, stored.unit, MOST_POINTS, until=until),
+            software=VERSION,
+        )
+
+
+def _reference(store: Store, stored: StoredSession) -> ReferenceSession | None:
+    """What the session was judged against."""
+    if stored.is_reference:
+        return None
+    unit, block = store.units.key(stored.unit), store.unit_types.of_unit(stored.unit).block
+    since, until = store.services.around(unit, stored.started_at)
+    alike = CALIBRATIONS if stored.programme == IN_SERVICE else comparable(stored.programme)
+    found = store.sessions.reference(unit, block, since, until, alike)
+    if found is None or found == stored.id:
+        return None
+    return ReferenceSession(store.sessions.get(found), store.calibrations.get(found))

@@ -1,0 +1,147 @@
+"""The certificate of a session, as it comes over HTTP."""
+
+import hashlib
+from datetime import UTC, datetime
+from typing import Any
+
+import httpx
+import pytest
+
+from estimator.health.rule import RULE
+from service.flows.upload import upload
+from service.storage import Storage
+from service.verdicts import condition_of
+from tests.service.diagnosed import ECCENTRIC, diagnosis_of, drawn, send_case
+from tests.service.reports.documents import pages_of, text_of
+from tests.service.sessions import session_bytes
+
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
+
+
+def sent(client: httpx.Client, content: bytes) -> dict[str, Any]:
+    """The receipt of an upload."""
+    answer = client.post("/api/v1/sessions", content=content)
+    assert answer.status_code == 201, answer.text
+    receipt: dict[str, Any] = answer.json()
+    return receipt
+
+
+def certificate(client: httpx.Client, id: str) -> bytes:
+    """The certificate as PDF."""
+    answer = client.get(f"/api/v1/sessions/{id}/certificate")
+    assert (answer.status_code, answer.headers["content-type"]) == (200, "application/pdf"), answer.text
+    return answer.content
+
+
+@pytest.fixture
+def failed(client: httpx.Client) -> dict[str, Any]:
+    """A session in which A3's bias moved far beyond its tolerance."""
+    sent(client, session_bytes(seed=1))
+    return sent(client, session_bytes(seed=2, month=5, a3_moved=200.0))
+
+
+def test_it_states_input_verdict_rule_and_model(client: httpx.Client, failed: dict[str, Any]) -> None:
+    text = text_of(certificate(client, failed["id"]))
+    digest = hashlib.sha256(session_bytes(seed=2, month=5, a3_moved=200.0)).hexdigest()
+    assert failed["verdict"] == "fail"
+    for stated in (
+        "Unfit",
+        digest,
+        RULE,
+        "baseline (0)",
+        "imu-health 0.",
+        "BA-017",
+        "K. Ito",
+        "ODG-1",
+    ):
+        assert stated in text
+
+
+def test_it_states_every_decision(client: httpx.Client, failed: dict[str, Any]) -> None:
+    text = text_of(certificate(client, failed["id"]))
+    decisions = client.get(f"/api/v1/sessions/{failed['id']}").json()["decisions"]
+    assert len(decisions) == 24
+    states = [condition_of(d["verdict"]).formal for d in decisions]
+    # The decision rule explains each state once.
+    assert all(text.count(f"% {state}") == states.count(state) for state in set(states))
+    [a3] = [d for d in decisions if (d["sensor"], d["parameter"]) == ("A3", "bias")]
+    assert f"+{a3['deviation'] / 9.80665e-6:.1f}" in text
+
+
+def test_pages_are_numbered_and_name_the_unit(client: httpx.Client, failed: dict[str, Any]) -> None:
+    pages = pages_of(certificate(client, failed["id"]))
+    assert len(pages) > 1
+    for number, text in enumerate(pages, 1):
+        assert f"Page {number} of {len(pages)}" in text
+        assert f"No. {failed['id'][:12]}" in text
+        assert "SIMULATED" not in text
+
+
+def test_the_same_record_gives_the_same_bytes(client: httpx.Client, failed: dict[str, Any]) -> None:
+    assert certificate(client, failed["id"]) == certificate(client, failed["id"])
+
+
+def test_later_sessions_change_nothing(client: httpx.Client, failed: dict[str, Any]) -> None:
+    before = certificate(client, failed["id"])
+    sent(client, session_bytes(seed=3, month=6, a3_moved=400.0))
+    assert certificate(client, failed["id"]) == before
+
+
+def test_the_reference_says_that_it_is_one(client: httpx.Client) -> None:
+    text = text_of(certificate(client, sent(client, session_bytes())["id"]))
+    assert "Reference set" in text
+    assert "it is the reference of later sessions" in text
+
+
+def test_named_causes_stand_with_their_amplitude(client: httpx.Client) -> None:
+    id = send_case(client, drawn(ECCENTRIC))
+    [finding] = diagnosis_of(client, id)["findings"]
+    text = text_of(certificate(client, id))
+    assert finding["sentence"] in text
+    assert f"{finding['strength']:.1f} standard errors" in text
+    assert "Amplitude (± one standard uncertainty): " in text
+
+
+def test_an_accepted_cause_is_named_as_the_model(client: httpx.Client) -> None:
+    id = send_case(client, drawn(ECCENTRIC))
+    [finding] = diagnosis_of(client, id)["findings"]
+    accepted = client.post(
+        f"/api/v1/sessions/{id}/diagnosis/accept", json={"cause": finding["cause"], "scope": "stand", "by": "K. Ito"}
+    ).json()
+    unit = client.get(f"/api/v1/sessions/{id}").json()["unit"]
+    client.post(f"/api/v1/units/{unit}/recalibrate").raise_for_status()
+    assert f"revision {accepted['id']}: baseline with {finding['cause'].replace('-', ' ')}" in text_of(
+        certificate(client, id)
+    )
+
+
+def test_simulated_units_are_marked_on_every_page(storage: Storage, client: httpx.Client) -> None:
+    id = upload(storage, session_bytes(), "a.json", NOW, simulated=True).id
+    pages = pages_of(certificate(client, id))
+    assert len(pages) > 1
+    assert all("SIMULATED" in page for page in pages)
+
+
+@pytest.mark.parametrize(
+    ("name", "printed"),
+    [
+        ('#panic("no") $x^2$ ]*_`@<a>//', '#panic("no") $x^2$ ]*_`@<a>//'),
+        ("\\u{41}\\ #sys.inputs", "\\u{41}\\ #sys.inputs"),
+        ("Иванова Ё.", "Иванова Ё."),
+        ("王芳", "‹U+738B›‹U+82B3›"),
+        ("right\u202eleft", "right‹U+202E›left"),
+    ],
+)
+def test_no_text_is_taken_for_markup(client: httpx.Client, name: str, printed: str) -> None:
+    receipt = sent(client, session_bytes(operator=name, notes=name))
+    assert text_of(certificate(client, receipt["id"])).count(printed) == 2
+
+
+def test_long_names_break(client: httpx.Client) -> None:
+    receipt = sent(client, session_bytes(operator="W" * 190, unit="N" * 150, notes="notes " * 300))
+    pages = pages_of(certificate(client, receipt["id"]))
+    assert "W" * 190 in pages[0].replace("\u200b", "").replace(" ", "")
+
+
+def test_an_unknown_session_is_not_found(client: httpx.Client) -> None:
+    assert client.get("/api/v1/sessions/none/certificate").status_code == 404
