@@ -221,6 +221,10 @@ class UnitSummary:
     """What the simulation gets wrong about the latest session, in one line; empty where nothing is wrong."""
     flags: int = 0
     """How many are open."""
+    due: datetime | None = None
+    """Of the next calibration."""
+    lot: str | None = None
+    """Of production."""
 
 
 @dataclass(frozen=True)

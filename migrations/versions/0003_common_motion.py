@@ -29,6 +29,7 @@ def upgrade() -> None:
     op.create_table(
         "outlooks",
         sa.Column("unit_id", sa.Integer(), autoincrement=False, nullable=False),
+        sa.Column("due", sa.DateTime(timezone=True), nullable=True),
         sa.Column("document", sa.JSON(), nullable=False),
         sa.PrimaryKeyConstraint("unit_id", name="pk_outlooks"),
         sa.ForeignKeyConstraint(["unit_id"], ["units.id"], name="fk_outlooks_unit_id"),

@@ -23,7 +23,7 @@ FLEET_COLUMNS = {
     "last_session": pl.String(), "last_at": TIME, "verdict": pl.String(), "is_reference": pl.Boolean(),
     "reason": pl.String(),
     "worst_sensor": pl.String(), "worst_parameter": pl.String(), "margin": pl.Float64(),
-    "diagnosis": pl.String(), "flags": pl.Int64(),
+    "diagnosis": pl.String(), "flags": pl.Int64(), "due": TIME, "lot": pl.String(),
 }  # fmt: skip
 FORMULA = r"^[=+\-@\t\r]"
 """How a cell begins that a spreadsheet would work out instead of showing."""

@@ -20,6 +20,7 @@ from service.api.schemas.fields import (
 )
 from service.api.schemas.flags import FlagPage
 from service.api.schemas.models import RecalibratedSchema
+from service.api.schemas.outlook import OutlookSchema
 from service.api.schemas.problem import errors
 from service.api.schemas.units import (
     HistoryPage,
@@ -33,9 +34,11 @@ from service.api.schemas.units import (
 from service.dependencies import Now, Reading, SettingsOf, StorageOf
 from service.flows.fleet import fleet_overview
 from service.flows.history import unit_history
+from service.flows.outlook import outlook_of
 from service.flows.recalibrate import recalibrate
 from service.flows.record_service import record_service
 from service.flows.unit_report import unit_report
+from service.outlook import RiskPoint
 
 router = APIRouter(prefix="/units", tags=["units"])
 TABLE = {"type": "string", "format": "binary"}
@@ -104,6 +107,20 @@ def read_flags(
 ) -> FlagPage:
     """The unit's flags with their lives, open ones first."""
     return flag_page(store, serial, state, page, limit)
+
+
+@router.get("/{serial:path}/outlook", responses=errors(404, 422))
+def read_outlook(
+    serial: Serial,
+    store: Reading,
+    now: Now,
+    until: Annotated[Moment | None, Query(description="Also the risk of waiting until this date.")] = None,
+) -> OutlookSchema:
+    """When the unit must come back and why: drift, forecast to tolerance, risk of waiting."""
+    found = outlook_of(store, serial, now)
+    risk = None if until is None else found.risk_by(until)
+    asked = None if until is None or risk is None else RiskPoint(until, risk)
+    return OutlookSchema.model_validate({**vars(found), "until": asked})
 
 
 @router.post("/{serial:path}/services", status_code=201, responses=errors(400, 404, 422))

@@ -8,6 +8,7 @@ from service.charts.changes import Change, changes_of
 from service.records import ALL_PARAMETERS, HistoryPoint, Service
 from service.units import DeviationUnit, deviation_unit, in_unit, limit, measured, signed
 from service.verdicts import NOT_JUDGED, Condition, condition_of
+from service.words import day_of
 
 
 @dataclass(frozen=True)
@@ -58,11 +59,6 @@ class Track:
             if point.limits is not None and (not firsts or firsts[-1].limits != point.limits):
                 firsts.append(point)
         return tuple(firsts)
-
-
-def day_of(at: datetime) -> str:
-    """``7 Mar 2026``."""
-    return f"{at.day} {at:%b %Y}"
 
 
 def tracks_of(history: Iterable[HistoryPoint], services: Sequence[Service]) -> tuple[tuple[Track, ...], ...]:

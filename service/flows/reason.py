@@ -2,6 +2,7 @@
 
 from service.records import Decision, Verdict, Worst
 from service.units import in_words
+from service.words import PARAMETER_NAMES
 
 FIRST_SESSION = "First session of this unit: it is now the reference that later sessions are judged against."
 NEW_EPOCH = "First session after a service: it is now the reference that later sessions are judged against."
@@ -81,9 +82,7 @@ def _unseen(worst: Decision, decisions: tuple[Decision, ...]) -> str:
 
 
 def _name(decision: Decision) -> str:
-    return {"scale": "scale factor", "quadratic": "quadratic term", "axis": "input axis"}.get(
-        decision.parameter, decision.parameter
-    )
+    return PARAMETER_NAMES[decision.parameter]
 
 
 def _words(decision: Decision, si: float, *, signed: bool = False) -> str:

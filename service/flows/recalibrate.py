@@ -11,6 +11,7 @@ from service.flows.flagging.verdict import flag_verdict
 from service.flows.in_service import Compared, compared, judge_recording, reference_in_force
 from service.flows.judge import judge
 from service.flows.model_in_force import calibrated, model_of
+from service.flows.outlook import refresh_outlook
 from service.flows.parameter_values import parameter_values
 from service.ingest import read_upload
 from service.records import Judged, Model, StoredSession
@@ -65,6 +66,7 @@ def recalibrate(
     if outcome[RECOMPUTED]:
         with storage.database.writing() as store:
             _settle_flags(store, serial, now)
+            refresh_outlook(store, serial)
     return Recalibrated(serial, len(stored), outcome[RECOMPUTED], outcome[UNCHANGED], outcome[LEFT], revision)
 
 

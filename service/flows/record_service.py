@@ -4,6 +4,7 @@ from datetime import datetime
 
 from estimator.errors import Problem
 from service.errors import RefusedError
+from service.flows.outlook import refresh_outlook
 from service.flows.storable import CLOCK_LEEWAY
 from service.records import Service
 from service.storage import Storage
@@ -22,5 +23,6 @@ def record_service(
         unit = store.units.hold(serial)
         number, created = store.services.add(unit, kind, at, note, now)
         if created:
+            refresh_outlook(store, serial)
             store.log.audit(now, who, "service", serial, {"kind": kind, "at": at.isoformat(), "note": note})
         return store.services.get(number), created

@@ -10,6 +10,7 @@ from service.flows.flagging.verdict import flag_verdict
 from service.flows.in_service import Compared, compared, judge_recording, reference_in_force
 from service.flows.judge import judge
 from service.flows.model_in_force import calibrated, model_for
+from service.flows.outlook import refresh_outlook
 from service.flows.parameter_values import parameter_values
 from service.flows.refuse import refuse
 from service.flows.storable import measured_at, plain_filename, require_storable
@@ -91,6 +92,7 @@ def _store(store: Store, new: Upload, coverage_factor: float) -> Receipt:
     store.sessions.add_decisions(record.id, judged.decisions, record.revision)
     store.sessions.add_motions(record.id, judged.motions, record.revision)
     flag_verdict(store, unit, record, judged.decisions, store.fleet.refresh(unit), new.at)
+    refresh_outlook(store, record.unit)
     details = {"unit": record.unit, "verdict": record.verdict.value, "revision": record.revision}
     store.log.audit(new.at, new.who, "upload", record.id, details)
     return _receipt(record, created=True)

@@ -9,9 +9,9 @@ from fastapi.responses import HTMLResponse
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from service.charts.tracks import day_of
 from service.pages.assets import asset_url
 from service.verdicts import CONDITIONS, REFERENCE
+from service.words import day_of
 
 TEMPLATES = Path(__file__).parent / "templates"
 

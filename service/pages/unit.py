@@ -5,11 +5,12 @@ from dataclasses import dataclass
 
 from service.charts import ChartSet
 from service.charts.history import history_charts
-from service.charts.tracks import Track, TrackPoint, day_of, tolerance_text, tracks_of
+from service.charts.tracks import Track, TrackPoint, tolerance_text, tracks_of
 from service.flag_records import Flag
 from service.pages.flags import FlagCard, flag_cards
 from service.records import HistoryPoint, Service, StoredSession, UnitReport
 from service.verdicts import NOT_JUDGED, Condition, condition_of
+from service.words import day_of
 
 HEADINGS = {
     "scale": "Scale factor",

@@ -13,6 +13,7 @@ from service.storage.queries.log import Log
 from service.storage.queries.models import Models
 from service.storage.queries.notes import Notes
 from service.storage.queries.notices import Notices
+from service.storage.queries.outlooks import Outlooks
 from service.storage.queries.services import Services
 from service.storage.queries.sessions import Sessions
 from service.storage.queries.unit_types import UnitTypes
@@ -79,6 +80,11 @@ class Store:
     def notices(self) -> Notices:
         """What happened to flags and verdicts."""
         return Notices(self._session)
+
+    @cached_property
+    def outlooks(self) -> Outlooks:
+        """When units must come back."""
+        return Outlooks(self._session)
 
     @cached_property
     def fleet(self) -> Fleet:

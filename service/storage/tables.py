@@ -256,6 +256,7 @@ class OutlookRow(Base):
 
     __tablename__ = "outlooks"
     unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), primary_key=True, autoincrement=False)
+    due: Mapped[datetime | None]
     document: Mapped[dict[str, Any]]
 
 

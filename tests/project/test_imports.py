@@ -9,7 +9,7 @@ from tests.project.source import PACKAGES, Module, modules
 
 SERVICE_LAYERS = (
     {"settings", "records", "flag_records", "units", "errors"},
-    {"advice", "metrics", "planning", "verdicts"},
+    {"advice", "metrics", "outlook", "planning", "verdicts", "words"},
     {"ingest", "storage"},
     {"flows", "charts"},
     {"reports"},

@@ -47,6 +47,7 @@ class UnitTypeSchema(BaseModel):
     tolerances: TolerancesSchema = Field(description="Of the sensors of the block's own kind.")
     gyro_tolerances: TolerancesSchema | None = Field(description="Of the gyros of a block of accelerometers.")
     revision: int = Field(description="Counts up with every change of tolerances; decisions name theirs.")
+    maximum_interval_days: float = Field(description="Longest time from a session to the next calibration.")
 
 
 class UnitTypePage(BaseModel):
@@ -79,6 +80,8 @@ class UnitSummarySchema(BaseModel):
     )
     diagnosis: str = Field(description="What the simulation gets wrong about the latest session; empty if nothing.")
     flags: int = Field(description="How many flags are open.")
+    due: datetime | None = Field(description="When its next calibration is due, UTC.")
+    lot: str | None = Field(description="Production lot, where it is recorded.")
 
 
 class UnitPage(BaseModel):

@@ -1,6 +1,7 @@
 """All units at a glance: one short row a unit, rewritten when a session of it is stored."""
 
 from dataclasses import dataclass
+from datetime import datetime
 
 from sqlalchemy import Row, Select, func, select, update
 from sqlalchemy.orm import defer
@@ -8,9 +9,9 @@ from sqlalchemy.orm import defer
 from service.flag_records import FlagState
 from service.records import DiagnosisState, FleetCondition, UnitSummary, Verdict
 from service.storage.queries.base import Queries
-from service.storage.tables import ConditionRow, DiagnosisRow, FlagRow, SessionRow, UnitRow, UnitTypeRow
+from service.storage.tables import ConditionRow, DiagnosisRow, FlagRow, OutlookRow, SessionRow, UnitRow, UnitTypeRow
 
-Summaries = Select[UnitRow, str, ConditionRow, SessionRow, DiagnosisRow]
+Summaries = Select[UnitRow, str, ConditionRow, SessionRow, DiagnosisRow, datetime | None]
 
 
 @dataclass(frozen=True)
@@ -100,12 +101,13 @@ class Fleet(Queries):
 
 def _summaries() -> Summaries:
     return (
-        select(UnitRow, UnitTypeRow.name, ConditionRow, SessionRow, DiagnosisRow)
+        select(UnitRow, UnitTypeRow.name, ConditionRow, SessionRow, DiagnosisRow, OutlookRow.due)
         .options(defer(DiagnosisRow.document))
         .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
         .join(ConditionRow, ConditionRow.unit_id == UnitRow.id)
         .join(SessionRow, SessionRow.id == ConditionRow.last_session)
         .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
+        .outerjoin(OutlookRow, OutlookRow.unit_id == UnitRow.id)
     )
 
 
@@ -120,7 +122,7 @@ def _matching(query: Summaries, wanted: FleetQuery) -> Summaries:
     return query
 
 
-def _summary(row: Row[UnitRow, str, ConditionRow, SessionRow, DiagnosisRow]) -> UnitSummary:
+def _summary(row: Row[UnitRow, str, ConditionRow, SessionRow, DiagnosisRow, datetime | None]) -> UnitSummary:
     unit, type_name, condition, last = row[0], row[1], row[2], row[3]
     return UnitSummary(
         serial=unit.serial,
@@ -137,6 +139,8 @@ def _summary(row: Row[UnitRow, str, ConditionRow, SessionRow, DiagnosisRow]) -> 
         margin=last.margin,
         diagnosis=_diagnosis(row[4]),
         flags=condition.flags,
+        due=row[5],
+        lot=unit.lot,
     )
 
 

@@ -11,6 +11,7 @@ from service.flows.flag_list import flag_list
 from service.flows.fleet import fleet_overview
 from service.flows.fleet_condition import fleet_condition
 from service.flows.history import unit_history
+from service.flows.outlook import outlook_of, outlooks_of_fleet
 from service.flows.session_list import session_list
 from service.flows.session_report import session_report
 from service.flows.unit_report import unit_report
@@ -30,6 +31,8 @@ PAGES: dict[str, tuple[int, Page]] = {
     "sessions": (1, session_list),
     "flags": (1, flag_list),
     "flags of a unit": (2, lambda store: flag_list(store, unit="BA-000")),
+    "outlook": (2, lambda store: outlook_of(store, "BA-000", NOW)),
+    "outlooks": (1, lambda store: outlooks_of_fleet(store, NOW)),
     "types": (1, unit_types),
 }
 

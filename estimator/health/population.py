@@ -1,0 +1,42 @@
+"""Who stands out of a population: units, production lots and stands, robustly.
+
+Rates of one parameter, r_i ± s_i, are drawn about a common centre with a spread τ of their own (random effects):
+r_i ~ N(μ, τ² + s_i²). μ is the median. τ comes from the median absolute deviation, which half of the rates may spoil
+without moving it: τ² is the least for which the median of |r_i − μ|/√(τ² + s_i²) is that of a normal, 0.6745.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.optimize import brentq
+
+from estimator.session import Array
+
+NORMAL_MEDIAN = 0.6744897501960817
+"""Median of |x| of a standard normal."""
+
+
+def spread(values: Array, sigmas: Array) -> tuple[float, float]:
+    """Robust centre and spread of a population, what its members' own uncertainties explain taken off.
+
+    Parameters
+    ----------
+    values, sigmas : (n,) any unit.
+    """
+    centre = float(np.median(values))
+    away = np.abs(values - centre)
+
+    def excess(tau: float) -> float:
+        return float(np.median(away / np.sqrt(tau**2 + sigmas**2 + 1e-300))) - NORMAL_MEDIAN
+
+    widest = float(away.max()) / NORMAL_MEDIAN
+    if widest == 0 or excess(0.0) <= 0:
+        return centre, 0.0
+    return centre, float(brentq(excess, 0.0, widest * 1.01))
+
+
+def standing(rates: Sequence[tuple[float, float]]) -> tuple[float, ...]:
+    """How far each rate (value, sigma) stands from the population, in the spread that is expected of it."""
+    values, sigmas = np.array(rates, dtype=float).T
+    centre, tau = spread(values, sigmas)
+    return tuple(float(z) for z in (values - centre) / np.sqrt(tau**2 + sigmas**2 + 1e-300))

@@ -1,0 +1,57 @@
+"""When a unit must come back and why."""
+
+from datetime import datetime
+
+from pydantic import BaseModel, ConfigDict, Field
+
+
+class ParameterTrendSchema(BaseModel):
+    """One parameter of one sensor since the unit's last break."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    sensor: str = Field(description="Name of the sensor.")
+    kind: str = Field(description="`accelerometer` or `gyroscope`.")
+    parameter: str = Field(description="`scale`, `bias`, `quadratic`, `axis` or `misalignment`.")
+    tolerance: float = Field(description="T, SI; relative for scale.")
+    level: float = Field(description="Deviation at the last session, all sessions considered.")
+    level_sigma: float = Field(description="Standard uncertainty of it.")
+    rate_per_year: float = Field(description="Drift a year.")
+    rate_sigma: float = Field(description="Standard uncertainty of it, that of the random walk included.")
+    significance: float = Field(description="p-value: chance of a rate this far from zero when there is none.")
+    step_dates: list[datetime] = Field(description="Sessions that first showed a sudden change.")
+    reach_50: datetime | None = Field(description="By then the tolerance is reached with 50 % probability.")
+    reach_90: datetime | None = Field(description="Before it the tolerance is reached with 10 % probability only.")
+    population_z: float | None = Field(description="The rate among those of the type's units, in their robust spread.")
+
+
+class RiskPointSchema(BaseModel):
+    """The risk of waiting until a date."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    at: datetime = Field(description="Date, UTC.")
+    risk: float = Field(description="Chance that any parameter has reached its tolerance by then.")
+
+
+class OutlookSchema(BaseModel):
+    """When a unit must be calibrated next, why, and what waiting costs."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    serial: str = Field(description="Serial number.")
+    unit_type: str = Field(description="Name of its type.")
+    lot: str | None = Field(description="Production lot, where it is recorded.")
+    due: datetime | None = Field(
+        description="Next calibration: before the risk passes 5 %, never after the type's longest interval."
+    )
+    overdue: bool = Field(description="Whether that has passed.")
+    reason: str = Field(description="Why then, in one sentence.")
+    sensor: str | None = Field(description="The sensor that reaches its tolerance first.")
+    parameter: str | None = Field(description="Its parameter.")
+    reach_50: datetime | None = Field(description="By then it is reached with 50 % probability.")
+    reach_90: datetime | None = Field(description="Before it it is reached with 10 % probability only.")
+    risk_at_due: float | None = Field(description="Chance that any parameter is out of tolerance by the due date.")
+    until: RiskPointSchema | None = Field(description="The risk of waiting until the date that was asked for.")
+    risk: list[RiskPointSchema] = Field(description="The risk of waiting, from the latest session on.")
+    trends: list[ParameterTrendSchema] = Field(description="One a sensor and parameter.")

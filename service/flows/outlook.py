@@ -1,0 +1,97 @@
+"""Flow: when a unit must be calibrated next and why; the same of the whole fleet.
+
+What is stored is worked out when a unit's history changes (`refresh_outlook`); read, it is only set against the clock
+and against the rates of the type's other units.
+"""
+
+from dataclasses import replace
+from datetime import UTC, datetime
+
+from estimator.health.population import standing
+from service.errors import NotFoundError
+from service.flows.forecast import forecast
+from service.outlook import ParameterTrend, UnitOutlook
+from service.storage import Storage
+from service.storage.store import Store
+
+END_OF_TIME = datetime(9999, 1, 1, tzinfo=UTC)
+
+
+def unit_outlook(storage: Storage, serial: str, now: datetime) -> UnitOutlook:
+    """One unit's outlook as it is now."""
+    with storage.database.reading() as store:
+        return outlook_of(store, serial, now)
+
+
+def fleet_outlook(storage: Storage, now: datetime) -> tuple[UnitOutlook, ...]:
+    """Every unit's outlook as it is now, by serial number."""
+    with storage.database.reading() as store:
+        return outlooks_of_fleet(store, now)
+
+
+def outlook_of(store: Store, serial: str, now: datetime) -> UnitOutlook:
+    """One unit's outlook within a transaction."""
+    own = store.outlooks.of_unit(serial)
+    if own is None:
+        if not store.units.exists(serial):
+            raise NotFoundError(f"There is no unit {serial!r}.")
+        return nothing_known(serial)
+    others = store.outlooks.of_type(own.unit_type)
+    return next(outlook for outlook in compared(others, now) if outlook.serial == serial)
+
+
+def outlooks_of_fleet(store: Store, now: datetime) -> tuple[UnitOutlook, ...]:
+    """Every unit's outlook within a transaction, in one query."""
+    return compared(store.outlooks.every(), now)
+
+
+def refresh_outlook(store: Store, serial: str) -> None:
+    """Works out a unit's outlook again from the sessions since its last break; within the transaction that writes."""
+    unit = store.units.key(serial)
+    since, _ = store.services.around(unit, END_OF_TIME)
+    found = forecast(
+        serial,
+        store.outlooks.changes(unit, since),
+        store.outlooks.references(unit, since),
+        store.outlooks.last_calibration(unit),
+        since,
+        store.unit_types.of_unit(serial).maximum_interval_days,
+    )
+    store.outlooks.put(unit, found.outlook)
+
+
+def nothing_known(serial: str) -> UnitOutlook:
+    """Of a unit whose sessions were judged before outlooks were kept."""
+    reason = "No outlook yet: it is worked out with the next session."
+    return UnitOutlook(serial, None, False, reason, None, None, None, None, None, ())
+
+
+def compared(outlooks: tuple[UnitOutlook, ...], now: datetime) -> tuple[UnitOutlook, ...]:
+    """Set against the clock, and every rate against those of the same parameter in other units of the type."""
+    rates = {
+        (o.unit_type, o.serial, t.sensor, t.kind, t.parameter): (t.rate_per_year, t.rate_sigma)
+        for o in outlooks
+        for t in o.trends
+    }
+    groups: dict[tuple[str, str, str], list[tuple[str, str, str, str, str]]] = {}
+    for key in rates:
+        groups.setdefault((key[0], key[3], key[4]), []).append(key)
+    z = {
+        key: value
+        for keys in groups.values()
+        if len({serial for _, serial, *_ in keys}) >= FEWEST_UNITS
+        for key, value in zip(keys, standing([rates[key] for key in keys]), strict=True)
+    }
+
+    def placed(outlook: UnitOutlook, trend: ParameterTrend) -> ParameterTrend:
+        key = (outlook.unit_type, outlook.serial, trend.sensor, trend.kind, trend.parameter)
+        return replace(trend, population_z=z.get(key))
+
+    return tuple(
+        replace(o, overdue=o.due is not None and o.due < now, trends=tuple(placed(o, t) for t in o.trends))
+        for o in outlooks
+    )
+
+
+FEWEST_UNITS = 3
+"""Units of a type that make a population."""

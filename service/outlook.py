@@ -1,0 +1,74 @@
+"""When a unit must come back and why: drift, forecast and risk as frozen records. SI inside."""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+
+@dataclass(frozen=True)
+class ParameterTrend:
+    """One parameter of one sensor since the last break."""
+
+    sensor: str
+    parameter: str
+    rate_per_year: float
+    """SI a year; relative for scale; for the axis along the direction in which it has moved."""
+    rate_sigma: float
+    significance: float
+    """p-value: the chance of a rate at least this far from zero when there is none."""
+    step_dates: tuple[datetime, ...]
+    """Sessions that first showed a sudden change."""
+    level: float
+    """Deviation from the reference at the last session, all sessions considered."""
+    level_sigma: float
+    reach_50: datetime | None
+    """The tolerance is reached by then with 50 % probability; None beyond twelve years."""
+    reach_90: datetime | None
+    """The early bound: before it the tolerance is reached with only 10 % probability."""
+    population_z: float | None
+    """How far the rate stands from those of the other units of the type, in their robust spread; None with too few."""
+    kind: str = ""
+    tolerance: float = 1.0
+
+
+@dataclass(frozen=True)
+class RiskPoint:
+    """Chance that any parameter of the unit has reached its tolerance by a date."""
+
+    at: datetime
+    risk: float
+
+
+@dataclass(frozen=True)
+class UnitOutlook:
+    """When a unit must be calibrated next and what its parameters do until then."""
+
+    serial: str
+    due: datetime | None
+    """None for a unit without a calibration session."""
+    overdue: bool
+    reason: str
+    """Why then, in one sentence a technician understands."""
+    sensor: str | None
+    """That reaches its tolerance first; None where none does within twelve years."""
+    parameter: str | None
+    reach_50: datetime | None
+    reach_90: datetime | None
+    risk_at_due: float | None
+    """Chance that any parameter is out of tolerance by the due date; None where there is no trend yet."""
+    trends: tuple[ParameterTrend, ...]
+    unit_type: str = ""
+    lot: str | None = None
+    risk: tuple[RiskPoint, ...] = ()
+    """The risk of waiting, date by date from the latest session on."""
+
+    def risk_by(self, at: datetime) -> float | None:
+        """Chance that any parameter is out of tolerance by a date; None where there is no trend."""
+        if not self.risk:
+            return None
+        before = [point for point in self.risk if point.at <= at]
+        after = [point for point in self.risk if point.at > at]
+        if not before or not after:
+            return (before or after)[-1 if before else 0].risk
+        low, high = before[-1], after[0]
+        share = (at - low.at) / (high.at - low.at)
+        return low.risk + share * (high.risk - low.risk)

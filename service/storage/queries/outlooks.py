@@ -1,0 +1,103 @@
+"""Outlooks, one a unit, and the changes through time that they are made of."""
+
+from dataclasses import dataclass, replace
+from datetime import datetime
+
+from sqlalchemy import ColumnElement, Row, Select, select
+
+from estimator.session import IN_SERVICE
+from service.outlook import UnitOutlook
+from service.storage.outlook_document import outlook_from_dict, outlook_to_dict
+from service.storage.queries.base import Queries
+from service.storage.tables import DecisionRow, OutlookRow, SessionRow, UnitRow, UnitTypeRow
+
+
+@dataclass(frozen=True)
+class ChangeRow:
+    """One parameter of one sensor at one session, as it was judged."""
+
+    at: datetime
+    block: str
+    programme: str
+    sensor: str
+    kind: str
+    parameter: str
+    tolerance: float
+    change: list[float]
+    own: list[float]
+    origin: list[float]
+
+
+@dataclass(frozen=True)
+class ReferenceRow:
+    """A session that others are judged against."""
+
+    at: datetime
+    block: str
+    programme: str
+
+
+class Outlooks(Queries):
+    """When units must come back."""
+
+    def changes(self, unit: int, since: datetime | None) -> tuple[ChangeRow, ...]:
+        """Every judged change of a unit since a time, oldest first; not those of a recording in service."""
+        query = (
+            select(
+                SessionRow.started_at, SessionRow.block, SessionRow.programme, DecisionRow.sensor, DecisionRow.kind,
+                DecisionRow.parameter, DecisionRow.tolerance, DecisionRow.change, DecisionRow.change_own,
+                DecisionRow.change_origin,
+            )
+            .join(DecisionRow, DecisionRow.session_id == SessionRow.id)
+            .where(DecisionRow.revision == SessionRow.revision, DecisionRow.change.is_not(None))
+        )  # fmt: skip
+        query = query.where(*_within(unit, since)).order_by(SessionRow.started_at, DecisionRow.position)
+        found = self._session.execute(query)
+        return tuple(ChangeRow(*row) for row in found)
+
+    def references(self, unit: int, since: datetime | None) -> tuple[ReferenceRow, ...]:
+        """The sessions since a time that others are judged against, oldest first."""
+        query = select(SessionRow.started_at, SessionRow.block, SessionRow.programme).where(SessionRow.is_reference)
+        found = self._session.execute(query.where(*_within(unit, since)).order_by(SessionRow.started_at))
+        return tuple(ReferenceRow(*row) for row in found)
+
+    def last_calibration(self, unit: int) -> datetime | None:
+        """When the unit was last measured, recordings in service apart."""
+        newest = select(SessionRow.started_at).where(SessionRow.unit_id == unit, SessionRow.programme != IN_SERVICE)
+        return self._session.scalar(newest.order_by(SessionRow.started_at.desc()).limit(1))
+
+    def put(self, unit: int, outlook: UnitOutlook) -> None:
+        """Rewrites a unit's outlook."""
+        self._session.merge(OutlookRow(unit_id=unit, due=outlook.due, document=outlook_to_dict(outlook)))
+        self._session.flush()
+
+    def of_unit(self, serial: str) -> UnitOutlook | None:
+        """The outlook of one unit; None before its first session is judged."""
+        row = self._session.execute(_outlooks().where(UnitRow.serial == serial)).one_or_none()
+        return None if row is None else _outlook(row)
+
+    def of_type(self, name: str) -> tuple[UnitOutlook, ...]:
+        """Of all units of a type."""
+        return tuple(_outlook(row) for row in self._session.execute(_outlooks().where(UnitTypeRow.name == name)))
+
+    def every(self) -> tuple[UnitOutlook, ...]:
+        """Of the whole fleet, by serial number, in one query."""
+        return tuple(_outlook(row) for row in self._session.execute(_outlooks().order_by(UnitRow.serial)))
+
+
+def _within(unit: int, since: datetime | None) -> list[ColumnElement[bool]]:
+    """Sessions of a unit from a time on."""
+    own = [SessionRow.unit_id == unit]
+    return own if since is None else [*own, SessionRow.started_at >= since]
+
+
+def _outlooks() -> Select[OutlookRow, str | None, str]:
+    return (
+        select(OutlookRow, UnitRow.lot, UnitTypeRow.name)
+        .join(UnitRow, UnitRow.id == OutlookRow.unit_id)
+        .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+    )
+
+
+def _outlook(row: Row[OutlookRow, str | None, str]) -> UnitOutlook:
+    return replace(outlook_from_dict(row[0].document), lot=row[1], unit_type=row[2])
