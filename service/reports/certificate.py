@@ -8,7 +8,7 @@ from estimator.session import ACCELEROMETER, CalibrationSession
 from service.charts import ChartSet
 from service.charts.history import history_charts
 from service.charts.residuals import residual_charts
-from service.charts.tracks import day_of, tracks_of
+from service.charts.tracks import tracks_of
 from service.flows.certificate import CertifiedSession
 from service.flows.finding_in_words import FindingView, finding_view, in_words
 from service.flows.fit_in_words import FitWords, fit_in_words
@@ -21,6 +21,7 @@ from service.reports.results import ResultTable, result_tables
 from service.reports.typeset import typeset
 from service.units import COVERAGE, THIN, number, size_in_words
 from service.verdicts import CONDITIONS, Condition, condition_of
+from service.words import day_of
 
 MOST_HISTORIES = 6
 """Histories that are drawn, of the parameters closest to their tolerance."""
