@@ -11,17 +11,31 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
+from estimator.alignment.simulate import Truth
 from estimator.parameters import SensorParameters
 from estimator.results import ARCSEC
-from estimator.session import ACCELEROMETER, CalibrationSession
+from estimator.session import (
+    ACCELEROMETER,
+    IN_SERVICE,
+    RATE_TABLE,
+    ROTATION_ALIGNMENT,
+    TWO_AXIS_STAND,
+    CalibrationSession,
+)
 from estimator.simulate import StandDraw, draw_stand, scattered, simulate
 from estimator.writing import session_document
 from service.commands.console import AsJson, print_json
 from service.demo.blocks import ACCELEROMETER_SCALE, MICRO_G, norms, schedule_of
-from service.demo.changes import ELEMENT, Change, step_of
+from service.demo.changes import ELEMENT, MICRO, Change, step_of
+from service.demo.other_programmes import alignment, rate_table, recording, turntable_truth
 
 FIRST_SESSION = datetime(2026, 1, 12, 9, 0, tzinfo=UTC)
 INTERVAL = timedelta(days=60)
+FLIGHT_AFTER = timedelta(days=30)
+"""From a calibration to the recording in service that follows it."""
+SIMULATED = (TWO_AXIS_STAND, IN_SERVICE, ROTATION_ALIGNMENT, RATE_TABLE)
+ON_TURNTABLE = (ROTATION_ALIGNMENT, RATE_TABLE)
+STAND_ERRORS = ("theta_x", "theta_y", "alpha")
 DRIFT = re.compile(r"A(?P<sensor>\d+)\.(?P<parameter>\w+)=(?P<amount>[-+]?\d+(\.\d*)?)")
 
 
@@ -30,8 +44,9 @@ class Simulated:
     """One simulated session and everything that is true of it."""
 
     session: CalibrationSession
-    truth: SensorParameters
-    draw: StandDraw
+    truth: SensorParameters | Truth
+    draw: StandDraw | None
+    """None without a stand."""
 
 
 def read_drift(text: str) -> Change:
@@ -64,16 +79,33 @@ def simulate_files(
             show_default=False,
         ),
     ] = None,
+    programme: Annotated[str, typer.Option(help=f"One of {', '.join(SIMULATED)}.")] = TWO_AXIS_STAND,
     as_json: AsJson = False,
 ) -> None:
-    """Write session files of a simulated accelerometer block on a two-axis stand; --json prints the truth."""
+    """Write session files of a simulated block: six accelerometers on a two-axis stand unless told otherwise.
+
+    `in-service` is a flight of the block that the same seed puts on the stand, a month after each of its sessions;
+    its drift shows from the first on. `rotation-alignment` and `rate-table` are of three accelerometers and three
+    gyros on a turntable; there only the bias drifts, of A1 and A2, the axes x and y. --json prints the truth.
+    """
     changes = tuple(read_drift(text) for text in drift or ())
+    if programme not in SIMULATED:
+        raise typer.BadParameter(f"--programme is {programme}; give one of {', '.join(SIMULATED)}")
     if any(change.sensor >= sensors for change in changes):
         raise typer.BadParameter(f"--drift names a sensor that is not there; the block has A1 to A{sensors}")
+    if programme in ON_TURNTABLE and any(c.parameter != "bias" or c.sensor > 1 for c in changes):
+        raise typer.BadParameter(f"--drift: {programme} shows A1.bias and A2.bias only, the zeros of x and y")
     schedule = replace(schedule_of(ACCELEROMETER, sensors, "SIM", alpha, positions), unit=unit)
     out.mkdir(parents=True, exist_ok=True)
-    for number, simulated in enumerate(_simulated(schedule, changes, sessions, noise, np.random.default_rng(seed)), 1):
-        file = out / f"{safe_name(unit)}-{number:03d}.json"
+    rng = np.random.default_rng(seed)
+    made = (
+        _turned(unit, programme, changes, sessions, rng)
+        if programme in ON_TURNTABLE
+        else _simulated(schedule, changes, sessions, noise, rng, in_service=programme == IN_SERVICE)
+    )
+    what = "" if programme == TWO_AXIS_STAND else f"{programme}-"
+    for number, simulated in enumerate(made, 1):
+        file = out / f"{safe_name(unit)}-{what}{number:03d}.json"
         file.write_text(json.dumps(session_document(simulated.session)), encoding="utf-8")
         if as_json:
             print_json(_truth(file, simulated))
@@ -82,28 +114,70 @@ def simulate_files(
 
 
 def _simulated(
-    schedule: CalibrationSession, changes: tuple[Change, ...], sessions: int, noise: float, rng: np.random.Generator
+    schedule: CalibrationSession,
+    changes: tuple[Change, ...],
+    sessions: int,
+    noise: float,
+    rng: np.random.Generator,
+    *,
+    in_service: bool,
 ) -> Iterator[Simulated]:
-    """The unit's sessions in order."""
+    """The unit's sessions in order, or a flight after each of them, when the next drift has come."""
     count = len(schedule.sensors)
     norm = norms(ACCELEROMETER, count)
     start = scattered(schedule.sensors, norm, rng)
     for number in range(sessions):
         at = FIRST_SESSION + number * INTERVAL
-        dated = replace(schedule, started_at=f"{at:%Y-%m-%dT%H:%M:%SZ}", notes="Simulated.")
-        truth = start.stepped(number * step_of(changes, count, ACCELEROMETER), norm)
+        truth = start.stepped((number + in_service) * step_of(changes, count, ACCELEROMETER), norm)
+        if in_service:
+            flight = recording(schedule.unit, schedule.sensors, truth, rng)
+            yield Simulated(_dated(flight, at + FLIGHT_AFTER), truth, None)
+            continue
+        dated = _dated(schedule, at)
         draw = draw_stand(dated, rng)
         session = simulate(dated, truth, rng, noise=noise * MICRO_G * ACCELEROMETER_SCALE, draw=draw)
         yield Simulated(session, truth, draw)
 
 
+def _turned(
+    unit: str, programme: str, changes: tuple[Change, ...], sessions: int, rng: np.random.Generator
+) -> Iterator[Simulated]:
+    """Sessions on a turntable in order."""
+    make = alignment if programme == ROTATION_ALIGNMENT else rate_table
+    start, drifts = 20.0 * rng.standard_normal(2), 0.01 * rng.standard_normal(3)
+    moved = step_of(changes, 2, ACCELEROMETER)
+    for number in range(sessions):
+        zeros = np.append(start + number * moved[:2, ELEMENT["bias"]] / MICRO, 0.0)
+        truth = turntable_truth(zeros, drifts, rng)
+        session = make(unit, truth, rng)
+        yield Simulated(_dated(session, FIRST_SESSION + number * INTERVAL), truth, None)
+
+
+def _dated(session: CalibrationSession, at: datetime) -> CalibrationSession:
+    return replace(session, started_at=f"{at:%Y-%m-%dT%H:%M:%SZ}", notes="Simulated.")
+
+
 def _truth(file: Path, simulated: Simulated) -> dict[str, Any]:
-    """What a calibration of the file should find, SI; and the stand's errors that it cannot know."""
-    truth, stand = simulated.truth, simulated.draw.constant
+    """What the file should be found to say, SI; and the stand's errors that a calibration cannot know."""
+    head = {"format": "imu-truth/1", "file": str(file), "unit": simulated.session.unit}
+    if isinstance(simulated.truth, Truth):
+        return {**head, **_turntable(simulated.truth)}
+    return {**head, **_sensors(simulated, simulated.truth)}
+
+
+def _turntable(truth: Truth) -> dict[str, Any]:
     return {
-        "format": "imu-truth/1",
-        "file": str(file),
-        "unit": simulated.session.unit,
+        "accelerometer_bias": truth.accelerometer_bias.tolist(),
+        "gyro_bias": truth.gyro_bias.tolist(),
+        "mounting": list(truth.mounting),
+        "kappa": truth.kappa,
+    }
+
+
+def _sensors(simulated: Simulated, truth: SensorParameters) -> dict[str, Any]:
+    stand = None if simulated.draw is None else simulated.draw.constant
+    errors = {} if stand is None else {"stand_arcsec": {k: float(getattr(stand, k)) / ARCSEC for k in STAND_ERRORS}}
+    return {
         "sensors": [
             {
                 "name": sensor.name,
@@ -114,5 +188,5 @@ def _truth(file: Path, simulated: Simulated) -> dict[str, Any]:
             }
             for i, sensor in enumerate(simulated.session.sensors)
         ],
-        "stand_arcsec": {name: float(getattr(stand, name)) / ARCSEC for name in ("theta_x", "theta_y", "alpha")},
+        **errors,
     }

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 
-from estimator.session import ACCELEROMETER, GYROSCOPE
+from estimator.session import ACCELEROMETER, GYROSCOPE, ROTATION_ALIGNMENT, TWO_AXIS_STAND
 from service.demo.changes import Change
 from service.demo.hidden import Hidden
 
@@ -49,6 +49,15 @@ class Member:
     """Factor on the reading noise of single sessions, by their number from 0; −1 is the last."""
     hidden: Hidden | None = None
     """What the simulation gets wrong about the latest session."""
+    programme: str = TWO_AXIS_STAND
+    """How it is measured; on a turntable a drift's sensor is the axis of the accelerometers."""
+    flown: Change | None = None
+    """What a recording in service, made after the last session, shows."""
+
+    @property
+    def files(self) -> int:
+        """How many there are of it."""
+        return self.sessions + (self.flown is not None)
 
 
 def _replaced(sensor: int, at: datetime) -> Intervention:
@@ -104,5 +113,13 @@ CAST = (
     Member(
         "BG-202", GYROSCOPE, "bias of G2 drifts towards its tolerance", 13,
         drifts=(Drift(Change(1, "bias", 0.024)),),
+    ),
+    Member(
+        "BA-111", ACCELEROMETER, "new, stable on the stand; its last flight shows that A2 moved since", 5, joined=2.1,
+        flown=Change(1, "bias", 120.0),
+    ),
+    Member(
+        "RT-301", GYROSCOPE, "aligned on a turntable before use; the zero of x drifts up to its tolerance", 9,
+        drifts=(Drift(Change(0, "bias", 48.5)),), programme=ROTATION_ALIGNMENT,
     ),
 )  # fmt: skip

@@ -16,7 +16,7 @@ from service.storage import Storage
 UPLOADED_AFTER = timedelta(hours=3)
 """From the session to its upload; the demonstration has its own clock, so that it is always the same."""
 WHO = "demonstration"
-FILES = sum(member.sessions for member in CAST)
+FILES = sum(member.files for member in CAST)
 
 
 def is_wanted(storage: Storage) -> bool:

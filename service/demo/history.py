@@ -9,13 +9,14 @@ import numpy as np
 
 from estimator.parameters import SensorParameters
 from estimator.results import ARCSEC
-from estimator.session import ACCELEROMETER, GYROSCOPE, Array, CalibrationSession
+from estimator.session import ACCELEROMETER, GYROSCOPE, ROTATION_ALIGNMENT, Array, CalibrationSession
 from estimator.simulate import scattered, simulate
 from estimator.writing import session_document
 from service.demo.blocks import norms, schedule_of, sensors_of
 from service.demo.cast import CAST, END, START, YEARS, Member
-from service.demo.changes import DEGREE_PER_HOUR, Change, step_of
+from service.demo.changes import DEGREE_PER_HOUR, ELEMENT, MICRO, Change, step_of
 from service.demo.hidden import with_effect
+from service.demo.other_programmes import alignment, recording, turntable_truth
 from service.demo.types import SENSORS, TYPE_NAME
 
 SEED = 20261112
@@ -31,6 +32,8 @@ WANDER = {
 }
 """One sigma of every sensor's random walk in a year, dimensionless."""
 YEAR = timedelta(days=365.25)
+FLOWN_AFTER = timedelta(days=8, hours=3)
+TURNTABLE_TYPE = "RT-3"
 NOTES = "Simulated session of the demonstration fleet."
 
 
@@ -46,6 +49,9 @@ class DemoFile:
 def files_of(member: Member) -> Iterator[DemoFile]:
     """The member's sessions in order; the same bytes every time."""
     rng = np.random.default_rng([SEED, CAST.index(member)])
+    if member.programme == ROTATION_ALIGNMENT:
+        yield from _alignments(member, rng)
+        return
     norm = norms(member.kind, SENSORS)
     dates = _dates(member, rng)
     start = scattered(sensors_of(member.kind, SENSORS), norm, rng)
@@ -55,7 +61,29 @@ def files_of(member: Member) -> Iterator[DemoFile]:
         session = _measured(member, at, truth, NOISE[member.kind] * _roughness(member, number), rng)
         if member.hidden is not None and number == member.sessions - 1:
             session = with_effect(session, member.hidden)
-        yield DemoFile(f"{member.serial}-{at:%Y-%m-%d}.json", _content(session), at)
+        yield _file(session, at)
+    if member.flown is not None:
+        now = truth.stepped(step_of((member.flown,), SENSORS, member.kind), norm)
+        flight = recording(member.serial, sensors_of(member.kind, SENSORS), now, rng)
+        yield _file(replace(flight, unit_type=TYPE_NAME[member.kind], notes=NOTES), at + FLOWN_AFTER)
+
+
+def _alignments(member: Member, rng: np.random.Generator) -> Iterator[DemoFile]:
+    """Alignments before use, of a block that wanders a little and drifts as its story says."""
+    dates = _dates(member, rng)
+    wander = np.cumsum(0.5 * rng.standard_normal((len(dates), 3)), axis=0)
+    for at, walked in zip(dates, wander, strict=True):
+        moved = step_of(_changes(member, at), SENSORS, ACCELEROMETER)[:3, ELEMENT["bias"]] / MICRO
+        truth = turntable_truth(walked + moved, 0.001 * rng.standard_normal(3), rng)
+        aligned = alignment(member.serial, truth, rng)
+        operator = OPERATORS[rng.integers(len(OPERATORS))]
+        yield _file(replace(aligned, unit_type=TURNTABLE_TYPE, operator=operator, notes=NOTES), at)
+
+
+def _file(session: CalibrationSession, at: datetime) -> DemoFile:
+    """As it would be uploaded."""
+    dated = replace(session, started_at=f"{at:%Y-%m-%dT%H:%M:%SZ}")
+    return DemoFile(f"{session.unit}-{at:%Y-%m-%d}.json", _content(dated), at)
 
 
 def _dates(member: Member, rng: np.random.Generator) -> list[datetime]:
@@ -102,7 +130,6 @@ def _measured(
         schedule,
         unit=member.serial,
         unit_type=TYPE_NAME[member.kind],
-        started_at=f"{at:%Y-%m-%dT%H:%M:%SZ}",
         operator=OPERATORS[rng.integers(len(OPERATORS))],
         notes=NOTES,
         temperature=np.round(21.0 + 0.3 * rng.standard_normal() + 0.02 * np.sqrt(np.arange(rows)), 2),

@@ -14,6 +14,9 @@ from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
 from service.settings import Settings
 from tests.builders import Document, accelerometer_block, arbitrary_orientations, gyro_block, true_sensors
 from tests.databases import Databases
+from tests.service.recordings import recording_document
+from tests.service.sessions import session_bytes
+from tests.service.turntable import alignment_bytes
 from tests.serving import serving
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
@@ -35,6 +38,8 @@ class Site:
     url: str
     unfit_session: str
     loose_session: str
+    aligned_session: str
+    flown_session: str
 
 
 def drifting(step: int) -> Document:
@@ -54,7 +59,7 @@ def upload(url: str, document: Document) -> str:
 
 @pytest.fixture(scope="session")
 def site(sqlite: Databases, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
-    """A service with four units: one that drifted out of tolerance, two fit, one measured by hand."""
+    """A service with six units: drifted out of tolerance, two fit, measured by hand, aligned on a turntable, flown."""
     settings = Settings(database_url=sqlite.migrated(), data_folder=tmp_path_factory.mktemp("service"))
     with serving(settings) as url:
         unfit = [upload(url, drifting(step)) for step in range(7)][-1]
@@ -62,7 +67,11 @@ def site(sqlite: Databases, tmp_path_factory: pytest.TempPathFactory) -> Iterato
             upload(url, accelerometer_block(unit="BA-018", seed=seed) | {"started_at": f"2026-0{seed}-01T08:00:00Z"})
         upload(url, gyro_block() | {"unit": "GB-004"})
         loose = upload(url, arbitrary_orientations() | {"unit": "HAND-1"})
-        yield Site(url, unfit, loose)
+        for document in map(json.loads, (alignment_bytes(), alignment_bytes(seed=2, month=4))):
+            aligned = upload(url, document)
+        upload(url, json.loads(session_bytes(unit="FL-1")))
+        flown = upload(url, recording_document(unit="FL-1", a3_moved=400.0))
+        yield Site(url, unfit, loose, aligned, flown)
 
 
 @pytest.fixture(scope="session")

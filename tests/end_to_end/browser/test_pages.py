@@ -16,7 +16,12 @@ PATHS = (
     "/units/GB-004",
     "/sessions/{unfit}",
     "/sessions/{loose}",
+    "/sessions/{aligned}",
+    "/sessions/{flown}",
+    "/units/RA-1",
+    "/units/FL-1",
     "/sessions/{unfit}/diagnosis",
+    "/sessions/{flown}/diagnosis",
     "/sessions/{loose}/diagnosis",
     "/upload",
     "/plan",
@@ -26,7 +31,8 @@ PATHS = (
 
 
 def address(site: Site, path: str) -> str:
-    return site.url + path.format(unfit=site.unfit_session, loose=site.loose_session)
+    sessions = {"unfit": site.unfit_session, "loose": site.loose_session}
+    return site.url + path.format(**sessions, aligned=site.aligned_session, flown=site.flown_session)
 
 
 def draw_all(page: Page) -> None:

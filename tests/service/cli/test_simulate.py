@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from estimator import calibrate
+from estimator import calibrate, parity_check
 from estimator.reading import read_session
 from tests.service.cli.conftest import Run
 
@@ -53,3 +53,31 @@ def test_a_drift_that_makes_no_sense_is_refused(run: Run, tmp_path: Path, drift:
     assert ran.code == 1
     assert "A3.bias=20" in ran.err or "A1 to A6" in ran.err
     assert not (tmp_path / "none").exists()
+
+
+def test_a_flight_of_the_block_on_the_stand_shows_its_drift(run: Run, tmp_path: Path) -> None:
+    block = ("--out", tmp_path, "--unit", "F-1", "--seed", 7)
+    run("simulate", *block)
+    [truth] = run("simulate", *block, "--programme", "in-service", "--drift", "A2.bias=200", "--json").documents
+    found = parity_check(read_session(truth["file"]), calibrate(read_session(tmp_path / "F-1-001.json")))
+    bias = found.sensor("A2").bias
+    assert (found.isolated, bias.sigma is not None) == ("A2", True)
+    assert abs((bias.size or 0.0) - 200e-6 * 9.815) < 4 * (bias.sigma or 0.0)
+
+
+@pytest.mark.parametrize("programme", ["rotation-alignment", "rate-table"])
+def test_a_turntable_session_says_the_truth(run: Run, tmp_path: Path, programme: str) -> None:
+    [truth] = run("simulate", "--out", tmp_path, "--programme", programme, "--json").documents
+    found = calibrate(read_session(truth["file"]))
+    for axis, mounting, drift in zip("xy", truth["mounting"], truth["gyro_bias"][:2], strict=True):
+        gyro = found.sensor(f"gyro {axis}")
+        assert gyro.misalignment is not None
+        for estimate, true in ((gyro.misalignment, mounting), (gyro.bias, drift)):
+            assert abs(estimate.value - true) < 4 * estimate.sigma
+
+
+def test_what_a_programme_does_not_show_cannot_drift_in_it(run: Run, tmp_path: Path) -> None:
+    for options in (("rotation-alignment", "A3.bias=1"), ("rate-table", "A1.scale=1"), ("flying", "A1.bias=1")):
+        ran = run("simulate", "--out", tmp_path / "none", "--programme", options[0], "--drift", options[1])
+        assert ran.code == 1
+        assert not (tmp_path / "none").exists()
