@@ -4,15 +4,21 @@ from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query, Response
 
-from service.api.exports import as_csv, fleet_table
+from service.api.exports import as_csv, as_file, fleet_table
 from service.api.schemas.fields import Page, next_page
 from service.api.schemas.problem import errors
 from service.api.schemas.units import FleetSchema, UnitPage, UnitSummarySchema
-from service.dependencies import Reading
+from service.dependencies import Now, Reading
 from service.flows.fleet import fleet_overview
 from service.flows.fleet_condition import fleet_condition
+from service.flows.fleet_report import fleet_report
+from service.reports.fleet_paper import fleet_pdf
+from service.reports.fleet_workbook import fleet_xlsx
 
 router = APIRouter(prefix="/fleet", tags=["fleet"])
+PDF = "application/pdf"
+XLSX = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
+BYTES = {"schema": {"type": "string", "format": "binary"}}
 
 
 @router.get("", responses=errors())
@@ -23,16 +29,24 @@ def read_fleet(store: Reading) -> FleetSchema:
 
 @router.get(
     "/report",
-    responses={200: {"content": {"text/csv": {"schema": {"type": "string"}}}}, **errors(422)},
+    responses={200: {"content": {"text/csv": {"schema": {"type": "string"}}, XLSX: BYTES, PDF: BYTES}}, **errors(422)},
     response_model=UnitPage,
 )
 def report_fleet(
     store: Reading,
-    format: Annotated[Literal["json", "csv"], Query(description="Form of the answer.")] = "json",
+    now: Now,
+    format: Annotated[
+        Literal["json", "csv", "xlsx", "pdf"],
+        Query(description="Form of the answer; a workbook and a paper are of the whole fleet, whatever the page."),
+    ] = "json",
     page: Page = 1,
     limit: Annotated[int, Query(ge=1, le=10_000, description="How many units on a page.")] = 10_000,
 ) -> Response:
     """The condition of every unit, worst first."""
+    if format == "xlsx":
+        return as_file(fleet_xlsx(store, fleet_report(store, now)), XLSX, "fleet.xlsx")
+    if format == "pdf":
+        return as_file(fleet_pdf(store, fleet_report(store, now)), PDF, "fleet.pdf")
     found = fleet_overview(store, page=page, limit=limit)
     if format == "csv":
         return as_csv(fleet_table(found), "fleet.csv")

@@ -19,6 +19,8 @@ class Format(StrEnum):
 
     JSON = "json"
     CSV = "csv"
+    XLSX = "xlsx"
+    PDF = "pdf"
 
 
 def fleet(server: Server = DEFAULT_SERVER, as_json: AsJson = False) -> None:
@@ -33,7 +35,7 @@ def fleet(server: Server = DEFAULT_SERVER, as_json: AsJson = False) -> None:
 
 def report(
     server: Server = DEFAULT_SERVER,
-    format: Annotated[Format, typer.Option("--format", help="json or csv.")] = Format.CSV,
+    format: Annotated[Format, typer.Option("--format", help="json, csv, xlsx or pdf.")] = Format.CSV,
     out: Out = None,
 ) -> None:
     """Write the fleet's condition as a file for other programs."""

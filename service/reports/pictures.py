@@ -35,7 +35,7 @@ def picture(charts: ChartSet, panel: Panel, width: int) -> str:
     """One panel as SVG, ``width`` pixels wide."""
     coloured = VARIABLE.sub(lambda found: PALETTE[found[1]], json.dumps(charts.spec))
     spec: dict[str, Any] = json.loads(coloured)
-    spec |= {"datasets": panel.datasets, "width": width}
+    spec |= {"datasets": {**spec.get("datasets", {}), **panel.datasets}, "width": width}
     spec["config"]["font"] = MEASURED
     drawn: str = vl_convert.vegalite_to_svg(spec)
     return drawn.replace(MEASURED, PRINTED)

@@ -8,6 +8,7 @@ from service.storage.queries.calibrations import Calibrations
 from service.storage.queries.diagnoses import Diagnoses
 from service.storage.queries.flags import Flags
 from service.storage.queries.fleet import Fleet
+from service.storage.queries.fleet_rows import FleetRows
 from service.storage.queries.history import History
 from service.storage.queries.log import Log
 from service.storage.queries.models import Models
@@ -90,6 +91,11 @@ class Store:
     def fleet(self) -> Fleet:
         """All units at a glance."""
         return Fleet(self._session)
+
+    @cached_property
+    def fleet_rows(self) -> FleetRows:
+        """What a report of the whole fleet reads."""
+        return FleetRows(self._session)
 
     @cached_property
     def log(self) -> Log:

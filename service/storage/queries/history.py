@@ -4,11 +4,19 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
 
-from sqlalchemy import ColumnElement, Row, func, select
+from sqlalchemy import ColumnElement, func, select
 
 from service.records import HistoryPoint, ParameterValue, StoredSession, Verdict
 from service.storage.queries.base import Queries
 from service.storage.tables import CalibrationRow, DecisionRow, ParameterRow, SessionRow
+
+DECIDED = (
+    (DecisionRow.session_id == ParameterRow.session_id)
+    & (DecisionRow.revision == ParameterRow.revision)
+    & (DecisionRow.sensor == ParameterRow.sensor)
+    & (DecisionRow.parameter == ParameterRow.parameter)
+)
+"""The decision on a parameter, under the same model revision."""
 
 
 @dataclass(frozen=True)
@@ -54,16 +62,10 @@ class History(Queries):
 
     def points(self, unit: int, wanted: HistoryQuery) -> tuple[HistoryPoint, ...]:
         """The wanted part of a unit's history, oldest first, in one query."""
-        same = (
-            (DecisionRow.session_id == ParameterRow.session_id)
-            & (DecisionRow.revision == ParameterRow.revision)
-            & (DecisionRow.sensor == ParameterRow.sensor)
-            & (DecisionRow.parameter == ParameterRow.parameter)
-        )
         query = (
             select(ParameterRow, DecisionRow, SessionRow.is_reference)
             .join(SessionRow, SessionRow.id == ParameterRow.session_id)
-            .outerjoin(DecisionRow, same)
+            .outerjoin(DecisionRow, DECIDED)
             .where(ParameterRow.unit_id == unit, ParameterRow.revision == _revision(wanted.revision))
         )
         if wanted.parameter is not None:
@@ -76,7 +78,7 @@ class History(Queries):
             query = query.where(ParameterRow.at < wanted.until)
         order = (ParameterRow.at, ParameterRow.session_id, ParameterRow.sensor_index, ParameterRow.parameter)
         query = query.order_by(*(column.desc() if wanted.newest else column for column in order))
-        found = [_point(row) for row in self._session.execute(query.offset(wanted.offset).limit(wanted.limit))]
+        found = [point_record(*row) for row in self._session.execute(query.offset(wanted.offset).limit(wanted.limit))]
         return tuple(reversed(found)) if wanted.newest else tuple(found)
 
 
@@ -91,9 +93,8 @@ def _revision(wanted: int | None) -> ColumnElement[int]:
     )
 
 
-def _point(row: Row[ParameterRow, DecisionRow, bool]) -> HistoryPoint:
-    parameter: ParameterRow = row[0]
-    decision: DecisionRow | None = row[1]
+def point_record(parameter: ParameterRow, decision: DecisionRow | None, is_reference: bool) -> HistoryPoint:
+    """A stored parameter with what was decided of it."""
     is_axis = parameter.parameter == "axis"
     value = decision.value if is_axis and decision else parameter.value
     u = decision.uncertainty if is_axis and decision and decision.uncertainty is not None else parameter.u
@@ -113,7 +114,7 @@ def _point(row: Row[ParameterRow, DecisionRow, bool]) -> HistoryPoint:
         expanded=None if decision is None else decision.expanded,
         tolerance=None if decision is None else _tolerance(decision),
         verdict=Verdict.UNDECIDABLE if decision is None else Verdict(decision.verdict),
-        is_reference=row[2],
+        is_reference=is_reference,
         axis=_axis(parameter),
         revision=parameter.revision,
     )

@@ -127,7 +127,7 @@ class Sessions(Queries):
             .where(DecisionRow.session_id == id, DecisionRow.revision == SessionRow.revision)
             .order_by(DecisionRow.position)
         )
-        return tuple(_decision(row) for row in rows)
+        return tuple(decision_record(row) for row in rows)
 
 
 def _worst_columns(worst: Worst) -> dict[str, str | float | None]:
@@ -147,7 +147,8 @@ def _session_record(row: SessionRow, unit: str, stand: str | None) -> StoredSess
     return StoredSession(unit=unit, stand=stand, verdict=Verdict(row.verdict), **own)
 
 
-def _decision(row: DecisionRow) -> Decision:
+def decision_record(row: DecisionRow) -> Decision:
+    """A stored decision."""
     own = {f.name: _plain(getattr(row, f.name)) for f in fields(Decision) if f.name != "verdict"}
     return Decision(verdict=Verdict(row.verdict), **own)
 

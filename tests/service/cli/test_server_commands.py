@@ -99,3 +99,13 @@ def test_a_certificate_is_written_as_pdf(run: Run, address: str, good_file: Path
     assert target.read_bytes().startswith(b"%PDF")
     ran = run("certificate", "../none", "--server", address)
     assert (ran.code, ran.out, ran.err.count("\n")) == (1, "", 1)
+
+
+@pytest.mark.parametrize(("format", "head"), [("xlsx", b"PK"), ("pdf", b"%PDF")])
+def test_the_report_is_written_as_workbook_and_on_paper(
+    run: Run, address: str, good_file: Path, tmp_path: Path, format: str, head: bytes
+) -> None:
+    run("upload", good_file, "--server", address)
+    target = tmp_path / f"fleet.{format}"
+    assert run("report", "--server", address, "--format", format, "--out", target).code == 0
+    assert target.read_bytes().startswith(head)

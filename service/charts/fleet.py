@@ -1,0 +1,69 @@
+"""The fleet in one picture: how much of its tolerance each unit uses."""
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+from typing import Any
+
+import altair as alt
+
+from service.charts import DATA_FORM, ChartSet, Panel, specification
+from service.records import UnitSummary
+from service.verdicts import CONDITIONS, Condition, condition_of
+
+HEIGHT = 120
+STEP, LAST = 10, 200
+"""Per cent of the tolerance: width of a bar, and where the bar of everything beyond begins."""
+TITLE = f"tolerance used by the worst parameter, U included, %; the last bar holds all from {LAST} on"
+TICKS = list(range(0, LAST + 1, 2 * STEP))
+TITLE = f"tolerance used by the worst parameter, U included, %; the last bar holds all from {LAST} on"
+TICKS = list(range(0, LAST + 1, 2 * STEP))
+
+
+def fleet_chart(units: Sequence[UnitSummary]) -> ChartSet:
+    """Units by the share of the tolerance that their worst parameter uses, uncertainty included."""
+    counts: dict[tuple[int, Condition], int] = {}
+    for unit in units:
+        condition = condition_of(unit.verdict, is_reference=unit.is_reference)
+        if unit.margin is not None and condition in CONDITIONS:
+            used = 100 * (1 - unit.margin)
+            key = (min(STEP * int(used // STEP), LAST), condition)
+            counts[key] = counts.get(key, 0) + 1
+    rows = _stacked(counts)
+    text = f"{sum(counts.values())} units by the tolerance that they use"
+    return ChartSet("fleet", "Tolerance used", _spec(), (Panel("", text, None, {DATA_FORM: rows}),))
+
+
+def _stacked(counts: Mapping[tuple[int, Condition], int]) -> list[dict[str, Any]]:
+    """Bars with the better conditions below."""
+    rows: list[dict[str, Any]] = []
+    top: dict[int, int] = {}
+    for (left, condition), count in sorted(counts.items(), key=lambda item: (item[0][0], -item[0][1].rank)):
+        below = top.get(left, 0)
+        top[left] = below + count
+        rows.append({"left": left, "right": left + STEP, "low": below, "high": top[left], "verdict": condition.formal})
+    return rows
+
+
+@cache
+def _spec() -> dict[str, Any]:
+    names = [condition.formal for condition in CONDITIONS]
+    colours = [f"var(--{condition.key})" for condition in CONDITIONS]
+    x = alt.X("left:Q", title=TITLE, scale=alt.Scale(domain=[0, LAST + STEP]), axis=alt.Axis(values=TICKS))
+    y = alt.Y("low:Q", title="units", axis=alt.Axis(tickCount=4, format="d", tickMinStep=1))
+    bars = (
+        alt.Chart(alt.NamedData(name=DATA_FORM))
+        .mark_rect(stroke="var(--card)", strokeWidth=0.7)
+        .encode(
+            x=x,
+            x2="right:Q",
+            y=y,
+            y2="high:Q",
+            color=alt.Color("verdict:N", legend=None, scale=alt.Scale(domain=names, range=colours)),
+        )
+    )
+    limit = (
+        alt.Chart(alt.InlineData(values=[{"limit": 100}]))
+        .mark_rule(color="var(--tolerance)", strokeDash=[5, 3], strokeWidth=1.5)
+        .encode(x="limit:Q")
+    )
+    return specification([bars, limit], HEIGHT)

@@ -1,0 +1,105 @@
+"""Tables in a workbook: frozen, filtered heading, real dates and numbers, verdicts in colour, text that stays text."""
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from enum import Enum
+from typing import Any
+
+import xlsxwriter
+from xlsxwriter.format import Format
+from xlsxwriter.worksheet import Worksheet
+
+from service.reports.pictures import PALETTE
+from service.verdicts import CONDITIONS, REFERENCE
+
+FORMULA = re.compile(r"^[=+\-@\t\r]")
+"""How a text begins that a spreadsheet would work out once it is edited."""
+LONGEST_TEXT = 32_767
+"""Characters that a cell holds."""
+OPTIONS = {"constant_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
+
+Cell = str | float | int | bool | datetime | None
+
+
+class Kind(Enum):
+    """How a column is written: the format of its numbers, and whether verdicts stand in it."""
+
+    TEXT = "@"
+    VERDICT = "General;General"
+    NUMBER = "General"
+    CHANGE = "0.00"
+    SHARE = "0 %"
+    CHANCE = "0.00 %"
+    DATE = "yyyy-mm-dd"
+    TIME = "yyyy-mm-dd hh:mm"
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column of a table."""
+
+    name: str
+    kind: Kind = Kind.TEXT
+    width: float = 14.0
+
+
+class Workbook:
+    """A workbook under construction; rows go to disk as they come, so a large one takes little memory."""
+
+    def __init__(self, target: Any, made: datetime, title: str) -> None:
+        self._book = xlsxwriter.Workbook(target, OPTIONS)
+        self._book.set_properties({"title": title, "author": "imu-health", "created": _naive(made)})
+        self._head = self._book.add_format({"bold": True, "bottom": 1, "text_wrap": True, "valign": "top"})
+        self._formats: dict[Kind, Format] = {kind: self._book.add_format({"num_format": kind.value}) for kind in Kind}
+        self._quoted = self._book.add_format({"quote_prefix": True})
+        self._tones = {c.formal: self._tone(c.key) for c in (*CONDITIONS, REFERENCE)}
+
+    def _tone(self, key: str) -> Format:
+        return self._book.add_format({"font_color": "#ffffff", "bg_color": PALETTE[key]})
+
+    def table(self, name: str, columns: Sequence[Column], rows: Iterable[Sequence[Cell]]) -> None:
+        """One sheet of one table."""
+        sheet = self._book.add_worksheet(name)
+        sheet.freeze_panes(1, 1)
+        for place, column in enumerate(columns):
+            sheet.set_column(place, place, column.width)
+            sheet.write_string(0, place, column.name, self._head)
+        last = 0
+        for last, row in enumerate(rows, 1):
+            for place, (column, cell) in enumerate(zip(columns, row, strict=True)):
+                self._write(sheet, last, place, column.kind, cell)
+        sheet.autofilter(0, 0, max(last, 1), len(columns) - 1)
+        self._colour(sheet, columns, last)
+
+    def _write(self, sheet: Worksheet, row: int, place: int, kind: Kind, cell: Cell) -> None:
+        match cell:
+            case None:
+                return
+            case bool():
+                sheet.write_string(row, place, "yes" if cell else "no")
+            case datetime():
+                sheet.write_datetime(row, place, _naive(cell), self._formats[kind])
+            case int() | float():
+                sheet.write_number(row, place, cell, self._formats[kind])
+            case str():
+                look = self._quoted if FORMULA.match(cell) else self._formats[Kind.TEXT]
+                sheet.write_string(row, place, cell[:LONGEST_TEXT], look)
+
+    def _colour(self, sheet: Worksheet, columns: Sequence[Column], last: int) -> None:
+        """Verdicts in their colours, as rules of the sheet: they follow when somebody sorts or edits."""
+        for place, column in enumerate(columns):
+            if column.kind is Kind.VERDICT and last:
+                for formal, tone in self._tones.items():
+                    rule = {"type": "cell", "criteria": "==", "value": f'"{formal}"', "format": tone}
+                    sheet.conditional_format(1, place, last, place, rule)
+
+    def close(self) -> None:
+        """Writes the file."""
+        self._book.close()
+
+
+def _naive(at: datetime) -> datetime:
+    """A spreadsheet's dates have no zone: UTC, to the second."""
+    return at.astimezone(UTC).replace(tzinfo=None, microsecond=0)

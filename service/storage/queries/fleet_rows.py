@@ -1,0 +1,113 @@
+"""What a report of the whole fleet reads: one query each, row after row, whatever the size of the fleet."""
+
+from collections.abc import Iterable, Iterator
+
+from sqlalchemy import Row, Select, func, select
+from sqlalchemy.orm import aliased
+
+from service.records import Decision, HistoryPoint, Service
+from service.storage.queries.base import Queries
+from service.storage.queries.history import DECIDED, point_record
+from service.storage.queries.sessions import decision_record
+from service.storage.tables import ConditionRow, DecisionRow, ParameterRow, ServiceRow, SessionRow, UnitRow
+
+AT_A_TIME = 2000
+"""Rows that are held in memory."""
+
+Latest = aliased(SessionRow)
+Points = Select[str, ParameterRow, DecisionRow, bool]
+
+
+class FleetRows(Queries):
+    """Rows of many units, by serial number."""
+
+    def latest_decisions(self, serials: tuple[str, ...] | None = None) -> Iterator[tuple[str, str, Decision]]:
+        """Serial number, session and what was decided there, of the latest session of every unit, or of some."""
+        query = (
+            select(UnitRow.serial, DecisionRow)
+            .select_from(ConditionRow)
+            .join(UnitRow, UnitRow.id == ConditionRow.unit_id)
+            .join(SessionRow, SessionRow.id == ConditionRow.last_session)
+            .join(
+                DecisionRow,
+                (DecisionRow.session_id == SessionRow.id) & (DecisionRow.revision == SessionRow.revision),
+            )
+            .order_by(UnitRow.serial, DecisionRow.position)
+            .execution_options(yield_per=AT_A_TIME)
+        )
+        if serials is not None:
+            query = query.where(UnitRow.serial.in_(serials))
+        for serial, row in self._session.execute(query):
+            yield serial, row.session_id, decision_record(row)
+
+    def points_of_latest(self) -> int:
+        """How many parameters the latest sessions of all units have."""
+        query = (
+            select(func.count())
+            .select_from(ConditionRow)
+            .join(SessionRow, SessionRow.id == ConditionRow.last_session)
+            .join(
+                ParameterRow,
+                (ParameterRow.session_id == SessionRow.id) & (ParameterRow.revision == SessionRow.revision),
+            )
+        )
+        return self._session.scalar(query) or 0
+
+    def histories(self, sessions: int) -> Iterator[tuple[str, HistoryPoint]]:
+        """The parameters of the newest sessions of every unit, so many of each, oldest first."""
+        place = func.row_number().over(
+            partition_by=SessionRow.unit_id, order_by=(SessionRow.started_at.desc(), SessionRow.id.desc())
+        )
+        newest = select(SessionRow.id.label("id"), place.label("place")).subquery()
+        wanted = select(newest.c.id).where(newest.c.place <= sessions)
+        query = _points().where(SessionRow.id.in_(wanted))
+        yield from _by_serial(self._session.execute(query.execution_options(yield_per=AT_A_TIME)))
+
+    def worst_histories(self, serials: tuple[str, ...]) -> tuple[tuple[str, HistoryPoint], ...]:
+        """Of some units the history of the parameter that the latest verdict hangs on."""
+        query = (
+            _points()
+            .join(ConditionRow, ConditionRow.unit_id == UnitRow.id)
+            .join(Latest, Latest.id == ConditionRow.last_session)
+            .where(
+                UnitRow.serial.in_(serials),
+                ParameterRow.sensor == Latest.worst_sensor,
+                ParameterRow.parameter == Latest.worst_parameter,
+            )
+        )
+        return tuple(_by_serial(self._session.execute(query)))
+
+    def services(self, serials: tuple[str, ...]) -> tuple[Service, ...]:
+        """All breaks of some units, oldest first."""
+        query = (
+            select(ServiceRow, UnitRow.serial)
+            .join(UnitRow, UnitRow.id == ServiceRow.unit_id)
+            .where(UnitRow.serial.in_(serials))
+            .order_by(ServiceRow.at, ServiceRow.id)
+        )
+        return tuple(
+            Service(id=row.id, unit=serial, at=row.at, kind=row.kind, note=row.note)
+            for row, serial in self._session.execute(query)
+        )
+
+
+def _points() -> Points:
+    return (
+        select(UnitRow.serial, ParameterRow, DecisionRow, SessionRow.is_reference)
+        .join(SessionRow, SessionRow.id == ParameterRow.session_id)
+        .join(UnitRow, UnitRow.id == SessionRow.unit_id)
+        .outerjoin(DecisionRow, DECIDED)
+        .where(ParameterRow.revision == SessionRow.revision)
+        .order_by(
+            UnitRow.serial,
+            ParameterRow.at,
+            ParameterRow.session_id,
+            ParameterRow.sensor_index,
+            ParameterRow.parameter,
+        )
+    )
+
+
+def _by_serial(rows: Iterable[Row[str, ParameterRow, DecisionRow, bool]]) -> Iterator[tuple[str, HistoryPoint]]:
+    for serial, parameter, decision, is_reference in rows:
+        yield serial, point_record(parameter, decision, is_reference)
