@@ -147,8 +147,8 @@ def freed(evidence: Evidence, traces: Traces) -> Traces | None:
     S, n, _ = traces.columns.shape
     own = np.zeros((S, n, 5))
     for k, shape in enumerate(traces.shapes):
-        rows = evidence.readings + 5 * shape.sensors[0]
-        own[k, rows : rows + 5] = np.eye(5)
+        moved = slice(5 * shape.sensors[0], 5 * shape.sensors[0] + 5)
+        own[k, evidence.readings :] = evidence.between.response[:, moved]
     blank = np.zeros((*traces.shapes[0].columns.shape[:2], 5))
     shapes = tuple(Shape(s.sensors, np.concatenate([s.columns, blank], axis=-1), s.nonlinear) for s in traces.shapes)
     raw = np.concatenate([traces.raw, np.zeros((S, 5))], axis=-1)
@@ -231,8 +231,9 @@ def orthonormal(columns: Array) -> tuple[Array, Array, Array]:
 
 def bayes_factor(statistic: float, q: int) -> float:
     """ln of the local empirical Bayes factor of an effect with q amplitudes against none, less Occam's due."""
-    if q == 0 or statistic <= q:
+    if q == 0:
         return 0.0
+    statistic = max(statistic, q)
     return 0.5 * (statistic - q) - 0.5 * q * float(np.log(statistic / q)) - OCCAM * (q - 1)
 
 

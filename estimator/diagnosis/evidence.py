@@ -17,6 +17,7 @@ from functools import cached_property
 import numpy as np
 
 from estimator.diagnosis.baseline import Baseline, spread
+from estimator.diagnosis.turning import comparable_directions
 from estimator.parameters import PLAUSIBLE
 from estimator.session import Array
 
@@ -63,14 +64,20 @@ def whitened_design(baseline: Baseline, whiten: Whitener) -> Array:
 
 
 def parameter_covariance(baseline: Baseline) -> Array:
-    """(5 m, 5 m) total covariance, dimensionless; what is not observed carries the plausible range."""
+    """(5 m, 5 m) total covariance, dimensionless; what is not observed carries the plausible range.
+
+    A common turn that nothing observes carries none: the axes are then those of this session's own frame.
+    """
     full = whitened_design(baseline, Whitener.of(baseline))
-    P = 5 * baseline.residual.shape[1]
+    keep, P = comparable_directions(baseline), 5 * baseline.residual.shape[1]
+    full = np.concatenate([full[:, :P] @ keep, full[:, P:]], axis=1)
+    q = keep.shape[1]
     ridge = np.zeros(full.shape[1])
-    ridge[:P] = PLAUSIBLE**-2
+    ridge[:q] = PLAUSIBLE**-2
     scale = np.sqrt((full**2).sum(axis=0) + ridge)
     normal = (full / scale).T @ (full / scale) + np.diag(ridge / scale**2)
-    return np.asarray(np.linalg.inv(normal)[:P, :P] / scale[:P, None] / scale[:P])
+    covariance = np.linalg.inv(normal)[:q, :q] / scale[:q, None] / scale[:q]
+    return np.asarray(keep @ covariance @ keep.T)
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,6 +16,7 @@ import numpy as np
 from estimator.calibration.calibrate import calibrate
 from estimator.diagnosis.candidates import INVISIBLE, Scored
 from estimator.diagnosis.revise import DRIFT
+from estimator.diagnosis.serial import Serial
 from estimator.diagnosis.state import Excess, Search
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
@@ -79,10 +80,10 @@ def without_effects(state: Search, fitted: Amplitudes) -> CalibrationSession:
         pulsed = np.array([s.kind != ACCELEROMETER for s in session.sensors])
         period = np.where(pulsed, session.count_time or 1.0, 1.0)
         readings = readings - np.sum(inside, axis=0) * p.scale * period
-    return replace(session, readings=readings, standard_errors=true_errors(state, state.excess))
+    return replace(session, readings=readings, standard_errors=true_errors(state, state.scatter))
 
 
-def true_errors(state: Search, excess: Sequence[Excess]) -> Array:
+def true_errors(state: Search, excess: Sequence[Excess | Serial]) -> Array:
     """(R, m) standard errors with the excess noise in them, reading units."""
     session, scale = state.baseline.session, state.baseline.parameters.scale
     errors = session.standard_errors.copy()

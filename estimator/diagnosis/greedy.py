@@ -4,24 +4,24 @@ Before a scatter larger than stated is called excess noise, it is looked at with
 signature and no pattern may stand out of it, and it may not run smoothly along any order of the rows.
 """
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 from scipy.special import chdtrc
 
-from estimator.diagnosis.evidence import Evidence
 from estimator.diagnosis.serial import Serial, serial_structure
-from estimator.diagnosis.state import LEVEL, Excess, Found, Search, begin, companions, strongest
+from estimator.diagnosis.state import LEVEL, Excess, Found, Group, Search, begin, companions, strongest
 
 DECISIVE = 4.0
 """ln evidence by which a signature must beat mere excess noise to be believed without a look at the scatter."""
 
-DOUBT = 0.05
-"""Level at which a scatter that seems too large is taken for uneven rather than for mere noise."""
+WANDERING = 1.0
+"""ln evidence from which on a scatter that is too large is taken for a smooth course rather than for mere noise."""
 
-AGAIN = frozenset({"reading-outlier", "bias-jump"})
-"""Causes that may happen to one sensor more than once."""
+AGAIN = {"reading-outlier": 3, "bias-jump": 2}
+"""How often a cause may happen to one sensor, where it may more than once; what needs more of them is no such cause."""
 
 MOST = 8
 """Different causes (and, apart from them, patterns) looked for in one session, each on as many sensors as show it."""
@@ -32,27 +32,48 @@ def causes(state: Search) -> Search:
     while len({f.best.cause.identifier for f in state.found}) < MOST:
         noisy = noisiest(state)
         best = strongest(state, state.traces)
-        if noisy is not None and (best is None or noisy.evidence > best.ranking[0][1] - DECISIVE):
+        if noisy is not None and (best is None or noisy.evidence > weight(best) - DECISIVE):
             wary = with_unknown_noise(state, noisy.sensor)
             best = strongest(wary, wary.traces)
-            if best is None and strongest(wary, wary.patterns) is None:
-                uneven = serial_of(state, noisy.sensor)
-                known = with_excess(state, noisy) if uneven is None else replace(state, serial=(*state.serial, uneven))
-                state = known
+            uneven = course(state, noisy)
+            if uneven is not None and uneven.evidence > (WANDERING if best is None else weight(best)):
+                state = set_apart(state, uneven)
+                continue
+            if best is None and not patterned(state, wary, noisy):
+                state = set_apart(state, noisy)
                 continue
         if best is None:
             break
         found = (*state.found, best, *companions(state, best, state.traces))
-        if repeated(found):
+        often = too_often(found)
+        if often and all(group[0] in AGAIN for group in often):
+            kept = tuple(f for f in found if f.best.group not in often)
+            state = replace(state, found=kept, refuted=state.refuted | often)
+        elif often:
             break
-        state = replace(state, found=found)
+        else:
+            state = replace(state, found=found)
     return state
 
 
-def repeated(found: Sequence[Found]) -> bool:
-    """Whether a cause that can act on a sensor only once was named on it twice: then it is not that cause."""
-    once = [f.best.group for f in found if f.best.cause.identifier not in AGAIN]
-    return len(once) != len(set(once))
+def weight(found: Found) -> float:
+    """ln evidence of the cause that leads a ranking, all its shapes together."""
+    return found.ranking[0][1]
+
+
+def too_often(found: Sequence[Found]) -> frozenset[Group]:
+    """Causes named on a sensor more often than they can act there: then it is not that cause."""
+    times = Counter(f.best.group for f in found)
+    return frozenset(group for group, n in times.items() if n > AGAIN.get(group[0], 1))
+
+
+def patterned(state: Search, wary: Search, noisy: Excess) -> bool:
+    """Whether a sensor's scatter holds a pattern: one of its own that stands out of it, or one common to all sensors
+    that explains more than this sensor's noise does."""
+    common = [t for t in state.patterns if not t.shapes[0].sensors]
+    own = [t.at((noisy.sensor,)) for t in wary.patterns if t.shapes[0].sensors]
+    shared = strongest(state, common)
+    return strongest(wary, own) is not None or (shared is not None and weight(shared) > noisy.evidence)
 
 
 def with_unknown_noise(state: Search, sensor: int) -> Search:
@@ -63,14 +84,19 @@ def with_unknown_noise(state: Search, sensor: int) -> Search:
     return replace(state, baseline=baseline, evidence=replace(state.evidence, baseline=baseline))
 
 
-def with_excess(state: Search, noisy: Excess) -> Search:
-    """The search begun anew with the noisy sensor's variance as it is, known from its own residuals alone."""
+def set_apart(state: Search, scatter: Excess | Serial) -> Search:
+    """The search begun anew with one sensor's variance as it is, known from its own residuals alone.
+
+    On a sensor whose scatter is no noise nothing more is looked for.
+    """
     variance, unstated = state.baseline.variance.copy(), state.baseline.unstated.copy()
-    variance[:, noisy.sensor] *= noisy.ratio
-    unstated[noisy.sensor] = True
-    baseline = replace(state.baseline, variance=variance, unstated=unstated)
-    again = begin(baseline, state.history, state.catalogue)
-    return causes(replace(again, excess=(*state.excess, noisy), serial=state.serial))
+    variance[:, scatter.sensor] *= scatter.ratio
+    unstated[scatter.sensor] = True
+    again = begin(replace(state.baseline, variance=variance, unstated=unstated), state.history, state.catalogue)
+    again = replace(again, excess=state.excess, serial=state.serial)
+    if isinstance(scatter, Excess):
+        return causes(replace(again, excess=(*state.excess, scatter)))
+    return causes(replace(again, serial=(*state.serial, scatter)))
 
 
 def noisiest(state: Search) -> Excess | None:
@@ -78,15 +104,13 @@ def noisiest(state: Search) -> Excess | None:
     evidence = state.evidence
     z, taken = state.left, state.taken()
     owner, m = evidence.owner(), len(evidence.baseline.unstated)
-    used = np.zeros(len(z))
-    used[: evidence.readings] = (evidence.basis**2).sum(axis=1)
-    used += (taken**2).sum(axis=1)
+    spare = evidence.spare - (taken[: evidence.readings] ** 2).sum(axis=1)
     best = None
     for i in range(m):
         if evidence.baseline.unstated[i] or i in state.spoken_for:
             continue
-        rows = (owner == i) & (np.arange(len(z)) < evidence.readings)
-        freedom = float((1 - used[rows]).sum()) * whiteness(evidence)
+        rows = np.flatnonzero(owner[: evidence.readings] == i)
+        freedom = float(spare[rows].sum())
         energy = float((z[rows] ** 2).sum())
         if freedom < 2 or energy <= freedom:
             continue
@@ -98,23 +122,23 @@ def noisiest(state: Search) -> Excess | None:
     return best
 
 
-def whiteness(evidence: Evidence) -> float:
-    """Share of the rows' energy that unknown directions leave to the noise."""
-    removed = (1 - (1 - evidence.whiten.removed) ** 2).sum()
-    return float(1 - removed / evidence.baseline.residual.size)
-
-
-def serial_of(state: Search, sensor: int) -> Serial | None:
-    """Whether one sensor's left-over runs smoothly along some order of its rows."""
-    return serial_structure(state.evidence, state.left, sensor, DOUBT)
+def course(state: Search, noisy: Excess) -> Serial | None:
+    """Whether a sensor's scatter, larger than stated, runs smoothly along some order of its rows."""
+    found = serial_structure(state.evidence, state.left, state.taken(), noisy.sensor, known=False)
+    return None if found is None else replace(found, ratio=noisy.ratio)
 
 
 def unevenness(state: Search) -> Search:
     """Sensors whose left-over is not white after everything found."""
-    m = len(state.baseline.unstated)
-    open_sensors = [i for i in range(m) if i not in state.spoken_for]
-    uneven = [serial_structure(state.evidence, state.left, i, LEVEL / m) for i in open_sensors]
-    return replace(state, serial=(*state.serial, *(u for u in uneven if u is not None)))
+    unstated = state.baseline.unstated
+    left, taken = state.left, state.taken()
+    each = [
+        serial_structure(state.evidence, left, taken, i, known=not unstated[i])
+        for i in range(len(unstated))
+        if i not in state.spoken_for
+    ]
+    uneven = [u for u in each if u is not None and u.p_value * len(unstated) < LEVEL]
+    return replace(state, serial=(*state.serial, *uneven))
 
 
 def structures(state: Search) -> Search:

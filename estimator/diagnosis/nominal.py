@@ -14,6 +14,7 @@ from estimator.causes.record import AlphaEntry
 from estimator.diagnosis.baseline import Baseline
 from estimator.diagnosis.evidence import Evidence, parameter_covariance
 from estimator.diagnosis.measured import baseline_of
+from estimator.parameters import LIMIT
 from estimator.session import CalibrationSession
 
 LEVEL = 1e-3
@@ -51,7 +52,7 @@ def regression(baseline: Baseline, cause: AlphaEntry) -> tuple[float, float, flo
     nominal = np.stack([s.nominal_axis for s in baseline.session.sensors])
     frame = tangents(baseline.parameters.axis)
     stray = (np.swapaxes(frame, -1, -2) @ (baseline.parameters.axis - nominal)[..., None]).ravel()
-    known = np.diagonal(parameter_covariance(baseline))[axes] < LEAST
+    known = np.sqrt(np.diagonal(parameter_covariance(baseline))[axes]) < LIMIT
     answer, stray = answer[known], stray[known]
     size = float(answer @ answer)
     if size == 0 or len(stray) < 4:

@@ -7,9 +7,12 @@ the stand that a third one patched up, and names that structure without a name e
 from dataclasses import replace
 from itertools import combinations
 
-from estimator.diagnosis.candidates import MANY, score
+import numpy as np
+
+from estimator.diagnosis.candidates import MANY, rescored, score
 from estimator.diagnosis.greedy import DECISIVE, causes, structures
-from estimator.diagnosis.state import Found, Search, strongest, total
+from estimator.diagnosis.serial import serial_structure
+from estimator.diagnosis.state import LEVEL, Found, Search, family_level, strongest, total
 
 NAMELESS = 1.5
 """ln evidence by which structure without a name must beat the named causes."""
@@ -68,6 +71,17 @@ def best_pair(state: Search) -> Search:
     return best if best is state else settle(best)
 
 
+def confirmed(state: Search) -> Search:
+    """Every finding keeps its significance beside all others, or goes, the weakest first."""
+    while state.found:
+        again = [rescored(state.evidence, f.best, state.taken(without=f)) for f in state.found]
+        level, weakest = max((family_level(s, state.families), k) for k, s in enumerate(again))
+        if level < LEVEL:
+            break
+        state = replace(state, found=state.found[:weakest] + state.found[weakest + 1 :])
+    return state
+
+
 def judge_structures(state: Search) -> Search:
     """Withdraw names when structure without them explains the session better.
 
@@ -85,18 +99,36 @@ def judge_structures(state: Search) -> Search:
     return state
 
 
+def judge_courses(state: Search) -> Search:
+    """Withdraw several names on one sensor where its left-over without them is as well a smooth course of no name."""
+    m = len(state.baseline.unstated)
+    for i in range(m):
+        kept = tuple(f for f in state.found if f.best.shape.sensors != (i,))
+        if len(state.found) - len(kept) < 2:
+            continue
+        rest = replace(state, found=kept)
+        known = not state.baseline.unstated[i]
+        uneven = serial_structure(rest.evidence, rest.left, rest.taken(), i, known=known)
+        if uneven is not None and uneven.evidence - np.log(m) > total(state) - total(rest) + NAMELESS:
+            state = replace(rest, serial=(*rest.serial, uneven))
+    return state
+
+
 def overlaps(group: tuple[Found, ...], structures: tuple[Found, ...]) -> bool:
     """Whether structure was left on a sensor of the group."""
     return bool({f.best.shape.sensors for f in group} & {s.best.shape.sensors for s in structures})
 
 
 def without_names(state: Search, kept: tuple[Found, ...], touched: set[tuple[int, ...]]) -> Search:
-    """The search with only the findings ``kept``, and structure where the others were; elsewhere as it was."""
-    own = next(iter(touched)) if len(touched) == 1 else ()
-    if not own:
+    """The search with only the findings ``kept``, and structure where the others were; elsewhere as it was.
+
+    What stand or fixture does is replaced by structure common to all sensors, not by a patchwork of single ones.
+    """
+    if len(touched) > 1:
         return structures(replace(state, found=kept, structures=()))
+    own = next(iter(touched))
     elsewhere = tuple(s for s in state.structures if s.best.shape.sensors != own)
-    there = tuple(t.at(own) for t in state.patterns)
+    there = tuple(t.at(own) for t in state.patterns if own or not t.shapes[0].sensors)
     return replace(
         structures(replace(state, found=kept, structures=elsewhere, patterns=there)), patterns=state.patterns
     )

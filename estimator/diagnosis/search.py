@@ -1,11 +1,18 @@
 """The search for causes: one after another, each weighed against all others, confirmed together."""
 
 from estimator.diagnosis.greedy import causes, structures, unevenness
-from estimator.diagnosis.revise import best_pair, judge_structures, settle, without_needless_drift
+from estimator.diagnosis.revise import (
+    best_pair,
+    confirmed,
+    judge_courses,
+    judge_structures,
+    settle,
+    without_needless_drift,
+)
 from estimator.diagnosis.state import Search
 
 
 def search(start: Search) -> Search:
     """Causes, then what they leave."""
-    state = best_pair(without_needless_drift(settle(causes(start))))
-    return unevenness(judge_structures(structures(state)))
+    state = confirmed(best_pair(without_needless_drift(settle(causes(start)))))
+    return unevenness(confirmed(judge_courses(judge_structures(structures(state)))))

@@ -21,6 +21,10 @@ LEVEL = 0.003
 """Family-wise level: sessions without an effect that get a name; a third of what is allowed, for safety."""
 
 
+Group = tuple[str, tuple[int, ...]]
+"""What is named: a cause and the indices of its sensors."""
+
+
 @dataclass(frozen=True, eq=False)
 class Found:
     """One selected signature with its rivals."""
@@ -61,16 +65,23 @@ class Search:
     structures: tuple[Found, ...] = ()
     excess: tuple[Excess, ...] = ()
     serial: tuple[Serial, ...] = ()
-    """Sensors whose left-over is not white, though no pattern fits it."""
+    """Sensors whose left-over is not white, though no pattern fits it; no cause is named on them any more."""
+    refuted: frozenset[Group] = frozenset()
+    """Causes on sensors that would have to act more often than they can."""
 
     @property
     def between(self) -> Between | None:
         return self.evidence.between
 
     @property
+    def scatter(self) -> tuple[Excess | Serial, ...]:
+        """Sensors whose left-over is larger than stated or not white."""
+        return (*self.excess, *self.serial)
+
+    @property
     def spoken_for(self) -> set[int]:
         """Sensors whose scatter is already known to be excess noise or uneven."""
-        return {e.sensor for e in self.excess} | {s.sensor for s in self.serial}
+        return {s.sensor for s in self.scatter}
 
     @property
     def left(self) -> Array:
@@ -108,6 +119,11 @@ def begin(baseline: Baseline, history: Sequence[Baseline], catalogue: Sequence[C
     )
 
 
+def family_level(scored: Scored, families: int) -> float:
+    """p-value of a signature or anything as strong among so many families, were there no effect."""
+    return min(1.0, scored.p_value * scored.places * families)
+
+
 def strongest(state: Search, traces: Sequence[Traces], without: Found | None = None) -> Found | None:
     """The signature with the strongest evidence given the other findings; None if it is not significant.
 
@@ -116,24 +132,32 @@ def strongest(state: Search, traces: Sequence[Traces], without: Found | None = N
     families = state.families if traces is state.traces else len(traces)
     if without is not None and without.best.shape.sensors:
         traces = [t.at(without.best.shape.sensors) for t in traces]
-    order = ranked(score(state.evidence, traces, state.taken(without)))
+    uneven = {s.sensor for s in state.serial}
+    scored = score(state.evidence, traces, state.taken(without))
+    order = ranked([s for s in scored if uneven.isdisjoint(s.shape.sensors) and s.group not in state.refuted])
     for best, _ in order[:3]:
-        p_family = min(1.0, best.p_value * best.places * max(families, 1))
+        p_family = family_level(best, families)
         if p_family < LEVEL:
             return Found(best, p_family, tuple(order))
     return None
 
 
 def companions(state: Search, best: Found, traces: Sequence[Traces]) -> list[Found]:
-    """The same cause on other sensors, where it is significant and leads that sensor's own ranking."""
+    """The same cause on other sensors, where it leads that sensor's own ranking and is significant beside the rest."""
     leads: dict[tuple[int, ...], Scored] = {}
     for scored, _ in best.ranking:
         leads.setdefault(scored.shape.sensors, scored)
     same = [s for sensors, s in leads.items() if sensors and sensors != best.best.shape.sensors]
-    same = [s for s in same if s.cause is best.best.cause]
     families = state.families if traces is state.traces else len(traces)
-    levels = [(s, min(1.0, s.p_value * s.places * families)) for s in same]
-    return [Found(s, level, best.ranking_of(s)) for s, level in levels if level < LEVEL]
+    others: list[Found] = []
+    for scored in same:
+        if scored.cause is not best.best.cause or family_level(scored, families) >= LEVEL:
+            continue
+        beside = replace(state, found=(*state.found, best, *others)).taken()
+        level = family_level(rescored(state.evidence, scored, beside), families)
+        if level < LEVEL:
+            others.append(Found(scored, level, best.ranking_of(scored)))
+    return others
 
 
 def total(state: Search) -> float:

@@ -16,6 +16,10 @@ HIGHEST = 8
 """Harmonic of β up to which structure is looked for (half the positions of a run where those are fewer)."""
 
 
+EVEN = 0.1
+"""Share of a row's step by which rows may come early or late and still count as even."""
+
+
 def highest(setting: Setting) -> int:
     """Highest harmonic of β that the positions of one run resolve."""
     assert setting.beta is not None
@@ -43,7 +47,7 @@ class Structure(Signature):
 
     def where(self, shape: Shape) -> str:
         """Where the pattern lives, in words."""
-        return self.sentence.format(*(f"{v:.0f}" for v in shape.nonlinear))
+        return self.sentence.format(*(f"{v:g}" for v in shape.nonlinear))
 
 
 class SensorHarmonic(Structure):
@@ -84,10 +88,19 @@ class SensorPeriodic(Structure):
     sentence = "a wave of {0} periods over the session"
 
     def shapes(self, setting: Setting) -> Iterator[Shape]:
-        place = np.arange(setting.rows) / setting.rows
-        for periods in range(1, setting.rows // 2 + 1):
-            wave = 2 * np.pi * periods * place
-            yield from one_sensor(setting, np.stack([np.sin(wave), np.cos(wave)], axis=-1), (float(periods),))
+        for place in courses(setting):
+            for periods in np.arange(2, setting.rows + 1) / 2:
+                wave = 2 * np.pi * periods * place
+                yield from one_sensor(setting, np.stack([np.sin(wave), np.cos(wave)], axis=-1), (float(periods),))
+
+
+def courses(setting: Setting) -> list[Array]:
+    """(R,) place of every row in the session, by count and, where rows do not come evenly, by time."""
+    count = np.arange(setting.rows) / setting.rows
+    if setting.time is None or not np.ptp(setting.time) > 0:
+        return [count]
+    elapsed = (setting.time - setting.time[0]) / np.ptp(setting.time) * (1 - 1 / setting.rows)
+    return [count] if np.abs(elapsed - count).max() < EVEN / setting.rows else [count, elapsed]
 
 
 class SensorTrend(Structure):

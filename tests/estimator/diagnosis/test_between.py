@@ -1,14 +1,17 @@
 """What moved since the history, and slips of the record, told from axes that are far from where they were."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from estimator import diagnose
+from estimator import CalibrationSession, diagnose, read_session
 from estimator.causes import CATALOGUE, Correction
 from estimator.diagnosis.between import between_sessions, inverse_root
 from estimator.diagnosis.measured import baseline_of
 from estimator.diagnosis.slips import exchanged_rows, expected_axes, turned_record
 from estimator.session import ACCELEROMETER
+from tests.builders import arbitrary_orientations, true_sensors
 from tests.estimator.causes.hiding import found, scene, scene_for, with_readings
 
 WHERE = scene(ACCELEROMETER, 2)
@@ -81,3 +84,25 @@ def test_slips_do_not_hide_an_effect() -> None:
     _, wrong = next(iter(TURNED[0].corrected(with_readings(session, jump))))
     names = [f.cause for f in diagnose(wrong).findings]
     assert names == [TURNED[0].identifier, "bias-jump"]
+
+
+HAND = true_sensors(6, bias=1e-2, tilt=1e-2)
+
+
+def by_hand(seed: int, turned: float = 0.0) -> CalibrationSession:
+    """A session in arbitrary orientations; the axis of A3 turned by so much, rad."""
+    axis = np.array(HAND[2].axis) + turned * np.array([0.0, 0.8, 0.6])
+    now = [replace(s, axis=tuple(axis / np.linalg.norm(axis))) if s.name == "A3" else s for s in HAND]
+    return read_session(arbitrary_orientations(6, sensors=now, seed=seed))
+
+
+@pytest.mark.parametrize("seed", range(1, 5))
+def test_an_axis_that_turned_alone_is_found_though_the_frame_is_free_to_turn(seed: int) -> None:
+    found = diagnose(by_hand(10 * seed, 3.6e-4), history=[by_hand(10 * seed + 1), by_hand(10 * seed + 2)])
+    assert [(f.cause, f.sensors) for f in found.findings] == [("sensor-drift", ("A3",))]
+
+
+@pytest.mark.parametrize("seed", range(1, 5))
+def test_a_frame_that_is_free_to_turn_names_nothing_by_itself(seed: int) -> None:
+    found = diagnose(by_hand(10 * seed), history=[by_hand(10 * seed + 1), by_hand(10 * seed + 2)])
+    assert found.findings == ()

@@ -48,7 +48,8 @@ def test_every_amplitude_has_to_pay() -> None:
 
 
 def test_no_more_than_expected_is_no_evidence() -> None:
-    assert bayes_factor(0.5, 1) == bayes_factor(2.9, 3) == 0.0
+    assert bayes_factor(0.5, 1) == 0.0
+    assert bayes_factor(2.9, 3) == bayes_factor(0.1, 3) < 0.0
 
 
 def test_unknown_noise_names_no_cause_in_sound_sessions() -> None:
