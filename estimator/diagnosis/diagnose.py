@@ -60,7 +60,7 @@ def diagnose(
             *findings(state, fitted),
         ),
         structures=structures(state),
-        gain=gain(state),
+        gain=gain(state, fitted),
         limits=limits(state, catalogue),
         baseline=calibrate(rows),
         calibration=extended_calibration(state, fitted),

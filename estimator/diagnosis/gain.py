@@ -13,28 +13,31 @@ import numpy as np
 
 from estimator.diagnosis.baseline import Baseline, spread
 from estimator.diagnosis.evidence import Whitener
+from estimator.diagnosis.extend import Amplitudes
 from estimator.diagnosis.results import Gain, Score
 from estimator.diagnosis.state import Search
+from estimator.diagnosis.transfer import transfer
 from estimator.session import Array
 
 FOLDS = 6
 LN_2PI = float(np.log(2 * np.pi))
 
 
-def gain(state: Search) -> Gain:
-    """Scores of held-out positions before and after the findings."""
+def gain(state: Search, fitted: Amplitudes) -> Gain:
+    """Scores of held-out positions, and of an earlier session, before and after the findings."""
     columns = [f.best.shape.columns for f in state.found if not f.best.cause.between]
     stated = as_stated(state)
     before, after = score(stated, []), score(state.baseline, columns)
     dearer = volume(state.baseline) - volume(stated)
-    return Gain(before, replace(after, log_score=after.log_score + dearer / float(counted(stated).sum())), "positions")
+    after = replace(after, log_score=after.log_score + dearer / float(counted(stated).sum()))
+    return Gain(before, after, "positions", transfer(state, fitted))
 
 
 def as_stated(state: Search) -> Baseline:
     """The baseline with the noise that the file states."""
     variance = state.baseline.variance.copy()
-    for excess in state.excess:
-        variance[:, excess.sensor] /= excess.ratio
+    for scatter in state.scatter:
+        variance[:, scatter.sensor] /= scatter.ratio
     return replace(state.baseline, variance=variance)
 
 

@@ -11,6 +11,7 @@ from estimator.diagnosis.rivals import CREDIBLE, alternatives, ranking, separati
 from estimator.diagnosis.slips import Slip, posterior
 from estimator.diagnosis.state import Excess, Found, Search
 from estimator.diagnosis.structures import Structure as Pattern
+from estimator.diagnosis.transfer import is_new
 from estimator.session import ACCELEROMETER, CalibrationSession
 
 
@@ -38,6 +39,7 @@ def finding(state: Search, found: Found, fitted: Amplitudes, k: int) -> Finding:
         sigma=tuple(map(float, sigma)),
         units=tuple(u.replace("m/s²", "rad/s") if gyro else u for u in best.cause.units),
         nonlinear=nonlinear(state, found),
+        nonlinear_each=(nonlinear(state, found),),
         p_value=found.p_family,
         strength=best.strength,
         alternatives=tuple(r.cause.identifier for r in others),
@@ -46,7 +48,7 @@ def finding(state: Search, found: Found, fitted: Amplitudes, k: int) -> Finding:
         sentence=best.cause.sentence.format(sensors=spoken(sensors)),
         advice=best.cause.advice,
         parity=parity_split(state, found),
-        new=None if state.between is None or best.cause.between else not best.lasting,
+        new=is_new(state, fitted, k),
     )
 
 
@@ -84,6 +86,7 @@ def joined(a: Finding, b: Finding) -> Finding:
         sigma=a.sigma + b.sigma,
         units=a.units + b.units,
         nonlinear=a.nonlinear,
+        nonlinear_each=a.nonlinear_each + b.nonlinear_each,
         p_value=max(a.p_value, b.p_value),
         strength=float(np.hypot(a.strength, b.strength)),
         alternatives=tuple(x for x in a.alternatives if x in both),
@@ -110,6 +113,7 @@ def excess_finding(state: Search, excess: Excess) -> Finding:
         sigma=(sigma,),
         units=("m/s²" if sensor.kind == ACCELEROMETER else "rad/s",),
         nonlinear={},
+        nonlinear_each=({},),
         p_value=excess.p_family,
         strength=float(np.sqrt(2 * max(excess.evidence, 0.0))),
         alternatives=(),
@@ -134,13 +138,15 @@ def slip_finding(slip: Slip, session: CalibrationSession) -> Finding:
         if reached < CREDIBLE and name != slip.cause.identifier and name not in alternatives_:
             alternatives_.append(name)
         reached += share
+    shown = {f"row {k}": float(p + 1) for k, p in enumerate(slip.places, 1)} if rows else {}
     return Finding(
         cause=slip.cause.identifier,
         sensors=sensors,
         amplitude=(),
         sigma=(),
         units=(),
-        nonlinear={f"row {k}": float(p + 1) for k, p in enumerate(slip.places, 1)} if rows else {},
+        nonlinear=shown,
+        nonlinear_each=(shown,),
         p_value=float(np.exp(-slip.evidence)),
         strength=float(np.sqrt(2 * slip.evidence)),
         alternatives=tuple(alternatives_),
@@ -181,6 +187,7 @@ def entry_finding(entry: WrongEntry) -> Finding:
         sigma=(entry.sigma,),
         units=entry.cause.units,
         nonlinear={},
+        nonlinear_each=({},),
         p_value=entry.p_value,
         strength=entry.strength,
         alternatives=(),

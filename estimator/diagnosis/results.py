@@ -59,7 +59,9 @@ class Finding:
     sigma: tuple[float, ...]
     units: tuple[str, ...]
     nonlinear: dict[str, float]
-    """Shape parameters, such as τ or the row of a jump (counted from 1)."""
+    """Shape parameters of the first sensor, such as τ or the row of a jump (counted from 1)."""
+    nonlinear_each: tuple[dict[str, float], ...]
+    """The same of every sensor in turn; one entry where the cause acts on none."""
     p_value: float
     """Of this or anything as strong anywhere in the catalogue, were there no effect (family-wise)."""
     strength: float
@@ -81,6 +83,7 @@ class Finding:
             "sigma": list(self.sigma),
             "units": list(self.units),
             "nonlinear": self.nonlinear,
+            "nonlinear_each": list(self.nonlinear_each),
             "p_value": self.p_value,
             "strength": self.strength,
             "alternatives": list(self.alternatives),
@@ -127,16 +130,36 @@ class Score:
 
 
 @dataclass(frozen=True)
+class Transfer:
+    """How well an earlier session agrees with amplitudes found in this one."""
+
+    started_at: str | None
+    """Of the earlier session."""
+    before: Score
+    after: Score
+
+    def to_dict(self) -> dict[str, Any]:
+        return {"started_at": self.started_at, "before": self.before.to_dict(), "after": self.after.to_dict()}
+
+
+@dataclass(frozen=True)
 class Gain:
-    """Prediction of held-out readings without and with the named causes, and what moved."""
+    """Prediction of readings that took no part in the fit, without and with the named causes."""
 
     before: Score
     after: Score
     held_out: str
-    """``positions`` or ``session``."""
+    """``positions``: those of this session, fold by fold."""
+    session: Transfer | None
+    """The latest earlier session, where a finding can have acted there too."""
 
     def to_dict(self) -> dict[str, Any]:
-        return {"before": self.before.to_dict(), "after": self.after.to_dict(), "held_out": self.held_out}
+        return {
+            "before": self.before.to_dict(),
+            "after": self.after.to_dict(),
+            "held_out": self.held_out,
+            "session": None if self.session is None else self.session.to_dict(),
+        }
 
 
 @dataclass(frozen=True)

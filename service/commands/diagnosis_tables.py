@@ -70,11 +70,18 @@ def _structure(structure: dict[str, Any]) -> str:
 
 
 def _gain(gain: dict[str, Any]) -> str:
+    lines = [_scores("Predicting positions held out of the fit", gain)]
+    if gain["session"] is not None:
+        started = gain["session"]["started_at"] or "no stated date"
+        lines.append(_scores(f"Predicting the session before ({started})", gain["session"]))
+    return "\n".join(lines)
+
+
+def _scores(what: str, gain: dict[str, Any]) -> str:
     before, after = gain["before"], gain["after"]
-    what = "positions held out of the fit" if gain["held_out"] == "positions" else "another session"
     chi2 = " → ".join(number(part["chi2_per_dof"], 2) for part in (before, after))
     log = " → ".join(number(part["log_score"], 2) for part in (before, after))
-    return f"  Predicting {what}: χ² per degree of freedom {chi2}, log score {log}"
+    return f"  {what}: χ² per degree of freedom {chi2}, log score {log}"
 
 
 def _unseen(limits: list[dict[str, Any]]) -> Iterator[Text]:

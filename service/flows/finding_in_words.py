@@ -72,7 +72,7 @@ def finding_view(finding: Finding, revisions: Sequence[ModelRevision] = ()) -> F
         doubtful=bool(finding["alternatives"]),
         advice=finding["advice"],
         amplitudes=_amplitudes(finding),
-        shape=_shape(finding),
+        shape=shape_in_words(finding),
         evidence=_evidence(finding),
         choices=_choices(finding),
         ranking=_ranking(finding),
@@ -109,19 +109,27 @@ def _part(cause: str, k: int) -> str:
     return DRIFTED[k] if cause == "sensor-drift" else f"k{k + 1} ="
 
 
-def _shape(finding: Finding) -> str:
-    """``time constant 812 s``, ``from row 14``."""
+def shape_in_words(finding: Finding) -> str:
+    """``time constant 812 s``, ``from row 14``; ``A1: from row 14; A2: from row 20`` where they differ."""
+    each = finding.get("nonlinear_each", [])  # absent from documents of earlier versions
+    if len(each) < 2 or all(one == each[0] for one in each):
+        return _one_shape(finding["cause"], finding["nonlinear"])
+    shapes = (_one_shape(finding["cause"], one) for one in each)
+    return "; ".join(f"{who}: {shape}" for who, shape in zip(finding["sensors"], shapes, strict=False) if shape)
+
+
+def _one_shape(cause: str, nonlinear: dict[str, float]) -> str:
     parts = []
-    for unit, value in finding["nonlinear"].items():
+    for unit, value in nonlinear.items():
         if unit.startswith("row"):
             parts.append(f"row {number(value, 0)}")
         elif unit == "side":
             parts.append("upper side" if value > 0 else "lower side" if value < 0 else "")
         else:
-            scaled = amplitude_unit(finding["cause"], unit, value)
+            scaled = amplitude_unit(cause, unit, value)
             parts.append(f"{number(value * scaled.factor)}{THIN}{scaled.label}")
     text = " and ".join(part for part in parts if part)
-    return f"{SHAPES.get(finding['cause'], '')} {text}".strip() if text else ""
+    return f"{SHAPES.get(cause, '')} {text}".strip() if text else ""
 
 
 def _evidence(finding: Finding) -> str:

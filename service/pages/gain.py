@@ -2,12 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from typing import Any
 
 import numpy as np
 
 from estimator.results import Calibration, Estimate, SensorCalibration
-from estimator.session import GYROSCOPE
+from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.records import StoredDiagnosis, StoredSession
 from service.units import deviation_unit, measured, number
 from service.verdicts import Condition, condition_of
@@ -39,10 +40,13 @@ class Moved:
 class GainView:
     """The gain of the extended model."""
 
-    held_out: str
     is_none: bool
     """Whether the named causes show elsewhere than in the prediction of held-out readings."""
     rows: tuple[GainRow, ...]
+    """Positions of this session that took no part in the fit."""
+    earlier_rows: tuple[GainRow, ...]
+    """The earlier session, with the size found in this one; empty where the causes cannot have acted there."""
+    earlier_at: datetime | None
     moved: tuple[Moved, ...]
     """Sensors of which anything moved."""
     verdict_before: Condition
@@ -54,11 +58,13 @@ def gain_view(
 ) -> GainView:
     """Before is the calibration in force, after the one with the named causes."""
     gain = document["gain"]
-    kinds = [sensor.kind for sensor in after.sensors]
+    earlier = gain.get("session")  # absent from documents of earlier versions
+    kind = GYROSCOPE if {sensor.kind for sensor in after.sensors} == {GYROSCOPE} else ACCELEROMETER
     return GainView(
-        held_out="positions that took no part in the fit" if gain["held_out"] == "positions" else "another session",
         is_none=gain["before"] == gain["after"],
-        rows=_rows(gain, "gyroscope" if kinds and set(kinds) == {GYROSCOPE} else "accelerometer"),
+        rows=_rows(gain, kind),
+        earlier_rows=() if earlier is None else _rows(earlier, kind),
+        earlier_at=None if earlier is None else at(earlier["started_at"]),
         moved=tuple(
             _moved(a, b)
             for a, b in zip(before.sensors, after.sensors, strict=False)
@@ -67,6 +73,11 @@ def gain_view(
         verdict_before=condition_of(session.verdict),
         verdict_after=None if found.verdict_after is None else condition_of(found.verdict_after),
     )
+
+
+def at(started_at: str | None) -> datetime | None:
+    """When a session began; None where its file does not say."""
+    return None if started_at is None else datetime.fromisoformat(started_at)
 
 
 def _rows(gain: dict[str, Any], kind: str) -> tuple[GainRow, ...]:

@@ -5,8 +5,11 @@ from typing import Any
 
 import httpx
 
+from estimator.session import ACCELEROMETER
+from estimator.writing import session_document
 from tests.blind.case import Case
 from tests.blind.cases import draw_case
+from tests.estimator.causes.hiding import change, scene, with_readings
 
 LONGEST = 16
 TEMPERATURE = ("single", (77, 3), "bias-temperature")
@@ -19,6 +22,14 @@ ALIASES = ("single", (77, 0), "cubic-nonlinearity")
 def drawn(what: tuple[str, tuple[int, ...], str | None]) -> Case:
     """A case by its kind, seed and cause."""
     return draw_case(*what, LONGEST)
+
+
+def warm(seed: int, started_at: str) -> dict[str, Any]:
+    """A session of a unit whose A2 follows the temperature in every session."""
+    where = scene(ACCELEROMETER, 2)
+    session = where.measured(seed)
+    moved = with_readings(session, change("bias-temperature", where) * where.world.truth.scale)
+    return session_document(moved) | {"unit": "WARM-1", "started_at": started_at}
 
 
 def send(client: httpx.Client, document: dict[str, Any]) -> str:

@@ -10,7 +10,7 @@ from service.settings import Settings
 from service.storage import Database, Files, Storage
 from tests.databases import Databases
 from tests.service.cli.conftest import Run, write
-from tests.service.diagnosed import ALIASES, TEMPERATURE, UNEXPLAINED, drawn
+from tests.service.diagnosed import ALIASES, TEMPERATURE, UNEXPLAINED, drawn, warm
 from tests.service.flows.test_diagnose import NOW
 from tests.service.recordings import recording_document
 
@@ -65,3 +65,10 @@ def test_recalibrate_works_on_the_database(run: Run, sqlite: Databases, tmp_path
     storage.database.close()
     ran = run("recalibrate", "--database-url", settings.database, "--data-folder", tmp_path, "--json")
     assert [(d["sessions"], d["recomputed"], d["unchanged"]) for d in ran.documents] == [(1, 0, 1)]
+
+
+def test_people_read_how_the_size_fits_the_session_before(run: Run, tmp_path: Path) -> None:
+    before = write(tmp_path, "before.json", warm(1, "2026-01-05T08:00:00Z"))
+    shown = run("diagnose", write(tmp_path, "now.json", warm(2, "2026-03-05T08:00:00Z")), "--history", before).out
+    assert "Predicting positions held out of the fit" in shown
+    assert "Predicting the session before (2026-01-05" in shown

@@ -4,8 +4,9 @@ import httpx
 import pytest
 
 from service.app import create_app
+from service.pages.findings import shape_in_words
 from service.settings import Settings
-from tests.service.diagnosed import ALIASES, TEMPERATURE, UNEXPLAINED, drawn, send_case
+from tests.service.diagnosed import ALIASES, TEMPERATURE, UNEXPLAINED, drawn, send, send_case, warm
 from tests.service.pages.test_http import HTML, MOST_QUERIES, counted
 from tests.service.sessions import session_bytes
 from tests.serving import http_client
@@ -44,6 +45,13 @@ def test_session_and_unit_say_it_in_one_line(client: httpx.Client) -> None:
         assert "The zero of A5 follows the temperature." in client.get(path, headers=HTML).text
 
 
+def test_the_gain_is_shown_on_the_session_before_too(client: httpx.Client) -> None:
+    send(client, warm(1, "2026-01-05T08:00:00Z"))
+    text = page(client, send(client, warm(2, "2026-03-05T08:00:00Z")))
+    assert "Positions held out" in text
+    assert text.index("The session before") > text.index("the session before, of <time")
+
+
 def test_an_accepted_cause_is_listed_and_the_unit_recomputed(client: httpx.Client) -> None:
     id = send_case(client, drawn(TEMPERATURE))
     accepted = client.post(f"/sessions/{id}/diagnosis/accept", data=ACCEPT, headers=HTML, follow_redirects=True)
@@ -70,3 +78,10 @@ def test_the_page_asks_few_questions_and_stays_light(settings: Settings) -> None
         statements.clear()
         assert len(page(client, id).encode()) < 500_000
         assert len(statements) <= MOST_QUERIES
+
+
+def test_every_sensor_s_own_shape_is_said() -> None:
+    shapes = [{"row": 14.0}, {"row": 20.0}]
+    finding = {"cause": "bias-jump", "sensors": ["A1", "A2"], "nonlinear": shapes[0], "nonlinear_each": shapes}
+    assert shape_in_words(finding) == "A1: from row 14; A2: from row 20"
+    assert shape_in_words(finding | {"nonlinear_each": [shapes[0]] * 2}) == "from row 14"
