@@ -23,6 +23,8 @@ COMMANDS = {
     "fleet": "report.fleet",
     "report": "report.report",
     "flags": "flags.flags",
+    "service": "events.record",
+    "note": "events.write_note",
     "certificate": "certificate.certificate",
     "simulate": "simulate.simulate_files",
     "plan": "plan.plan_session",

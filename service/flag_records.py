@@ -4,6 +4,9 @@ from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 
+SERVICES = ("adjustment", "repair", "sensor-swap", "reference", "service")
+"""What can be done to a unit: each is a break, after which the next session is the new reference."""
+
 
 class Matter(StrEnum):
     """What a flag is about."""
@@ -96,6 +99,19 @@ class Flag:
     def key(self) -> tuple[str, str]:
         """Of one matter at one place only one flag is open."""
         return self.matter, self.place
+
+
+@dataclass(frozen=True)
+class NewService:
+    """Something done to a unit that is a known break in its history."""
+
+    kind: str
+    """One of `SERVICES`."""
+    at: datetime
+    note: str = ""
+    who: str = ""
+    sensor: str = ""
+    """That it concerns; empty for the whole unit."""
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,19 @@
 
 from fastapi import APIRouter, FastAPI
 
-from service.api import certificates, diagnoses, flags, fleet, models, operations, sessions, unit_types, units
+from service.api import (
+    certificates,
+    diagnoses,
+    events,
+    flags,
+    fleet,
+    models,
+    notes,
+    operations,
+    sessions,
+    unit_types,
+    units,
+)
 from service.api.measured import Measured
 from service.api.openapi import describe
 from service.api.problems import add_problem_handlers
@@ -14,7 +26,7 @@ PREFIX = "/api/v1"
 def mount(app: FastAPI, metrics: Metrics) -> None:
     """Adds every route of the API, its error shape, its description and its figures to the application."""
     api = APIRouter(prefix=PREFIX)
-    for resource in (sessions, certificates, diagnoses, units, unit_types, models, flags, fleet):
+    for resource in (sessions, certificates, diagnoses, events, units, unit_types, models, flags, notes, fleet):
         api.include_router(resource.router)
     app.include_router(api)
     app.include_router(operations.router)

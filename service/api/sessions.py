@@ -5,6 +5,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request, Response
 
 from service.api.received import REQUEST_BODY, Received
+from service.api.schemas.events import NewStage
 from service.api.schemas.fields import Limit, Page, Revision, SessionId, Text, next_page
 from service.api.schemas.problem import errors
 from service.api.schemas.sessions import (
@@ -19,6 +20,7 @@ from service.api.schemas.sessions import (
 from service.dependencies import DiagnoserOf, MetricsOf, Now, Reading, SettingsOf, StorageOf
 from service.flows.session_decisions import session_decisions
 from service.flows.session_list import session_list
+from service.flows.set_stage import set_stage
 from service.flows.upload import upload
 
 router = APIRouter(prefix="/sessions", tags=["sessions"])
@@ -77,6 +79,12 @@ def read_session(id: SessionId, store: Reading) -> SessionReportSchema:
 def read_calibration(id: SessionId, store: Reading, revision: Revision = None) -> Response:
     """The calibration in force, imu-calibration/1, as it was computed, or the one of a model revision."""
     return Response(store.calibrations.json(id, revision), media_type="application/json")
+
+
+@router.put("/{id}/stage", responses=errors(400, 404, 422))
+def mark_session(id: SessionId, new: NewStage, storage: StorageOf, now: Now) -> SessionSchema:
+    """Say whether the session shows the unit as found or as left; the file's own word gives way to this."""
+    return SessionSchema.model_validate(set_stage(storage, id, new.stage, new.by, now))
 
 
 @router.get("/{id}/file", responses={200: {"content": ANY_BYTES}, **errors(404, 422)}, response_class=Response)

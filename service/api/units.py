@@ -1,6 +1,5 @@
 """Units: their condition, history and known breaks."""
 
-from datetime import datetime
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query, Request, Response
@@ -25,8 +24,6 @@ from service.api.schemas.problem import errors
 from service.api.schemas.units import (
     HistoryPage,
     HistoryPointSchema,
-    NewService,
-    ServiceSchema,
     UnitPage,
     UnitReportSchema,
     UnitSummarySchema,
@@ -36,7 +33,6 @@ from service.flows.fleet import fleet_overview
 from service.flows.history import unit_history
 from service.flows.outlook import outlook_of
 from service.flows.recalibrate import recalibrate
-from service.flows.record_service import record_service
 from service.flows.unit_report import unit_report
 from service.outlook import RiskPoint
 
@@ -121,14 +117,6 @@ def read_outlook(
     risk = None if until is None else found.risk_by(until)
     asked = None if until is None or risk is None else RiskPoint(until, risk)
     return OutlookSchema.model_validate({**vars(found), "until": asked})
-
-
-@router.post("/{serial:path}/services", status_code=201, responses=errors(400, 404, 422))
-def add_service(serial: Serial, new: NewService, response: Response, storage: StorageOf, now: Now) -> ServiceSchema:
-    """Record a known break; the next session measured after it becomes the unit's new reference."""
-    at: datetime = new.at or now
-    service, _ = record_service(storage, serial, new.kind, at, new.note, now)
-    return ServiceSchema.model_validate(service)
 
 
 @router.post("/{serial:path}/recalibrate", responses=errors(404, 422))

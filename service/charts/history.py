@@ -9,24 +9,26 @@ import altair as alt
 
 from service.charts import DATA_FORM, HIGH, LEFT, LOW, RIGHT, UNIT, ChartSet, Panel, filled, padded, specification
 from service.charts.tracks import Track, TrackPoint
+from service.flag_records import Note
 from service.records import Service
 from service.verdicts import CONDITIONS, FIT, NOT_JUDGED, REFERENCE
+from service.words import day_of
 
 HEIGHT = 150
 
 
-def history_charts(tracks: Sequence[Track], services: Sequence[Service]) -> ChartSet:
+def history_charts(tracks: Sequence[Track], services: Sequence[Service], notes: Sequence[Note] = ()) -> ChartSet:
     """The panels of one parameter; every track has the same parameter and unit."""
     span = _span(tracks)
     return ChartSet(
         name=tracks[0].name,
         heading=tracks[0].parameter,
         spec=_filled(tracks, span),
-        panels=tuple(_panel(track, services, span) for track in tracks),
+        panels=tuple(_panel(track, services, notes, span) for track in tracks),
     )
 
 
-def _panel(track: Track, services: Sequence[Service], span: list[str]) -> Panel:
+def _panel(track: Track, services: Sequence[Service], notes: Sequence[Note], span: list[str]) -> Panel:
     return Panel(
         title=track.sensor,
         description=track.points[-1].text,
@@ -35,6 +37,7 @@ def _panel(track: Track, services: Sequence[Service], span: list[str]) -> Panel:
             DATA_FORM: [_point(p) for p in track.points if p.shown is not None],
             "limits": _limits(track, span),
             "services": [{"t": _iso(s.at), "what": s.kind, "note": s.note} for s in services],
+            "notes": [{"t": _iso(n.at), "date": day_of(n.at), "note": n.text} for n in notes],
         },
     )
 
@@ -80,7 +83,7 @@ def _filled(tracks: Sequence[Track], span: list[str]) -> dict[str, Any]:
 @cache
 def _spec() -> dict[str, Any]:
     """With blanks for the unit and the ranges."""
-    points, limits, services = (alt.NamedData(name=n) for n in (DATA_FORM, "limits", "services"))
+    points, limits, services, notes = (alt.NamedData(name=n) for n in (DATA_FORM, "limits", "services", "notes"))
     x = alt.X("t:T", title=None, axis=alt.Axis(tickCount=4), scale=alt.Scale(type="utc", domain=[LEFT, RIGHT]))
     y = alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=alt.Scale(domain=[LOW, HIGH], zero=False))
     base = alt.Chart(points).encode(x=x)
@@ -92,6 +95,7 @@ def _spec() -> dict[str, Any]:
             bounds.mark_rule(color="var(--tolerance)", strokeDash=[5, 3]).encode(y="lo:Q"),
             bounds.mark_rule(color="var(--muted)", strokeWidth=1).encode(y="ref:Q"),
             _breaks(services),
+            _remarks(notes),
             base.mark_area(color="var(--accent)", opacity=0.18).encode(y=y, y2="hi:Q", detail="epoch:N")
             .encode(y=alt.Y("lo:Q")),
             base.mark_rule(color="var(--accent)", opacity=0.55).encode(y="lo:Q", y2="hi:Q"),
@@ -109,6 +113,20 @@ def _breaks(services: alt.NamedData) -> alt.Chart:
         .encode(
             x=alt.X("t:T"),
             tooltip=[alt.Tooltip("what:N", title="service"), alt.Tooltip("note:N", title="note")],
+        )
+    )
+    return chart
+
+
+def _remarks(notes: alt.NamedData) -> alt.Chart:
+    """A mark at the upper edge; what it says is read by pointing at it, and in the list below the charts."""
+    chart: alt.Chart = (
+        alt.Chart(notes)
+        .mark_point(shape="triangle-down", filled=True, size=70, opacity=1, color="var(--second)")
+        .encode(
+            x=alt.X("t:T"),
+            y=alt.value(6),
+            tooltip=[alt.Tooltip("date:N", title="note"), alt.Tooltip("note:N", title="text")],
         )
     )
     return chart

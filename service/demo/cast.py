@@ -31,6 +31,10 @@ class Intervention:
     kind: str
     note: str
     changes: tuple[Change, ...]
+    who: str = ""
+    sensor: str = ""
+    measured: bool = False
+    """Whether the unit was measured the day before and the day after, as found and as left."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +66,7 @@ class Member:
 
 def _replaced(sensor: int, at: datetime) -> Intervention:
     new = (Change(sensor, "scale", 310.0), Change(sensor, "bias", -420.0), Change(sensor, "axis", 140.0))
-    return Intervention(at, "sensor swap", f"A{sensor + 1} replaced, block aligned again.", new)
+    return Intervention(at, "sensor-swap", "Replaced, block aligned again.", new, "M. Okafor", f"A{sensor + 1}")
 
 
 def _readjusted(at: datetime) -> Intervention:

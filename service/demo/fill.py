@@ -7,6 +7,7 @@ from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.demo.cast import CAST, START, Member
 from service.demo.history import files_of
 from service.demo.types import unit_type
+from service.flag_records import NewService
 from service.flows.diagnose import diagnose
 from service.flows.fleet_condition import fleet_condition
 from service.flows.record_service import record_service
@@ -41,7 +42,8 @@ def _upload_member(storage: Storage, member: Member, coverage_factor: float, adv
     for file in files_of(member):
         while waiting and waiting[0].at <= file.at:
             done = waiting.pop(0)
-            record_service(storage, member.serial, done.kind, done.at, done.note, done.at, who=WHO)
+            new = NewService(done.kind, done.at, done.note, done.who, done.sensor)
+            record_service(storage, member.serial, new, done.at)
         at = file.at + UPLOADED_AFTER
         latest = upload(storage, file.content, file.name, at, coverage_factor=coverage_factor, simulated=True, who=WHO)
         advance()

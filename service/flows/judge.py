@@ -42,6 +42,15 @@ def judge(
     )
 
 
+def decisions_of(
+    calibration: Calibration, reference: Calibration, unit_type: UnitType, coverage_factor: float
+) -> tuple[Decision, ...]:
+    """Every parameter judged against any calibration of the unit."""
+    splits, tolerances = common_motion(calibration, reference), tolerances_of(unit_type)
+    found = judge_parameters(calibration, reference, tolerances, coverage_factor=coverage_factor, splits=splits)
+    return tuple(_decision(judgement, unit_type, coverage_factor) for judgement in found)
+
+
 def _decision(judgement: Judgement, unit_type: UnitType, coverage_factor: float) -> Decision:
     own = asdict(judgement)
     own["verdict"] = Verdict(judgement.verdict)

@@ -13,11 +13,11 @@ LATEST = 50
 
 def unit_report(store: Store, serial: str, now: datetime) -> UnitReport:
     """The unit's condition, type, latest sessions and known breaks."""
-    summary = store.fleet.unit(serial)
-    if summary is None:
+    found = store.fleet.unit_with_type(serial)
+    if found is None:
         raise NotFoundError(f"There is no unit {serial!r}.")
+    summary, unit_type = found
     unit = store.units.key(serial)
-    unit_type = store.unit_types.of_unit(serial)
     services = store.services.of_unit(serial)
     since, until = epoch(tuple(service.at for service in services), now)
     return UnitReport(

@@ -11,6 +11,7 @@ from service.errors import RefusedError
 from service.flows.flag_list import flag_list
 from service.flows.fleet import fleet_overview
 from service.flows.fleet_condition import fleet_condition
+from service.flows.found_and_left import found_and_left
 from service.flows.history import recent_history
 from service.flows.session_report import session_report
 from service.flows.unit_report import unit_report
@@ -52,11 +53,20 @@ def show_fleet(
 
 
 @router.get("/units/{serial:path}")
-def show_unit(request: Request, store: Reading, now: Now, serial: Key) -> HTMLResponse:
+def show_unit(request: Request, store: Reading, settings: SettingsOf, now: Now, serial: Key) -> HTMLResponse:
     """One unit with the history of its parameters."""
     report = unit_report(store, serial, now)
-    history, flags = recent_history(store, serial, HISTORY_LIMIT), flag_list(store, unit=serial, limit=FLAG_LIMIT)
-    return render(request, "unit.html", unit_page(report, history, flags))
+    return render(
+        request,
+        "unit.html",
+        unit_page(
+            report,
+            recent_history(store, serial, HISTORY_LIMIT),
+            flag_list(store, unit=serial, limit=FLAG_LIMIT),
+            store.notes.of_unit(serial),
+            found_and_left(store, report.unit_type, report.sessions, report.services, settings.coverage_factor),
+        ),
+    )
 
 
 @router.get("/sessions/{id}")

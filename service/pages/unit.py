@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from service.charts import ChartSet
 from service.charts.history import history_charts
 from service.charts.tracks import Track, TrackPoint, tolerance_text, tracks_of
-from service.flag_records import Flag
+from service.flag_records import Flag, Note
+from service.flows.found_and_left import FoundAndLeft
+from service.pages.events import KINDS, Event, StageTable, events_of, stage_table
 from service.pages.flags import FlagCard, flag_cards
 from service.records import HistoryPoint, Service, StoredSession, UnitReport
 from service.verdicts import NOT_JUDGED, Condition, condition_of
@@ -75,20 +77,36 @@ class UnitPage:
     """How many sessions, the newest ones, the charts show."""
     flags: tuple[FlagCard, ...]
     """Open ones first."""
+    events: tuple[Event, ...]
+    """Services and notes, newest first."""
+    stages: StageTable | None
+    """None where the unit was never marked as found."""
+    kinds: tuple[tuple[str, str], ...]
+    """What can be done to a unit: identifier and name."""
 
 
-def unit_page(report: UnitReport, history: Sequence[HistoryPoint], flags: Sequence[Flag] = ()) -> UnitPage:
-    """The page of a unit with its history and flags."""
+def unit_page(
+    report: UnitReport,
+    history: Sequence[HistoryPoint],
+    flags: Sequence[Flag] = (),
+    notes: Sequence[Note] = (),
+    pair: FoundAndLeft | None = None,
+) -> UnitPage:
+    """The page of a unit with its history, flags and notes, as found and as left."""
+    valid = tuple(note for note in notes if note.withdrawal is None)
     groups = tracks_of(history, report.services)
     kinds = {point.kind for point in history}
     return UnitPage(
         report=report,
         condition=condition_of(report.summary.verdict, is_reference=report.summary.is_reference),
-        sections=tuple(_section(tracks, report.services, several=len(kinds) > 1) for tracks in groups),
+        sections=tuple(_section(tracks, report.services, valid, several=len(kinds) > 1) for tracks in groups),
         sessions=tuple(SessionLine(s, condition_of(s.verdict, is_reference=s.is_reference)) for s in report.sessions),
         reference=_reference(report),
         drawn=len({point.session for point in history}),
         flags=flag_cards(flags),
+        events=events_of(report.services, notes),
+        stages=stage_table(pair),
+        kinds=tuple(KINDS.items()),
     )
 
 
@@ -100,7 +118,9 @@ def _reference(report: UnitReport) -> str:
     return dates.get(report.reference_session, f"session {report.reference_session[:8]}")
 
 
-def _section(tracks: Sequence[Track], services: Sequence[Service], several: bool) -> ParameterSection:
+def _section(
+    tracks: Sequence[Track], services: Sequence[Service], notes: Sequence[Note], several: bool
+) -> ParameterSection:
     parameter = tracks[0].parameter
     kind = tracks[0].name.rpartition("-")[2]
     latest = [track.points[-1].condition for track in tracks]
@@ -112,7 +132,7 @@ def _section(tracks: Sequence[Track], services: Sequence[Service], several: bool
         unit=tracks[0].unit.label,
         tolerance=tolerance_text(tracks[0]),
         worst=min(judged, key=lambda c: c.rank, default=NOT_JUDGED),
-        charts=history_charts(tracks, services),
+        charts=history_charts(tracks, services, notes),
         sensors=tuple(track.sensor for track in tracks),
         rows=_rows(tracks),
     )

@@ -11,12 +11,15 @@ from service.settings import Settings
 from tests.serving import http_client
 
 EXAMPLES = {"serial": "BA-017", "id": "3f9a0c5be1d24786aa10", "name": "hex"}
-NUMBERED = {"/api/v1/flags/{id}/acknowledge", "/api/v1/flags/{id}/resolve"}
+NUMBERED = {"/api/v1/flags/{id}/acknowledge", "/api/v1/flags/{id}/resolve", "/api/v1/notes/{id}/withdraw"}
 """Where the id is a number."""
 NEEDS_NO_DATABASE = {"/healthz", "/metrics"}
 BODIES: dict[str, Any] = {
     "/api/v1/sessions/{id}/diagnosis/accept": {"cause": "bias-ramp", "scope": "unit", "by": "K. Ito"},
     "/api/v1/units/{serial}/services": {"kind": "repair"},
+    "/api/v1/units/{serial}/notes": {"text": "dropped", "by": "K. Ito"},
+    "/api/v1/notes/{id}/withdraw": {"by": "K. Ito", "why": "done"},
+    "/api/v1/sessions/{id}/stage": {"stage": "as-found", "by": "K. Ito"},
     "/api/v1/flags/{id}/acknowledge": {"by": "K. Ito", "why": "seen"},
     "/api/v1/flags/{id}/resolve": {"by": "K. Ito", "why": "done"},
     "/api/v1/unit-types/{name}": {"tolerances": {"scale": 1e-4, "bias": 1e-4, "quadratic": None, "axis": 1e-4}},

@@ -1,11 +1,11 @@
 """Units, unit types, tolerances, services, history, fleet."""
 
 from datetime import datetime
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from service.api.schemas.fields import LongText, Moment
+from service.api.schemas.events import ServiceSchema
 from service.api.schemas.sessions import SessionSchema
 from service.records import Verdict
 
@@ -102,36 +102,6 @@ class FleetSchema(BaseModel):
     verdicts: dict[Verdict, int] = Field(description="How many of them have each verdict.")
     simulated: int = Field(description="How many of them belong to the demonstration fleet.")
     flags: int = Field(description="How many flags are open.")
-
-
-ServiceKind = Literal["adjustment", "repair", "sensor swap", "new reference"]
-
-
-class NewService(BaseModel):
-    """A known break in a unit's history; the next session measured after it is the new reference."""
-
-    model_config = ConfigDict(
-        extra="forbid",
-        json_schema_extra={
-            "example": {"kind": "repair", "at": "2026-02-10T12:00:00Z", "note": "A3 replaced after a fall"}
-        },
-    )
-
-    kind: ServiceKind = Field(description="What was done.")
-    at: Moment | None = Field(default=None, description="When; now if not given. Without a zone it is UTC.")
-    note: LongText = Field(default="", description="By whom, why, what exactly.")
-
-
-class ServiceSchema(BaseModel):
-    """A known break in a unit's history."""
-
-    model_config = ConfigDict(from_attributes=True)
-
-    id: int = Field(description="Number of the entry.")
-    unit: str = Field(description="Serial number of the unit.")
-    at: datetime = Field(description="When it was done, UTC.")
-    kind: str = Field(description="What was done.")
-    note: str = Field(description="By whom, why, what exactly.")
 
 
 class UnitReportSchema(BaseModel):

@@ -10,6 +10,7 @@ from service.flows.diagnosis_in_words import UNEXPLAINED, in_words, listed
 from service.flows.flagging.settle import Found, settle
 from service.records import ModelRevision, StoredDiagnosis, StoredSession
 from service.storage.store import Store
+from service.words import day_of
 
 ABOUT_SENSORS = ("sensor", "environment", "gyro")
 """Scopes of causes that act on a sensor; a slip in the record or the fixture's turn is no matter of the unit."""
@@ -26,7 +27,7 @@ def flag_diagnosis(store: Store, made: StoredDiagnosis, at: datetime) -> None:
     unit = store.units.hold(session.unit)
     opened = tuple(flag for flag in store.flags.open_of(unit) if flag.matter in MATTERS)
     concerns = tuple(_concerns(made.document, session, store.models.of_session(session.id)))
-    gone = GONE.format(day=f"{session.started_at:%Y-%m-%d}")
+    gone = GONE.format(day=day_of(session.started_at))
     clear = {flag.key: gone for flag in opened if _speaks_of(session, flag)}
     settle(store, unit, opened, Found(concerns, clear), session.id, at)
 

@@ -10,6 +10,7 @@ from service.records import Decision, StoredSession, Verdict
 from service.storage.queries.fleet import Refreshed
 from service.storage.store import Store
 from service.verdicts import condition_of
+from service.words import day_of
 
 FAILS = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
 PASSES = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
@@ -39,7 +40,7 @@ def found_by(session: StoredSession, decisions: tuple[Decision, ...]) -> Found:
     by_sensor: dict[str, list[Decision]] = {}
     for decision in decisions:
         by_sensor.setdefault(decision.sensor, []).append(decision)
-    day = f"{session.started_at:%Y-%m-%d}"
+    day = day_of(session.started_at)
     concerns, clear = [], {}
     for sensor, own in by_sensor.items():
         failed = tuple(d for d in own if d.verdict in FAILS)
@@ -64,7 +65,7 @@ def _no_longer_overdue(store: Store, unit: int, opened: tuple[Flag, ...], sessio
     """The one matter that resolves itself: the calibration that was due has been done."""
     for flag in opened:
         if flag.matter is Matter.OVERDUE:
-            resolve_as_done(store, unit, flag, f"Calibrated on {session.started_at:%Y-%m-%d}.", at, session.id)
+            resolve_as_done(store, unit, flag, f"Calibrated on {day_of(session.started_at)}.", at, session.id)
 
 
 def resolve_as_done(store: Store, unit: int, flag: Flag, why: str, at: datetime, session: str | None) -> None:

@@ -15,6 +15,14 @@ class Queries:
     def __init__(self, session: Session) -> None:
         self._session = session
 
+    def remember_unit(self, serial: str, key: int) -> None:
+        """Spares the transaction another question for a unit's key, which never changes."""
+        self._session.info[serial] = key
+
+    def remembered_unit(self, serial: str) -> int | None:
+        """The key of a unit that this transaction has met."""
+        return self._session.info.get(serial)
+
     def insert_once(self, table: type[Base], **values: Any) -> bool:
         """Inserts a row unless a unique constraint says it is there; waits for a rival that is inserting the same."""
         insert = postgresql.insert if self._session.get_bind().dialect.name == "postgresql" else sqlite.insert

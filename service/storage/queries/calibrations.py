@@ -2,6 +2,7 @@
 
 import json
 import zlib
+from collections.abc import Iterable
 from datetime import datetime
 
 from sqlalchemy import select
@@ -50,6 +51,15 @@ class Calibrations(Queries):
             under = "" if revision is None else f" under model revision {revision}"
             raise NotFoundError(f"There is no calibration of session {session!r}{under}.")
         return zlib.decompress(deflated)
+
+    def in_force(self, sessions: Iterable[str]) -> dict[str, Calibration]:
+        """The calibrations in force of some sessions, in one query."""
+        rows = self._session.execute(
+            select(CalibrationRow.session_id, CalibrationRow.document)
+            .join(SessionRow, SessionRow.id == CalibrationRow.session_id)
+            .where(CalibrationRow.revision == SessionRow.revision, SessionRow.id.in_(sessions))
+        )
+        return {id: calibration_from_dict(json.loads(zlib.decompress(document))) for id, document in rows}
 
     def get(self, session: str, revision: int | None = None) -> Calibration:
         """The calibration of a session, as it was computed."""

@@ -1,15 +1,27 @@
 """All units at a glance: one short row a unit, rewritten when a session of it is stored."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
+from typing import Any
 
-from sqlalchemy import Row, Select, func, select, update
+from sqlalchemy import Select, func, select, update
 from sqlalchemy.orm import defer
 
 from service.flag_records import FlagState
-from service.records import DiagnosisState, FleetCondition, UnitSummary, Verdict
+from service.records import DiagnosisState, FleetCondition, UnitSummary, UnitType, Verdict
 from service.storage.queries.base import Queries
-from service.storage.tables import ConditionRow, DiagnosisRow, FlagRow, OutlookRow, SessionRow, UnitRow, UnitTypeRow
+from service.storage.queries.unit_types import unit_type_of
+from service.storage.tables import (
+    ConditionRow,
+    DiagnosisRow,
+    FlagRow,
+    OutlookRow,
+    SessionRow,
+    ToleranceRow,
+    UnitRow,
+    UnitTypeRow,
+)
 
 Summaries = Select[UnitRow, str, ConditionRow, SessionRow, DiagnosisRow, datetime | None]
 
@@ -84,6 +96,16 @@ class Fleet(Queries):
         row = self._session.execute(_summaries().where(UnitRow.serial == serial)).one_or_none()
         return None if row is None else _summary(row)
 
+    def unit_with_type(self, serial: str) -> tuple[UnitSummary, UnitType] | None:
+        """One unit, and its type with the tolerances that hold now, in one query."""
+        in_force = (ToleranceRow.unit_type_id == UnitTypeRow.id) & (ToleranceRow.revision == UnitTypeRow.revision)
+        query = _summaries().add_columns(UnitTypeRow, ToleranceRow).join(ToleranceRow, in_force)
+        row = self._session.execute(query.where(UnitRow.serial == serial)).one_or_none()
+        if row is None:
+            return None
+        self.remember_unit(serial, row[0].id)
+        return _summary(row[:-2]), unit_type_of(*row[-2:])
+
     def condition(self) -> FleetCondition:
         """How many units are in which condition."""
         rows = self._session.execute(
@@ -122,7 +144,7 @@ def _matching(query: Summaries, wanted: FleetQuery) -> Summaries:
     return query
 
 
-def _summary(row: Row[UnitRow, str, ConditionRow, SessionRow, DiagnosisRow, datetime | None]) -> UnitSummary:
+def _summary(row: Sequence[Any]) -> UnitSummary:
     unit, type_name, condition, last = row[0], row[1], row[2], row[3]
     return UnitSummary(
         serial=unit.serial,

@@ -1,9 +1,11 @@
 """Known breaks in units' histories."""
 
+from dataclasses import asdict
 from datetime import datetime
 
 from sqlalchemy import Select, select
 
+from service.flag_records import NewService
 from service.records import Service
 from service.storage.queries.base import Queries
 from service.storage.tables import ServiceRow, UnitRow
@@ -12,13 +14,16 @@ from service.storage.tables import ServiceRow, UnitRow
 class Services(Queries):
     """Adjustments, repairs, sensor swaps, new references."""
 
-    def add(self, unit: int, kind: str, at: datetime, note: str, now: datetime) -> tuple[int, bool]:
+    def add(self, unit: int, new: NewService, now: datetime) -> tuple[int, bool]:
         """Records a break and returns its number and whether it is new; the same break twice is one."""
-        created = self.insert_once(
-            ServiceRow, unit_id=unit, kind=kind, at=at, note=note, recorded_at=now
-        )  # fmt: skip
+        created = self.insert_once(ServiceRow, unit_id=unit, recorded_at=now, **asdict(new))
         row = self._session.scalars(
-            select(ServiceRow).where(ServiceRow.unit_id == unit, ServiceRow.at == at, ServiceRow.kind == kind)
+            select(ServiceRow).where(
+                ServiceRow.unit_id == unit,
+                ServiceRow.at == new.at,
+                ServiceRow.kind == new.kind,
+                ServiceRow.sensor == new.sensor,
+            )
         ).one()
         return row.id, created
 
@@ -50,4 +55,4 @@ def _services() -> Select[ServiceRow, str]:
 
 
 def _service(row: ServiceRow, serial: str) -> Service:
-    return Service(id=row.id, unit=serial, at=row.at, kind=row.kind, note=row.note)
+    return Service(id=row.id, unit=serial, at=row.at, kind=row.kind, note=row.note, who=row.who, sensor=row.sensor)

@@ -64,6 +64,11 @@ class Sessions(Queries):
         self._session.add(SessionRow(unit_id=unit, stand_id=stand, block=block, **values, **_worst_columns(worst)))
         self._session.flush()
 
+    def set_stage(self, id: str, stage: str | None) -> None:
+        """Says of a session whether it shows the unit as found or as left."""
+        self._session.execute(update(SessionRow).where(SessionRow.id == id).values(stage=stage))
+        self._session.expire_all()
+
     def of_unit(self, serial: str) -> tuple[StoredSession, ...]:
         """All sessions of a unit, oldest first."""
         query = _sessions().where(UnitRow.serial == serial).order_by(SessionRow.started_at, SessionRow.id)

@@ -40,12 +40,12 @@ class UnitTypes(Queries):
         ).one_or_none()
         if found is None:
             raise NotFoundError(f"There is no unit {serial!r}.")
-        return _unit_type(*found)
+        return unit_type_of(*found)
 
     def page(self, offset: int, limit: int) -> tuple[UnitType, ...]:
         """Types by name."""
         rows = self._session.execute(_with_tolerances().order_by(UnitTypeRow.name).offset(offset).limit(limit))
-        return tuple(_unit_type(row, tolerances) for row, tolerances in rows)
+        return tuple(unit_type_of(row, tolerances) for row, tolerances in rows)
 
     def hold(self, name: str) -> UnitType:
         """The type, held until the transaction ends: its revisions are made one after another."""
@@ -82,7 +82,7 @@ class UnitTypes(Queries):
         return row
 
     def _record(self, row: UnitTypeRow) -> UnitType:
-        return _unit_type(row, self._session.get_one(ToleranceRow, (row.id, row.revision)))
+        return unit_type_of(row, self._session.get_one(ToleranceRow, (row.id, row.revision)))
 
 
 def _with_tolerances() -> Select[UnitTypeRow, ToleranceRow]:
@@ -97,7 +97,8 @@ def _missing(name: str) -> NotFoundError:
     return NotFoundError(f"There is no unit type {name!r}.")
 
 
-def _unit_type(row: UnitTypeRow, tolerances: ToleranceRow) -> UnitType:
+def unit_type_of(row: UnitTypeRow, tolerances: ToleranceRow) -> UnitType:
+    """The record of a type with one revision of its tolerances."""
     gyro = tolerances.gyro_tolerances
     return UnitType(
         name=row.name,

@@ -1,7 +1,6 @@
 """Units and stands by name."""
 
 from sqlalchemy import select
-from sqlalchemy.orm import Session
 
 from service.errors import NotFoundError
 from service.storage.queries.base import Queries
@@ -10,10 +9,6 @@ from service.storage.tables import StandRow, UnitRow, UnitTypeRow
 
 class Units(Queries):
     """Units by serial number."""
-
-    def __init__(self, session: Session) -> None:
-        super().__init__(session)
-        self._keys: dict[str, int] = {}
 
     def exists(self, serial: str) -> bool:
         """Whether a session of this unit was ever stored."""
@@ -33,12 +28,14 @@ class Units(Queries):
 
     def key(self, serial: str) -> int:
         """The unit's key, which never changes: asked for once a transaction."""
-        if serial not in self._keys:
-            key = self._session.scalar(select(UnitRow.id).where(UnitRow.serial == serial))
-            if key is None:
-                raise NotFoundError(f"There is no unit {serial!r}.")
-            self._keys[serial] = key
-        return self._keys[serial]
+        known = self.remembered_unit(serial)
+        if known is not None:
+            return known
+        key = self._session.scalar(select(UnitRow.id).where(UnitRow.serial == serial))
+        if key is None:
+            raise NotFoundError(f"There is no unit {serial!r}.")
+        self.remember_unit(serial, key)
+        return key
 
     def stand_key(self, name: str | None) -> int | None:
         """The key of a stand, stored when it is new; None without a stand."""

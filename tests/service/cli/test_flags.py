@@ -41,3 +41,13 @@ def test_a_flag_is_handled_and_then_no_longer_open(run: Run, address: str) -> No
 def test_what_cannot_be_done_is_said_on_one_line(run: Run, address: str) -> None:
     ran = run("flags", "resolve", 7, "--by", "K. Ito", "--why", "gone", "--server", address)
     assert (ran.code, ran.out, ran.err) == (1, "", "imu-health: There is no flag 7.\n")
+
+
+def test_services_and_notes_are_recorded(run: Run, address: str) -> None:
+    own = ("--by", "K. Ito", "--server", address)
+    assert "repair 1 recorded" in run("service", "BA-017", "repair", "--sensor", "A3", "--at", "2026-03-01", *own).out
+    assert "note 1 recorded" in run("note", "BA-017", "moved by road", *own).out
+    unit = httpx.get(f"{address}/api/v1/units/BA-017").json()
+    assert [(s["kind"], s["at"], s["who"]) for s in unit["services"]] == [("repair", "2026-03-01T00:00:00Z", "K. Ito")]
+    refused = run("service", "BA-017", "paint", *own)
+    assert (refused.code, refused.out, refused.err.count("\n")) == (1, "", 1)

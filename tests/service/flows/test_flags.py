@@ -3,6 +3,8 @@
 from datetime import UTC, datetime, timedelta
 
 import pytest
+from sqlalchemy import text
+from sqlalchemy.exc import DatabaseError
 
 from service.errors import ConflictError, NotFoundError
 from service.flag_records import Flag, FlagState, Matter, NoticeKind
@@ -59,7 +61,7 @@ def test_a_passing_session_proposes_to_resolve_once_and_resolves_nothing(flagged
     measured(flagged, 4)
     [flag] = flags(flagged)
     assert flag.state is FlagState.RAISED
-    assert flag.proposal == "The session of 2026-03-01 finds every parameter of A3 within its tolerance."
+    assert flag.proposal == "The session of 1 Mar 2026 finds every parameter of A3 within its tolerance."
     assert kinds(flag) == ["raised", "clear"]
 
 
@@ -129,6 +131,12 @@ def test_the_fleet_counts_open_flags(flagged: Storage) -> None:
     assert counted() == (1, 1)
     resolve_flag(flagged, flags(flagged)[0].id, "K. Ito", "done", NOW)
     assert counted() == (0, 0)
+
+
+@pytest.mark.parametrize("statement", ["UPDATE notices SET who = 'x'", "DELETE FROM notices"])
+def test_the_database_refuses_to_change_a_life(flagged: Storage, statement: str) -> None:
+    with pytest.raises(DatabaseError, match="append-only"), flagged.database.engine.begin() as connection:
+        connection.execute(text(statement))
 
 
 def test_another_verdict_is_told(flagged: Storage) -> None:

@@ -7,6 +7,7 @@ import httpx
 import pytest
 
 from service.errors import RefusedError
+from service.flag_records import NewService
 from service.flows.record_service import record_service
 from service.flows.upload import upload
 from service.records import Verdict
@@ -57,7 +58,7 @@ def test_a_unit_without_a_calibration_is_told_to_calibrate(storage: Storage) -> 
 
 def test_a_service_asks_for_a_new_calibration(storage: Storage) -> None:
     upload(storage, session_bytes(), "a.json", NOW)
-    record_service(storage, "BA-017", "repair", datetime(2026, 4, 1, tzinfo=UTC), "", NOW)
+    record_service(storage, "BA-017", NewService("repair", datetime(2026, 4, 1, tzinfo=UTC)), NOW)
     assert "no calibration yet since its service of 2026-04-01" in refusal(storage, recording_bytes())
 
 
@@ -102,6 +103,6 @@ def test_over_http_its_page_and_answers_are_served(client: httpx.Client) -> None
 
 def test_the_reference_is_that_of_the_epoch(storage: Storage) -> None:
     upload(storage, session_bytes(month=3), "a.json", NOW)
-    record_service(storage, "BA-017", "repair", datetime(2026, 6, 1, tzinfo=UTC), "", NOW)
+    record_service(storage, "BA-017", NewService("repair", datetime(2026, 6, 1, tzinfo=UTC)), NOW)
     upload(storage, session_bytes(month=7, a3_moved=500.0, seed=2), "b.json", NOW)
     assert upload(storage, recording_bytes(), "flight.json", NOW).verdict is Verdict.PASS

@@ -5,6 +5,7 @@ from datetime import UTC, datetime, timedelta
 import httpx
 import pytest
 
+from service.flag_records import NewService
 from service.flows.outlook import fleet_outlook, unit_outlook
 from service.flows.record_service import record_service
 from service.flows.upload import upload
@@ -46,7 +47,7 @@ def test_a_stable_unit_comes_back_after_the_longest_interval_at_the_latest(stora
 
 def test_a_service_ends_every_trend_until_the_unit_is_measured_again(storage: Storage) -> None:
     measure(storage, {1: 0.0, 3: 15.0, 5: 30.0, 7: 45.0})
-    record_service(storage, "BA-017", "repair", datetime(2026, 8, 1, tzinfo=UTC), "", NOW)
+    record_service(storage, "BA-017", NewService("repair", datetime(2026, 8, 1, tzinfo=UTC)), NOW)
     waiting = unit_outlook(storage, "BA-017", NOW)
     assert (waiting.reason, waiting.overdue) == ("Serviced on 1 Aug 2026: measure it again.", True)
     assert waiting.trends == ()

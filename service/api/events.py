@@ -1,0 +1,67 @@
+"""What happened to a unit: services, notes, and how it was found and left."""
+
+from fastapi import APIRouter
+
+from service.api.schemas.events import (
+    FoundAndLeftLine,
+    FoundAndLeftSchema,
+    NewNote,
+    NewServiceSchema,
+    NoteList,
+    NoteSchema,
+    ServiceSchema,
+)
+from service.api.schemas.fields import Serial
+from service.api.schemas.problem import errors
+from service.api.schemas.sessions import DecisionSchema, SessionSchema
+from service.dependencies import Now, Reading, SettingsOf, StorageOf
+from service.flag_records import NewService
+from service.flows.annotate import add_note
+from service.flows.found_and_left import found_and_left
+from service.flows.record_service import record_service
+from service.flows.unit_report import unit_report
+
+router = APIRouter(prefix="/units", tags=["units"])
+
+
+@router.post("/{serial:path}/services", status_code=201, responses=errors(400, 404, 422))
+def add_service(serial: Serial, new: NewServiceSchema, storage: StorageOf, now: Now) -> ServiceSchema:
+    """Record a known break; the next session measured after it becomes the unit's new reference."""
+    done = NewService(new.kind, new.at or now, new.note, new.by, new.sensor)
+    service, _ = record_service(storage, serial, done, now)
+    return ServiceSchema.model_validate(service)
+
+
+@router.get("/{serial:path}/notes", responses=errors(404, 422))
+def read_notes(serial: Serial, store: Reading) -> NoteList:
+    """The unit's notes, withdrawn ones too."""
+    store.units.key(serial)
+    return NoteList(unit=serial, notes=[NoteSchema.model_validate(note) for note in store.notes.of_unit(serial)])
+
+
+@router.post("/{serial:path}/notes", status_code=201, responses=errors(400, 404, 422))
+def write_note(serial: Serial, new: NewNote, storage: StorageOf, now: Now) -> NoteSchema:
+    """Keep a remark on the unit's history. It can be withdrawn, never changed."""
+    return NoteSchema.model_validate(add_note(storage, serial, new.at or now, new.text, new.by, now))
+
+
+@router.get("/{serial:path}/found-and-left", responses=errors(404, 422))
+def read_found_and_left(serial: Serial, store: Reading, settings: SettingsOf, now: Now) -> FoundAndLeftSchema:
+    """The unit as it was found and as it was left, both against the reference that held when it was found."""
+    unit = unit_report(store, serial, now)
+    pair = found_and_left(store, unit.unit_type, unit.sessions, unit.services, settings.coverage_factor)
+    if pair is None:
+        return FoundAndLeftSchema(reference=None, found=None, left=None, parameters=[])
+    lines = [
+        FoundAndLeftLine(
+            found=DecisionSchema.model_validate(found),
+            left=None if left is None else DecisionSchema.model_validate(left),
+        )
+        for found, left in pair.decisions
+    ]
+    return FoundAndLeftSchema(
+        reference=pair.reference,
+        found=SessionSchema.model_validate(pair.found),
+        left=None if pair.left is None else SessionSchema.model_validate(pair.left),
+        parameters=lines,
+    )

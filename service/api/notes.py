@@ -1,0 +1,18 @@
+"""Notes on units' histories."""
+
+from fastapi import APIRouter
+
+from service.api.schemas.events import NoteSchema
+from service.api.schemas.fields import Number
+from service.api.schemas.flags import Handling
+from service.api.schemas.problem import errors
+from service.dependencies import Now, StorageOf
+from service.flows.annotate import withdraw_note
+
+router = APIRouter(prefix="/notes", tags=["units"])
+
+
+@router.post("/{id}/withdraw", responses=errors(400, 404, 409, 422))
+def withdraw(id: Number, handling: Handling, storage: StorageOf, now: Now) -> NoteSchema:
+    """Say that a note no longer holds, and why. It stays on record."""
+    return NoteSchema.model_validate(withdraw_note(storage, id, handling.by, handling.why, now))

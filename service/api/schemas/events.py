@@ -1,0 +1,118 @@
+"""What was done to units, notes on their histories, and sessions as found and as left."""
+
+from datetime import datetime
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from service.api.schemas.fields import LongText, Moment, Name, Reason, Text
+from service.api.schemas.sessions import DecisionSchema, SessionSchema
+
+ServiceKind = Literal["adjustment", "repair", "sensor-swap", "reference", "service"]
+Stage = Literal["as-found", "as-left"]
+
+
+class NewServiceSchema(BaseModel):
+    """A known break in a unit's history; the next session measured after it is the new reference."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        json_schema_extra={
+            "example": {
+                "kind": "sensor-swap",
+                "at": "2026-02-10T12:00:00Z",
+                "sensor": "A3",
+                "by": "K. Ito",
+                "note": "A3 replaced after a fall",
+            }
+        },
+    )
+
+    kind: ServiceKind = Field(description="What was done; `reference` is a new reference set, `service` anything else.")
+    at: Moment | None = Field(default=None, description="When; now if not given. Without a zone it is UTC.")
+    note: LongText = Field(default="", description="Why, what exactly.")
+    by: Text = Field(default="", description="Who did it.")
+    sensor: Text = Field(default="", description="The sensor that it concerns; empty for the whole unit.")
+
+
+class ServiceSchema(BaseModel):
+    """A known break in a unit's history."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    id: int = Field(description="Number of the entry.")
+    unit: str = Field(description="Serial number of the unit.")
+    at: datetime = Field(description="When it was done, UTC.")
+    kind: str = Field(description="What was done.")
+    note: str = Field(description="Why, what exactly.")
+    who: str = Field(description="Who did it.")
+    sensor: str = Field(description="The sensor that it concerns; empty for the whole unit.")
+
+
+class NewNote(BaseModel):
+    """A remark on a unit's history."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        json_schema_extra={"example": {"text": "moved by road", "at": "2026-02-10T12:00:00Z", "by": "K. Ito"}},
+    )
+
+    text: Reason = Field(description="What is worth knowing.")
+    by: Name = Field(description="Who says it.")
+    at: Moment | None = Field(default=None, description="The date it is about; now if not given.")
+
+
+class WithdrawalSchema(BaseModel):
+    """Why a note no longer holds."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    at: datetime = Field(description="When it was withdrawn, UTC.")
+    who: str = Field(description="By whom.")
+    why: str = Field(description="Why.")
+
+
+class NoteSchema(BaseModel):
+    """A remark on a unit's history; never changed."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    id: int = Field(description="Number of the note.")
+    unit: str = Field(description="Serial number of the unit.")
+    at: datetime = Field(description="The date it is about, UTC.")
+    text: str = Field(description="What is worth knowing.")
+    who: str = Field(description="Who said it.")
+    recorded_at: datetime = Field(description="When it was written, UTC.")
+    withdrawal: WithdrawalSchema | None = Field(description="Why it no longer holds; null while it does.")
+
+
+class NoteList(BaseModel):
+    """All notes of a unit, oldest first."""
+
+    unit: str = Field(description="Serial number of the unit.")
+    notes: list[NoteSchema] = Field(description="The notes, withdrawn ones too.")
+
+
+class NewStage(BaseModel):
+    """How a session shows its unit."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"example": {"stage": "as-found", "by": "K. Ito"}})
+
+    stage: Stage | None = Field(description="Before or after the unit was worked on; null for neither.")
+    by: Name = Field(description="Who says so.")
+
+
+class FoundAndLeftLine(BaseModel):
+    """One parameter as found and as left."""
+
+    found: DecisionSchema = Field(description="Judged as found.")
+    left: DecisionSchema | None = Field(description="Judged as left, against the same reference; null before that.")
+
+
+class FoundAndLeftSchema(BaseModel):
+    """A unit as it was found and as it was left."""
+
+    reference: str | None = Field(description="The session that both are judged against.")
+    found: SessionSchema | None = Field(description="The latest as-found session; null where there is none.")
+    left: SessionSchema | None = Field(description="The first as-left session after it.")
+    parameters: list[FoundAndLeftLine] = Field(description="Every judged parameter, sensor after sensor.")

@@ -1,0 +1,25 @@
+"""Flow: remarks on a unit's history; one that no longer holds is withdrawn with a reason, never erased."""
+
+from datetime import datetime
+
+from service.errors import ConflictError
+from service.flag_records import Note
+from service.storage import Storage
+
+
+def add_note(storage: Storage, serial: str, at: datetime, text: str, who: str, now: datetime) -> Note:
+    """Keeps a note on a unit at a date."""
+    with storage.database.writing() as store:
+        id = store.notes.add(store.units.key(serial), at, text, who, now)
+        store.log.audit(now, who, "note", serial, {"note": id, "at": at.isoformat(), "text": text})
+        return store.notes.get(id)
+
+
+def withdraw_note(storage: Storage, id: int, who: str, why: str, now: datetime) -> Note:
+    """Says that a note no longer holds, and why; ConflictError where that was said before."""
+    with storage.database.writing() as store:
+        note = store.notes.get(id)
+        if not store.notes.withdraw(id, who, why, now):
+            raise ConflictError(f"Note {id} was withdrawn before.")
+        store.log.audit(now, who, "withdraw note", note.unit, {"note": id, "why": why})
+        return store.notes.get(id)

@@ -1,0 +1,69 @@
+"""The forms of what happened to a unit: services, notes, sessions as found and as left."""
+
+from datetime import UTC, datetime
+from typing import Annotated, Literal
+from urllib.parse import quote
+
+from fastapi import APIRouter, Form
+from fastapi.responses import RedirectResponse
+
+from service.dependencies import Now, StorageOf
+from service.flag_records import NewService
+from service.flows.annotate import add_note, withdraw_note
+from service.flows.record_service import record_service
+from service.flows.set_stage import set_stage
+from service.pages.forms import NO_NUL, OWN_FORM, SEE_OTHER, By, Key, Number, Why
+
+router = APIRouter(include_in_schema=False, dependencies=OWN_FORM)
+
+At = Annotated[datetime | None, Form()]
+"""A time in UTC; left empty it is now."""
+Kind = Annotated[Literal["adjustment", "repair", "sensor-swap", "reference", "service"], Form()]
+
+
+@router.post("/units/{serial:path}/services")
+def add_service(
+    serial: Key,
+    kind: Kind,
+    by: By,
+    storage: StorageOf,
+    now: Now,
+    at: At = None,
+    sensor: Annotated[str, Form(max_length=200, pattern=NO_NUL)] = "",
+    note: Annotated[str, Form(max_length=2000, pattern=NO_NUL)] = "",
+) -> RedirectResponse:
+    """Records what was done to the unit."""
+    record_service(storage, serial, NewService(kind, _utc(at, now), note, by, sensor), now)
+    return _unit(serial, "events")
+
+
+@router.post("/units/{serial:path}/notes")
+def write_note(serial: Key, text: Why, by: By, storage: StorageOf, now: Now, at: At = None) -> RedirectResponse:
+    """Keeps a remark."""
+    add_note(storage, serial, _utc(at, now), text, by, now)
+    return _unit(serial, "events")
+
+
+@router.post("/notes/{id}/withdraw")
+def withdraw(id: Number, by: By, why: Why, storage: StorageOf, now: Now) -> RedirectResponse:
+    """A remark no longer holds."""
+    return _unit(withdraw_note(storage, id, by, why, now).unit, "events")
+
+
+@router.post("/sessions/{id}/stage")
+def mark_session(
+    id: Key, stage: Annotated[Literal["as-found", "as-left", "neither"], Form()], by: By, storage: StorageOf, now: Now
+) -> RedirectResponse:
+    """The session shows its unit as found, as left, or neither."""
+    set_stage(storage, id, None if stage == "neither" else stage, by, now)
+    return RedirectResponse(f"/sessions/{id}#stage", SEE_OTHER)
+
+
+def _utc(at: datetime | None, now: datetime) -> datetime:
+    if at is None:
+        return now
+    return at.astimezone(UTC) if at.tzinfo else at.replace(tzinfo=UTC)
+
+
+def _unit(serial: str, place: str) -> RedirectResponse:
+    return RedirectResponse(f"/units/{quote(serial)}#{place}", SEE_OTHER)

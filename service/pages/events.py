@@ -1,0 +1,98 @@
+"""What happened to a unit, in one list; and the unit as it was found and as it was left."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from service.flag_records import Note
+from service.flows.found_and_left import FoundAndLeft
+from service.records import Decision, Service, StoredSession
+from service.units import deviation_unit, limit, measured, signed
+from service.verdicts import NOT_JUDGED, Condition, condition_of
+
+KINDS = {
+    "adjustment": "Adjustment",
+    "repair": "Repair",
+    "sensor-swap": "Sensor swap",
+    "reference": "New reference",
+    "service": "Service",
+}
+
+
+@dataclass(frozen=True)
+class Event:
+    """A service or a note."""
+
+    at: datetime
+    heading: str
+    text: str
+    who: str
+    note: Note | None
+    """None for a service, which is a break in the history."""
+
+
+@dataclass(frozen=True)
+class StageCell:
+    """One parameter's deviation at one of the two sessions."""
+
+    text: str
+    condition: Condition
+
+
+@dataclass(frozen=True)
+class StageRow:
+    """One parameter of one sensor."""
+
+    sensor: str
+    parameter: str
+    tolerance: str
+    found: StageCell
+    left: StageCell | None
+
+
+@dataclass(frozen=True)
+class StageTable:
+    """The unit as found and as left."""
+
+    found: StoredSession
+    left: StoredSession | None
+    rows: tuple[StageRow, ...]
+    """Empty where the unit was found at its reference."""
+
+
+def events_of(services: Sequence[Service], notes: Sequence[Note]) -> tuple[Event, ...]:
+    """Newest first."""
+    listed = [
+        Event(s.at, f"{KINDS.get(s.kind, s.kind)}{f' of {s.sensor}' if s.sensor else ''}", s.note, s.who, None)
+        for s in services
+    ]
+    listed += [Event(note.at, "Note", note.text, note.who, note) for note in notes]
+    return tuple(sorted(listed, key=lambda event: event.at, reverse=True))
+
+
+def stage_table(pair: FoundAndLeft | None) -> StageTable | None:
+    """Both sessions beside each other; None where the unit was never marked as found."""
+    if pair is None:
+        return None
+    rows = tuple(_row(found, left) for found, left in pair.decisions)
+    return StageTable(pair.found, pair.left, rows)
+
+
+def _row(found: Decision, left: Decision | None) -> StageRow:
+    largest = max(abs(d.deviation or 0.0) for d in (found, left) if d is not None)
+    unit = deviation_unit(found.kind, found.parameter, max(largest, found.tolerance))
+    is_angle = found.parameter == "axis"
+
+    def cell(decision: Decision) -> StageCell:
+        if decision.deviation is None:
+            return StageCell("not observable", NOT_JUDGED)
+        write = measured if is_angle else signed
+        return StageCell(write(decision.deviation, decision.expanded, unit), condition_of(decision.verdict))
+
+    return StageRow(
+        found.sensor,
+        found.parameter,
+        limit(found.tolerance, unit, is_angle),
+        cell(found),
+        None if left is None else cell(left),
+    )
