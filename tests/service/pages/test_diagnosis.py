@@ -4,7 +4,7 @@ import httpx
 import pytest
 
 from service.app import create_app
-from service.pages.findings import shape_in_words
+from service.flows.finding_in_words import shape_in_words
 from service.settings import Settings
 from tests.service.diagnosed import ALIASES, TEMPERATURE, UNEXPLAINED, drawn, send, send_case, warm
 from tests.service.pages.test_http import HTML, MOST_QUERIES, counted
