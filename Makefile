@@ -6,7 +6,7 @@ STAMP := .venv/.complete
 # Sessions are small matrices: several threads of BLAS only get in each other's way.
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: setup run test lint format bench study pictures browser lock clean
+.PHONY: setup run test lint format bench papers study pictures browser lock clean
 
 setup: $(STAMP)
 
@@ -38,6 +38,9 @@ format: setup
 
 bench: setup
 	$(BIN)/python -m benchmarks
+
+papers: setup
+	$(BIN)/python -m benchmarks.papers
 
 study: setup
 	$(BIN)/python -m benchmarks.study --sessions 2000 --seed 1

@@ -1,15 +1,13 @@
-"""Every number of docs/methods/optimisation.md: ``python -m benchmarks.optimisation``."""
+"""docs/papers-optimisation.md: the published search beside its rivals. Part of ``make papers``; some minutes."""
 
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from rich.console import Console
-from rich.table import Table
 
 from benchmarks.orientations import GRAVITY, NOISE, Case, case, one_degree_off, sphere, two_axis_turns
-from benchmarks.two_axis_stand import table
+from benchmarks.papers.markdown import section, table
 from estimator import CalibrationSession, calibrate
 from estimator.arrays import tangents
 from estimator.calibration.descent import descend, levenberg_marquardt
@@ -27,6 +25,37 @@ DRAWS = 12
 MOST = 5000
 
 
+HEAD = """# Multi-parameter optimisation: the paper beside ours
+
+Written by `make papers` (`python -m benchmarks.papers`). Source: D. A. Kutovoy, S. Yu. Perepelkina, P. V. Sitnikov,
+estimation of the error model of a strapdown sensor block by multi-parameter optimisation. It has no tables or figures;
+its numbers stand in the text, and its formulas are rebuilt in [the method](methods/optimisation.md)."""
+
+COUNTED = """Four accelerometers, errors of 1 % of scale, 0.01 g and 0.01 rad (one sigma), no noise; median (least to
+most) of twelve blocks. *To 0.001 %*: every scale to 1e-5 of itself, every bias to 1e-5 g, every angle to 1e-5 rad."""
+
+COUNTS = """What an iteration is, the step factors and the orientations are not stated in print. Here an iteration is
+one pass over all 13 parameters. The orientations matter most: from set to set the count follows the conditioning, and
+the published 270 and 200 lie inside the range. Their ratio, 1.35, is ours too (1.2 to 1.4): a start
+10 % off truth is nearer than nominal. The functional at 0.001 % is the published 1e-7 in (m/s²)², within the spread of
+the number of equations."""
+
+COMPARED = """{trials} simulated sessions, noise {noise:.0f} µg. *Bias* is the mean error over the bound's sigma, root
+mean square over the parameters (0.07 is what 200 sessions of an unbiased estimator show); *variance* is over the
+Cramér–Rao bound with the orientations unknown, its mean over the parameters and that of the worst."""
+
+ESTIMATED = """With four equal sensors the published functional wastes nothing; with six it loses some per cent. The
+descent runs until its steps are below 1e-7, far beyond the noise, and ends where Levenberg–Marquardt ends. The time
+of maximum likelihood holds covariance, what is observable, and the test of the fit. Of 200 sessions a variance is
+known to 10 %, so the worst of 13 to 21 parameters is expected at 1.2."""
+
+BESIDE = """Published: a degree of error in the table does not matter. The functional knows no orientations, so it
+does not matter at all."""
+
+RANKS = """Published: at least nine orientations, by turns about two axes. Nine are enough if they are spread; turns
+that stay in two planes never are, however many. `imu-health plan` says which orientation to add."""
+
+
 def iterations(found: Case, start: float, grow: float, shrink: float) -> tuple[int, float]:
     """Iterations to 0.001 % of every parameter, and the functional there; ``start`` is the part of truth begun at."""
     problem = triples_of(found.measured(np.random.default_rng(0), noise=0.0))
@@ -36,7 +65,7 @@ def iterations(found: Case, start: float, grow: float, shrink: float) -> tuple[i
     return (int(near[0]) + 1, problem.functional(path[near[0]])) if len(near) else (MOST, float("nan"))
 
 
-def published_counts() -> Table:
+def published_counts() -> str:
     """Iterations of the descent from nominal and from 10 % off, on blocks drawn at random."""
     rows: list[tuple[object, ...]] = []
     for name, directions in orientation_sets():
@@ -53,7 +82,7 @@ def published_counts() -> Table:
             rows.append((name, f"{grow} / {shrink}", *shown, f"{np.nanmedian(left):.1e}"))
     rows.append(("published, at least 9", "not stated", "about 270", "about 200", "about 1e-7"))
     columns = ("orientations", "grow / shrink", "from nominal", "from 10 % off", "functional there, (m/s²)²")
-    return table("Iterations of the coordinate descent to 0.001 %, median (least to most) of 12 blocks", columns, rows)
+    return section("Iterations to 0.001 %", COUNTED, table(columns, rows), COUNTS)
 
 
 def orientation_sets() -> list[tuple[str, Array]]:
@@ -133,7 +162,7 @@ def bound(drawn: Case, session: CalibrationSession) -> Array:
     return found[:, keep][:, :, :, keep].reshape(4 * m, 4 * m)
 
 
-def side_by_side() -> Table:
+def side_by_side() -> str:
     """Iterations, time, bias and variance of all three on the same simulated sessions."""
     rows: list[tuple[object, ...]] = []
     for m, count in ((4, 12), (4, 36), (6, 36)):
@@ -154,10 +183,11 @@ def side_by_side() -> Table:
                  f"{np.sqrt(np.mean(shift**2)):.3f}", f"{ratio.mean():.2f}", f"{ratio.max():.2f}")
             )  # fmt: skip
     columns = ("sensors × orientations", "estimator", "iterations", "ms", "bias / σ", "variance / bound", "worst")
-    return table(f"Three estimators on the same {TRIALS} sessions, noise {1e6 * NOISE:.0f} µg", columns, rows)
+    words = COMPARED.format(trials=TRIALS, noise=1e6 * NOISE)
+    return section("Three estimators on the same sessions", words, table(columns, rows), ESTIMATED)
 
 
-def orientation_errors() -> Table:
+def orientation_errors() -> str:
     """The block set down a degree beside its table: what it costs."""
     rows: list[tuple[object, ...]] = []
     for name, change in (("as planned", lambda c, _: c), ("each 1° beside", one_degree_off)):
@@ -168,10 +198,11 @@ def orientation_errors() -> Table:
             found = levenberg_marquardt(triples_of(drawn.measured(rng, noise=0.0)))
             worst.append(float(np.abs(found.parameters.scale / drawn.truth.scale - 1).max()))
         rows.append((name, f"{max(worst):.1e}"))
-    return table("Largest relative error of a scale, no noise", ("orientations", "largest of 12 blocks"), rows)
+    columns = ("orientations", "largest relative error of a scale, 12 blocks")
+    return section("Orientations that are not where the table says", BESIDE, table(columns, rows))
 
 
-def ranks() -> Table:
+def ranks() -> str:
     """Rank of the thirteen parameters over the number of orientations."""
     turn = 2 * np.pi * np.arange(24) / 24
     flat = np.zeros(24)
@@ -184,15 +215,10 @@ def ranks() -> Table:
         problem = triples_of(case(4, directions, rng).measured(rng, noise=0.0))
         values = np.linalg.svd(problem.jacobian(levenberg_marquardt(problem).x), compute_uv=False)
         rows.append((name, int((values > 1e-6 * values[0]).sum()), f"{values[-1] / values[0]:.1e}"))
-    return table("Rank of 13 parameters", ("orientations", "rank", "least / largest singular value"), rows)
+    columns = ("orientations", "rank of 13", "least / largest singular value")
+    return section("Which sets determine everything", table(columns, rows), RANKS)
 
 
-def main() -> None:
-    """Print every table."""
-    console = Console(width=150)
-    for made in (published_counts, side_by_side, orientation_errors, ranks):
-        console.print(made())
-
-
-if __name__ == "__main__":
-    main()
+def page() -> str:
+    """The whole page."""
+    return "\n\n".join((HEAD, published_counts(), side_by_side(), orientation_errors(), ranks())) + "\n"

@@ -1,22 +1,26 @@
-"""Print docs/papers.md: ``python -m benchmarks.papers > docs/papers.md``. Fixed seeds; under half a minute."""
+"""Every table and figure of the papers beside ours: ``make papers``, or ``python -m benchmarks.papers``.
+
+Writes docs/papers.md, docs/papers-alignment.md and docs/papers-optimisation.md with their figures. Seeds are fixed, so
+that all but the times in the last one come out the same; some minutes.
+"""
 
 import sys
+from pathlib import Path
 
-from benchmarks.papers.formulas import formulas
-from benchmarks.papers.planning import planning
-from benchmarks.papers.tables import tables
+from benchmarks.optimisation import page as optimisation
+from benchmarks.papers import analytic, schematics
+from benchmarks.papers_alignment.page import page as alignment
 
-HEAD = """# The papers' tables beside ours
-
-Written by `python -m benchmarks.papers > docs/papers.md`; every difference is explained below its table, and every
-error of the print has its test in the [errata](errata.md). Source: A. V. Tyuvin, analytic alignment and calibration of
-the inertial measurement unit of a strapdown inertial navigation system; six sensors in a cone of 54.7° about the head's
-axis (e2² = 1/3), α = 40°, δα, δβ = 3″, θ_x, θ_y = 1″ (3σ)."""
+DOCS = Path(__file__).parents[2] / "docs"
+PAGES = {"papers.md": analytic.page, "papers-alignment.md": alignment, "papers-optimisation.md": optimisation}
 
 
 def main() -> None:
-    """Print all sections."""
-    sys.stdout.write("\n\n".join((HEAD, tables(), formulas(), planning())) + "\n")
+    """Write all pages, or those that are named."""
+    schematics.draw()
+    for name in sys.argv[1:] or PAGES:
+        (DOCS / name).write_text(PAGES[name](), encoding="utf-8")
+        sys.stdout.write(f"docs/{name}\n")
 
 
 if __name__ == "__main__":

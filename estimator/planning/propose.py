@@ -40,8 +40,9 @@ FEWEST = 6
 CUSTOMARY = 24
 """N where no tolerance asks for a number."""
 
-MOST_READINGS = 3000
-"""Readings beyond which the signatures of all causes at all places would fill the memory."""
+MOST_READINGS = 1728
+"""Readings (12 sensors, 72 positions, both runs) beyond which the signatures of all causes at all places, which grow as
+their square, would fill the memory; up to here they take less than 400 MB."""
 
 NEARLY = 1.1
 """Where no number reaches the tolerances: the fewest positions within this of what the most would give."""

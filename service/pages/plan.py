@@ -1,6 +1,8 @@
 """The page of a plan: what is asked, what the session would tell, what it cannot see."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from urllib.parse import urlencode
 
 import numpy as np
 
@@ -78,6 +80,10 @@ class PlanPage:
     """Everything the page of a plan shows."""
 
     question: PlanQuestion
+    types: tuple[tuple[str, str], ...]
+    """Stored unit types to choose from."""
+    query: str
+    """The question as the query of an address."""
     block: tuple[Field, ...]
     session: tuple[Field, ...]
     tolerances: tuple[Field, ...]
@@ -96,11 +102,13 @@ class PlanPage:
     headings: tuple[str, ...]
 
 
-def plan_page(question: PlanQuestion, plan: Plan) -> PlanPage:
+def plan_page(question: PlanQuestion, plan: Plan, types: Sequence[str] = ()) -> PlanPage:
     """The page of a planned session."""
     kind = head_kind(plan.schedule)
     return PlanPage(
         question=question,
+        query=urlencode(question.model_dump(exclude_none=True)),
+        types=(("", "a cone, as below"), *((name, name) for name in types)),
         block=_block(question),
         session=_session(question),
         tolerances=_tolerances(question),

@@ -5,7 +5,8 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import HTMLResponse
 
-from estimator.planning import plan
+from service.dependencies import StorageOf
+from service.flows.plan import plan, plannable_types
 from service.pages.plan import plan_page
 from service.pages.render import render
 from service.planning.question import PlanQuestion
@@ -14,8 +15,7 @@ router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 
 
 @router.get("/plan")
-def show_plan(request: Request, question: Annotated[PlanQuestion, Query()]) -> HTMLResponse:
+def show_plan(request: Request, question: Annotated[PlanQuestion, Query()], storage: StorageOf) -> HTMLResponse:
     """What a session would tell before it is measured."""
-    like = question.cone()
-    found = plan(like, question.request(question.kind), sigma=question.sigma(like))
-    return render(request, "plan.html", plan_page(question, found))
+    asked, found = plan(storage, question)
+    return render(request, "plan.html", plan_page(asked, found, plannable_types(storage)))

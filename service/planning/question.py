@@ -51,22 +51,41 @@ class PlanQuestion(BaseModel):
 
     model_config = ConfigDict(frozen=True)
 
-    kind: Literal["accelerometer", "gyroscope"] = "accelerometer"
-    sensors: Annotated[int, Field(ge=3, le=12)] = 6
-    latitude: Annotated[float, Field(ge=-90, le=90, allow_inf_nan=False)] = 55.81
-    theta: Arcsec = 0.33
-    alpha_error: Arcsec = 1.0
-    beta_error: Arcsec = 1.0
-    noise: Amount = None
-    variation: Amount = None
-    elevation: Annotated[Elevation | None, BeforeValidator(_blank)] = None
-    positions: Annotated[Positions | None, BeforeValidator(_blank)] = None
-    runs: Literal["both", "direct"] = "both"
-    minutes: Annotated[float, Field(gt=0, le=1440, allow_inf_nan=False)] = 2.0
-    scale: Amount = None
-    bias: Amount = None
-    quadratic: Amount = None
-    axis: Amount = None
+    unit_type: Annotated[str | None, Field(max_length=200, pattern=r"^[^\x00]*$"), BeforeValidator(_blank)] = Field(
+        None, description="A stored unit type whose sensors and tolerances are planned with, instead of a cone."
+    )
+    kind: Literal["accelerometer", "gyroscope"] = Field(
+        "accelerometer", description="Without a unit type: what the cone holds."
+    )
+    sensors: Annotated[int, Field(ge=3, le=12)] = Field(
+        6, description="Sensors on the cone of 54.7° about the head's axis."
+    )
+    latitude: Annotated[float, Field(ge=-90, le=90, allow_inf_nan=False)] = Field(
+        55.81, description="Latitude of the stand, degrees."
+    )
+    theta: Arcsec = Field(0.33, description="Levelling error, one sigma, arcsec.")
+    alpha_error: Arcsec = Field(1.0, description="Error of the elevation, one sigma, arcsec.")
+    beta_error: Arcsec = Field(1.0, description="Error of the turn β, one sigma, arcsec.")
+    noise: Amount = Field(None, description="Noise of a reading, one sigma, µg (gyros: °/h).")
+    variation: Amount = Field(
+        None, description="Variation of the zero from position to position, one sigma, µg (gyros: °/h)."
+    )
+    elevation: Annotated[Elevation | None, BeforeValidator(_blank)] = Field(
+        None, description="Elevation of the head's axis, degrees; proposed where left out."
+    )
+    positions: Annotated[Positions | None, BeforeValidator(_blank)] = Field(
+        None, description="Positions a run; proposed where left out."
+    )
+    runs: Literal["both", "direct"] = Field("both", description="Both runs, or the direct one only.")
+    minutes: Annotated[float, Field(gt=0, le=1440, allow_inf_nan=False)] = Field(
+        2.0, description="Time that a position takes, minutes."
+    )
+    scale: Amount = Field(
+        None, description="Tolerance of the scale factor, ppm; that of the unit type, or not judged, where left out."
+    )
+    bias: Amount = Field(None, description="Tolerance of the bias, µg (gyros: °/h).")
+    quadratic: Amount = Field(None, description="Tolerance of the quadratic term, µg/g² (gyros: not judged).")
+    axis: Amount = Field(None, description="Tolerance of the input axis, arcsec.")
 
     def request(self, kind: str) -> Request:
         """The request for blocks whose elevation is that of ``kind``."""

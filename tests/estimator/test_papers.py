@@ -1,19 +1,24 @@
 """The papers' tables are reproduced, and docs/papers.md is what the command prints."""
 
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from benchmarks.papers.__main__ import PAGES
+from benchmarks.papers.analytic import PLACES
 from benchmarks.papers.formulas import instrument_only
 from benchmarks.papers.markdown import table
 from benchmarks.papers.planning import conditionings, orientation_sets
 from benchmarks.papers.published import ACCELEROMETERS, AXES, GYROS, Published
+from benchmarks.papers.schematics import stand
 from benchmarks.papers.tables import by_half_sums, fitted_noise, sessions, two_sigma
 from estimator.planning import optimal_elevation
 from estimator.printed import checked
 
-PAGE = (Path(__file__).parents[2] / "docs" / "papers.md").read_text(encoding="utf-8")
+FOLDER = Path(__file__).parents[2] / "docs"
+PAGE = (FOLDER / "papers.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(
@@ -54,3 +59,24 @@ def test_the_gyros_elevation_follows_from_31() -> None:
 )
 def test_the_page_holds_what_the_command_prints(printed: object) -> None:
     assert printed() in PAGE  # type: ignore[operator]
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_every_page_says_by_which_one_command_it_is_written(name: str) -> None:
+    text = (FOLDER / name).read_text(encoding="utf-8")
+    assert "`make papers` (`python -m benchmarks.papers`)" in " ".join(text.split())
+
+
+def test_the_overview_leads_to_every_table_and_figure() -> None:
+    for _, _, where, _ in PLACES:
+        assert where in PAGE
+    for name, anchor in re.findall(r"\((papers[\w-]*\.md)?#([\w-]+)\)", PAGE):
+        headings = re.findall(r"^## (.+)$", (FOLDER / (name or "papers.md")).read_text(encoding="utf-8"), re.M)
+        assert anchor in {re.sub(r"[^\w -]", "", h.lower()).replace(" ", "-") for h in headings}
+
+
+def test_the_stand_is_drawn_as_it_is_computed() -> None:
+    lines = {line.label: line.points for line in stand() if line.label}
+    assert lines["n = −g"][1] == pytest.approx([0, 0, 0.85], abs=1e-12)
+    up = lines["Y_П"][1] / np.linalg.norm(lines["Y_П"][1])
+    assert np.degrees(np.arcsin(up[2])) == pytest.approx(40.0)

@@ -14,6 +14,8 @@ EXAMPLES = {"serial": "BA-017", "id": "3f9a0c5be1d24786aa10", "name": "hex"}
 NUMBERED = {"/api/v1/flags/{id}/acknowledge", "/api/v1/flags/{id}/resolve", "/api/v1/notes/{id}/withdraw"}
 """Where the id is a number."""
 NEEDS_NO_DATABASE = {"/healthz", "/metrics"}
+QUERIES = {"/api/v1/plan": {"unit_type": "RA-6"}}
+"""What makes a route ask the database; a plan for a cone does not."""
 BODIES: dict[str, Any] = {
     "/api/v1/sessions/{id}/diagnosis/accept": {"cause": "bias-ramp", "scope": "unit", "by": "K. Ito"},
     "/api/v1/units/{serial}/services": {"kind": "repair"},
@@ -83,7 +85,9 @@ def test_a_wrong_method_has_the_one_shape_on_every_route(
 def ask(client: httpx.Client, method: str, path: str) -> httpx.Response:
     """A request that any route takes seriously."""
     body = BODIES.get(path) if method in ("POST", "PUT") else None
-    return client.request(method, path.format(**EXAMPLES | ({"id": "1"} if path in NUMBERED else {})), json=body)
+    return client.request(
+        method, path.format(**EXAMPLES | ({"id": "1"} if path in NUMBERED else {})), json=body, params=QUERIES.get(path)
+    )
 
 
 def assert_problem(answer: httpx.Response, status: int) -> None:

@@ -5,6 +5,9 @@ import re
 import httpx
 import pytest
 
+from tests.service.sessions import session_bytes
+from tests.service.turntable import alignment_bytes
+
 HTML = {"Accept": "text/html"}
 
 
@@ -84,3 +87,33 @@ def test_nonsense_is_refused_by_name(client: httpx.Client, field: str, value: ob
 )
 def test_the_edges_of_what_may_be_asked_are_answered(client: httpx.Client, asked: dict[str, object]) -> None:
     assert "positions in" in page(client, **asked)
+
+
+def test_a_stored_unit_type_brings_its_sensors_and_tolerances(client: httpx.Client) -> None:
+    client.post("/api/v1/sessions", content=session_bytes(m=5, unit_type="RA-5"))
+    text = page(client, unit_type="RA-5")
+    assert "A1, A2, A3, A4, A5" in text
+    assert "of 50" in text
+    assert "A cone" not in text
+    form = client.get("/plan", params={"unit_type": "RA-5"}, headers=HTML).text
+    assert '<option value="RA-5" selected>' in form
+    assert '"/api/v1/plan?unit_type=RA-5&amp;' in form
+
+
+def test_the_same_plan_is_served_as_json(client: httpx.Client) -> None:
+    client.post("/api/v1/sessions", content=session_bytes(m=5, unit_type="RA-5"))
+    document = client.get("/api/v1/plan", params={"unit_type": "RA-5", "positions": 12, "axis": 3}).json()
+    assert (document["format"], document["positions"]) == ("imu-plan/1", 12)
+    assert document["question"]["axis"] == 3
+    assert document["question"]["bias"] == pytest.approx(50)
+    assert {p["sensor"] for p in document["parameters"]} == {"A1", "A2", "A3", "A4", "A5"}
+
+
+def test_a_type_that_cannot_be_planned_for_says_why(client: httpx.Client) -> None:
+    client.post("/api/v1/sessions", content=alignment_bytes())
+    name = client.get("/api/v1/unit-types").json()["unit_types"][0]["name"]
+    answer = client.get("/api/v1/plan", params={"unit_type": name})
+    assert answer.status_code == 422
+    assert "accelerometers and gyros" in answer.json()["problems"][0]["message"]
+    assert client.get("/api/v1/plan", params={"unit_type": "nobody"}).status_code == 404
+    assert f'value="{name}"' not in client.get("/plan", headers=HTML).text

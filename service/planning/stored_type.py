@@ -1,0 +1,44 @@
+"""A stored unit type as the block of a plan: its sensors, and its tolerances where none are asked for."""
+
+import numpy as np
+
+from estimator.arrays import unit
+from estimator.errors import Problem
+from estimator.session import Sensor
+from service.planning.question import PlanQuestion
+from service.records import PARAMETERS, UnitType
+from service.units import DEVIATION_UNITS
+
+MOST_SENSORS = 48
+
+
+def why_not(unit_type: UnitType) -> tuple[Problem, ...]:
+    """Why units of a type cannot be planned for on a two-axis stand."""
+    if unit_type.gyro_tolerances is not None or unit_type.block not in ("accelerometer", "gyroscope"):
+        return (Problem("unit_type", f"{unit_type.name} has accelerometers and gyros; plan from a session file of it"),)
+    if not 3 <= len(unit_type.sensors) <= MOST_SENSORS:
+        return (
+            Problem(
+                "unit_type",
+                f"{unit_type.name} has {len(unit_type.sensors)} sensors; 3 to {MOST_SENSORS} can be planned",
+            ),
+        )
+    if np.linalg.matrix_rank(np.array(unit_type.nominal_axes), tol=0.05) < 3:
+        return (Problem("unit_type", f"the nominal axes of {unit_type.name} lie in one plane"),)
+    return ()
+
+
+def sensors_of(unit_type: UnitType) -> tuple[Sensor, ...]:
+    """The type's sensors as its maker describes them."""
+    described = zip(unit_type.sensors, unit_type.nominal_axes, unit_type.nominal_scales, strict=True)
+    return tuple(Sensor(name, unit_type.block, unit(np.array([axis]))[0], scale, "") for name, axis, scale in described)
+
+
+def asked_of(question: PlanQuestion, unit_type: UnitType) -> PlanQuestion:
+    """The question with the type's kind, and its tolerances where no other ones are asked for."""
+    filled: dict[str, object] = {"kind": unit_type.block}
+    for name in PARAMETERS:
+        tolerance = getattr(unit_type.tolerances, name)
+        if getattr(question, name) is None and tolerance is not None:
+            filled[name] = tolerance * DEVIATION_UNITS[unit_type.block, name].factor
+    return question.model_copy(update=filled)
