@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import brentq
-from scipy.stats import chi2 as chi_squared
+from scipy.special import chdtrc
 
 from estimator.calibration.free.model import predicted
 from estimator.calibration.free.solve import Solution, search
@@ -27,7 +27,7 @@ ROUNDS = 12
 
 def p_value(chi2: float, dof: int) -> float | None:
     """Probability of a χ² at least this large; None without degrees of freedom."""
-    return float(chi_squared.sf(chi2, dof)) if dof > 0 else None
+    return float(chdtrc(dof, chi2)) if dof > 0 else None
 
 
 def explained(solution: Solution) -> Solution:

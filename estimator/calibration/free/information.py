@@ -10,12 +10,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.arrays import tangents
-from estimator.calibration.free.model import Rows, State, linearise
+from estimator.calibration.free.model import Linear, Rows, State, linearise
 from estimator.parameters import PLAUSIBLE
 from estimator.session import Array
 
 ROUNDING = 1e-12
 """Eigenvalues of the information below this part of the largest are rounding, not knowledge."""
+
+NEXT, LAST = [1, 2, 0], [2, 0, 1]
+"""Of x, y, z in turn: a × b is a[NEXT]·b[LAST] − a[LAST]·b[NEXT]."""
 
 QUADRATIC = 2
 """Place of the quadratic term among a sensor's five elements."""
@@ -63,7 +66,9 @@ def movable(nominal_axes: Array, axes: Array, held: bool, quadratic: bool) -> Ar
     if held:
         return basis
     constraint = np.zeros((3, m, 5))
-    constraint[:, :, 3:] = np.moveaxis(np.cross(nominal_axes[:, :, None], tangents(axes), axis=1), 0, 1)
+    turns, n = tangents(axes), nominal_axes[:, :, None]
+    crossed = n[:, NEXT] * turns[:, LAST] - n[:, LAST] * turns[:, NEXT]
+    constraint[:, :, 3:] = np.swapaxes(crossed, 0, 1)
     reduced = constraint.reshape(3, 5 * m) @ basis
     return basis @ np.linalg.svd(reduced)[2][3:].T
 
@@ -73,13 +78,15 @@ def unseen_below(values: Array) -> float:
     return max(PLAUSIBLE**-2, ROUNDING * float(values[-1]))
 
 
-def information(rows: Rows, state: State, quadratic: bool) -> Information:
+def information(rows: Rows, state: State, quadratic: bool, linear: Linear | None = None) -> Information:
     """What orientations ``state.directions`` tell of sensors like ``state`` under the noise of ``rows``.
 
-    Only `rows.sigma`, `rows.prior` and `rows.nominal_axes` are used: the readings play no part.
+    Only `rows.sigma`, `rows.prior` and `rows.nominal_axes` are used: the readings play no part. ``linear`` is the
+    linearisation at the state, where it is at hand.
     """
     basis = movable(rows.nominal_axes, state.axes, rows.held, quadratic)
-    values, vectors = np.linalg.eigh(basis.T @ linearise(rows, state).schur @ basis)
+    schur = (linear or linearise(rows, state)).schur
+    values, vectors = np.linalg.eigh(basis.T @ schur @ basis)
     vectors = basis @ vectors
     known = values > unseen_below(values)
     lead = int(np.argmax(np.abs(vectors[:, 0])))

@@ -19,6 +19,7 @@ Source: multi-parameter optimisation paper, functional (5), in its maximum-likel
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -69,6 +70,16 @@ class State:
     directions: Array
     """(R, 3)"""
 
+    @cached_property
+    def axis_tangents(self) -> Array:
+        """(m, 3, 2) along which the axes turn."""
+        return tangents(self.axes)
+
+    @cached_property
+    def direction_tangents(self) -> Array:
+        """(R, 3, 2) along which the orientations turn."""
+        return tangents(self.directions)
+
     def stepped(self, parameters: Array, turns: Array) -> "State":
         """Moved by (5 m,) parameters and (R, 2) turns of the orientations."""
         step = parameters.reshape(-1, 5)
@@ -76,8 +87,8 @@ class State:
             log_scale=self.log_scale + step[:, 0],
             offset=self.offset + step[:, 1],
             quadratic=self.quadratic + step[:, 2],
-            axes=unit(self.axes + (tangents(self.axes) @ step[:, 3:, None])[..., 0]),
-            directions=unit(self.directions + (tangents(self.directions) @ turns[..., None])[..., 0]),
+            axes=unit(self.axes + (self.axis_tangents @ step[:, 3:, None])[..., 0]),
+            directions=unit(self.directions + (self.direction_tangents @ turns[..., None])[..., 0]),
         )
 
     def turned(self, rotation: Array) -> "State":
@@ -141,8 +152,8 @@ def jacobian(state: State) -> tuple[Array, Array]:
     own[..., 0] = gain * (s + state.quadratic * s * s)
     own[..., 1] = 1.0
     own[..., 2] = gain * s * s
-    own[..., 3:] = slope[..., None] * np.einsum("rk,mka->rma", state.directions, tangents(state.axes))
-    shared = slope[..., None] * np.einsum("mk,rka->rma", state.axes, tangents(state.directions))
+    own[..., 3:] = slope[..., None] * np.einsum("rk,mka->rma", state.directions, state.axis_tangents)
+    shared = slope[..., None] * np.einsum("mk,rka->rma", state.axes, state.direction_tangents)
     return own, shared
 
 
@@ -152,7 +163,7 @@ def linearise(rows: Rows, state: State) -> Linear:
     own, shared = jacobian(state)
     own, shared = own / rows.sigma[..., None], shared / rows.sigma[..., None]
     residual = (rows.y - predicted(state)) / rows.sigma
-    missed = np.einsum("rk,rka->ra", rows.directions - state.directions, tangents(state.directions))
+    missed = np.einsum("rk,rka->ra", rows.directions - state.directions, state.direction_tangents)
     D = np.swapaxes(shared, 1, 2) @ shared + rows.prior[:, None, None] * np.eye(2)
     D += (LEAST_TURN * np.trace(D, axis1=1, axis2=2) + np.finfo(float).tiny ** 0.5)[:, None, None] * np.eye(2)
     inverse = np.linalg.inv(D)

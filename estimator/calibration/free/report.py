@@ -69,8 +69,10 @@ def fit_of_gyros(gyros: GyroBiases, element_names: tuple[str, ...]) -> Fit:
     )
 
 
-def sensor_result(i: int, known: Knowledge, sigma: Array, session: CalibrationSession) -> SensorCalibration:
-    """What the session says of sensor i; ``sigma`` (m, 5)."""
+def sensor_result(
+    i: int, known: Knowledge, sigma: Array, turns: Array, session: CalibrationSession
+) -> SensorCalibration:
+    """What the session says of sensor i; ``sigma`` (m, 5), ``turns`` (m, 3, 2) the axes' tangents."""
     p, sensor, own = known.parameters, session.sensors[i], slice(5 * i + 3, 5 * i + 5)
     seen = [bool(s) for s in known.observable[i]]
     values = (p.scale[i], p.bias[i], p.quadratic[i])
@@ -85,7 +87,7 @@ def sensor_result(i: int, known: Knowledge, sigma: Array, session: CalibrationSe
         bias=bias,
         quadratic=quadratic,
         axis=p.axis[i] if seen[3] else None,
-        axis_tangents=tangents(p.axis[i]),
+        axis_tangents=turns[i],
         axis_covariance=known.covariance[own, own],
         observable=dict(zip(("scale", "bias", "quadratic", "axis"), seen, strict=False)),
         known=known.known[i],
@@ -95,10 +97,11 @@ def sensor_result(i: int, known: Knowledge, sigma: Array, session: CalibrationSe
 def report(session: CalibrationSession, known: Knowledge, fit: Fit, gauge: str) -> Calibration:
     """Everything that is known, named."""
     sigma = np.sqrt(np.diagonal(known.covariance)).reshape(-1, 5)
+    turns = tangents(known.parameters.axis)
     return Calibration(
         unit=session.unit,
         method=METHOD,
-        sensors=tuple(sensor_result(i, known, sigma, session) for i in range(len(session.sensors))),
+        sensors=tuple(sensor_result(i, known, sigma, turns, session) for i in range(len(session.sensors))),
         names=names(session.sensors),
         units=units(session.sensors),
         covariance=known.covariance,

@@ -88,7 +88,8 @@ def search(rows: Rows, state: State, quadratic: bool) -> Solution:
             basis = movable(rows.nominal_axes, state.axes, rows.held, quadratic)
         else:
             damping *= 10
-    return Solution(rows, state, quadratic, chi2, information(rows, state, quadratic), iterations, converged)
+    knowledge = information(rows, state, quadratic, linear)
+    return Solution(rows, state, quadratic, chi2, knowledge, iterations, converged)
 
 
 def proposal(linear: Linear, basis: Array, damping: float) -> tuple[Array, Array, float]:

@@ -23,13 +23,15 @@ when they are precise and a large one when they are plain."""
 LEAST_GAIN = 1e-6
 """Of nominal; a sensor that answers less is dead."""
 
+TINY = float(np.finfo(float).tiny)
+
 FLAT = 1e-3
 """Ratio of the quadric's eigenvalues below which it is no ellipsoid."""
 
 
 def start(rows: Rows) -> State:
     """Parameters and orientations from linear estimates; of several the one that fits best."""
-    found = [with_directions(rows)] if rows.held else [from_shape(rows, slight) for slight in SLIGHT]
+    found = [with_directions(rows)] if rows.held else from_shape(rows)
     return min((oriented(rows, *linear) for linear in found), key=lambda state: cost(rows, state))
 
 
@@ -51,17 +53,19 @@ def with_directions(rows: Rows) -> tuple[Array, Array]:
     return rows.nominal_axes + change[:3].T, change[3]
 
 
-def from_shape(rows: Rows, slight: float) -> tuple[Array, Array]:
-    """Sensitivity (m, 3) and offset (m,) from the ellipsoid that the readings lie on."""
+def from_shape(rows: Rows) -> list[tuple[Array, Array]]:
+    """Sensitivity (m, 3) and offset (m,) from the ellipsoids that the readings may lie on, one for each of `SLIGHT`."""
     centre = rows.y.mean(axis=0)
     basis = subspace(rows.y - centre, rows.nominal_axes)
     inward = np.linalg.pinv(rows.nominal_axes) @ basis
     points = (rows.y - centre) @ basis @ inward.T
-    middle, root = ellipsoid(points, slight)
     to_readings = basis @ np.linalg.inv(inward)
-    shaped = to_readings @ root
-    U, _, Vt = np.linalg.svd(shaped.T @ rows.nominal_axes)
-    return shaped @ U @ Vt, centre + to_readings @ middle
+    found = []
+    for middle, root in ellipsoids(points):
+        shaped = to_readings @ root
+        U, _, Vt = np.linalg.svd(shaped.T @ rows.nominal_axes)
+        found.append((shaped @ U @ Vt, centre + to_readings @ middle))
+    return found
 
 
 def subspace(centred: Array, nominal_axes: Array) -> Array:
@@ -72,19 +76,28 @@ def subspace(centred: Array, nominal_axes: Array) -> Array:
     return np.linalg.qr(nominal_axes)[0]
 
 
-def ellipsoid(points: Array, slight: float) -> tuple[Array, Array]:
-    """Centre (3,) and shape L (3, 3) of points ≈ centre + L·d, d unit vectors; L symmetric.
+def ellipsoids(points: Array) -> list[tuple[Array, Array]]:
+    """Centre (3,) and shape L (3, 3) of points ≈ centre + L·d, d unit vectors, L symmetric; one for each of `SLIGHT`.
 
     First the best sphere; then, in its units, vᵀ(I + Q)v + q·v = 1 with the least Q and q.
     """
     design = np.column_stack([2 * points, np.ones(len(points))])
     sphere = np.linalg.pinv(design, rcond=PLAIN) @ (points**2).sum(axis=1)
     middle = sphere[:3]
-    radius = np.sqrt(max(float(np.mean(((points - middle) ** 2).sum(axis=1))), np.finfo(float).tiny))
+    radius = np.sqrt(max(float(np.mean(((points - middle) ** 2).sum(axis=1))), TINY))
     v = (points - middle) / radius
     x, y, z = v.T
     quadric = np.column_stack([x * x, y * y, z * z, 2 * x * y, 2 * x * z, 2 * y * z, v])
-    found = np.linalg.pinv(quadric, rcond=slight) @ (1.0 - (v**2).sum(axis=1))
+    U, spread, Vt = np.linalg.svd(quadric, full_matrices=False)
+    along = U.T @ (1.0 - (v**2).sum(axis=1))
+    return [
+        ellipsoid(middle, radius, Vt.T @ np.where(spread > slight * spread[0], along / np.maximum(spread, TINY), 0.0))
+        for slight in SLIGHT
+    ]
+
+
+def ellipsoid(middle: Array, radius: float, found: Array) -> tuple[Array, Array]:
+    """Centre and shape of the quadric (9,) about a sphere; the sphere where it is no ellipsoid."""
     Q = np.eye(3) + found[[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3)
     values, vectors = np.linalg.eigh(Q)
     if values[0] < FLAT * values[-1]:
