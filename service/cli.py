@@ -26,6 +26,7 @@ COMMANDS = {
     "service": "events.record",
     "note": "events.write_note",
     "certificate": "certificate.certificate",
+    "correction": "certificate.correction",
     "simulate": "simulate.simulate_files",
     "plan": "plan.plan_session",
     "parity": "parity.parity",

@@ -1,14 +1,16 @@
-"""What is handed on of a session: its certificate."""
+"""What is handed on of a session: its certificate, for people, and its correction, for firmware."""
 
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query, Response
 
 from service.api.exports import as_file
+from service.api.schemas.corrections import CorrectionDocument
 from service.api.schemas.fields import SessionId
 from service.api.schemas.problem import errors
 from service.dependencies import Now, StorageOf
 from service.flows.certificate import certified_session
+from service.flows.correction import correction_document
 from service.reports.certificate import certificate_pdf
 
 router = APIRouter(prefix="/sessions", tags=["handing on"])
@@ -30,3 +32,9 @@ def read_certificate(
     found = certified_session(storage, id, now)
     name = f"{found.report.session.unit}-{id[:8]}-certificate"
     return as_file(certificate_pdf(found), PDF, f"{name}.pdf")
+
+
+@router.get("/{id}/correction", responses=errors(404, 422))
+def read_correction(id: SessionId, storage: StorageOf) -> CorrectionDocument:
+    """The correction for firmware: formula, numbers of every sensor, matrix and a worked example, imu-correction/1."""
+    return CorrectionDocument.model_validate(correction_document(storage, id))

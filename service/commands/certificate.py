@@ -1,5 +1,6 @@
-"""`imu-health certificate`: the certificate of a stored session, from a running service."""
+"""`imu-health certificate` and `correction`: what is handed on of a stored session, from a running service."""
 
+import json
 from enum import StrEnum
 from typing import Annotated
 from urllib.parse import quote
@@ -28,3 +29,10 @@ def certificate(
     """Write the certificate of a session."""
     with connected(server) as client:
         deliver(client.get(f"/sessions/{quote(session, safe='')}/certificate", format=format.value).content, out)
+
+
+def correction(session: Session, server: Server = DEFAULT_SERVER, out: Out = None) -> None:
+    """Write the correction that firmware applies to readings, as JSON."""
+    with connected(server) as client:
+        found = client.get(f"/sessions/{quote(session, safe='')}/correction").json()
+    deliver((json.dumps(found, indent=1, ensure_ascii=False) + "\n").encode(), out)

@@ -12,7 +12,8 @@ import httpx
 from estimator.errors import Problem
 from service.errors import RefusedError, ServiceError
 
-TIMEOUT = httpx.Timeout(60.0, connect=5.0)
+TIMEOUT = httpx.Timeout(300.0, connect=5.0)
+"""Seconds; the report of a large fleet takes some tens."""
 
 
 @contextmanager

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from estimator.results import Calibration, Estimate, SensorCalibration
+from estimator.session import CALIBRATIONS
 from service.charts import ChartSet
 from service.charts.residuals import residual_charts
 from service.flows.fit_in_words import FitWords, fit_in_words
@@ -83,6 +84,8 @@ class SessionPage:
     coverage: str
     size: str
     diagnosis: DiagnosisLine
+    gives_correction: bool
+    """Whether its programme calibrates every sensor of the block."""
     motions: tuple[MotionLine, ...]
     """What all sensors did together, in words."""
 
@@ -107,6 +110,7 @@ def session_page(report: SessionReport, diagnosis: DiagnosisSummary | None = Non
         coverage=number(coverage),
         size=size_in_words(report.session.size),
         diagnosis=_diagnosis(diagnosis),
+        gives_correction=report.session.programme in CALIBRATIONS,
         motions=motions_in_words(report.motions, coverage),
     )
 

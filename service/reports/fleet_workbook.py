@@ -12,7 +12,7 @@ from service.storage.store import Store
 from service.units import DEVIATION_UNITS, DeviationUnit, in_unit, value_unit
 from service.verdicts import condition_of
 
-MOST_HISTORY_ROWS = 60_000
+MOST_HISTORY_ROWS = 30_000
 """Rows of the sheet of histories; the newest sessions of every unit share them alike."""
 
 FLEET = (

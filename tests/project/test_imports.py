@@ -29,7 +29,7 @@ ESTIMATOR_LAYERS = (
     {"forward", "writing"},
     {"causes"},
     {"simulate", "calibration", "alignment", "parity"},
-    {"diagnosis", "health", "programmes"},
+    {"correction", "diagnosis", "health", "programmes"},
     {"planning"},
 )
 HOMES = {

@@ -1,5 +1,6 @@
 """`imu-health upload`, `fleet` and `report` against a running service."""
 
+import json
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -109,3 +110,10 @@ def test_the_report_is_written_as_workbook_and_on_paper(
     target = tmp_path / f"fleet.{format}"
     assert run("report", "--server", address, "--format", format, "--out", target).code == 0
     assert target.read_bytes().startswith(head)
+
+
+def test_a_correction_is_written_as_json(run: Run, address: str, good_file: Path, tmp_path: Path) -> None:
+    [receipt] = run("upload", good_file, "--server", address, "--json").documents
+    target = tmp_path / "correction.json"
+    assert run("correction", receipt["id"], "--server", address, "--out", target).code == 0
+    assert json.loads(target.read_text("utf-8"))["session"] == receipt["id"]

@@ -1,0 +1,162 @@
+"""What firmware does with a calibration: readings back to specific force or angular rate in block axes.
+
+Theory
+------
+The sensor model u = K·(a + b + c·a²) is inverted sensor by sensor,
+
+    y = (u − u₀)/(T·K) − b,    a = 2·y/(1 + √(1 + 4·c·y)),
+
+with u₀ the stated offset of the readings and T the count time of a pulse gyro (1 otherwise). This form of the root of
+c·a² + a − y = 0 is the one that goes to y as c goes to zero, and loses no digits there. The components a = E·f along
+m ≥ 3 input axes, the rows of E, give the vector by least squares, f = M·a with M = (EᵀE)⁻¹Eᵀ.
+
+To first order an error of the parameters moves f by M·(∂a/∂p·δp − δE·f): that gives the uncertainty of f that the
+calibration brings, before the noise of the reading.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimator.results import Calibration, SensorCalibration
+from estimator.session import GYROSCOPE, Array, CalibrationSession
+
+ELEMENTS = ("scale", "bias", "quadratic", "axis_1", "axis_2")
+FLATTEST = 1e-6
+"""Smallest singular value of the axes, relative to the largest, that still gives all three components."""
+
+
+@dataclass(frozen=True, eq=False)
+class SensorCorrection:
+    """The inversion of one sensor."""
+
+    name: str
+    kind: str
+    reading_unit: str
+    offset: float
+    """u₀, reading units."""
+    count_time: float | None
+    """T, s; None unless the readings are pulse counts."""
+    scale: float
+    bias: float
+    quadratic: float
+    """0 where the session does not observe it."""
+    quadratic_known: bool
+    axis: Array
+    """(3,) unit vector, block axes."""
+    tangents: Array
+    """(3, 2) of the axis, for its covariance."""
+
+    def input(self, readings: Array) -> Array:
+        """y of readings, m/s² (rad/s); any shape."""
+        return (readings - self.offset) / ((self.count_time or 1.0) * self.scale) - self.bias
+
+    def component(self, readings: Array) -> Array:
+        """a of readings: the component along the input axis, m/s² (rad/s); NaN beyond the turn of the parabola."""
+        y = self.input(readings)
+        with np.errstate(invalid="ignore"):
+            return 2.0 * y / (1.0 + np.sqrt(1.0 + 4.0 * self.quadratic * y))
+
+
+@dataclass(frozen=True, eq=False)
+class BlockCorrection:
+    """The sensors of one kind and the matrix that joins them. m sensors."""
+
+    kind: str
+    sensors: tuple[SensorCorrection, ...]
+    matrix: Array
+    """(3, m) M."""
+    covariance: Array
+    """(5 m, 5 m) of scale, bias, quadratic, axis_1, axis_2, sensor after sensor, SI; 0 for what is taken as known."""
+
+    def components(self, readings: Array) -> Array:
+        """(..., m) a of readings (..., m)."""
+        return np.stack([s.component(readings[..., i]) for i, s in enumerate(self.sensors)], axis=-1)
+
+    def vector(self, readings: Array) -> Array:
+        """(..., 3) specific force or angular rate, block axes, of readings (..., m)."""
+        return self.components(readings) @ self.matrix.T
+
+    def vector_covariance(self, readings: Array) -> Array:
+        """(3, 3) of the vector of one set of readings (m,), from the calibration alone."""
+        a, f = self.components(readings), self.vector(readings)
+        columns = []
+        for i, sensor in enumerate(self.sensors):
+            slope = 1.0 + 2.0 * sensor.quadratic * a[i]
+            by_scale = -(a[i] + sensor.bias + sensor.quadratic * a[i] ** 2) / sensor.scale
+            own = [by_scale / slope, -1.0 / slope, -(a[i] ** 2) / slope, *(-sensor.tangents.T @ f)]
+            columns.append(np.outer(self.matrix[:, i], own))
+        jacobian = np.concatenate(columns, axis=1)
+        found: Array = jacobian @ self.covariance @ jacobian.T
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Correction:
+    """Everything that a calibration corrects, and whom it cannot."""
+
+    blocks: tuple[BlockCorrection, ...]
+    """One a kind of sensor whose axes span all three directions."""
+    left_out: tuple[tuple[str, str], ...]
+    """Sensors without a correction, and why."""
+
+
+def correction_of(session: CalibrationSession, calibration: Calibration) -> Correction:
+    """The correction that a calibration of a session gives.
+
+    Parameters
+    ----------
+    session : what was measured; its offsets and count time are part of the correction.
+    calibration : of every sensor of it.
+    """
+    blocks, left_out = [], []
+    for kind in dict.fromkeys(s.kind for s in calibration.sensors):
+        own = [s for s in calibration.sensors if s.kind == kind]
+        unseen = {s.name: why for s in own if (why := _unseen(s))}
+        sensors = tuple(_sensor(session, s) for s in own if s.name not in unseen)
+        left_out += list(unseen.items())
+        if _spans(sensors):
+            axes = np.stack([s.axis for s in sensors])
+            blocks.append(BlockCorrection(kind, sensors, np.linalg.pinv(axes), _covariance(calibration, sensors)))
+        else:
+            left_out += [(s.name, f"the axes of the {kind}s do not span three directions") for s in sensors]
+    return Correction(tuple(blocks), tuple(left_out))
+
+
+def _unseen(sensor: SensorCalibration) -> str:
+    """What is missing for an inversion; a quadratic term may be."""
+    missing = [name for name in ("scale", "bias", "axis") if not sensor.observable.get(name, False)]
+    return f"the session does not observe its {', '.join(missing)}" if missing else ""
+
+
+def _spans(sensors: Sequence[SensorCorrection]) -> bool:
+    if len(sensors) < 3:
+        return False
+    size = np.linalg.svd(np.stack([s.axis for s in sensors]), compute_uv=False)
+    return bool(size[2] > FLATTEST * size[0])
+
+
+def _sensor(session: CalibrationSession, found: SensorCalibration) -> SensorCorrection:
+    declared = next(s for s in session.sensors if s.name == found.name)
+    assert found.scale.value is not None
+    assert found.bias.value is not None
+    assert found.axis is not None
+    return SensorCorrection(
+        name=found.name,
+        kind=found.kind,
+        reading_unit=declared.reading_unit,
+        offset=declared.nominal_offset or 0.0,
+        count_time=session.count_time if found.kind == GYROSCOPE else None,
+        scale=found.scale.value,
+        bias=found.bias.value,
+        quadratic=found.quadratic.value or 0.0,
+        quadratic_known=found.quadratic.value is not None,
+        axis=found.axis,
+        tangents=found.axis_tangents,
+    )
+
+
+def _covariance(calibration: Calibration, sensors: Sequence[SensorCorrection]) -> Array:
+    places = [calibration.names.index(f"{s.name}.{element}") for s in sensors for element in ELEMENTS]
+    return np.nan_to_num(calibration.covariance[np.ix_(places, places)], nan=0.0)
