@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from scipy.optimize import brentq
+from scipy.special import ndtri
 
 from estimator.session import Array
 
@@ -33,6 +34,31 @@ def spread(values: Array, sigmas: Array) -> tuple[float, float]:
     if widest == 0 or excess(0.0) <= 0:
         return centre, 0.0
     return centre, float(brentq(excess, 0.0, widest * 1.01))
+
+
+def standing_out(z: Sequence[float], level: float = 0.01) -> tuple[bool, ...]:
+    """Which of n members are further out than the furthest of n is with probability ``level`` (Šidák)."""
+    single = -np.expm1(np.log1p(-level) / max(len(z), 1))
+    return tuple(bool(x) for x in np.abs(np.array(z)) > -ndtri(single / 2))
+
+
+def group_standing(rates: Sequence[tuple[float, float]], groups: Sequence[str]) -> dict[str, float]:
+    """How far the mean rate of each group (a production lot) stands from the population.
+
+    Parameters
+    ----------
+    rates : value and sigma of every member.
+    groups : name of every member's group; the empty name is none.
+    """
+    values, sigmas = np.array(rates, dtype=float).T
+    centre, tau = spread(values, sigmas)
+    found = {}
+    for name in dict.fromkeys(groups):
+        own = np.array([group == name for group in groups])
+        if name and own.sum() > 1:
+            variance = float((tau**2 + sigmas[own] ** 2).sum()) / float(own.sum()) ** 2
+            found[name] = float((values[own].mean() - centre) / np.sqrt(variance + 1e-300))
+    return found
 
 
 def standing(rates: Sequence[tuple[float, float]]) -> tuple[float, ...]:

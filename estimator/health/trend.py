@@ -153,6 +153,12 @@ def trends(series: Sequence[Series], step_level: float = STEP_LEVEL) -> Trends:
     return _mixed(data, steps, step_p)
 
 
+def sudden(series: Sequence[Series]) -> Array:
+    """(B,) p-value of the most evident step of each series, corrected for the choice of its place."""
+    data = _padded(series)
+    return _best_step(data, np.zeros(data.there.shape, dtype=bool))[1]
+
+
 def _padded(series: Sequence[Series]) -> _Data:
     n = max(len(s.time) for s in series)
 

@@ -13,6 +13,7 @@ from service.api import (
     operations,
     plans,
     sessions,
+    stands,
     unit_types,
     units,
 )
@@ -27,7 +28,9 @@ PREFIX = "/api/v1"
 def mount(app: FastAPI, metrics: Metrics) -> None:
     """Adds every route of the API, its error shape, its description and its figures to the application."""
     api = APIRouter(prefix=PREFIX)
-    for resource in (sessions, certificates, diagnoses, events, units, unit_types, models, plans, flags, notes, fleet):
+    for resource in (
+        sessions, certificates, diagnoses, events, units, unit_types, models, plans, stands, flags, notes, fleet,
+    ):  # fmt: skip
         api.include_router(resource.router)
     app.include_router(api)
     app.include_router(operations.router)

@@ -17,6 +17,7 @@ from service.storage.queries.notices import Notices
 from service.storage.queries.outlooks import Outlooks
 from service.storage.queries.services import Services
 from service.storage.queries.sessions import Sessions
+from service.storage.queries.stands import Stands
 from service.storage.queries.unit_types import UnitTypes
 from service.storage.queries.units import Units
 
@@ -81,6 +82,11 @@ class Store:
     def notices(self) -> Notices:
         """What happened to flags and verdicts."""
         return Notices(self._session)
+
+    @cached_property
+    def stands(self) -> Stands:
+        """What stands do to the units that are measured on them."""
+        return Stands(self._session)
 
     @cached_property
     def outlooks(self) -> Outlooks:

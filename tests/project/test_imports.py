@@ -9,7 +9,7 @@ from tests.project.source import PACKAGES, Module, modules
 
 SERVICE_LAYERS = (
     {"settings", "records", "flag_records", "units", "errors"},
-    {"advice", "metrics", "outlook", "planning", "verdicts", "words"},
+    {"advice", "metrics", "outlook", "planning", "stand_records", "verdicts", "words"},
     {"ingest", "storage"},
     {"flows", "charts"},
     {"reports"},

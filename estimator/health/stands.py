@@ -1,0 +1,169 @@
+"""A stand's own health, followed over the units that are measured on it.
+
+A stand that turns, or a fixture that was re-seated, turns every block that is measured on it from then on, and no block
+that is measured elsewhere. For a stand and a date the contrast of a unit is
+
+    c_u = mean of its common motions on this stand from that date on − mean of all its others,
+
+the reference session itself counting as a motion of zero; in the difference the unit's own reference drops out. Over
+the units c_u = δ + a_u + e_u: δ the stand's shift, e_u with the covariance of the sessions, a_u with the scatter τ²
+that the units' common motions have anyway (how a block is seated), measured robustly over the fleet. δ is the
+generalised least squares mean, δᵀV⁻¹δ is chi-square with k degrees of freedom when the stand has not moved. The level
+1 % is shared by all dates and stands that were looked at (Bonferroni), and a stand is flagged only when at least three
+units show the shift and nine in ten of them in its direction: a single unit that was dropped is no fault of the stand.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from estimator.health.population import NORMAL_MEDIAN
+from estimator.session import Array
+
+LEVEL = 0.01
+FEWEST_UNITS = 3
+MOST_DATES = 48
+"""Of one stand that are looked at, evenly among its sessions."""
+AGREEING = 0.9
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """The common motion of one session of one unit."""
+
+    stand: str
+    unit: str
+    time: float
+    """Years, from any start."""
+    value: Array
+    """(k,) rotation vector, rad (k = 3), or relative change of all scales (k = 1); zero at a unit's reference."""
+    covariance: Array
+    """(k, k) total; of a reference session zero."""
+
+
+@dataclass(frozen=True)
+class StandShift:
+    """What the units say of one stand."""
+
+    stand: str
+    units: int
+    """That were measured on it from the date on and elsewhere or before too."""
+    agreeing: int
+    """Of them, that show the shift's direction."""
+    since: float | None
+    """Date of the first session that shows the shift, years; None where too few units tell."""
+    value: tuple[float, ...]
+    """δ."""
+    covariance: tuple[tuple[float, ...], ...]
+    p_value: float | None
+    """Corrected for the dates and stands that were looked at."""
+    has_shifted: bool
+
+
+def stand_shifts(motions: Sequence[Motion]) -> tuple[StandShift, ...]:
+    """Every stand's most evident shift, by name; motions of one quantity."""
+    if not motions:
+        return ()
+    scatter = _scatter(motions)
+    stands = sorted({motion.stand for motion in motions})
+    cases = {stand: _cases(stand, motions, scatter) for stand in stands}
+    looked = max(sum(len(found) for found in cases.values()), 1)
+    return tuple(_worst(stand, cases[stand], looked) for stand in stands)
+
+
+def _scatter(motions: Sequence[Motion]) -> float:
+    """τ² per component: what the sessions' own uncertainties leave of the spread of the motions."""
+    values = np.stack([m.value for m in motions if np.trace(m.covariance) > 0] or [motions[0].value])
+    own = np.stack([np.diagonal(m.covariance) for m in motions if np.trace(m.covariance) > 0] or [np.zeros(1)])
+    middle = np.median(np.abs(values - np.median(values, axis=0))) / NORMAL_MEDIAN
+    return float(max(middle**2 - np.median(own), 0.0))
+
+
+@dataclass(frozen=True, eq=False)
+class _Case:
+    """One stand and one date."""
+
+    since: float
+    units: int
+    agreeing: int
+    value: Array
+    covariance: Array
+    p: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Table:
+    """Motions as arrays: n sessions of units numbered from 0."""
+
+    unit: Array
+    """(n,)"""
+    time: Array
+    """(n,)"""
+    there: Array
+    """(n,) whether on the stand that is looked at."""
+    value: Array
+    """(n, k)"""
+    covariance: Array
+    """(n, k, k)"""
+
+
+def _cases(stand: str, motions: Sequence[Motion], scatter: float) -> list[_Case]:
+    """A case for every date on the stand; of very many as many as are worth looking at."""
+    _, unit = np.unique([m.unit for m in motions], return_inverse=True)
+    table = _Table(
+        unit=unit,
+        time=np.array([m.time for m in motions]),
+        there=np.array([m.stand == stand for m in motions]),
+        value=np.stack([m.value for m in motions]),
+        covariance=np.stack([m.covariance for m in motions]),
+    )
+    dates = np.unique(table.time[table.there])
+    chosen = dates[np.unique(np.linspace(0, len(dates) - 1, MOST_DATES).round().astype(int))]
+    found = (_case(float(date), table, scatter) for date in chosen)
+    return [case for case in found if case is not None]
+
+
+def _case(since: float, table: _Table, scatter: float) -> _Case | None:
+    after = table.there & (table.time >= since)
+    (late, p, some), (early, q, others) = (_means(table, part, scatter) for part in (after, ~after))
+    both = (some > 0) & (others > 0)
+    if both.sum() < FEWEST_UNITS:
+        return None
+    contrast = (late - early)[both]
+    weight = np.linalg.inv((p + q)[both] + 1e-24 * np.eye(contrast.shape[1]))
+    covariance = np.linalg.inv(weight.sum(axis=0))
+    value = covariance @ np.einsum("uij,uj->i", weight, contrast)
+    chi2 = float(value @ np.linalg.solve(covariance, value))
+    agreeing = int((contrast @ value > 0.5 * float(value @ value)).sum())
+    return _Case(since, int(both.sum()), agreeing, value, covariance, float(stats.chi2.sf(chi2, len(value))))
+
+
+def _means(table: _Table, part: Array, scatter: float) -> tuple[Array, Array, Array]:
+    """Mean of every unit over a part of the sessions, its covariance, and how many there are."""
+    units, k = int(table.unit.max()) + 1, table.value.shape[1]
+    count = np.bincount(table.unit[part], minlength=units)
+    value, covariance = np.zeros((units, k)), np.zeros((units, k, k))
+    np.add.at(value, table.unit[part], table.value[part])
+    np.add.at(covariance, table.unit[part], table.covariance[part])
+    n = np.maximum(count, 1)[:, None]
+    return value / n, covariance / n[..., None] ** 2 + scatter * np.eye(k) / n[..., None], count
+
+
+def _worst(stand: str, cases: Sequence[_Case], looked: int) -> StandShift:
+    if not cases:
+        return StandShift(stand, 0, 0, None, (), (), None, False)
+    case = min(cases, key=lambda c: (c.p, c.since))
+    p = min(case.p * looked, 1.0)
+    shifted = p < LEVEL and case.agreeing >= max(FEWEST_UNITS, AGREEING * case.units)
+    return StandShift(
+        stand=stand,
+        units=case.units,
+        agreeing=case.agreeing,
+        since=case.since,
+        value=tuple(map(float, case.value)),
+        covariance=tuple(tuple(map(float, row)) for row in case.covariance),
+        p_value=p,
+        has_shifted=shifted,
+    )

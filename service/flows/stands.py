@@ -1,0 +1,82 @@
+"""Flow: the stands' own health, from what the units measured on them did together."""
+
+from collections.abc import Sequence
+from datetime import datetime, timedelta
+
+import numpy as np
+
+from estimator.health.common_motion import AXES
+from estimator.health.stands import Motion, StandShift, stand_shifts
+from service.stand_records import MotionOnStand, StandCondition, StandEvidence
+from service.storage.store import Store
+from service.units import deviation_unit, measured, signed
+from service.words import day_of
+
+YEAR = timedelta(days=365.25)
+COVERAGE = 2.0
+STEADY = "Nothing that all units measured on it have in common."
+TOO_FEW = "Fewer than three units tell of it."
+
+
+def stand_conditions(store: Store) -> tuple[StandCondition, ...]:
+    """Every stand with its condition and the evidence, by name."""
+    motions = store.stands.motions()
+    evidence: dict[str, list[StandEvidence]] = {motion.stand: [] for motion in sorted(motions, key=lambda m: m.stand)}
+    for kind, quantity in dict.fromkeys((motion.kind, motion.quantity) for motion in motions):
+        own = [motion for motion in motions if (motion.kind, motion.quantity) == (kind, quantity)]
+        for shift in _shifts(own):
+            if shift.p_value is not None:
+                evidence[shift.stand].append(_evidence(shift, kind, quantity, own[0].at))
+    sessions = {stand: {(m.unit, m.at) for m in motions if m.stand == stand} for stand in evidence}
+    return tuple(_condition(stand, len(sessions[stand]), found) for stand, found in evidence.items())
+
+
+def _shifts(own: Sequence[MotionOnStand]) -> tuple[StandShift, ...]:
+    """By years from the first of them."""
+    return stand_shifts(
+        [
+            Motion(
+                stand=motion.stand,
+                unit=f"{motion.unit}/{motion.epoch}",
+                time=(motion.at - own[0].at) / YEAR,
+                value=np.array(motion.value),
+                covariance=np.array(motion.covariance),
+            )
+            for motion in own
+        ]
+    )
+
+
+def _evidence(shift: StandShift, kind: str, quantity: str, start: datetime) -> StandEvidence:
+    value, covariance = np.array(shift.value), np.array(shift.covariance)
+    size = float(np.linalg.norm(value)) if quantity == AXES else float(value[0])
+    along = value / np.linalg.norm(value) if np.any(value) else np.eye(len(value))[0]
+    return StandEvidence(
+        kind=kind,
+        quantity=quantity,
+        since=start + (shift.since or 0.0) * YEAR,
+        value=shift.value,
+        size=size,
+        sigma=float(np.sqrt(along @ covariance @ along)),
+        p_value=shift.p_value or 0.0,
+        units=shift.units,
+        agreeing=shift.agreeing,
+        has_shifted=shift.has_shifted,
+    )
+
+
+def _condition(stand: str, sessions: int, found: Sequence[StandEvidence]) -> StandCondition:
+    shifted = [evidence for evidence in found if evidence.has_shifted]
+    if not shifted:
+        return StandCondition(stand, sessions, False, STEADY if found else TOO_FEW, tuple(found))
+    worst = min(shifted, key=lambda evidence: evidence.p_value)
+    return StandCondition(stand, sessions, True, _reason(worst), tuple(found))
+
+
+def _reason(worst: StandEvidence) -> str:
+    seen = f"seen on {worst.agreeing} of {worst.units} units since {day_of(worst.since)}"
+    if worst.quantity == AXES:
+        size = measured(worst.size, COVERAGE * worst.sigma, deviation_unit(worst.kind, "axis", worst.size))
+        return f"It turns every block by {size}, {seen}: check stand and fixture. The units are judged without it."
+    size = signed(worst.size, COVERAGE * worst.sigma, deviation_unit(worst.kind, "scale", worst.size))
+    return f"It changes every scale factor by {size}, {seen}: check it. The units are judged without it."

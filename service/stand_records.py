@@ -1,0 +1,52 @@
+"""What is known of a stand's own health: frozen records, SI."""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+
+@dataclass(frozen=True)
+class MotionOnStand:
+    """What all sensors of one block did together at one session on a stand."""
+
+    stand: str
+    unit: str
+    epoch: int
+    """Counts the references of the unit before the session: motions of one epoch are from one reference."""
+    at: datetime
+    kind: str
+    quantity: str
+    """``axes`` or ``scales``."""
+    value: tuple[float, ...]
+    covariance: tuple[tuple[float, ...], ...]
+
+
+@dataclass(frozen=True)
+class StandEvidence:
+    """What the units say of one quantity on one stand."""
+
+    kind: str
+    quantity: str
+    since: datetime
+    """Of the first session that shows the most evident shift."""
+    value: tuple[float, ...]
+    """Turn in block axes, rad, or relative change of all scales."""
+    size: float
+    sigma: float
+    p_value: float
+    """Corrected for the dates and stands that were looked at."""
+    units: int
+    agreeing: int
+    has_shifted: bool
+
+
+@dataclass(frozen=True)
+class StandCondition:
+    """A stand, as the units measured on it show it."""
+
+    stand: str
+    sessions: int
+    """That it is judged by."""
+    has_shifted: bool
+    reason: str
+    evidence: tuple[StandEvidence, ...]
+    """Of every quantity that three or more units tell of."""

@@ -1,0 +1,58 @@
+"""Common motions by stand."""
+
+from sqlalchemy import Integer, cast, func, select
+
+from estimator.health.common_motion import AXES, SCALES, SEPARATED
+from service.stand_records import MotionOnStand
+from service.storage.queries.base import Queries
+from service.storage.tables import CommonMotionRow, SessionRow, StandRow, UnitRow
+
+MOST = 4000
+"""Rows, the newest, that stands are judged by."""
+STILL = {AXES: ((0.0,) * 3, ((0.0,) * 3,) * 3), SCALES: ((0.0,), ((0.0,),))}
+
+
+class Stands(Queries):
+    """What stands do to the units that are measured on them."""
+
+    def motions(self) -> tuple[MotionOnStand, ...]:
+        """The newest common motions on any stand, oldest first, in one query; a reference session's is zero."""
+        is_reference = func.sum(cast(SessionRow.is_reference, Integer))
+        epoch = is_reference.over(
+            partition_by=(SessionRow.unit_id, SessionRow.block), order_by=(SessionRow.started_at, SessionRow.id)
+        )
+        numbered = select(SessionRow.id, epoch.label("epoch")).subquery()
+        query = (
+            select(SessionRow, StandRow.name, UnitRow.serial, numbered.c.epoch, CommonMotionRow)
+            .join(StandRow, StandRow.id == SessionRow.stand_id)
+            .join(UnitRow, UnitRow.id == SessionRow.unit_id)
+            .join(numbered, numbered.c.id == SessionRow.id)
+            .outerjoin(
+                CommonMotionRow,
+                (CommonMotionRow.session_id == SessionRow.id)
+                & (CommonMotionRow.revision == SessionRow.revision)
+                & (CommonMotionRow.state == SEPARATED),
+            )
+            .where(SessionRow.is_reference | CommonMotionRow.session_id.is_not(None))
+            .order_by(SessionRow.started_at.desc(), SessionRow.id)
+            .limit(MOST)
+        )
+        found: list[MotionOnStand] = []
+        for session, stand, unit, number, motion in self._session.execute(query):
+            found += _motions(session, stand, unit, number, motion)
+        return tuple(reversed(found))
+
+
+def _motions(
+    session: SessionRow, stand: str, unit: str, epoch: int, motion: CommonMotionRow | None
+) -> list[MotionOnStand]:
+    """One; of a reference one of each quantity, zero by definition."""
+    if motion is not None:
+        covariance = tuple(tuple(row) for row in motion.covariance)
+        value = tuple(motion.value)
+        kind, quantity = motion.kind, motion.quantity
+        return [MotionOnStand(stand, unit, epoch, session.started_at, kind, quantity, value, covariance)]
+    return [
+        MotionOnStand(stand, unit, epoch, session.started_at, session.block, quantity, *still)
+        for quantity, still in STILL.items()
+    ]

@@ -1,0 +1,69 @@
+"""A stand that shifts for every unit is flagged; a unit that was dropped is not its fault."""
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy import stats
+
+from estimator.health.stands import Motion, StandShift, stand_shifts
+from estimator.session import Array
+
+SIGMA, SEATING = 1.0, 0.5
+SHIFT = np.array([0.0, 6.0, -8.0])
+
+
+def fleet(rng: np.random.Generator, added: Callable[[str, str, float], Array], units: int = 8) -> list[Motion]:
+    """Twelve sessions of every unit on three stands over three years, the first its reference."""
+    made = []
+    for unit in range(units):
+        reference = None
+        for time in np.sort(rng.uniform(0, 3, 12)):
+            stand = f"S{rng.integers(3)}"
+            value = SEATING * rng.standard_normal(3) + added(stand, f"U{unit}", float(time))
+            seen = value + SIGMA * rng.standard_normal(3)
+            reference = seen if reference is None else reference
+            covariance = np.zeros((3, 3)) if seen is reference else 2 * SIGMA**2 * np.eye(3)
+            made.append(Motion(stand, f"U{unit}", float(time), seen - reference, covariance))
+    return made
+
+
+def flagged(found: tuple[StandShift, ...]) -> dict[str, StandShift]:
+    return {shift.stand: shift for shift in found if shift.has_shifted}
+
+
+def still(stand: str, unit: str, time: float) -> Array:
+    return np.zeros(3)
+
+
+def shifted(stand: str, unit: str, time: float) -> Array:
+    return SHIFT if stand == "S1" and time > 2.0 else np.zeros(3)
+
+
+def test_a_stand_that_shifts_is_flagged_with_date_and_size() -> None:
+    found = [flagged(stand_shifts(fleet(np.random.default_rng(seed), shifted))) for seed in range(30)]
+    assert sum(set(f) == {"S1"} for f in found) >= 28
+    hits = [f["S1"] for f in found if "S1" in f]
+    assert np.median([abs((s.since or 0) - 2.0) for s in hits]) < 0.15
+    inside = [np.linalg.norm(np.array(s.value) - SHIFT) < 4 * np.sqrt(np.trace(np.array(s.covariance))) for s in hits]
+    assert np.mean(inside) > 0.9
+
+
+def test_stands_that_stay_are_left_alone() -> None:
+    alarms = sum(bool(flagged(stand_shifts(fleet(np.random.default_rng(100 + s), still)))) for s in range(200))
+    assert alarms <= stats.binom.isf(1e-3, 200, 0.02)
+
+
+def test_a_unit_that_was_dropped_is_no_fault_of_any_stand() -> None:
+    def dropped(stand: str, unit: str, time: float) -> Array:
+        return 30 * SHIFT if unit == "U3" and time > 1.5 else np.zeros(3)
+
+    assert not any(flagged(stand_shifts(fleet(np.random.default_rng(s), dropped))) for s in range(20))
+
+
+def test_two_units_are_too_few_to_tell() -> None:
+    found = stand_shifts(fleet(np.random.default_rng(1), shifted, units=2))
+    assert {(s.p_value, s.has_shifted) for s in found} == {(None, False)}
+
+
+def test_nothing_measured_is_nothing_said() -> None:
+    assert stand_shifts(()) == ()
