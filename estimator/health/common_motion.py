@@ -14,8 +14,12 @@ x is the generalised least squares estimate from the sensors that agree; what is
 covariance M·C·Mᵀ, M = I − A·(AᵀVA)⁻¹AᵀV, V the inverse of C over the sensors that agree and zero elsewhere. A sensor
 that is left out has no part in x: its drift does not smear into the others, nor the common part into it.
 
+Sensors of a healthy block wander a little, each on its own, often by more than a good stand's uncertainty. V is
+therefore of C + τ²·1, τ a tenth of the tolerance: that much alone counts as nothing. If then no majority agrees, a
+fifth is tried. x is as uncertain as C + τ²·1 makes it; what is left was measured with C.
+
 Left out is, one after another, the sensor whose own change raises the likelihood most, while twice the gain of the log
-likelihood, τ = (Eᵀ·W·y)ᵀ(EᵀWE)⁻¹(EᵀWy) with W = V − VA(AᵀVA)⁻¹AᵀV (chi-square with as many degrees of freedom as the
+likelihood, (Eᵀ·W·y)ᵀ(EᵀWE)⁻¹(EᵀWy) with W = V − VA(AᵀVA)⁻¹AᵀV (chi-square with as many degrees of freedom as the
 sensor has rows), is beyond the level α = 0.1 % over all m sensors (Šidák). A sensor that would do instead of one of
 them nearly as well (χ² higher by less than 2·ln 100) may be the one that moved and is left out too. The sensors that
 remain must be more than half of all; if they are not, nobody can tell who moved: nothing is taken off and every sensor
@@ -23,7 +27,8 @@ is judged on its whole change. Axes of fewer than four sensors, and scales of fe
 that have parted, either may have moved.
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import stats
@@ -37,6 +42,8 @@ SEPARATED, TOO_FEW, UNCLEAR = "separated", "too-few-sensors", "unclear"
 LEVEL = 0.001
 RIVAL = 2 * np.log(100)
 """A rival explanation whose χ² is higher by less than this (likelihood a hundredth) is not ruled out."""
+SCATTERS = (0.1, 0.2)
+"""τ as parts of the tolerance."""
 FEWEST = {AXES: 4, SCALES: 3}
 """Sensors that it takes to tell a common change from a single one."""
 PARALLEL = 1e-3
@@ -102,10 +109,17 @@ class _Changes:
     """(m r, m r)"""
     design: Array
     """(m r, k)"""
+    scatter: float = 0.0
+    """τ, unit of y."""
 
     @property
     def rows(self) -> int:
         return len(self.y) // max(len(self.names), 1)
+
+    @property
+    def covariance(self) -> Array:
+        """(m r, m r) of both sessions, and what sensors do on their own."""
+        return self.own + self.origin + self.scatter**2 * np.eye(len(self.y))
 
     def where(self, sensors: list[int]) -> Array:
         """The rows of some sensors."""
@@ -123,15 +137,22 @@ class _Fit:
     chi2: float
 
 
-def common_motion(current: Calibration, reference: Calibration) -> tuple[Split, ...]:
-    """The splits of every kind of sensor that both sessions hold: axes, then scales; SI, block axes."""
+def common_motion(
+    current: Calibration, reference: Calibration, tolerances: Mapping[tuple[str, str], float] | None = None
+) -> tuple[Split, ...]:
+    """The splits of every kind of sensor that both sessions hold: axes, then scales; SI, block axes.
+
+    ``tolerances`` by (kind, ``axis`` or ``scale``) say what counts as nothing; without one only noise does.
+    """
+    allowed = tolerances or {}
     kinds = dict.fromkeys(sensor.kind for sensor in current.sensors)
     framed = NOMINAL_AXES not in (current.gauge, reference.gauge)
     found = []
     for kind in kinds:
         pairs = _pairs(current, reference, kind)
-        found.append(_split(kind, AXES, _axes(pairs, current, reference), seen=framed))
-        found.append(_split(kind, SCALES, _scales(pairs, current, reference), seen=True))
+        axes, scales = _axes(pairs, current, reference), _scales(pairs, current, reference)
+        found.append(_split(kind, AXES, axes, allowed.get((kind, "axis"), 0.0), seen=framed))
+        found.append(_split(kind, SCALES, scales, allowed.get((kind, "scale"), 0.0), seen=True))
     return tuple(split for split in found if split is not None)
 
 
@@ -184,18 +205,20 @@ def _finite(found: Deviation) -> bool:
     return bool(np.isfinite(found.vector).all() and np.isfinite(found.covariance).all())
 
 
-def _split(kind: str, quantity: str, changes: _Changes | None, *, seen: bool) -> Split | None:
+def _split(kind: str, quantity: str, changes: _Changes | None, tolerance: float, *, seen: bool) -> Split | None:
     if changes is None:
         return None
     spread = np.linalg.eigvalsh(changes.design.T @ changes.design)[0] / len(changes.names)
     if len(changes.names) < FEWEST[quantity] or spread < PARALLEL:
         return Split(_nothing(kind, quantity, TOO_FEW, changes.names), {})
-    out = _moved(changes)
-    if out is None:
+    tried = (replace(changes, scatter=share * tolerance) for share in SCATTERS)
+    agreed = next(((some, out) for some in tried if (out := _moved(some)) is not None), None)
+    if agreed is None:
         return Split(_nothing(kind, quantity, UNCLEAR, changes.names), {})
+    changes, out = agreed
     inside = [i for i in range(len(changes.names)) if i not in out]
     gain = _fit(changes, inside).gain
-    covariance = gain @ (changes.own + changes.origin) @ gain.T
+    covariance = gain @ changes.covariance @ gain.T
     value = gain @ changes.y
     chi2 = float(value @ np.linalg.pinv(covariance, hermitian=True) @ value)
     motion = CommonMotion(
@@ -230,7 +253,7 @@ def _fit(changes: _Changes, inside: list[int]) -> _Fit:
     along A (a frame held by the axes themselves) from being inverted as it is.
     """
     at, n = changes.where(inside), len(changes.y)
-    a, c = changes.design[at], (changes.own + changes.origin)[np.ix_(at, at)]
+    a, c = changes.design[at], changes.covariance[np.ix_(at, at)]
     typical = max(float(np.trace(c)) / len(at), 1e-18)
     v = np.linalg.inv(c + typical * (a @ a.T) + 1e-12 * typical * np.eye(len(at)))
     g = np.linalg.solve(a.T @ v @ a, a.T @ v)

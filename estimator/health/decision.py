@@ -92,7 +92,7 @@ def judge(
     splits : of `common_motion` over the two calibrations; found here when None.
     """
     if splits is None:
-        splits = () if reference is None else common_motion(calibration, reference)
+        splits = () if reference is None else common_motion(calibration, reference, tolerances)
     parts = {(s.motion.kind, "axis" if s.motion.quantity == AXES else "scale"): s for s in splits if s.left}
     origins = {sensor.name: sensor for sensor in (reference or calibration).sensors}
     cases = [

@@ -7,10 +7,11 @@ that is measured elsewhere. For a stand and a date the contrast of a unit is
 
 the reference session itself counting as a motion of zero; in the difference the unit's own reference drops out. Over
 the units c_u = δ + a_u + e_u: δ the stand's shift, e_u with the covariance of the sessions, a_u with the scatter τ²
-that the units' common motions have anyway (how a block is seated), measured robustly over the fleet. δ is the
+that units have anyway (how a block is seated, what its sensors do on their own), the typical one over all stands and
+dates. δ is the
 generalised least squares mean, δᵀV⁻¹δ is chi-square with k degrees of freedom when the stand has not moved. The level
 1 % is shared by all dates and stands that were looked at (Bonferroni), and a stand is flagged only when at least three
-units show the shift and nine in ten of them in its direction: a single unit that was dropped is no fault of the stand.
+units show the shift and four in five of them in its direction: a single unit that was dropped is no fault of the stand.
 """
 
 from collections.abc import Sequence
@@ -19,14 +20,14 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-from estimator.health.population import NORMAL_MEDIAN
+from estimator.health.population import spread
 from estimator.session import Array
 
 LEVEL = 0.01
 FEWEST_UNITS = 3
 MOST_DATES = 48
 """Of one stand that are looked at, evenly among its sessions."""
-AGREEING = 0.9
+AGREEING = 0.8
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,22 +64,49 @@ class StandShift:
 
 
 def stand_shifts(motions: Sequence[Motion]) -> tuple[StandShift, ...]:
-    """Every stand's most evident shift, by name; motions of one quantity."""
-    if not motions:
-        return ()
-    scatter = _scatter(motions)
+    """Every stand's most evident shift, by name; motions of one quantity.
+
+    The stand that has shifted most evidently is named first, and what was measured on it since is left out when the
+    others are looked at: their units were measured there too.
+    """
+    known: dict[str, StandShift] = {}
+    left = list(motions)
+    while True:
+        found = [shift for shift in _looked_at(left) if shift.stand not in known]
+        shifted = [shift for shift in found if shift.has_shifted]
+        if not shifted:
+            every = known | {shift.stand: shift for shift in found}
+            return tuple(every[stand] for stand in sorted(every))
+        worst = min(shifted, key=lambda shift: (shift.p_value or 0.0, -float(np.linalg.norm(shift.value))))
+        known[worst.stand] = worst
+        left = [m for m in left if not (m.stand == worst.stand and m.time >= (worst.since or 0.0))]
+
+
+def _looked_at(motions: Sequence[Motion]) -> list[StandShift]:
+    """Every stand by itself."""
     stands = sorted({motion.stand for motion in motions})
-    cases = {stand: _cases(stand, motions, scatter) for stand in stands}
-    looked = max(sum(len(found) for found in cases.values()), 1)
-    return tuple(_worst(stand, cases[stand], looked) for stand in stands)
+    contrasts = {stand: _contrasts(stand, motions) for stand in stands}
+    every = [contrast for found in contrasts.values() for contrast in found]
+    scatter = float(np.median([_scatter(contrast) for contrast in every])) if every else 0.0
+    cases = {stand: [_case(contrast, scatter) for contrast in found] for stand, found in contrasts.items()}
+    return [_worst(stand, cases[stand], max(len(every), 1)) for stand in stands]
 
 
-def _scatter(motions: Sequence[Motion]) -> float:
-    """τ² per component: what the sessions' own uncertainties leave of the spread of the motions."""
-    values = np.stack([m.value for m in motions if np.trace(m.covariance) > 0] or [motions[0].value])
-    own = np.stack([np.diagonal(m.covariance) for m in motions if np.trace(m.covariance) > 0] or [np.zeros(1)])
-    middle = np.median(np.abs(values - np.median(values, axis=0))) / NORMAL_MEDIAN
-    return float(max(middle**2 - np.median(own), 0.0))
+@dataclass(frozen=True, eq=False)
+class _Contrast:
+    """One stand and one date, unit by unit."""
+
+    since: float
+    value: Array
+    """(u, k)"""
+    covariance: Array
+    """(u, k, k) of the sessions."""
+
+
+def _scatter(contrast: _Contrast) -> float:
+    """τ² per component: what the sessions' own uncertainties leave of the spread between units."""
+    own = np.sqrt(np.diagonal(contrast.covariance, axis1=1, axis2=2))
+    return float(np.mean([spread(v, s)[1] ** 2 for v, s in zip(contrast.value.T, own.T, strict=True)]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,8 +137,8 @@ class _Table:
     """(n, k, k)"""
 
 
-def _cases(stand: str, motions: Sequence[Motion], scatter: float) -> list[_Case]:
-    """A case for every date on the stand; of very many as many as are worth looking at."""
+def _contrasts(stand: str, motions: Sequence[Motion]) -> list[_Contrast]:
+    """For every date on the stand that three units tell of; of very many dates as many as are worth looking at."""
     _, unit = np.unique([m.unit for m in motions], return_inverse=True)
     table = _Table(
         unit=unit,
@@ -121,26 +149,28 @@ def _cases(stand: str, motions: Sequence[Motion], scatter: float) -> list[_Case]
     )
     dates = np.unique(table.time[table.there])
     chosen = dates[np.unique(np.linspace(0, len(dates) - 1, MOST_DATES).round().astype(int))]
-    found = (_case(float(date), table, scatter) for date in chosen)
-    return [case for case in found if case is not None]
+    found = (_contrast(float(date), table) for date in chosen)
+    return [contrast for contrast in found if len(contrast.value) >= FEWEST_UNITS]
 
 
-def _case(since: float, table: _Table, scatter: float) -> _Case | None:
+def _contrast(since: float, table: _Table) -> _Contrast:
     after = table.there & (table.time >= since)
-    (late, p, some), (early, q, others) = (_means(table, part, scatter) for part in (after, ~after))
+    (late, p, some), (early, q, others) = (_means(table, part) for part in (after, ~after))
     both = (some > 0) & (others > 0)
-    if both.sum() < FEWEST_UNITS:
-        return None
-    contrast = (late - early)[both]
-    weight = np.linalg.inv((p + q)[both] + 1e-24 * np.eye(contrast.shape[1]))
+    return _Contrast(since, (late - early)[both], (p + q)[both])
+
+
+def _case(contrast: _Contrast, scatter: float) -> _Case:
+    k = contrast.value.shape[1]
+    weight = np.linalg.inv(contrast.covariance + (scatter + 1e-24) * np.eye(k))
     covariance = np.linalg.inv(weight.sum(axis=0))
-    value = covariance @ np.einsum("uij,uj->i", weight, contrast)
+    value = covariance @ np.einsum("uij,uj->i", weight, contrast.value)
     chi2 = float(value @ np.linalg.solve(covariance, value))
-    agreeing = int((contrast @ value > 0.5 * float(value @ value)).sum())
-    return _Case(since, int(both.sum()), agreeing, value, covariance, float(stats.chi2.sf(chi2, len(value))))
+    agreeing = int((contrast.value @ value > 0.5 * float(value @ value)).sum())
+    return _Case(contrast.since, len(contrast.value), agreeing, value, covariance, float(stats.chi2.sf(chi2, k)))
 
 
-def _means(table: _Table, part: Array, scatter: float) -> tuple[Array, Array, Array]:
+def _means(table: _Table, part: Array) -> tuple[Array, Array, Array]:
     """Mean of every unit over a part of the sessions, its covariance, and how many there are."""
     units, k = int(table.unit.max()) + 1, table.value.shape[1]
     count = np.bincount(table.unit[part], minlength=units)
@@ -148,7 +178,7 @@ def _means(table: _Table, part: Array, scatter: float) -> tuple[Array, Array, Ar
     np.add.at(value, table.unit[part], table.value[part])
     np.add.at(covariance, table.unit[part], table.covariance[part])
     n = np.maximum(count, 1)[:, None]
-    return value / n, covariance / n[..., None] ** 2 + scatter * np.eye(k) / n[..., None], count
+    return value / n, covariance / n[..., None] ** 2, count
 
 
 def _worst(stand: str, cases: Sequence[_Case], looked: int) -> StandShift:

@@ -24,6 +24,15 @@ class Drift:
 
 
 @dataclass(frozen=True)
+class Jump:
+    """A change that came at once, and that nobody recorded."""
+
+    change: Change
+    at: float
+    """Years after the start."""
+
+
+@dataclass(frozen=True)
 class Intervention:
     """A service on the unit, and what it changed."""
 
@@ -47,7 +56,10 @@ class Member:
     sessions: int = 13
     joined: float = 0.0
     """Years after the start at which it was first measured."""
+    left: float = YEARS
+    """Years after the start at which it was last measured."""
     drifts: tuple[Drift, ...] = ()
+    jumps: tuple[Jump, ...] = ()
     services: tuple[Intervention, ...] = ()
     noise: dict[int, float] = field(default_factory=dict)
     """Factor on the reading noise of single sessions, by their number from 0; −1 is the last."""
@@ -80,7 +92,8 @@ CAST = (
         hidden=Hidden("beta-eccentricity", (60e-6, 25e-6)),
     ),
     Member(
-        "BA-102", ACCELEROMETER, "stable; the axis of A3 crept during the last session", 12,
+        "BA-102", ACCELEROMETER, "bias of A5 jumped one day; the axis of A3 crept during the last session", 12,
+        jumps=(Jump(Change(4, "bias", 24.0), 1.5),),
         hidden=Hidden("axis-creep", (5e-8, 3e-8), sensor=2),
     ),
     Member(
@@ -113,7 +126,7 @@ CAST = (
         "BA-110", ACCELEROMETER, "joined the fleet last year; A4 sticks since the last session", 6, joined=1.7,
         hidden=Hidden("hysteresis", (3.5e-4,), sensor=3),
     ),
-    Member("BG-201", GYROSCOPE, "stable", 12),
+    Member("BG-201", GYROSCOPE, "stable, but not measured for longer than it may be", 12, left=1.8),
     Member(
         "BG-202", GYROSCOPE, "bias of G2 drifts towards its tolerance", 13,
         drifts=(Drift(Change(1, "bias", 0.024)),),

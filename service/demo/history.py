@@ -7,6 +7,7 @@ from datetime import datetime, timedelta
 
 import numpy as np
 
+from estimator.arrays import unit
 from estimator.parameters import SensorParameters
 from estimator.results import ARCSEC
 from estimator.session import ACCELEROMETER, GYROSCOPE, ROTATION_ALIGNMENT, Array, CalibrationSession
@@ -32,6 +33,9 @@ WANDER = {
 }
 """One sigma of every sensor's random walk in a year, dimensionless."""
 YEAR = timedelta(days=365.25)
+TURNED_STAND, TURNED_AT = "ODG-3", START + 2.2 * YEAR
+TURN = np.array([4.0, -7.0, 11.0]) * ARCSEC
+"""By which the seat of that stand has turned every block since then: nobody noticed."""
 FLOWN_AFTER = timedelta(days=8, hours=3)
 TURNTABLE_TYPE = "RT-3"
 NOTES = "Simulated session of the demonstration fleet."
@@ -89,7 +93,8 @@ def _file(session: CalibrationSession, at: datetime) -> DemoFile:
 def _dates(member: Member, rng: np.random.Generator) -> list[datetime]:
     """Irregular dates from the member's first day to the last, by day, in working hours."""
     first = START + member.joined * YEAR
-    pace = (END - first) / (member.sessions - 1)
+    last = END if member.left == YEARS else START + member.left * YEAR
+    pace = (last - first) / (member.sessions - 1)
     jitter = rng.uniform(-0.3, 0.3, member.sessions)
     jitter[0], jitter[-1] = 0.0, -abs(jitter[-1])
     days = [(number + shift) * pace.days for number, shift in enumerate(jitter)]
@@ -111,7 +116,8 @@ def _changes(member: Member, at: datetime) -> tuple[Change, ...]:
         replace(drift.change, amount=drift.change.amount * (min(years, drift.ends) / YEARS) ** drift.power)
         for drift in member.drifts
     )
-    return drifted + tuple(c for service in member.services if service.at <= at for c in service.changes)
+    jumped = tuple(jump.change for jump in member.jumps if jump.at <= years)
+    return drifted + jumped + tuple(c for service in member.services if service.at <= at for c in service.changes)
 
 
 def _roughness(member: Member, number: int) -> float:
@@ -134,7 +140,13 @@ def _measured(
         notes=NOTES,
         temperature=np.round(21.0 + 0.3 * rng.standard_normal() + 0.02 * np.sqrt(np.arange(rows)), 2),
     )
-    return simulate(schedule, truth, rng, noise=noise)
+    seated = _turned(truth) if stand == TURNED_STAND and at >= TURNED_AT else truth
+    return simulate(schedule, seated, rng, noise=noise)
+
+
+def _turned(truth: SensorParameters) -> SensorParameters:
+    """The block on the stand whose seat has turned."""
+    return replace(truth, axis=unit(truth.axis + np.cross(TURN, truth.axis)))
 
 
 def _content(session: CalibrationSession) -> bytes:

@@ -25,8 +25,8 @@ def judge(
     after_service: bool = False,
 ) -> Judged:
     """Every parameter judged, and the session by its worst; without a reference it becomes the reference."""
-    splits = () if reference is None else common_motion(calibration, reference)
     tolerances = tolerances_of(unit_type)
+    splits = () if reference is None else common_motion(calibration, reference, tolerances)
     found = judge_parameters(calibration, reference, tolerances, coverage_factor=coverage_factor, splits=splits)
     decisions = tuple(_decision(judgement, unit_type, coverage_factor) for judgement in found)
     worst = worst_of(decisions)

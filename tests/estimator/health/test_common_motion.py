@@ -1,5 +1,7 @@
 """The common turn and the common factor of a block, apart from what single sensors do."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -8,7 +10,7 @@ from estimator.arrays import tangents
 from estimator.health import Judgement, judge
 from estimator.health.common_motion import CommonMotion, Split, common_motion
 from estimator.results import ARCSEC, Calibration
-from estimator.session import Array
+from estimator.session import ACCELEROMETER, Array
 from estimator.simulate import cone
 from tests.estimator.health.cases import TOLERANCES, block
 
@@ -87,6 +89,20 @@ def test_a_sensor_that_tilts_alone_is_found_and_does_not_smear(m: int) -> None:
 def test_two_sensors_that_tilt_are_both_found_among_eight() -> None:
     moved = tilted(8, 1, 30.0) + tilted(8, 5, -25.0)
     assert set(split(8, np.random.default_rng(3), moved)["axes"].motion.left_out) == {"A2", "A6"}
+
+
+def test_sensors_that_wander_a_little_still_agree_on_a_large_turn() -> None:
+    """Each axis 1.7 arcsec away on its own, a turn of 13 arcsec: a majority agrees within a tenth of 20."""
+    rng, states, errors = np.random.default_rng(9), [], []
+    for _ in range(60):
+        moved = np.zeros((6, 5))
+        moved[:, 3:] = 1.7 * ARCSEC * rng.standard_normal((6, 2))
+        now, then = measured(6, rng, moved), block(axes_of(6), _errors(6, rng), covariance_of(6), np.zeros(3))
+        axes = common_motion(now, then, {(ACCELEROMETER, "axis"): 20 * ARCSEC})[0].motion
+        states.append(axes.state)
+        errors.append(nees(replace(axes, value=tuple(np.array(axes.value) - TURN))))
+    assert set(states) == {"separated"}
+    assert np.mean(errors) < 3 + 4 * np.sqrt(6 / 60)
 
 
 def test_three_axes_cannot_tell_who_moved_and_are_judged_whole() -> None:

@@ -7,10 +7,12 @@ from pathlib import Path
 import pytest
 
 from estimator.reading import read_session
-from service.demo.cast import CAST
+from service.demo.cast import CAST, END
 from service.demo.fill import FILES, fill, is_wanted
 from service.demo.history import files_of
 from service.flows.fleet import fleet_overview
+from service.flows.outlook import outlooks_of_fleet
+from service.flows.stands import stand_conditions
 from service.flows.upload import upload
 from service.records import Verdict
 from service.storage import Database, Files, Storage
@@ -54,7 +56,7 @@ def test_dates_are_irregular_and_in_order_over_three_years() -> None:
         gaps = [(b - a).days for a, b in pairwise(dates)]
         assert min(gaps) > 7
         assert len(set(gaps)) > 3
-        assert (dates[0].year, dates[-1].year) == (2025 if member.joined else 2023, 2026)
+        assert (dates[0].year, dates[-1].year) == (2025 if member.joined else 2023, 2025 if member.left < 2 else 2026)
 
 
 def test_the_fleet_shows_every_condition(empty: Storage) -> None:
@@ -63,10 +65,15 @@ def test_the_fleet_shows_every_condition(empty: Storage) -> None:
         units = {unit.serial: unit for unit in fleet_overview(store)}
         breaks = {serial: store.services.of_unit(serial) for serial in units}
         sessions = store.sessions.page("BA-107", 0, 50)
+        stands = stand_conditions(store)
+        outlooks = {outlook.serial: outlook for outlook in outlooks_of_fleet(store, END)}
     assert {serial: units[serial].verdict for serial in CONDITIONS} == CONDITIONS
     assert all(unit.simulated for unit in units.values())
     assert sum(unit.sessions for unit in units.values()) == FILES
     assert {serial for serial, found in breaks.items() if found} == {"BA-107", "BA-109"}
+    assert [stand.stand for stand in stands if stand.has_shifted] == ["ODG-3"]
+    assert outlooks["BG-201"].overdue
+    assert any(t.step_dates for t in outlooks["BA-102"].trends if (t.sensor, t.parameter) == ("A5", "bias"))
     assert [s.is_reference for s in sessions].count(True) == 2, "a new reference after the service"
 
 

@@ -14,6 +14,7 @@ from service.flows.history import unit_history
 from service.flows.outlook import outlook_of, outlooks_of_fleet
 from service.flows.session_list import session_list
 from service.flows.session_report import session_report
+from service.flows.stands import stand_conditions
 from service.flows.unit_report import unit_report
 from service.flows.unit_types import unit_types
 from service.flows.upload import upload
@@ -33,6 +34,7 @@ PAGES: dict[str, tuple[int, Page]] = {
     "flags of a unit": (2, lambda store: flag_list(store, unit="BA-000")),
     "outlook": (2, lambda store: outlook_of(store, "BA-000", NOW)),
     "outlooks": (1, lambda store: outlooks_of_fleet(store, NOW)),
+    "stands": (1, stand_conditions),
     "types": (1, unit_types),
 }
 
