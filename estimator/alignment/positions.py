@@ -118,7 +118,9 @@ def require_turns(found: list[Stop], angle: Array, rate_z: Array, row: float) ->
         if abs(gyro - table) > DISAGREEMENT[0] + DISAGREEMENT[1] * abs(table):
             told = f"the table turned {np.degrees(table):+.1f}° between {before.rows} and {after.rows}"
             message = f"{told}, the gyros {np.degrees(gyro):+.1f}° about the block's Z axis"
-            advice = "check the sign and unit of turn_angle_deg, the gyros' scale, and that Z is the turn axis"
+            advice = (
+                "check the sign and unit of turn_angle_deg, the gyros' scale and range, and that Z is the turn axis"
+            )
             problems.append(Problem("turn_angle_deg", f"{message}; {advice}", after.first + 1))
     if problems:
         raise ScheduleError(problems)

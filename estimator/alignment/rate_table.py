@@ -127,7 +127,7 @@ def _require_following(turns: Turns) -> None:
         worst = int(np.argmax(apart))
         told = f"the table turns at {np.degrees(turns.rates[worst]):+g} °/s"
         message = f"{told}, the gyros at {np.degrees(turns.means[worst, 2]):+.4g} °/s about the block's Z axis"
-        advice = "check the sign and unit of turn_rate_deg_s, nominal_scale, and that Z is the table's axis"
+        advice = "check the sign and unit of turn_rate_deg_s, the gyros' scale and range, and Z, the table's axis"
         raise ScheduleError([Problem("turn_rate_deg_s", f"{message}; {advice}")])
 
 

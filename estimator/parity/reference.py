@@ -10,9 +10,10 @@ from scipy.linalg import null_space
 from estimator.errors import Problem, ScheduleError
 from estimator.parameters import ELEMENTS
 from estimator.results import Calibration, SensorCalibration
-from estimator.session import Array, Sensor
+from estimator.session import ACCELEROMETER, Array, Sensor
 
 FEWEST = 4
+QUADRATIC = ELEMENTS.index("quadratic")
 NEEDED = ("scale", "bias", "axis")
 
 
@@ -29,7 +30,8 @@ class Reference:
     bias: Array
     """(m,)"""
     quadratic: Array
-    """(m,) zero where the reference does not know it."""
+    """(m,) zero where the reference does not know it, and of gyros: what the Earth's rate tells of it is far too little
+    at the rates of a recording."""
     offset: Array
     """(m,) reading that stands for zero."""
     axes: Array
@@ -110,6 +112,8 @@ def assembled(used: list[tuple[int, Sensor, SensorCalibration]], calibration: Ca
     relative = np.ones((len(used), 5))
     relative[:, 0] = 1.0 / scale
     covariance = np.nan_to_num(calibration.covariance[np.ix_(places, places)])
+    if kind != ACCELEROMETER:
+        covariance[QUADRATIC::5] = covariance[:, QUADRATIC::5] = 0.0
     axes = np.stack([np.asarray(s.axis) for s in known])
     return Reference(
         names=tuple(s.name for s in known),
@@ -117,7 +121,7 @@ def assembled(used: list[tuple[int, Sensor, SensorCalibration]], calibration: Ca
         column=np.array([k for k, _, _ in used]),
         scale=scale,
         bias=np.array([s.bias.value for s in known], dtype=float),
-        quadratic=np.array([s.quadratic.value or 0.0 for s in known]),
+        quadratic=np.array([0.0 if kind != ACCELEROMETER else s.quadratic.value or 0.0 for s in known]),
         offset=np.array([s.nominal_offset or 0.0 for _, s, _ in used]),
         axes=axes,
         tangents=np.stack([s.axis_tangents for s in known]),

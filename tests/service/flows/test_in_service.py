@@ -12,6 +12,9 @@ from service.flows.record_service import record_service
 from service.flows.upload import upload
 from service.records import Verdict
 from service.storage import Storage
+from tests.builders import gyro_block
+from tests.estimator.parity.test_gyros import gyros
+from tests.estimator.parity.test_gyros import recording as gyro_recording
 from tests.service.recordings import recording_bytes, recording_document
 from tests.service.sessions import session_bytes
 
@@ -106,3 +109,20 @@ def test_the_reference_is_that_of_the_epoch(storage: Storage) -> None:
     record_service(storage, "BA-017", NewService("repair", datetime(2026, 6, 1, tzinfo=UTC)), NOW)
     upload(storage, session_bytes(month=7, a3_moved=500.0, seed=2), "b.json", NOW)
     assert upload(storage, recording_bytes(), "flight.json", NOW).verdict is Verdict.PASS
+
+
+def test_a_gyro_block_is_judged_in_its_own_units(storage: Storage) -> None:
+    calibration = gyro_block(sensors=gyros()) | {"started_at": "2026-03-01T09:00:00Z"}
+    upload(storage, json.dumps(calibration).encode(), "a.json", NOW)
+    assert upload(storage, json.dumps(gyro_recording()).encode(), "f.json", NOW).verdict is not Verdict.FAIL
+    receipt = upload(storage, json.dumps(gyro_recording(2.0)).encode(), "g.json", NOW)
+    assert (receipt.verdict, receipt.reason[:53]) == (
+        Verdict.FAIL,
+        "G3 has changed since the calibration: bias +2.0 °/h (",
+    )
+
+
+def test_pulses_without_their_count_time_are_refused(storage: Storage) -> None:
+    document = gyro_recording()
+    del document["count_time_s"]
+    assert "count_time_s: missing; gyro readings are pulses" in refusal(storage, json.dumps(document).encode())
