@@ -4,8 +4,9 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 
 from estimator.results import Calibration
-from estimator.session import CALIBRATIONS, IN_SERVICE, CalibrationSession, comparable
+from estimator.session import AS_LEFT, CALIBRATIONS, IN_SERVICE, CalibrationSession, comparable
 from service.flows.diagnose import VERSION, diagnose
+from service.flows.found_and_left import FoundAndLeft, found_and_left
 from service.flows.history import recent_history
 from service.flows.session_report import session_report
 from service.ingest import read_upload
@@ -20,9 +21,12 @@ from service.records import (
 )
 from service.storage import Storage
 from service.storage.store import Store
+from service.units import COVERAGE
 
 MOST_POINTS = 10_000
 """Points of the unit's history that are read, of the newest sessions up to the certified one."""
+MOST_EARLIER = 50
+"""Earlier sessions among which the one is looked for that shows the unit as found."""
 JUST_AFTER = timedelta(microseconds=1)
 
 
@@ -44,6 +48,8 @@ class CertifiedSession:
     unit_type: UnitType
     reference: ReferenceSession | None
     """None of a session that is the reference itself."""
+    pair: FoundAndLeft | None
+    """Of a session that shows the unit as left: with the one that shows it as found."""
     diagnosis: StoredDiagnosis
     revisions: tuple[ModelRevision, ...]
     """The accepted causes that its calibration takes into account."""
@@ -66,6 +72,7 @@ def certified_session(storage: Storage, id: str, now: datetime) -> CertifiedSess
             source=read_upload(storage.files.read(stored.sha256), stored.filename),
             unit_type=store.unit_types.of_unit(stored.unit),
             reference=_reference(store, stored),
+            pair=_pair(store, report),
             diagnosis=diagnosis,
             revisions=tuple(r for r in store.models.of_session(id) if r.id <= stored.revision),
             services=tuple(s for s in store.services.of_unit(stored.unit) if s.at < until),
@@ -85,3 +92,15 @@ def _reference(store: Store, stored: StoredSession) -> ReferenceSession | None:
     if found is None or found == stored.id:
         return None
     return ReferenceSession(store.sessions.get(found), store.calibrations.get(found))
+
+
+def _pair(store: Store, report: SessionReport) -> FoundAndLeft | None:
+    """The unit as found and as left, where the session is the latter."""
+    stored = report.session
+    if stored.stage != AS_LEFT:
+        return None
+    sessions = (*store.sessions.before(stored, None, MOST_EARLIER), stored)
+    k = report.decisions[0].coverage_factor if report.decisions else COVERAGE
+    services = store.services.of_unit(stored.unit)
+    pair = found_and_left(store, store.unit_types.of_unit(stored.unit), sessions, services, k)
+    return pair if pair is not None and pair.left == stored else None

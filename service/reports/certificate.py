@@ -12,10 +12,12 @@ from service.charts.tracks import tracks_of
 from service.flows.certificate import CertifiedSession
 from service.flows.finding_in_words import FindingView, finding_view, in_words
 from service.flows.fit_in_words import FitWords, fit_in_words
+from service.flows.found_and_left import FoundAndLeft
 from service.flows.known_in_words import combination_in_words
 from service.flows.motion_in_words import motions_in_words
 from service.flows.reason import margin_of
 from service.records import Decision, StoredDiagnosis
+from service.reports.moved import Moved, moved
 from service.reports.pictures import picture
 from service.reports.results import ResultTable, result_tables
 from service.reports.typeset import typeset
@@ -62,6 +64,23 @@ class Drawing:
 
 
 @dataclass(frozen=True)
+class Both:
+    """One parameter as found and as left."""
+
+    found: Moved
+    left: Moved | None
+
+
+@dataclass(frozen=True)
+class Pair:
+    """The unit before and after it was worked on, against the reference that held before."""
+
+    found: str
+    """Session and date."""
+    rows: tuple[Both, ...]
+
+
+@dataclass(frozen=True)
 class State:
     """One state of the decision rule, explained."""
 
@@ -93,6 +112,9 @@ class Certificate:
     tables: tuple[ResultTable, ...]
     together: tuple[str, ...]
     """What all sensors did together since the reference."""
+    stage: str
+    """``as found``, ``as left``, or empty."""
+    pair: Pair | None
     known: tuple[Fact, ...]
     """What is known of parameters that the session cannot tell apart."""
     diagnosis: str
@@ -131,6 +153,8 @@ def certificate(found: CertifiedSession) -> Certificate:
         states=tuple(State(c.formal, c.meaning, c.key) for c in reversed(CONDITIONS)),
         tables=tuple(_with_reading_unit(t, found.source) for t in _tables(found, k)),
         together=tuple(line.text for line in motions_in_words(found.report.motions, k)),
+        stage=in_words(session.stage or ""),
+        pair=None if found.pair is None else _pair(found.pair),
         known=tuple(Fact(name, words) for name, words in known),
         diagnosis=found.diagnosis.summary,
         causes=_causes(found.diagnosis, found),
@@ -214,11 +238,15 @@ def _judged_against(found: CertifiedSession) -> str:
 
 
 def _state(found: CertifiedSession) -> str:
-    """Whether something was done to the unit before the session."""
-    if not found.services:
-        return "no service recorded"
-    last = found.services[-1]
-    return f"last service: {last.kind}, {day_of(last.at)}"
+    """As found or as left, and what was last done to the unit."""
+    last = f"last service: {found.services[-1].kind}, {day_of(found.services[-1].at)}" if found.services else ""
+    stated = [part for part in (in_words(found.report.session.stage or ""), last) if part]
+    return ", ".join(stated) or "no service recorded"
+
+
+def _pair(pair: FoundAndLeft) -> Pair:
+    rows = (Both(moved(before), None if after is None else moved(after)) for before, after in pair.decisions)
+    return Pair(f"session {pair.found.id[:12]} of {day_of(pair.found.started_at)}", tuple(rows))
 
 
 def _record(found: CertifiedSession) -> list[Fact]:

@@ -11,10 +11,11 @@ from service.flows.fleet_report import FleetReport
 from service.flows.reason import margin_of
 from service.outlook import ParameterTrend, UnitOutlook
 from service.records import Decision, HistoryPoint, Service, UnitSummary, Verdict
+from service.reports.moved import Moved, moved
 from service.reports.pictures import picture
 from service.reports.typeset import typeset
 from service.storage.store import Store
-from service.units import COVERAGE, deviation_unit, limit, measured, number, signed
+from service.units import COVERAGE, deviation_unit, measured, number, signed
 from service.verdicts import REFERENCE, Condition, condition_of
 from service.words import day_of
 
@@ -52,16 +53,6 @@ class Line:
     """Share of the tolerance, uncertainty included."""
     last: str
     simulated: bool
-
-
-@dataclass(frozen=True)
-class Moved:
-    """One parameter that did not pass."""
-
-    name: str
-    deviation: str
-    tolerance: str
-    condition: Condition
 
 
 @dataclass(frozen=True)
@@ -206,7 +197,7 @@ def _section(
         line=line,
         reason=unit.reason,
         diagnosis=unit.diagnosis,
-        moved=tuple(_moved(decision) for decision in wrong[:MOST_MOVED]),
+        moved=tuple(moved(decision) for decision in wrong[:MOST_MOVED]),
         more=max(0, len(wrong) - MOST_MOVED),
         history=history,
         history_of=line.worst if history else "",
@@ -216,20 +207,6 @@ def _section(
 def _worst_first(decisions: list[Decision]) -> list[Decision]:
     wrong = [d for d in decisions if d.verdict is not Verdict.PASS]
     return sorted(wrong, key=lambda d: (-d.verdict.severity, margin_of(d) or 0.0))
-
-
-def _moved(decision: Decision) -> Moved:
-    sizes = (decision.deviation, decision.expanded, decision.tolerance)
-    unit = deviation_unit(decision.kind, decision.parameter, max(abs(x or 0.0) for x in sizes))
-    one_sided = decision.parameter == "axis"
-    write = measured if one_sided else signed
-    seen = decision.deviation is not None
-    return Moved(
-        name=f"{decision.sensor} {decision.parameter}",
-        deviation=write(decision.deviation, decision.expanded, unit) if seen else "not observable",
-        tolerance=limit(decision.tolerance, unit, one_sided),
-        condition=condition_of(decision.verdict),
-    )
 
 
 def _history(points: list[HistoryPoint], services: tuple[Service, ...]) -> str:

@@ -8,6 +8,7 @@ from sqlalchemy.orm import aliased
 from service.records import Decision, HistoryPoint, Service
 from service.storage.queries.base import Queries
 from service.storage.queries.history import DECIDED, point_record
+from service.storage.queries.services import service_record
 from service.storage.queries.sessions import decision_record
 from service.storage.tables import ConditionRow, DecisionRow, ParameterRow, ServiceRow, SessionRow, UnitRow
 
@@ -85,10 +86,7 @@ class FleetRows(Queries):
             .where(UnitRow.serial.in_(serials))
             .order_by(ServiceRow.at, ServiceRow.id)
         )
-        return tuple(
-            Service(id=row.id, unit=serial, at=row.at, kind=row.kind, note=row.note)
-            for row, serial in self._session.execute(query)
-        )
+        return tuple(service_record(row, serial) for row, serial in self._session.execute(query))
 
 
 def _points() -> Points:

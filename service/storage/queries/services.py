@@ -30,14 +30,14 @@ class Services(Queries):
     def get(self, number: int) -> Service:
         """One recorded break."""
         row, serial = self._session.execute(_services().where(ServiceRow.id == number)).one()
-        return _service(row, serial)
+        return service_record(row, serial)
 
     def of_unit(self, serial: str) -> tuple[Service, ...]:
         """All breaks of a unit, oldest first."""
         found = self._session.execute(
             _services().where(UnitRow.serial == serial).order_by(ServiceRow.at, ServiceRow.id)
         )
-        return tuple(_service(row, owner) for row, owner in found)
+        return tuple(service_record(row, owner) for row, owner in found)
 
     def around(self, unit: int, at: datetime) -> tuple[datetime | None, datetime | None]:
         """The last break at or before a time and the first one after it: the epoch that the time is in."""
@@ -54,5 +54,6 @@ def _services() -> Select[ServiceRow, str]:
     return select(ServiceRow, UnitRow.serial).join(UnitRow, UnitRow.id == ServiceRow.unit_id)
 
 
-def _service(row: ServiceRow, serial: str) -> Service:
+def service_record(row: ServiceRow, serial: str) -> Service:
+    """A stored break."""
     return Service(id=row.id, unit=serial, at=row.at, kind=row.kind, note=row.note, who=row.who, sensor=row.sensor)

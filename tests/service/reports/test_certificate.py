@@ -143,5 +143,19 @@ def test_long_names_break(client: httpx.Client) -> None:
     assert "W" * 190 in pages[0].replace("\u200b", "").replace(" ", "")
 
 
+def test_as_found_and_as_left_stand_beside_each_other(client: httpx.Client) -> None:
+    sent(client, session_bytes(seed=1))
+    found = sent(client, session_bytes(seed=2, month=5, a3_moved=200.0, stage="as-found"))
+    repair = {"kind": "adjustment", "at": "2026-05-20T12:00:00Z"}
+    client.post("/api/v1/units/BA-017/services", json=repair).raise_for_status()
+    left = sent(client, session_bytes(seed=3, month=6, stage="as-left"))
+    before, after = (text_of(certificate(client, receipt["id"])) for receipt in (found, left))
+    assert ("Unfit as found" in before, "As found and as left" in before) == (True, False)
+    assert f"As found: session {found['id'][:12]} of 1 May 2026" in after
+    assert "last service: adjustment, 20 May 2026" in after
+    row = after[after.index("A3 bias") :][:60]
+    assert row.index("fail") < row.index("pass")
+
+
 def test_an_unknown_session_is_not_found(client: httpx.Client) -> None:
     assert client.get("/api/v1/sessions/none/certificate").status_code == 404
