@@ -1,6 +1,6 @@
 """The one place where everything is joined."""
 
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from datetime import UTC, datetime
 from importlib.metadata import version
@@ -11,7 +11,9 @@ from fastapi.concurrency import run_in_threadpool
 
 from service import api, pages
 from service.dependencies import Service
+from service.flows.deliver import deliver_until
 from service.flows.diagnose_pending import diagnose_pending
+from service.flows.flagging.overdue import watch_due_dates
 from service.settings import Settings
 from service.storage import Database, Files, Storage
 
@@ -19,8 +21,8 @@ DESCRIPTION = (
     "Health of redundant inertial measurement units: calibration sessions in, parameters with uncertainties, "
     "verdicts and histories out. Numbers are SI; every error is application/problem+json."
 )
-LAST_DIAGNOSIS = 5.0
-"""Seconds that a stopping service waits for the diagnosis at hand; if it takes longer it is made at the next start."""
+LAST_WORK = 5.0
+"""Seconds that a stopping service waits for the diagnosis or the message at hand; the next start takes them up."""
 
 
 def utc_now() -> datetime:
@@ -46,17 +48,27 @@ def create_app(settings: Settings, clock: Callable[[], datetime] = utc_now) -> F
 
 
 def _at_work(service: Service) -> Callable[[FastAPI], AbstractAsyncContextManager[None]]:
-    """From start to stop: pending diagnoses are made beside the requests, and the database is closed at the end."""
+    """From start to stop: work is done beside the requests, and the database is closed at the end."""
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         stop = Event()
-        work = (service.storage, service.clock, service.diagnosing, stop)
-        pending = Thread(target=diagnose_pending, args=work, name="pending diagnoses", daemon=True)
-        pending.start()
+        threads = [Thread(target=work, args=(*own, stop), name=name, daemon=True) for name, work, own in _work(service)]
+        for thread in threads:
+            thread.start()
         yield
         stop.set()
-        await run_in_threadpool(pending.join, LAST_DIAGNOSIS)
+        for thread in threads:
+            await run_in_threadpool(thread.join, LAST_WORK)
         service.storage.database.close()
 
     return lifespan
+
+
+def _work(service: Service) -> Iterator[tuple[str, Callable[..., None], tuple[object, ...]]]:
+    """What is done beside the requests: its name, what does it, and what that needs."""
+    storage, clock, hosts = service.storage, service.clock, service.settings.webhook_hosts
+    yield "pending diagnoses", diagnose_pending, (storage, clock, service.diagnosing)
+    yield "due dates", watch_due_dates, (storage, clock)
+    if hosts:
+        yield "outbox", deliver_until, (storage, hosts, clock)

@@ -1,8 +1,9 @@
 """Flags, the notices that make up their lives, notes, and the addresses that are told: frozen records."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from enum import StrEnum
+from uuid import NAMESPACE_URL, uuid5
 
 SERVICES = ("adjustment", "repair", "sensor-swap", "reference", "service")
 """What can be done to a unit: each is a break, after which the next session is the new reference."""
@@ -74,6 +75,11 @@ class Notice:
     text: str
     session: str | None
 
+    @property
+    def key(self) -> str:
+        """The same wherever and whenever it is told: by it a receiver knows what it has heard before."""
+        return str(uuid5(NAMESPACE_URL, f"imu-health/{self.unit}/{self.at.isoformat()}/{self.id}"))
+
 
 @dataclass(frozen=True)
 class Flag:
@@ -134,3 +140,52 @@ class Note:
     who: str
     recorded_at: datetime
     withdrawal: Withdrawal | None
+
+
+@dataclass(frozen=True)
+class Webhook:
+    """An address that is told of notices."""
+
+    id: int
+    url: str
+    secret: str = field(repr=False)
+    who: str
+    """Who registered it."""
+    created_at: datetime
+
+
+class DeliveryState(StrEnum):
+    """How far a delivery has come."""
+
+    WAITING = "waiting"
+    DELIVERED = "delivered"
+    FAILED = "failed"
+    """Given up."""
+
+
+@dataclass(frozen=True)
+class Delivery:
+    """One notice on its way to one address."""
+
+    id: int
+    notice: Notice
+    state: DeliveryState
+    attempts: int
+    next_at: datetime
+    """When the next attempt is made; of one that has ended, when it ended."""
+    outcome: str
+    """Of the latest attempt."""
+
+
+@dataclass(frozen=True)
+class Outgoing:
+    """A delivery that is to be attempted now."""
+
+    delivery: int
+    attempt: int
+    """Counted from 1."""
+    webhook: Webhook
+    notice: Notice
+    matter: Matter | None
+    """Of the notice's flag; None where it is about no flag."""
+    place: str

@@ -1,10 +1,11 @@
 """What an operator sets, by environment variables that start with IMU_HEALTH_."""
 
 from pathlib import Path
+from typing import Annotated
 
 from platformdirs import user_data_dir
-from pydantic import Field
-from pydantic_settings import BaseSettings, SettingsConfigDict
+from pydantic import Field, field_validator
+from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 
 def default_data_folder() -> Path:
@@ -32,6 +33,16 @@ class Settings(BaseSettings):
     coverage_factor: float = Field(
         default=2.0, gt=0, le=5, description="k: expanded uncertainty and guard band are k times the standard one."
     )
+
+    webhook_hosts: Annotated[tuple[str, ...], NoDecode] = Field(
+        default=(),
+        description="Hosts that webhooks may call, separated by commas: example.org, or 10.0.0.5:8443 with a port.",
+    )
+
+    @field_validator("webhook_hosts", mode="before")
+    @classmethod
+    def _split(cls, given: object) -> object:
+        return tuple(filter(None, (h.strip() for h in given.split(",")))) if isinstance(given, str) else given
 
     @property
     def database(self) -> str:

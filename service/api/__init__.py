@@ -6,6 +6,7 @@ from service.api import (
     certificates,
     diagnoses,
     events,
+    feeds,
     flags,
     fleet,
     models,
@@ -16,6 +17,7 @@ from service.api import (
     stands,
     unit_types,
     units,
+    webhooks,
 )
 from service.api.measured import Measured
 from service.api.openapi import describe
@@ -29,7 +31,8 @@ def mount(app: FastAPI, metrics: Metrics) -> None:
     """Adds every route of the API, its error shape, its description and its figures to the application."""
     api = APIRouter(prefix=PREFIX)
     for resource in (
-        sessions, certificates, diagnoses, events, units, unit_types, models, plans, stands, flags, notes, fleet,
+        sessions, certificates, diagnoses, events, units, unit_types, models, plans, stands, flags, notes, webhooks,
+        feeds, fleet,
     ):  # fmt: skip
         api.include_router(resource.router)
     app.include_router(api)

@@ -20,6 +20,7 @@ from service.storage.queries.sessions import Sessions
 from service.storage.queries.stands import Stands
 from service.storage.queries.unit_types import UnitTypes
 from service.storage.queries.units import Units
+from service.storage.queries.webhooks import Webhooks
 
 
 class Store:
@@ -92,6 +93,11 @@ class Store:
     def outlooks(self) -> Outlooks:
         """When units must come back."""
         return Outlooks(self._session)
+
+    @cached_property
+    def webhooks(self) -> Webhooks:
+        """Addresses that are told of notices, and their outbox."""
+        return Webhooks(self._session)
 
     @cached_property
     def fleet(self) -> Fleet:

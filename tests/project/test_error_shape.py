@@ -11,7 +11,7 @@ from service.settings import Settings
 from tests.serving import http_client
 
 EXAMPLES = {"serial": "BA-017", "id": "3f9a0c5be1d24786aa10", "name": "hex"}
-NUMBERED = {"/api/v1/flags/{id}/acknowledge", "/api/v1/flags/{id}/resolve", "/api/v1/notes/{id}/withdraw"}
+NUMBERED = ("/api/v1/flags/", "/api/v1/notes/", "/api/v1/webhooks/")
 """Where the id is a number."""
 NEEDS_NO_DATABASE = {"/healthz", "/metrics"}
 QUERIES = {"/api/v1/plan": {"unit_type": "RA-6"}}
@@ -22,6 +22,7 @@ BODIES: dict[str, Any] = {
     "/api/v1/units/{serial}/notes": {"text": "dropped", "by": "K. Ito"},
     "/api/v1/notes/{id}/withdraw": {"by": "K. Ito", "why": "done"},
     "/api/v1/sessions/{id}/stage": {"stage": "as-found", "by": "K. Ito"},
+    "/api/v1/webhooks": {"url": "https://example.org/", "secret": "s" * 16, "by": "K. Ito"},
     "/api/v1/flags/{id}/acknowledge": {"by": "K. Ito", "why": "seen"},
     "/api/v1/flags/{id}/resolve": {"by": "K. Ito", "why": "done"},
     "/api/v1/unit-types/{name}": {"tolerances": {"scale": 1e-4, "bias": 1e-4, "quadratic": None, "axis": 1e-4}},
@@ -61,7 +62,8 @@ def test_every_route_that_asks_the_database_says_that_it_may_be_away(
 def test_without_a_database_every_route_answers_503_in_the_one_shape(
     operations: list[tuple[str, str, dict[str, Any]]], tmp_path: Path
 ) -> None:
-    nowhere = Settings(database_url=f"sqlite:///{tmp_path}", data_folder=tmp_path / "data")
+    folder, hosts = tmp_path / "data", ("example.org",)
+    nowhere = Settings(database_url=f"sqlite:///{tmp_path}", data_folder=folder, webhook_hosts=hosts)
     with http_client(create_app(nowhere)) as client:
         for method, path, _ in operations:
             if path not in NEEDS_NO_DATABASE:
@@ -79,15 +81,15 @@ def test_a_wrong_method_has_the_one_shape_on_every_route(
     client: httpx.Client, operations: list[tuple[str, str, dict[str, Any]]]
 ) -> None:
     for path in {path for _, path, _ in operations}:
-        assert_problem(ask(client, "DELETE", path), 405)
+        assert_problem(ask(client, "PATCH", path), 405)
 
 
 def ask(client: httpx.Client, method: str, path: str) -> httpx.Response:
     """A request that any route takes seriously."""
     body = BODIES.get(path) if method in ("POST", "PUT") else None
-    return client.request(
-        method, path.format(**EXAMPLES | ({"id": "1"} if path in NUMBERED else {})), json=body, params=QUERIES.get(path)
-    )
+    examples = EXAMPLES | ({"id": "1"} if path.startswith(NUMBERED) else {})
+    who = {"by": "K. Ito"} if method == "DELETE" else None
+    return client.request(method, path.format(**examples), json=body, params=who or QUERIES.get(path))
 
 
 def assert_problem(answer: httpx.Response, status: int) -> None:

@@ -1,15 +1,17 @@
 """Kinds of value that requests share."""
 
+import re
 from datetime import UTC, datetime
 from typing import Annotated
 
 from fastapi import Path, Query
-from pydantic import AfterValidator, StringConstraints
+from pydantic import AfterValidator, BeforeValidator, StringConstraints
 
 from service.records import Verdict
 
 TEXT = r"^[^\x00]*$"
 """PostgreSQL keeps any character but NUL."""
+NUMBER = re.compile(r"\s*[-+]?[\d._]+(e[-+]?\d+)?\s*", re.IGNORECASE)
 EARLIEST, LATEST = datetime(1900, 1, 1, tzinfo=UTC), datetime(2200, 1, 1, tzinfo=UTC)
 
 
@@ -20,7 +22,14 @@ def _in_utc(moment: datetime) -> datetime:
     return aware.astimezone(UTC)
 
 
-Moment = Annotated[datetime, AfterValidator(_in_utc)]
+def _written(given: object) -> object:
+    """A bare number would be taken for seconds since 1970."""
+    if isinstance(given, int | float) or (isinstance(given, str) and NUMBER.fullmatch(given)):
+        raise ValueError("must be a date and time like 2026-03-01T09:00:00Z")
+    return given
+
+
+Moment = Annotated[datetime, BeforeValidator(_written), AfterValidator(_in_utc)]
 """A time; without a zone it is UTC."""
 Text = Annotated[str, StringConstraints(pattern=TEXT, max_length=200)]
 LongText = Annotated[str, StringConstraints(pattern=TEXT, max_length=2000)]

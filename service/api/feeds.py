@@ -1,0 +1,40 @@
+"""Feeds that people's own tools subscribe to: flags and verdicts as Atom, due dates as a calendar."""
+
+from urllib.parse import quote
+
+from fastapi import APIRouter, Request, Response
+
+from service.api.atom import atom_feed
+from service.api.calendar import DueDay, calendar
+from service.api.schemas.problem import errors
+from service.dependencies import Now, Reading, StorageOf
+from service.flows.outlook import fleet_outlook
+
+router = APIRouter(prefix="/feeds", tags=["feeds"])
+ATOM, CALENDAR = "application/atom+xml", "text/calendar"
+MOST_ENTRIES = 200
+TEXT = {"type": "string"}
+
+
+@router.get("/flags.atom", responses={200: {"content": {ATOM: {"schema": TEXT}}}, **errors()}, response_class=Response)
+def read_flags_feed(request: Request, store: Reading) -> Response:
+    """The latest changes of flags and verdicts, newest first, as Atom."""
+    content = atom_feed(store.notices.latest(MOST_ENTRIES), str(request.url), str(request.base_url))
+    return Response(content, media_type=ATOM)
+
+
+@router.get("/due.ics", responses={200: {"content": {CALENDAR: {"schema": TEXT}}}, **errors()}, response_class=Response)
+def read_due_dates(request: Request, storage: StorageOf, now: Now) -> Response:
+    """The day on which every unit's calibration is due, as a calendar."""
+    days = [
+        DueDay(
+            unit=outlook.serial,
+            day=outlook.due.date(),
+            summary=f"{outlook.serial}: calibration {'overdue' if outlook.overdue else 'due'}",
+            description=outlook.reason,
+            url=f"{request.base_url}units/{quote(outlook.serial)}",
+        )
+        for outlook in fleet_outlook(storage, now)
+        if outlook.due is not None
+    ]
+    return Response(calendar(days, now), media_type=f"{CALENDAR}; charset=utf-8")

@@ -1,0 +1,87 @@
+"""Feeds: read by other programs' own readers, exact to the letter of their standards."""
+
+from datetime import UTC, date, datetime
+from xml.etree import ElementTree
+
+import httpx
+from hypothesis import given
+from hypothesis import strategies as st
+from icalendar import Calendar
+
+from service.api.atom import atom_feed
+from service.api.calendar import DueDay, calendar
+from service.flag_records import Notice, NoticeKind
+from tests.service.sessions import session_bytes
+
+ATOM = {"a": "http://www.w3.org/2005/Atom"}
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
+TEXT = st.text(st.characters(exclude_categories=["Cs"]), max_size=200)
+
+
+def fail(client: httpx.Client) -> None:
+    """A reference and a session that is out of tolerance."""
+    for month, moved in ((1, 0.0), (2, 90.0)):
+        client.post("/api/v1/sessions", content=session_bytes(seed=month, month=month, a3_moved=moved))
+
+
+def texts(feed: ElementTree.Element, path: str) -> list[str | None]:
+    return [found.text for found in feed.findall(path, ATOM)]
+
+
+def test_flags_and_verdicts_come_as_a_feed_newest_first(client: httpx.Client) -> None:
+    empty = client.get("/api/v1/feeds/flags.atom")
+    assert empty.headers["content-type"] == "application/atom+xml"
+    assert texts(ElementTree.fromstring(empty.content), "a:entry/a:title") == []
+    fail(client)
+    client.post("/api/v1/flags/1/resolve", json={"by": "K. Ito", "why": "<cable> & plug"}).raise_for_status()
+    feed = ElementTree.fromstring(client.get("/api/v1/feeds/flags.atom").content)
+    assert texts(feed, "a:entry/a:title") == [
+        "BA-017: flag resolved",
+        "BA-017: flag raised",
+        "BA-017: verdict changed",
+    ]
+    assert texts(feed, "a:entry/a:content")[0] == "<cable> & plug"
+    assert texts(feed, "a:entry/a:author/a:name") == ["K. Ito", "imu-health", "imu-health"]
+    again = ElementTree.fromstring(client.get("/api/v1/feeds/flags.atom").content)
+    ids = texts(feed, "a:entry/a:id")
+    assert ids == texts(again, "a:entry/a:id")
+    assert len(set(ids)) == 3
+    link = feed.find("a:entry/a:link", ATOM)
+    assert link is not None
+    assert client.get(link.attrib["href"], headers={"Accept": "text/html"}).status_code == 200
+
+
+@given(unit=TEXT, text=TEXT)
+def test_any_text_makes_a_feed_that_can_be_read(unit: str, text: str) -> None:
+    notice = Notice(1, unit, 1, NoticeKind.RAISED, NOW, "w", text, None)
+    feed = ElementTree.fromstring(atom_feed([notice], "http://a/", "http://a/"))
+    assert len(feed.findall("a:entry", ATOM)) == 1
+
+
+def test_due_dates_come_as_a_calendar(client: httpx.Client) -> None:
+    fail(client)
+    answer = client.get("/api/v1/feeds/due.ics")
+    assert answer.headers["content-type"] == "text/calendar; charset=utf-8"
+    [event] = Calendar.from_ical(answer.content).events
+    due = client.get("/api/v1/units/BA-017/outlook").json()["due"]
+    assert event.start.isoformat() == due[:10]
+    assert str(event["SUMMARY"]).startswith("BA-017: calibration ")
+    [again] = Calendar.from_ical(client.get("/api/v1/feeds/due.ics").content).events
+    assert event["UID"] == again["UID"]
+
+
+@given(unit=TEXT, summary=TEXT, description=TEXT)
+def test_any_text_survives_folding_and_escaping(unit: str, summary: str, description: str) -> None:
+    content = calendar([DueDay(unit, date(2026, 3, 1), summary, description, "http://a/")], NOW)
+    lines = content.split(b"\r\n")
+    assert all(len(line) <= 75 and b"\n" not in line and b"\r" not in line for line in lines)
+    assert all(line.decode() is not None for line in lines)
+    [event] = Calendar.from_ical(content).events
+    assert str(event.get("SUMMARY", "")) == printable(summary)
+    assert str(event.get("DESCRIPTION", "")) == printable(description)
+    assert event.start == date(2026, 3, 1)
+
+
+def printable(text: str) -> str:
+    """What a calendar can hold of a text."""
+    return "".join(c for c in text if (c >= " " and c != "\x7f") or c == "\n")

@@ -1,0 +1,69 @@
+"""A real receiver of webhooks on this machine, which answers as it is told and keeps what it got."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from threading import Thread
+from time import monotonic, sleep
+
+
+@dataclass(frozen=True)
+class Message:
+    """One request."""
+
+    path: str
+    headers: dict[str, str]
+    body: bytes
+
+
+@dataclass
+class Receiver:
+    """Answers with the statuses in turn, and with 204 after the last."""
+
+    host: str
+    statuses: list[int] = field(default_factory=list)
+    messages: list[Message] = field(default_factory=list)
+
+    @property
+    def url(self) -> str:
+        """Where it listens."""
+        return f"http://{self.host}/hook"
+
+    def wait_for(self, count: int, seconds: float = 30.0) -> list[Message]:
+        """What it got, once that is so much."""
+        end = monotonic() + seconds
+        while len(self.messages) < count and monotonic() < end:
+            sleep(0.05)
+        assert len(self.messages) >= count, f"{len(self.messages)} of {count} messages came"
+        return self.messages
+
+
+@contextmanager
+def receiver() -> Iterator[Receiver]:
+    """A receiver that listens until the block ends."""
+
+    class Handler(BaseHTTPRequestHandler):
+        def do_POST(self) -> None:
+            body = self.rfile.read(int(self.headers["Content-Length"]))
+            found.messages.append(Message(self.path, dict(self.headers), body))
+            status = found.statuses.pop(0) if found.statuses else 204
+            self.send_response(status)
+            if 300 <= status < 400:
+                self.send_header("Location", f"http://{found.host}/elsewhere")
+            self.send_header("Content-Length", "0")
+            self.end_headers()
+
+        def log_message(self, format: str, *args: object) -> None:
+            """Quiet."""
+
+    server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+    found = Receiver(f"127.0.0.1:{server.server_port}")
+    thread = Thread(target=server.serve_forever, daemon=True)
+    thread.start()
+    try:
+        yield found
+    finally:
+        server.shutdown()
+        server.server_close()
+        thread.join()
