@@ -1,6 +1,7 @@
 """What to measure so that a session tells what it leaves open."""
 
 from estimator.results import Calibration
+from estimator.session import ACCELEROMETER
 from service.units import number
 
 
@@ -13,3 +14,15 @@ def what_to_add(calibration: Calibration) -> str:
         return "more or other positions would tell it"
     up = ", ".join(f"({', '.join(number(x, 2) for x in direction)})" for direction in add)
     return f"add {len(add)} still orientation{'s' if len(add) > 1 else ''} with up, in block axes, along {up}"
+
+
+def left_open(calibration: Calibration) -> str:
+    """What a calibration does not show of its accelerometers, and what to add; empty where it shows all it must."""
+    needed = ("scale", "bias", "axis")
+    felt = [s for s in calibration.sensors if s.kind == ACCELEROMETER and set(needed) <= set(s.observable)]
+    blind = [s.name for s in felt if not all(s.observable[name] for name in needed)]
+    if not blind or calibration.parity is not None:
+        return ""
+    missing = [name for name in needed if any(not s.observable[name] for s in felt)]
+    who = "every accelerometer" if len(blind) == len(felt) else ", ".join(blind)
+    return f"It does not show {', '.join(missing)} of {who}: {what_to_add(calibration)}."

@@ -8,7 +8,7 @@ from estimator.health.common_motion import common_motion
 from estimator.health.rule import RULE
 from estimator.results import Calibration
 from estimator.session import CalibrationSession
-from service.flows.reason import FIRST_SESSION, NEW_EPOCH, reason, worst_of, worst_record
+from service.flows.reason import first_in_words, reason, worst_of, worst_record
 from service.flows.tolerances import tolerances_of
 from service.records import Decision, Judged, UnitType, Verdict, Worst
 
@@ -35,7 +35,7 @@ def judge(
         calibration=calibration,
         decisions=decisions,
         verdict=Verdict.UNDECIDABLE if worst is None else worst.verdict,
-        reason=reason(decisions) if reference else NEW_EPOCH if after_service else FIRST_SESSION,
+        reason=reason(decisions) if reference else first_in_words(calibration, after_service=after_service),
         worst=NONE_YET if reference is None else worst_record(decisions),
         is_reference=reference is None,
         motions=tuple(split.motion for split in splits),

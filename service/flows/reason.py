@@ -1,5 +1,7 @@
 """Why a session's verdict is what it is, in one sentence that a technician understands."""
 
+from estimator.results import Calibration
+from service.advice import left_open
 from service.records import Decision, Verdict, Worst
 from service.units import in_words
 from service.words import PARAMETER_NAMES
@@ -8,6 +10,11 @@ FIRST_SESSION = "First session of this unit: it is now the reference that later 
 NEW_EPOCH = "First session after a service: it is now the reference that later sessions are judged against."
 NOTHING_JUDGED = "Nothing could be judged: no parameter of this session has a tolerance."
 ALL_PASS = "Every parameter is within its tolerance, beyond doubt; closest to it: {closest}."
+
+
+def first_in_words(calibration: Calibration, *, after_service: bool) -> str:
+    """That a session is the reference, and what of the unit it leaves open."""
+    return " ".join(filter(None, (NEW_EPOCH if after_service else FIRST_SESSION, left_open(calibration))))
 
 
 def worst_of(decisions: tuple[Decision, ...]) -> Decision | None:

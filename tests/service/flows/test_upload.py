@@ -22,7 +22,7 @@ from service.storage.tables import (
     SessionRow,
     UnitRow,
 )
-from tests.builders import gyro_block
+from tests.builders import arbitrary_orientations, gyro_block
 from tests.databases import Databases, PostgresDatabases
 from tests.service.sessions import session_bytes
 
@@ -126,3 +126,14 @@ def test_a_database_killed_at_the_commit_leaves_nothing_and_the_upload_can_be_re
     assert upload(storage, session_bytes(), "a.json", NOW).created
     database.close()
     other.close()
+
+
+def test_a_reference_that_leaves_something_open_says_what_to_add(storage: Storage) -> None:
+    document = arbitrary_orientations(orientations=7)
+    receipt = upload(storage, json.dumps(document).encode(), "seven.json", NOW)
+    assert receipt.is_reference
+    assert "It does not show scale, bias, axis of every accelerometer: add 2 still orientations" in receipt.reason
+
+
+def test_a_reference_that_shows_everything_says_no_more(storage: Storage) -> None:
+    assert upload(storage, session_bytes(), "a.json", NOW).reason.endswith("judged against.")
