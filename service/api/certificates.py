@@ -12,25 +12,31 @@ from service.dependencies import Now, StorageOf
 from service.flows.certificate import certified_session
 from service.flows.correction import correction_document
 from service.reports.certificate import certificate_pdf
+from service.reports.dcc import certificate_dcc
 
 router = APIRouter(prefix="/sessions", tags=["handing on"])
-PDF = "application/pdf"
+PDF, XML = "application/pdf", "application/xml"
+BYTES = {"schema": {"type": "string", "format": "binary"}}
 
 
 @router.get(
     "/{id}/certificate",
-    responses={200: {"content": {PDF: {"schema": {"type": "string", "format": "binary"}}}}, **errors(404, 422, 507)},
+    responses={200: {"content": {PDF: BYTES, XML: {"schema": {"type": "string"}}}}, **errors(404, 422, 507)},
     response_class=Response,
 )
 def read_certificate(
     id: SessionId,
     storage: StorageOf,
     now: Now,
-    format: Annotated[Literal["pdf"], Query(description="Form of the certificate.")] = "pdf",
+    format: Annotated[
+        Literal["pdf", "dcc"], Query(description="For people, or as a Digital Calibration Certificate for programs.")
+    ] = "pdf",
 ) -> Response:
-    """The session's certificate, for people to sign; the same record gives the same bytes."""
+    """The session's certificate, for people to sign or as XML; the same record gives the same bytes."""
     found = certified_session(storage, id, now)
     name = f"{found.report.session.unit}-{id[:8]}-certificate"
+    if format == "dcc":
+        return as_file(certificate_dcc(found), XML, f"{name}.xml")
     return as_file(certificate_pdf(found), PDF, f"{name}.pdf")
 
 

@@ -15,6 +15,7 @@ class Form(StrEnum):
     """What a certificate can be written as."""
 
     PDF = "pdf"
+    DCC = "dcc"
 
 
 Session = Annotated[str, typer.Argument(metavar="SESSION", help="The session's id, as its page's address ends.")]
@@ -23,7 +24,7 @@ Session = Annotated[str, typer.Argument(metavar="SESSION", help="The session's i
 def certificate(
     session: Session,
     server: Server = DEFAULT_SERVER,
-    format: Annotated[Form, typer.Option("--format", help="pdf, for people to sign.")] = Form.PDF,
+    format: Annotated[Form, typer.Option("--format", help="pdf, to sign, or dcc: XML for programs.")] = Form.PDF,
     out: Out = None,
 ) -> None:
     """Write the certificate of a session."""

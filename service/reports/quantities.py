@@ -1,0 +1,43 @@
+"""Quantities of a Digital Calibration Certificate: value, unit and expanded uncertainty by the rules of D-SI."""
+
+from math import erf, sqrt
+from xml.etree.ElementTree import Element
+
+from estimator.session import ACCELEROMETER
+from service.reports.elements import content, dcc, si
+
+ONE, RADIAN = r"\one", r"\radian"
+INPUT = {True: r"\metre\second\tothe{-2}", False: r"\radian\second\tothe{-1}"}
+PER_INPUT = {True: r"\metre\tothe{-1}\second\tothe{2}", False: r"\radian\tothe{-1}\second"}
+READINGS = {"V": r"\volt", "mV": r"\milli\volt", "A": r"\ampere", "mA": r"\milli\ampere", "Hz": r"\hertz"}
+"""D-SI of the units that readings come in; counts and pulses have the unit one."""
+
+
+def value_unit(kind: str, parameter: str, reading_unit: str, *, counted: bool) -> str:
+    """The D-SI unit of a parameter's value."""
+    linear = kind == ACCELEROMETER
+    if parameter == "scale":
+        reading = READINGS.get(reading_unit, "")
+        return reading + (r"\radian\tothe{-1}" if counted else PER_INPUT[linear])
+    return {"bias": INPUT[linear], "quadratic": PER_INPUT[linear]}.get(parameter, RADIAN)
+
+
+def deviation_unit(kind: str, parameter: str) -> str:
+    """The D-SI unit of a deviation: relative for scale, an angle for an axis."""
+    return ONE if parameter == "scale" else value_unit(kind, parameter, "", counted=False)
+
+
+def quantity(parent: Element, name: str, value: float, unit: str, sigma: float | None, k: float) -> Element:
+    """``dcc:quantity`` with ``si:real``; k and its coverage stand with U."""
+    found = dcc(parent, "quantity")
+    content(found, "name", name)
+    real = si(found, "real")
+    si(real, "value", repr(float(value)))
+    si(real, "unit", unit)
+    if sigma is not None:
+        expanded = si(real, "expandedUnc")
+        si(expanded, "uncertainty", repr(float(k * sigma)))
+        si(expanded, "coverageFactor", f"{k:g}")
+        si(expanded, "coverageProbability", f"{erf(k / sqrt(2)):.4f}")
+        si(expanded, "distribution", "normal")
+    return found
