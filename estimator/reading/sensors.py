@@ -20,7 +20,8 @@ REPEATABILITY = {
     ACCELEROMETER: ("bias_repeatability_m_s2", Interval(0, 100, "m/s²")),
     GYROSCOPE: ("bias_repeatability_rad_s", Interval(0, 100, "rad/s")),
 }
-PULSES = frozenset({"pulse", "pulses", "count", "counts"})
+PULSES = frozenset({"pulse", "pulses"})
+COUNTS = frozenset({"count", "counts"})
 
 
 def read_sensors(document: Fields, block: str) -> tuple[Sensor, ...]:
@@ -50,7 +51,7 @@ def check_pulses(document: Fields, sensors: tuple[Sensor, ...], programme: str) 
     if document.has("count_time_s"):
         if sensors and not gyros:
             document.add("count_time_s", "is for gyroscopes and this session has none; give readings as a rate")
-    elif programme == TWO_AXIS_STAND and any(g.reading_unit.lower() in PULSES for g in gyros):
+    elif any(g.reading_unit.lower() in (PULSES | COUNTS if programme == TWO_AXIS_STAND else PULSES) for g in gyros):
         document.add("count_time_s", "missing; gyro readings are pulses, so add the time in s they were counted over")
 
 
