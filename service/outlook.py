@@ -5,6 +5,18 @@ from datetime import datetime
 
 
 @dataclass(frozen=True)
+class FanPoint:
+    """Where a parameter's deviation will be at a date: quantiles, SI; relative for scale."""
+
+    at: datetime
+    low_90: float
+    low_50: float
+    middle: float
+    high_50: float
+    high_90: float
+
+
+@dataclass(frozen=True)
 class ParameterTrend:
     """One parameter of one sensor since the last break."""
 
@@ -28,6 +40,10 @@ class ParameterTrend:
     """How far the rate stands from those of the other units of the type, in their robust spread; None with too few."""
     kind: str = ""
     tolerance: float = 1.0
+    since: datetime | None = None
+    """Of the first session that the trend goes through: the reference, or the first after a sudden change."""
+    fan: tuple[FanPoint, ...] = ()
+    """From the last session on, a year ahead."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +76,8 @@ class UnitOutlook:
     lot: str | None = None
     risk: tuple[RiskPoint, ...] = ()
     """The risk of waiting, date by date from the latest session on."""
+    together: tuple[str, ...] = ()
+    """What all sensors did together at the latest calibration, in sentences."""
 
     def risk_by(self, at: datetime) -> float | None:
         """Chance that any parameter is out of tolerance by a date; None where there is no trend."""

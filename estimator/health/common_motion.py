@@ -14,9 +14,10 @@ x is the generalised least squares estimate from the sensors that agree; what is
 covariance M·C·Mᵀ, M = I − A·(AᵀVA)⁻¹AᵀV, V the inverse of C over the sensors that agree and zero elsewhere. A sensor
 that is left out has no part in x: its drift does not smear into the others, nor the common part into it.
 
-Sensors of a healthy block wander a little, each on its own, often by more than a good stand's uncertainty. V is
-therefore of C + τ²·1, τ a tenth of the tolerance: that much alone counts as nothing. If then no majority agrees, a
-fifth is tried. x is as uncertain as C + τ²·1 makes it; what is left was measured with C.
+Sensors of a healthy block wander a little, each on its own, often by more than a good stand's uncertainty. Who moved is
+asked with C + τ²·1, τ the smallest part of the tolerance, up to a fifth, with which a majority agrees: a drift is left
+out while it is small. x is then taken with τ a tenth of the tolerance at least, and is as uncertain as that makes it;
+what is left was measured with C.
 
 Left out is, one after another, the sensor whose own change raises the likelihood most, while twice the gain of the log
 likelihood, (Eᵀ·W·y)ᵀ(EᵀWE)⁻¹(EᵀWy) with W = V − VA(AᵀVA)⁻¹AᵀV (chi-square with as many degrees of freedom as the
@@ -42,8 +43,10 @@ SEPARATED, TOO_FEW, UNCLEAR = "separated", "too-few-sensors", "unclear"
 LEVEL = 0.001
 RIVAL = 2 * np.log(100)
 """A rival explanation whose χ² is higher by less than this (likelihood a hundredth) is not ruled out."""
-SCATTERS = (0.1, 0.2)
-"""τ as parts of the tolerance."""
+SCATTERS = (0.0, 0.025, 0.05, 0.1, 0.2)
+"""τ as parts of the tolerance, in the order tried."""
+NOTHING = 0.1
+"""What a sensor may do on its own without anybody's concern, part of the tolerance."""
 FEWEST = {AXES: 4, SCALES: 3}
 """Sensors that it takes to tell a common change from a single one."""
 PARALLEL = 1e-3
@@ -215,7 +218,7 @@ def _split(kind: str, quantity: str, changes: _Changes | None, tolerance: float,
     agreed = next(((some, out) for some in tried if (out := _moved(some)) is not None), None)
     if agreed is None:
         return Split(_nothing(kind, quantity, UNCLEAR, changes.names), {})
-    changes, out = agreed
+    changes, out = replace(changes, scatter=max(agreed[0].scatter, NOTHING * tolerance)), agreed[1]
     inside = [i for i in range(len(changes.names)) if i not in out]
     gain = _fit(changes, inside).gain
     covariance = gain @ changes.covariance @ gain.T

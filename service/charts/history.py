@@ -8,8 +8,17 @@ from typing import Any
 import altair as alt
 
 from service.charts import DATA_FORM, HIGH, LEFT, LOW, RIGHT, UNIT, ChartSet, Panel, filled, padded, specification
+from service.charts.forecast import (
+    Trends,
+    forecast_data,
+    forecast_dates,
+    forecast_edges,
+    forecast_layers,
+    trends_by_place,
+)
 from service.charts.tracks import Track, TrackPoint
 from service.flag_records import Note
+from service.outlook import ParameterTrend
 from service.records import Service
 from service.verdicts import CONDITIONS, FIT, NOT_JUDGED, REFERENCE
 from service.words import day_of
@@ -17,18 +26,24 @@ from service.words import day_of
 HEIGHT = 150
 
 
-def history_charts(tracks: Sequence[Track], services: Sequence[Service], notes: Sequence[Note] = ()) -> ChartSet:
+def history_charts(
+    tracks: Sequence[Track],
+    services: Sequence[Service],
+    notes: Sequence[Note] = (),
+    trends: Sequence[ParameterTrend] = (),
+) -> ChartSet:
     """The panels of one parameter; every track has the same parameter and unit."""
-    span = _span(tracks)
+    known = trends_by_place(trends)
+    span = _span(tracks, known)
     return ChartSet(
         name=tracks[0].name,
         heading=tracks[0].parameter,
-        spec=_filled(tracks, span),
-        panels=tuple(_panel(track, services, notes, span) for track in tracks),
+        spec=_filled(tracks, span, known),
+        panels=tuple(_panel(track, services, notes, span, known) for track in tracks),
     )
 
 
-def _panel(track: Track, services: Sequence[Service], notes: Sequence[Note], span: list[str]) -> Panel:
+def _panel(track: Track, services: Sequence[Service], notes: Sequence[Note], span: list[str], trends: Trends) -> Panel:
     return Panel(
         title=track.sensor,
         description=track.points[-1].text,
@@ -36,6 +51,7 @@ def _panel(track: Track, services: Sequence[Service], notes: Sequence[Note], spa
         datasets={
             DATA_FORM: [_point(p) for p in track.points if p.shown is not None],
             "limits": _limits(track, span),
+            **forecast_data(track, trends, _iso, _short),
             "services": [{"t": _iso(s.at), "what": s.kind, "note": s.note} for s in services],
             "notes": [{"t": _iso(n.at), "date": day_of(n.at), "note": n.text} for n in notes],
         },
@@ -73,8 +89,8 @@ def _short(value: float | None) -> float | None:
     return None if value is None else float(f"{value:.6g}")
 
 
-def _filled(tracks: Sequence[Track], span: list[str]) -> dict[str, Any]:
-    low, high = _range(tracks)
+def _filled(tracks: Sequence[Track], span: list[str], trends: Trends) -> dict[str, Any]:
+    low, high = _range(tracks, trends)
     values = {UNIT: tracks[0].unit.label, LEFT: span[0], RIGHT: span[1], LOW: low, HIGH: high}
     found: dict[str, Any] = filled(_spec(), values)
     return found
@@ -94,6 +110,7 @@ def _spec() -> dict[str, Any]:
             bounds.mark_rule(color="var(--tolerance)", strokeDash=[5, 3]).encode(y="hi:Q"),
             bounds.mark_rule(color="var(--tolerance)", strokeDash=[5, 3]).encode(y="lo:Q"),
             bounds.mark_rule(color="var(--muted)", strokeWidth=1).encode(y="ref:Q"),
+            *forecast_layers(x),
             _breaks(services),
             _remarks(notes),
             base.mark_area(color="var(--accent)", opacity=0.18).encode(y=y, y2="hi:Q", detail="epoch:N")
@@ -153,14 +170,14 @@ def _marks(base: alt.Chart, y: alt.Y) -> alt.Chart:
     return chart
 
 
-def _span(tracks: Sequence[Track]) -> list[str]:
+def _span(tracks: Sequence[Track], trends: Trends) -> list[str]:
     """One stretch of time for all sensors, so that what happened together stands in line."""
-    dates = [p.at for track in tracks for p in track.points]
+    dates = [p.at for track in tracks for p in track.points] + forecast_dates(tracks, trends)
     air = (max(dates) - min(dates)) * 0.04 or timedelta(days=1)
     return [_iso(min(dates) - air), _iso(max(dates) + air)]
 
 
-def _range(tracks: Sequence[Track]) -> list[float]:
+def _range(tracks: Sequence[Track], trends: Trends) -> list[float]:
     """One range for all sensors: which of them stands out is then seen at a glance."""
     edges = [
         edge
@@ -169,4 +186,5 @@ def _range(tracks: Sequence[Track]) -> list[float]:
         for edge in (p.shown, p.lower, p.upper, p.limit_lower, p.limit_upper)
         if edge is not None
     ]
+    edges += forecast_edges(tracks, trends)
     return padded(min(edges), max(edges)) if edges else [-1.0, 1.0]

@@ -5,15 +5,19 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 
 import numpy as np
+from numpy.typing import NDArray
 
-from estimator.health.forecast import AHEAD, RISK_LEVEL, reach
+from estimator.health.forecast import AHEAD, RISK_LEVEL, band, reach
 from estimator.health.prognosis import Outlook, Prognosis, Track, prognosis
 from estimator.session import comparable
-from service.outlook import ParameterTrend, RiskPoint, UnitOutlook
+from service.outlook import FanPoint, ParameterTrend, RiskPoint, UnitOutlook
 from service.storage.queries.outlooks import ChangeRow, ReferenceRow
 from service.words import PARAMETER_NAMES, day_of, month_of
 
 YEAR = timedelta(days=365.25)
+FAN_AHEAD = np.linspace(0.0, 1.0, 6)
+"""Years after the last session for which a trend's bounds are drawn."""
+FAN_LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 
 
 @dataclass(frozen=True)
@@ -55,10 +59,7 @@ def forecast(
     dated = [_track(rows, reference) for rows, reference in groups.values()]
     tracks, dates = tuple(track for track, _ in dated), tuple(at for _, at in dated)
     found = prognosis(tracks) if tracks else None
-    told = tuple(
-        _trend(key, track, at, outlook)
-        for key, track, at, outlook in zip(groups, tracks, dates, found.outlooks if found else (), strict=True)
-    )
+    told = () if found is None else _trends(tuple(groups), tracks, dates, found)
     outlook = _unit(serial, told, found, max((at[-1] for at in dates), default=None), last, since, longest_days)
     return Forecast(outlook, tuple(groups), tracks, dates, found)
 
@@ -95,7 +96,19 @@ def _track(rows: Sequence[ChangeRow], reference: ReferenceRow) -> tuple[Track, t
     return track, tuple(at for at, _, _ in points)
 
 
-def _trend(key: TrackKey, track: Track, dates: Sequence[datetime], found: Outlook) -> ParameterTrend:
+def _trends(
+    keys: Sequence[TrackKey], tracks: Sequence[Track], dates: Sequence[tuple[datetime, ...]], found: Prognosis
+) -> tuple[ParameterTrend, ...]:
+    ahead = np.tile(FAN_AHEAD, (len(found.trends.rate), 1))
+    fans = band(found.trends, ahead, FAN_LEVELS).quantiles
+    parts = zip(keys, tracks, dates, found.outlooks, fans, strict=False)  # the axes' second series have no fan
+    return tuple(_trend(*part) for part in parts)
+
+
+def _trend(
+    key: TrackKey, track: Track, dates: Sequence[datetime], found: Outlook, fan: NDArray[np.float64]
+) -> ParameterTrend:
+    points = zip(FAN_AHEAD, fan.T * track.tolerance, strict=True)
     return ParameterTrend(
         sensor=key.sensor,
         parameter=key.parameter,
@@ -110,6 +123,8 @@ def _trend(key: TrackKey, track: Track, dates: Sequence[datetime], found: Outloo
         population_z=None,
         kind=key.kind,
         tolerance=track.tolerance,
+        since=dates[found.steps[-1]] if found.steps else dates[0],
+        fan=tuple(FanPoint(dates[-1] + float(h) * YEAR, *(float(f"{q:.5g}") for q in at)) for h, at in points),
     )
 
 

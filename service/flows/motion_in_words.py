@@ -34,10 +34,9 @@ def is_significant(motion: CommonMotion) -> bool:
 def _line(motion: CommonMotion, coverage: float, whose: str) -> MotionLine | None:
     if motion.state != SEPARATED:
         return MotionLine("none", _undivided(motion, whose))
-    alone = _alone(motion)
     if is_significant(motion):
-        return MotionLine("undecidable", f"{_together(motion, coverage, whose)}{alone}")
-    return MotionLine("none", alone.strip()) if alone else None
+        return MotionLine("undecidable", f"{_together(motion, coverage, whose)}{_alone(motion)}")
+    return None
 
 
 def _together(motion: CommonMotion, coverage: float, whose: str) -> str:

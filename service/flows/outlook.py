@@ -10,9 +10,11 @@ from datetime import UTC, datetime
 from estimator.health.population import standing
 from service.errors import NotFoundError
 from service.flows.forecast import forecast
+from service.flows.motion_in_words import motions_in_words
 from service.outlook import ParameterTrend, UnitOutlook
 from service.storage import Storage
 from service.storage.store import Store
+from service.units import COVERAGE
 
 END_OF_TIME = datetime(9999, 1, 1, tzinfo=UTC)
 
@@ -40,6 +42,12 @@ def outlook_of(store: Store, serial: str, now: datetime) -> UnitOutlook:
     return next(outlook for outlook in compared(others, now) if outlook.serial == serial)
 
 
+def own_outlook(store: Store, serial: str, now: datetime) -> UnitOutlook | None:
+    """One unit's outlook, not set against the others of its type; None before a session was judged."""
+    own = store.outlooks.of_unit(serial)
+    return None if own is None else replace(own, overdue=own.due is not None and own.due < now)
+
+
 def outlooks_of_fleet(store: Store, now: datetime) -> tuple[UnitOutlook, ...]:
     """Every unit's outlook within a transaction, in one query."""
     return compared(store.outlooks.every(), now)
@@ -49,15 +57,17 @@ def refresh_outlook(store: Store, serial: str) -> None:
     """Works out a unit's outlook again from the sessions since its last break; within the transaction that writes."""
     unit = store.units.key(serial)
     since, _ = store.services.around(unit, END_OF_TIME)
+    last = store.outlooks.last_calibration(unit)
     found = forecast(
         serial,
         store.outlooks.changes(unit, since),
         store.outlooks.references(unit, since),
-        store.outlooks.last_calibration(unit),
+        None if last is None else last[1],
         since,
         store.unit_types.of_unit(serial).maximum_interval_days,
     )
-    store.outlooks.put(unit, found.outlook)
+    together = () if last is None else motions_in_words(store.sessions.motions(last[0]), COVERAGE)
+    store.outlooks.put(unit, replace(found.outlook, together=tuple(line.text for line in together)))
 
 
 def nothing_known(serial: str) -> UnitOutlook:

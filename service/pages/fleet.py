@@ -5,10 +5,14 @@ from dataclasses import dataclass
 from datetime import datetime
 from urllib.parse import urlencode
 
+from service.flows.standouts import Standout, standouts
+from service.outlook import UnitOutlook
 from service.records import FleetCondition, UnitSummary
+from service.stand_records import StandCondition
 from service.verdicts import REFERENCE, UNDECIDED, Condition, condition_of
 
 PAGE_SIZE = 50
+MOST_STANDOUTS = 6
 BAR_LIMIT = 150.0
 """The margin bar ends at one and a half tolerances, per cent."""
 
@@ -53,6 +57,9 @@ class FleetRow:
     simulated: bool
     flags: str
     """``2 flags``; empty where none is open."""
+    due: datetime | None
+    """Of the next calibration."""
+    overdue: bool
 
 
 @dataclass(frozen=True)
@@ -78,6 +85,12 @@ class FleetPage:
     simulated: int
     flags: str
     """How many are open on all units together, in words; empty where none is."""
+    stands: tuple[StandCondition, ...]
+    """That shift every unit measured on them."""
+    standouts: tuple[Standout, ...]
+    """Units and lots that drift unlike the others."""
+    overdue: str
+    """How many units are overdue, in words; empty where none is."""
 
     @property
     def first(self) -> int:
@@ -90,16 +103,28 @@ class FleetPage:
         return self.first + len(self.rows) - 1
 
 
-def fleet_page(condition: FleetCondition, units: Sequence[UnitSummary], more: bool, view: FleetView) -> FleetPage:
+def fleet_page(
+    condition: FleetCondition,
+    units: Sequence[UnitSummary],
+    more: bool,
+    view: FleetView,
+    now: datetime,
+    outlooks: Sequence[UnitOutlook] = (),
+    stands: Sequence[StandCondition] = (),
+) -> FleetPage:
     """One page of units, worst first; ``more`` when there is a next one."""
+    overdue = sum(outlook.overdue for outlook in outlooks)
     return FleetPage(
         view=view,
         tiles=tuple(_tile(condition_of(v), n, view) for v, n in reversed(condition.verdicts.items())),
-        rows=tuple(map(_row, units)),
+        rows=tuple(_row(unit, now) for unit in units),
         total=condition.units,
         more=more,
         simulated=condition.simulated,
         flags=flags_in_words(condition.flags),
+        stands=tuple(stand for stand in stands if stand.has_shifted),
+        standouts=standouts(outlooks)[:MOST_STANDOUTS],
+        overdue=f"{overdue} unit{'' if overdue == 1 else 's'} overdue for calibration." if overdue else "",
     )
 
 
@@ -118,7 +143,7 @@ def worst_in_words(unit: UnitSummary) -> str:
     return f"{unit.worst_sensor or ''} {unit.worst_parameter or ''}".strip()
 
 
-def _row(unit: UnitSummary) -> FleetRow:
+def _row(unit: UnitSummary, now: datetime) -> FleetRow:
     condition = condition_of(unit.verdict, is_reference=unit.is_reference)
     return FleetRow(
         serial=unit.serial,
@@ -132,6 +157,8 @@ def _row(unit: UnitSummary) -> FleetRow:
         sessions=unit.sessions,
         simulated=unit.simulated,
         flags=flags_in_words(unit.flags),
+        due=unit.due,
+        overdue=unit.due is not None and unit.due < now,
     )
 
 

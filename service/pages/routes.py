@@ -13,7 +13,9 @@ from service.flows.fleet import fleet_overview
 from service.flows.fleet_condition import fleet_condition
 from service.flows.found_and_left import found_and_left
 from service.flows.history import recent_history
+from service.flows.outlook import outlooks_of_fleet, own_outlook
 from service.flows.session_report import session_report
+from service.flows.stands import stand_conditions
 from service.flows.unit_report import unit_report
 from service.flows.upload import upload
 from service.pages.fleet import PAGE_SIZE, FleetView, fleet_page
@@ -40,6 +42,7 @@ router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 def show_fleet(
     request: Request,
     store: Reading,
+    now: Now,
     q: Annotated[str, Query(max_length=200, pattern=r"^[^\x00]*$")] = "",
     condition: str = "",
     page: Annotated[int, Query(ge=1, le=1_000_000)] = 1,
@@ -49,7 +52,9 @@ def show_fleet(
     view = FleetView(q.strip(), verdict or "", page)
     units = fleet_overview(store, verdict=verdict, text=view.text or None, page=page, limit=PAGE_SIZE)
     after = fleet_overview(store, verdict=verdict, text=view.text or None, page=page * PAGE_SIZE + 1, limit=1)
-    return render(request, "fleet.html", fleet_page(fleet_condition(store), units, bool(after), view))
+    outlooks, stands = outlooks_of_fleet(store, now), stand_conditions(store)
+    shown = fleet_page(fleet_condition(store), units, bool(after), view, now, outlooks, stands)
+    return render(request, "fleet.html", shown)
 
 
 @router.get("/units/{serial:path}")
@@ -65,6 +70,7 @@ def show_unit(request: Request, store: Reading, settings: SettingsOf, now: Now, 
             flag_list(store, unit=serial, limit=FLAG_LIMIT),
             store.notes.of_unit(serial),
             found_and_left(store, report.unit_type, report.sessions, report.services, settings.coverage_factor),
+            own_outlook(store, serial, now),
         ),
     )
 

@@ -8,8 +8,10 @@ from service.charts.history import history_charts
 from service.charts.tracks import Track, TrackPoint, tolerance_text, tracks_of
 from service.flag_records import Flag, Note
 from service.flows.found_and_left import FoundAndLeft
+from service.outlook import ParameterTrend, UnitOutlook
 from service.pages.events import KINDS, Event, StageTable, events_of, stage_table
 from service.pages.flags import FlagCard, flag_cards
+from service.pages.outlook import NextCalibration, next_calibration
 from service.records import HistoryPoint, Service, StoredSession, UnitReport
 from service.verdicts import NOT_JUDGED, Condition, condition_of
 from service.words import day_of
@@ -83,6 +85,8 @@ class UnitPage:
     """None where the unit was never marked as found."""
     kinds: tuple[tuple[str, str], ...]
     """What can be done to a unit: identifier and name."""
+    next: NextCalibration | None
+    """None before a session was judged."""
 
 
 def unit_page(
@@ -91,15 +95,17 @@ def unit_page(
     flags: Sequence[Flag] = (),
     notes: Sequence[Note] = (),
     pair: FoundAndLeft | None = None,
+    outlook: UnitOutlook | None = None,
 ) -> UnitPage:
-    """The page of a unit with its history, flags and notes, as found and as left."""
+    """The page of a unit with its history, flags and notes, as found and as left, and when it must come back."""
+    trends = () if outlook is None else outlook.trends
     valid = tuple(note for note in notes if note.withdrawal is None)
     groups = tracks_of(history, report.services)
     kinds = {point.kind for point in history}
     return UnitPage(
         report=report,
         condition=condition_of(report.summary.verdict, is_reference=report.summary.is_reference),
-        sections=tuple(_section(tracks, report.services, valid, several=len(kinds) > 1) for tracks in groups),
+        sections=tuple(_section(tracks, report.services, valid, trends, several=len(kinds) > 1) for tracks in groups),
         sessions=tuple(SessionLine(s, condition_of(s.verdict, is_reference=s.is_reference)) for s in report.sessions),
         reference=_reference(report),
         drawn=len({point.session for point in history}),
@@ -107,6 +113,7 @@ def unit_page(
         events=events_of(report.services, notes),
         stages=stage_table(pair),
         kinds=tuple(KINDS.items()),
+        next=None if outlook is None else next_calibration(outlook),
     )
 
 
@@ -119,7 +126,11 @@ def _reference(report: UnitReport) -> str:
 
 
 def _section(
-    tracks: Sequence[Track], services: Sequence[Service], notes: Sequence[Note], several: bool
+    tracks: Sequence[Track],
+    services: Sequence[Service],
+    notes: Sequence[Note],
+    trends: Sequence[ParameterTrend],
+    several: bool,
 ) -> ParameterSection:
     parameter = tracks[0].parameter
     kind = tracks[0].name.rpartition("-")[2]
@@ -132,7 +143,7 @@ def _section(
         unit=tracks[0].unit.label,
         tolerance=tolerance_text(tracks[0]),
         worst=min(judged, key=lambda c: c.rank, default=NOT_JUDGED),
-        charts=history_charts(tracks, services, notes),
+        charts=history_charts(tracks, services, notes, trends),
         sensors=tuple(track.sensor for track in tracks),
         rows=_rows(tracks),
     )

@@ -4,7 +4,7 @@ from dataclasses import asdict
 from datetime import datetime
 from typing import Any
 
-from service.outlook import ParameterTrend, RiskPoint, UnitOutlook
+from service.outlook import FanPoint, ParameterTrend, RiskPoint, UnitOutlook
 
 TIMES = ("due", "reach_50", "reach_90")
 
@@ -28,13 +28,15 @@ def outlook_from_dict(document: dict[str, Any]) -> UnitOutlook:
     own = {**document, **{name: _time(document[name]) for name in TIMES}}
     own["trends"] = tuple(_trend(entry) for entry in document["trends"])
     own["risk"] = tuple(RiskPoint(datetime.fromisoformat(p["at"]), p["risk"]) for p in document["risk"])
+    own["together"] = tuple(document["together"])
     return UnitOutlook(**own)
 
 
 def _trend(entry: dict[str, Any]) -> ParameterTrend:
-    times = {name: _time(entry[name]) for name in ("reach_50", "reach_90")}
+    times = {name: _time(entry[name]) for name in ("reach_50", "reach_90", "since")}
     steps = tuple(datetime.fromisoformat(at) for at in entry["step_dates"])
-    return ParameterTrend(**{**entry, **times, "step_dates": steps})
+    fan = tuple(FanPoint(**{**point, "at": datetime.fromisoformat(point["at"])}) for point in entry["fan"])
+    return ParameterTrend(**{**entry, **times, "step_dates": steps, "fan": fan})
 
 
 def _time(text: str | None) -> datetime | None:

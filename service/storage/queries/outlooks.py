@@ -61,10 +61,13 @@ class Outlooks(Queries):
         found = self._session.execute(query.where(*_within(unit, since)).order_by(SessionRow.started_at))
         return tuple(ReferenceRow(*row) for row in found)
 
-    def last_calibration(self, unit: int) -> datetime | None:
-        """When the unit was last measured, recordings in service apart."""
-        newest = select(SessionRow.started_at).where(SessionRow.unit_id == unit, SessionRow.programme != IN_SERVICE)
-        return self._session.scalar(newest.order_by(SessionRow.started_at.desc()).limit(1))
+    def last_calibration(self, unit: int) -> tuple[str, datetime] | None:
+        """The session that last measured the unit, recordings in service apart, and when."""
+        newest = select(SessionRow.id, SessionRow.started_at).where(
+            SessionRow.unit_id == unit, SessionRow.programme != IN_SERVICE
+        )
+        found = self._session.execute(newest.order_by(SessionRow.started_at.desc()).limit(1)).one_or_none()
+        return None if found is None else (found[0], found[1])
 
     def put(self, unit: int, outlook: UnitOutlook) -> None:
         """Rewrites a unit's outlook."""

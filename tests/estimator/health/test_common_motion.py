@@ -105,6 +105,18 @@ def test_sensors_that_wander_a_little_still_agree_on_a_large_turn() -> None:
     assert np.mean(errors) < 3 + 4 * np.sqrt(6 / 60)
 
 
+def test_a_drift_within_its_tolerance_is_not_shared_out_among_the_others() -> None:
+    """One of six wandering axes is 12 arcsec away, less than its tolerance of 20."""
+    rng, sizes = np.random.default_rng(10), []
+    for _ in range(60):
+        moved = tilted(6, 1, 12.0)
+        moved[:, 3:] += 0.7 * ARCSEC * rng.standard_normal((6, 2))
+        now, then = measured(6, rng, moved), block(axes_of(6), _errors(6, rng), covariance_of(6), np.zeros(3))
+        left = common_motion(now, then, {(ACCELEROMETER, "axis"): 20 * ARCSEC})[0].left["A2"]
+        sizes.append(np.hypot(*left.vector) / ARCSEC)
+    assert np.median(sizes) == pytest.approx(12, abs=1)
+
+
 def test_three_axes_cannot_tell_who_moved_and_are_judged_whole() -> None:
     found = split(3, np.random.default_rng(4), tilted(3, 1, 30.0))["axes"]
     assert (found.motion.state, found.left) == ("too-few-sensors", {})

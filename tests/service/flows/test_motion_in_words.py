@@ -27,9 +27,12 @@ def test_a_turn_names_size_axis_and_cause() -> None:
 def test_a_turn_that_noise_explains_is_not_mentioned() -> None:
     still = CommonMotion(**{**vars(TURNED), "p_value": 0.2})
     assert said(still) == []
-    assert said(CommonMotion(**{**vars(still), "left_out": ("A2", "A5")})) == [
-        "The input axes of A2 and A5 moved on their own."
-    ]
+    assert said(CommonMotion(**{**vars(still), "left_out": ("A2", "A5")})) == []
+
+
+def test_sensors_that_did_not_turn_with_the_block_are_named() -> None:
+    text = said(CommonMotion(**{**vars(TURNED), "left_out": ("A2", "A5")}))[0]
+    assert text.endswith("The input axes of A2 and A5 moved on their own.")
 
 
 def test_a_common_factor_is_gravity_or_stand() -> None:

@@ -1,0 +1,104 @@
+"""When a unit must come back, in words: the date, why, what moves, and the risk of waiting."""
+
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from math import floor, log10
+
+from service.outlook import ParameterTrend, UnitOutlook
+from service.units import HARD, THIN, DeviationUnit, deviation_unit, in_words, signed
+from service.words import PARAMETER_NAMES, day_of
+
+LEVEL = 0.01
+"""Chance that any drift is claimed for a unit that has none."""
+WAITS = (timedelta(days=91), timedelta(days=182), timedelta(days=365))
+
+
+@dataclass(frozen=True)
+class Wait:
+    """The risk of waiting until a day."""
+
+    day: str
+    risk: str
+
+
+@dataclass(frozen=True)
+class NextCalibration:
+    """What a unit's page says of its future."""
+
+    tone: str
+    headline: str
+    reason: str
+    moving: tuple[str, ...]
+    """Which parameters drift or changed suddenly."""
+    together: tuple[str, ...]
+    """What all sensors did together."""
+    waits: tuple[Wait, ...]
+
+
+def next_calibration(outlook: UnitOutlook) -> NextCalibration:
+    """The words of an outlook."""
+    return NextCalibration(
+        tone="fail" if outlook.overdue else "reference",
+        headline=_headline(outlook),
+        reason=outlook.reason,
+        moving=_moving(outlook.trends),
+        together=outlook.together,
+        waits=_waits(outlook),
+    )
+
+
+def due_in_words(due: datetime | None) -> str:
+    """``14 Mar 2027``; a dash without a date."""
+    return "–" if due is None else day_of(due)
+
+
+def _headline(outlook: UnitOutlook) -> str:
+    if outlook.due is None:
+        return "Next calibration: not known"
+    if outlook.overdue:
+        return f"Calibration overdue since {day_of(outlook.due)}"
+    return f"Next calibration: {day_of(outlook.due)}"
+
+
+def drifts(trend: ParameterTrend, judged: int) -> bool:
+    """Whether a rate counts as a drift, at the level over all parameters of the unit."""
+    single: float = 1 - (1 - LEVEL) ** (1 / max(judged, 1))
+    return trend.significance < single
+
+
+def _moving(trends: tuple[ParameterTrend, ...]) -> tuple[str, ...]:
+    found = [_drift(trend) for trend in trends if drifts(trend, len(trends))]
+    found += [_jump(trend) for trend in trends if trend.step_dates]
+    return tuple(found) if found or not trends else ("No parameter drifts beyond what chance explains.",)
+
+
+def _drift(trend: ParameterTrend) -> str:
+    unit = deviation_unit(trend.kind, trend.parameter, abs(trend.rate_per_year))
+    a_year = DeviationUnit(f"{unit.label} a year", unit.factor)
+    rate = signed(trend.rate_per_year, 2 * trend.rate_sigma, a_year)
+    return f"{_place(trend)} drifts by {rate}; {in_words(trend.kind, trend.parameter, trend.tolerance)} are allowed."
+
+
+def _jump(trend: ParameterTrend) -> str:
+    days = " and ".join(day_of(at) for at in trend.step_dates)
+    return f"{_place(trend)} changed suddenly: first seen on {days}."
+
+
+def _place(trend: ParameterTrend) -> str:
+    return f"{trend.sensor} {PARAMETER_NAMES[trend.parameter]}"
+
+
+def _waits(outlook: UnitOutlook) -> tuple[Wait, ...]:
+    if outlook.due is None or not outlook.risk:
+        return ()
+    days = (outlook.due, *(outlook.due + later for later in WAITS))
+    return tuple(Wait(day_of(day), _percent(outlook.risk_by(day) or 0.0)) for day in days)
+
+
+def _percent(risk: float) -> str:
+    if risk < 0.001:
+        return f"below{HARD}0.1{THIN}%"
+    if risk > 0.99:
+        return f"above{HARD}99{THIN}%"
+    places = max(0, -floor(log10(100 * risk)))
+    return f"{100 * risk:.{places}f}{THIN}%"

@@ -1,0 +1,107 @@
+"""When a unit must come back, in words and in charts; who stands out of the fleet."""
+
+from dataclasses import replace
+from datetime import timedelta
+
+from service.charts.history import history_charts
+from service.charts.tracks import tracks_of
+from service.flows.standouts import standouts
+from service.outlook import FanPoint, ParameterTrend, RiskPoint, UnitOutlook
+from service.pages.fleet import FleetView, fleet_page
+from service.pages.outlook import next_calibration
+from service.records import FleetCondition, Verdict
+from tests.service.pages.records import NOON, bias_point, unit_summary
+
+MICRO_G = 9.80665e-6
+YEAR = timedelta(days=365.25)
+DRIFT = ParameterTrend(
+    sensor="A1", parameter="bias", rate_per_year=12 * MICRO_G, rate_sigma=1.5 * MICRO_G, significance=1e-6,
+    step_dates=(), level=30 * MICRO_G, level_sigma=2 * MICRO_G, reach_50=NOON + 2 * YEAR, reach_90=NOON + YEAR,
+    population_z=None, kind="accelerometer", tolerance=50 * MICRO_G, since=NOON,
+    fan=tuple(FanPoint(NOON + k * YEAR, *(MICRO_G * (30 + 12 * k + d) for d in (-9, -4, 0, 4, 9))) for k in range(2)),
+)  # fmt: skip
+STILL = replace(DRIFT, sensor="A2", rate_per_year=0.0, significance=0.6)
+OUTLOOK = UnitOutlook(
+    serial="BA-017", due=NOON + YEAR, overdue=False, reason="A1 bias reaches its tolerance.", sensor="A1",
+    parameter="bias", reach_50=NOON + 2 * YEAR, reach_90=NOON + YEAR, risk_at_due=0.05, trends=(DRIFT, STILL),
+    unit_type="RA-6", risk=(RiskPoint(NOON, 0.0), RiskPoint(NOON + 2 * YEAR, 0.4)),
+)  # fmt: skip
+
+
+def test_the_headline_names_the_day_or_says_that_it_has_passed() -> None:
+    assert next_calibration(OUTLOOK).headline == "Next calibration: 1 Mar 2027"
+    assert next_calibration(replace(OUTLOOK, overdue=True)).headline == "Calibration overdue since 1 Mar 2027"
+
+
+def test_what_drifts_is_said_and_what_does_not_is_not() -> None:
+    assert next_calibration(OUTLOOK).moving == (
+        "A1 bias drifts by +12.0\u00a0±\u00a03.0\u202fµg a year; 50 µg are allowed.",
+    )
+    quiet = next_calibration(replace(OUTLOOK, trends=(STILL,))).moving
+    assert quiet == ("No parameter drifts beyond what chance explains.",)
+
+
+def test_a_sudden_change_is_dated() -> None:
+    jumped = replace(STILL, step_dates=(NOON,))
+    assert next_calibration(replace(OUTLOOK, trends=(jumped,))).moving == (
+        "A2 bias changed suddenly: first seen on 1 Mar 2026.",
+    )
+
+
+def test_the_risk_of_waiting_grows_with_the_date() -> None:
+    waits = next_calibration(OUTLOOK).waits
+    assert [wait.day for wait in waits] == ["1 Mar 2027", "31 May 2027", "30 Aug 2027", "29 Feb 2028"]
+    assert waits[0].risk == "20\u202f%"
+    assert next_calibration(replace(OUTLOOK, risk=())).waits == ()
+
+
+def test_a_chart_draws_the_trend_and_its_fan_in_people_s_units() -> None:
+    (tracks,) = tracks_of([bias_point(0, 0.0), bias_point(9, 30 * MICRO_G)], ())
+    data = history_charts(tracks, (), trends=(DRIFT, STILL)).panels[0].datasets
+    assert [point["y"] for point in data["fan"]] == [30.0, 42.0]
+    assert data["fan"][1]["hi9"] == 51.0
+    assert [point["y"] for point in data["trend"]] == [30.0, 30.0]
+
+
+def test_a_chart_without_a_trend_draws_none() -> None:
+    (tracks,) = tracks_of([bias_point(0, 0.0)], ())
+    data = history_charts(tracks, ()).panels[0].datasets
+    assert (data["fan"], data["trend"]) == ([], [])
+
+
+def test_the_fleet_page_marks_what_is_overdue() -> None:
+    condition = FleetCondition(units=2, verdicts=dict.fromkeys(Verdict, 0), simulated=0)
+    units = [replace(unit_summary("U1"), due=NOON - YEAR), replace(unit_summary("U2"), due=NOON + YEAR)]
+    late = replace(OUTLOOK, overdue=True)
+    page = fleet_page(condition, units, False, FleetView(), NOON, (late, OUTLOOK))
+    assert [row.overdue for row in page.rows] == [True, False]
+    assert page.overdue == "1 unit overdue for calibration."
+
+
+def fleet_of(count: int) -> list[UnitOutlook]:
+    """Units of one type whose rates differ a little, in two lots."""
+    return [
+        replace(
+            OUTLOOK, serial=f"U{i}", lot="L1" if i % 2 else "L2",
+            trends=(replace(STILL, rate_per_year=MICRO_G * (i % 5 - 2), population_z=0.3 * (i % 5 - 2)),),
+        )
+        for i in range(count)
+    ]  # fmt: skip
+
+
+def test_a_unit_that_drifts_unlike_the_others_is_named() -> None:
+    wild = replace(OUTLOOK, serial="W", trends=(replace(DRIFT, population_z=14.0),))
+    found = standouts([*fleet_of(20), wild])
+    assert [(s.unit, s.text) for s in found] == [
+        ("W", "A1 bias drifts by 24 % of its tolerance a year, unlike the other units of its type.")
+    ]
+
+
+def test_a_lot_that_drifts_unlike_the_others_is_named() -> None:
+    lot = [
+        replace(o, serial=f"X{i}", lot="L9", trends=(replace(o.trends[0], rate_per_year=9 * MICRO_G),))
+        for i, o in enumerate(fleet_of(6))
+    ]
+    assert [s.text for s in standouts([*fleet_of(24), *lot])] == [
+        "Lot L9 of RA-6: bias drifts unlike that of the other units."
+    ]
