@@ -369,6 +369,8 @@ class ModelRevision:
     accepted_by: str
     note: str
     accepted_at: datetime
+    withdraws: int | None = None
+    """The revision that this one withdraws; None for an accepted cause."""
 
 
 @dataclass(frozen=True)

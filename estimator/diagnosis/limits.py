@@ -39,14 +39,12 @@ def limits(state: Search, catalogue: Sequence[Cause]) -> tuple[Limit, ...]:
 def limit(state: Search, cause: Cause, traces: Traces | None) -> Limit:
     """The limit of one cause; ``traces`` None where the session lacks what the cause needs."""
     if isinstance(cause, Correction):
-        return Limit(cause.identifier, (), (), "")
+        lacking = missing(state, cause)
+        return Limit(cause.identifier, None if lacking else (), (), lacking and f"the session lacks {lacking}")
     if not isinstance(cause, Signature):
         return excess_limit(state, cause)
     if traces is None:
-        missing = sorted(n for n in cause.needs if not state.baseline.setting.has(n))
-        if state.between is None and cause.between:
-            missing.append("history")
-        lacking = ", ".join(missing) or "a sensor it acts on"
+        lacking = missing(state, cause) or "a sensor it acts on"
         return Limit(cause.identifier, None, cause.units, f"the session lacks {lacking}")
     norms = np.linalg.norm(traces.columns, axis=1)
     visible = (norms > INVISIBLE * traces.raw) & (traces.raw > 0)
@@ -56,6 +54,14 @@ def limit(state: Search, cause: Cause, traces: Traces | None) -> Limit:
     need = required(1, LEVEL / (places * state.families))
     worst = [float(need / n[v].min()) if v.any() else float("nan") for n, v in zip(norms.T, visible.T, strict=True)]
     return Limit(cause.identifier, tuple(w for w in worst if np.isfinite(w)), cause.units, "")
+
+
+def missing(state: Search, cause: Cause) -> str:
+    """What a cause needs and the session lacks."""
+    lacking = sorted(n for n in cause.needs if not state.baseline.setting.has(n))
+    if state.between is None and "history" in cause.needs:
+        lacking.append("history")
+    return ", ".join(lacking)
 
 
 def excess_limit(state: Search, cause: Cause) -> Limit:

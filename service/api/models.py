@@ -4,14 +4,22 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from service.api.schemas.fields import Limit, Page, Text, next_page
+from service.api.schemas.fields import Limit, Number, Page, Text, next_page
+from service.api.schemas.flags import Handling
 from service.api.schemas.models import ModelPage, ModelSchema
 from service.api.schemas.problem import errors
-from service.dependencies import Reading
+from service.dependencies import Now, Reading, StorageOf
 from service.flows.model_revisions import model_revisions
+from service.flows.withdraw_model import withdraw_model
 from service.records import Scope
 
 router = APIRouter(prefix="/models", tags=["models"])
+
+
+@router.post("/{id}/withdraw", status_code=201, responses=errors(400, 404, 409, 422))
+def withdraw_cause(id: Number, handling: Handling, storage: StorageOf, now: Now) -> ModelSchema:
+    """Take an accepted cause out of the model: a revision of its own; sessions from now on are calibrated without."""
+    return ModelSchema.model_validate(withdraw_model(storage, id, handling.by, handling.why, now))
 
 
 @router.get("", responses=errors(422))

@@ -8,6 +8,7 @@ from estimator.session import AS_LEFT, CALIBRATIONS, IN_SERVICE, CalibrationSess
 from service.flows.diagnose import VERSION, diagnose
 from service.flows.found_and_left import FoundAndLeft, found_and_left
 from service.flows.history import recent_history
+from service.flows.model_in_force import in_force
 from service.flows.session_report import session_report
 from service.ingest import read_upload
 from service.records import (
@@ -74,7 +75,7 @@ def certified_session(storage: Storage, id: str, now: datetime) -> CertifiedSess
             reference=_reference(store, stored),
             pair=_pair(store, report),
             diagnosis=diagnosis,
-            revisions=tuple(r for r in store.models.of_session(id) if r.id <= stored.revision),
+            revisions=in_force([r for r in store.models.of_session(id) if r.id <= stored.revision]),
             services=tuple(s for s in store.services.of_unit(stored.unit) if s.at < until),
             history=recent_history(store, stored.unit, MOST_POINTS, until=until),
             software=VERSION,

@@ -84,7 +84,7 @@ def task_of(store: Store, id: str) -> Task:
 def diagnose(storage: Storage, id: str, now: datetime) -> StoredDiagnosis:
     """The diagnosis of a session: the stored one, or a new one that is stored."""
     with storage.database.reading() as store:
-        known = store.diagnoses.get(id)
+        known = _known(store, id)
         if known is not None:
             return known
         task = task_of(store, id)
@@ -102,7 +102,7 @@ def diagnose_now_or_later(
 ) -> StoredDiagnosis | None:
     """The diagnosis of a session where it is there or quickly made; otherwise ``later`` is asked for it."""
     with storage.database.reading() as store:
-        known = store.diagnoses.get(id)
+        known = _known(store, id)
         if known is not None:
             return known
         is_quick = wait and task_of(store, id).is_quick
@@ -110,6 +110,13 @@ def diagnose_now_or_later(
         return diagnose(storage, id, now)
     later(id)
     return None
+
+
+def _known(store: Store, id: str) -> StoredDiagnosis | None:
+    """The stored diagnosis; None where there is none, or where an earlier version of the program failed to make it."""
+    found = store.diagnoses.get(id)
+    failed_before = found is not None and found.state is DiagnosisState.FAILED and found.estimator_version != VERSION
+    return None if failed_before else found
 
 
 def _made(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
@@ -178,4 +185,5 @@ def _verdict_after(storage: Storage, task: Task, session: CalibrationSession, fo
         if reference is None or reference == task.session.id:
             return None
         unit_type, known = store.unit_types.of_unit(session.unit), store.calibrations.get(reference)
-    return judge(session, found.calibration, known, unit_type, 2.0).verdict
+        factor = store.sessions.decisions(task.session.id)[0].coverage_factor
+    return judge(session, found.calibration, known, unit_type, factor).verdict

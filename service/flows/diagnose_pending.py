@@ -6,7 +6,7 @@ from datetime import datetime
 from threading import Event
 
 from service.errors import ServiceError
-from service.flows.diagnose import InProgress, diagnose
+from service.flows.diagnose import VERSION, InProgress, diagnose
 from service.storage import Storage
 
 BATCH = 50
@@ -21,7 +21,7 @@ def diagnose_pending(storage: Storage, clock: Callable[[], datetime], progress: 
     while not stop.is_set():
         try:
             with storage.database.reading() as store:
-                waiting = store.sessions.without_diagnosis(last, BATCH)
+                waiting = store.sessions.without_diagnosis(last, BATCH, VERSION)
         except ServiceError as fault:
             log.warning("pending diagnoses are left to their readers: %s", fault)
             return

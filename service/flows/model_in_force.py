@@ -11,9 +11,15 @@ from service.records import Model, ModelRevision
 from service.storage.store import Store
 
 
+def in_force(revisions: Sequence[ModelRevision]) -> tuple[ModelRevision, ...]:
+    """The accepted causes that were not withdrawn since."""
+    withdrawn = {r.withdraws for r in revisions}
+    return tuple(r for r in revisions if r.withdraws is None and r.id not in withdrawn)
+
+
 def model_of(revisions: Sequence[ModelRevision]) -> Model:
     """The model that revisions add up to; the same cause on the same sensors counts once."""
-    causes = dict.fromkeys((revision.cause, revision.sensors) for revision in revisions)
+    causes = dict.fromkeys((revision.cause, revision.sensors) for revision in in_force(revisions))
     return Model(max((revision.id for revision in revisions), default=0), tuple(causes))
 
 

@@ -8,6 +8,7 @@ from service.charts import ChartSet
 from service.charts.diagnosis import MOST_PANELS, Sides, diagnosis_charts
 from service.flows.diagnosis_in_words import listed
 from service.flows.finding_in_words import FindingView, chance, finding_view, in_words
+from service.flows.model_in_force import in_force
 from service.pages.gain import GainView, gain_view
 from service.pages.limits import LimitsView, limits_view
 from service.pages.residual_table import ResidualTable, residual_table
@@ -54,8 +55,10 @@ class RevisionView:
     revision: ModelRevision
     name: str
     subject: str
-    in_force: bool
-    """Whether the session's calibration already takes it into account."""
+    state: str
+    """What it is to this session's calibration."""
+    withdrawn: ModelRevision | None
+    """The revision that withdrew it."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +98,7 @@ def diagnosis_page(report: DiagnosisReport) -> DiagnosisPage:
         pending=found is None,
         findings=(), structures=(), charts=(), both_models=False, beta=False, left_out=0,
         residuals=None, gain=None, limits=None, notes=(),
-        revisions=tuple(_revision(r, session) for r in report.revisions),
+        revisions=tuple(_revision(r, session, report.revisions) for r in report.revisions if r.withdraws is None),
         scopes=_scopes(session),
         made="" if found is None else f"Made by estimator {found.estimator_version}",
     )  # fmt: skip
@@ -113,7 +116,7 @@ def _with_evidence(page: DiagnosisPage, report: DiagnosisReport, document: dict[
     assert after is not None
     named = [sensor for part in (*document["findings"], *document["structures"]) for sensor in part["sensors"]]
     sides = Sides(after.sensors, before, after.residuals if document["findings"] else None)
-    findings = tuple(finding_view(f, report.revisions) for f in document["findings"])
+    findings = tuple(finding_view(f, in_force(report.revisions)) for f in document["findings"])
     return replace(
         page,
         headline=_headline(page.headline, findings),
@@ -166,9 +169,12 @@ def _structures(structures: Sequence[dict[str, Any]]) -> tuple[StructureView, ..
     )
 
 
-def _revision(revision: ModelRevision, session: StoredSession) -> RevisionView:
+def _revision(revision: ModelRevision, session: StoredSession, known: Sequence[ModelRevision]) -> RevisionView:
     name = in_words(revision.cause) + (f" ({', '.join(revision.sensors)})" if revision.sensors else "")
-    return RevisionView(revision, name, f"{revision.scope} {revision.subject}", revision.id <= session.revision)
+    withdrawn = next((r for r in known if r.withdraws == revision.id), None)
+    holds = revision.id <= session.revision and not (withdrawn and withdrawn.id <= session.revision)
+    state = "calibrated with it" if holds else "calibrated without it" if withdrawn else "calibrated before it"
+    return RevisionView(revision, name, f"{revision.scope} {revision.subject}", state, withdrawn)
 
 
 def _scopes(session: StoredSession) -> tuple[tuple[str, str], ...]:

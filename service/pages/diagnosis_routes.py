@@ -3,7 +3,7 @@
 from typing import Annotated
 from urllib.parse import quote
 
-from fastapi import APIRouter, Form, Request
+from fastapi import APIRouter, Form, Path, Request
 from fastapi.responses import HTMLResponse, RedirectResponse
 
 from service.dependencies import DiagnoserOf, Now, Reading, SettingsOf, StorageOf
@@ -11,6 +11,7 @@ from service.flows.accept_model import accept_model
 from service.flows.diagnose import diagnose
 from service.flows.diagnosis_report import diagnosis_report
 from service.flows.recalibrate import recalibrate
+from service.flows.withdraw_model import withdraw_model
 from service.pages.diagnosis import diagnosis_page
 from service.pages.forms import NO_NUL, OWN_FORM, SEE_OTHER, Key
 from service.pages.render import render
@@ -38,6 +39,20 @@ def accept(
 ) -> RedirectResponse:
     """Accepts a named cause, and shows the models that concern the session."""
     accept_model(storage, diagnose(storage, id, now), NewModel(cause, scope, by, note), now)
+    return RedirectResponse(f"/sessions/{id}/diagnosis#models", SEE_OTHER)
+
+
+@router.post("/sessions/{id}/diagnosis/withdraw/{revision}", dependencies=OWN_FORM)
+def withdraw(
+    id: Key,
+    revision: Annotated[int, Path(ge=1, le=2**31 - 1)],
+    storage: StorageOf,
+    now: Now,
+    by: Annotated[str, Form(min_length=1, max_length=200, pattern=NO_NUL)],
+    why: Annotated[str, Form(min_length=1, max_length=2000, pattern=NO_NUL)],
+) -> RedirectResponse:
+    """Takes an accepted cause out of the model again, and shows the models that concern the session."""
+    withdraw_model(storage, revision, by, why, now)
     return RedirectResponse(f"/sessions/{id}/diagnosis#models", SEE_OTHER)
 
 

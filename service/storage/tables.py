@@ -222,7 +222,7 @@ class DiagnosisRow(Base):
 
 
 class ModelRow(Base):
-    """One cause that an engineer accepted into the model of a unit, a unit type or a stand; never changed."""
+    """One cause accepted into the model of a unit, a unit type or a stand, or withdrawn from it; never changed."""
 
     __tablename__ = "model_revisions"
     __table_args__ = (Index("ix_model_revisions_scope", "scope", "subject", "id"),)
@@ -236,6 +236,7 @@ class ModelRow(Base):
     accepted_by: Mapped[str]
     note: Mapped[str]
     accepted_at: Mapped[datetime]
+    withdraws: Mapped[int | None]
 
 
 class ConditionRow(Base):

@@ -11,13 +11,14 @@ from service.settings import Settings
 from tests.serving import http_client
 
 EXAMPLES = {"serial": "BA-017", "id": "3f9a0c5be1d24786aa10", "name": "hex"}
-NUMBERED = ("/api/v1/flags/", "/api/v1/notes/", "/api/v1/webhooks/")
+NUMBERED = ("/api/v1/flags/", "/api/v1/models/", "/api/v1/notes/", "/api/v1/webhooks/")
 """Where the id is a number."""
 NEEDS_NO_DATABASE = {"/healthz", "/metrics"}
 QUERIES = {"/api/v1/plan": {"unit_type": "RA-6"}}
 """What makes a route ask the database; a plan for a cone does not."""
 BODIES: dict[str, Any] = {
     "/api/v1/sessions/{id}/diagnosis/accept": {"cause": "bias-ramp", "scope": "unit", "by": "K. Ito"},
+    "/api/v1/models/{id}/withdraw": {"by": "K. Ito", "why": "seen in error"},
     "/api/v1/units/{serial}/services": {"kind": "repair"},
     "/api/v1/units/{serial}/notes": {"text": "dropped", "by": "K. Ito"},
     "/api/v1/notes/{id}/withdraw": {"by": "K. Ito", "why": "done"},

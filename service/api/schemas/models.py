@@ -72,7 +72,7 @@ class NewModelSchema(BaseModel):
 
 
 class ModelSchema(BaseModel):
-    """One accepted cause: a numbered revision of a model."""
+    """One accepted or withdrawn cause: a numbered revision of a model."""
 
     model_config = ConfigDict(from_attributes=True)
 
@@ -86,6 +86,7 @@ class ModelSchema(BaseModel):
     accepted_by: str = Field(description="Who accepted it.")
     note: str = Field(description="Why.")
     accepted_at: datetime = Field(description="When, UTC.")
+    withdraws: int | None = Field(description="The revision that this one withdraws; null for an accepted cause.")
 
 
 class ModelPage(BaseModel):

@@ -8,6 +8,7 @@ from estimator.causes.catalogue import cause
 from service.flag_records import Concern, Flag, Matter
 from service.flows.diagnosis_in_words import UNEXPLAINED, in_words, listed
 from service.flows.flagging.settle import Found, settle
+from service.flows.model_in_force import in_force
 from service.records import ModelRevision, StoredDiagnosis, StoredSession
 from service.storage.store import Store
 from service.words import day_of
@@ -26,7 +27,7 @@ def flag_diagnosis(store: Store, made: StoredDiagnosis, at: datetime) -> None:
         return
     unit = store.units.hold(session.unit)
     opened = tuple(flag for flag in store.flags.open_of(unit) if flag.matter in MATTERS)
-    concerns = tuple(_concerns(made.document, session, store.models.of_session(session.id)))
+    concerns = tuple(_concerns(made.document, session, in_force(store.models.of_session(session.id))))
     gone = GONE.format(day=day_of(session.started_at))
     clear = {flag.key: gone for flag in opened if _speaks_of(session, flag)}
     settle(store, unit, opened, Found(concerns, clear), session.id, at)

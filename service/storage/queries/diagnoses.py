@@ -4,7 +4,7 @@ import json
 import zlib
 from typing import Any
 
-from sqlalchemy import select
+from sqlalchemy import delete, select
 
 from service.records import DiagnosisState, DiagnosisSummary, StoredDiagnosis, Verdict
 from service.storage.queries.base import Queries
@@ -15,7 +15,13 @@ class Diagnoses(Queries):
     """Diagnoses by session."""
 
     def add_once(self, found: StoredDiagnosis) -> bool:
-        """Stores the diagnosis of a session, and returns whether it is new; the first one stays."""
+        """Stores the diagnosis of a session, and returns whether it is new.
+
+        The first one stays, unless another version of the program failed to make it.
+        """
+        failed = DiagnosisRow.state == DiagnosisState.FAILED
+        outdated = DiagnosisRow.estimator_version != found.estimator_version
+        self._session.execute(delete(DiagnosisRow).where(DiagnosisRow.session_id == found.session, failed, outdated))
         return self.insert_once(
             DiagnosisRow,
             session_id=found.session,

@@ -6,6 +6,7 @@ from typing import Any
 
 from sqlalchemy import and_, func, or_, select
 
+from service.errors import NotFoundError
 from service.records import ModelRevision, NewModel, Scope
 from service.storage.queries.base import Queries
 from service.storage.tables import ModelRow, SessionRow, StandRow, UnitRow, UnitTypeRow
@@ -44,6 +45,36 @@ class Models(Queries):
             accepted_by=new.by,
             note=new.note,
             accepted_at=at,
+        )
+        self._session.add(row)
+        self._session.flush()
+        return _revision(row)
+
+    def get(self, id: int) -> ModelRevision:
+        """One revision; NotFoundError."""
+        row = self._session.get(ModelRow, id)
+        if row is None:
+            raise NotFoundError(f"There is no model revision {id}.")
+        return _revision(row)
+
+    def of_subject(self, scope: Scope, subject: str) -> tuple[ModelRevision, ...]:
+        """All revisions of one model, oldest first."""
+        query = select(ModelRow).where(ModelRow.scope == scope, ModelRow.subject == subject).order_by(ModelRow.id)
+        return tuple(map(_revision, self._session.scalars(query)))
+
+    def withdraw(self, known: ModelRevision, by: str, note: str, at: datetime) -> ModelRevision:
+        """Stores under the next number that a revision is withdrawn."""
+        row = ModelRow(
+            scope=known.scope,
+            subject=known.subject,
+            cause=known.cause,
+            sensors=list(known.sensors),
+            session_id=known.session,
+            evidence={},
+            accepted_by=by,
+            note=note,
+            accepted_at=at,
+            withdraws=known.id,
         )
         self._session.add(row)
         self._session.flush()
@@ -105,4 +136,5 @@ def _revision(row: ModelRow) -> ModelRevision:
         accepted_by=row.accepted_by,
         note=row.note,
         accepted_at=row.accepted_at,
+        withdraws=row.withdraws,
     )

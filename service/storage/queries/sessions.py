@@ -4,12 +4,12 @@ from dataclasses import asdict, fields
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Select, select, update
+from sqlalchemy import Select, and_, or_, select, update
 
 from estimator.health.common_motion import CommonMotion
 from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
-from service.records import Decision, Judged, StoredSession, Verdict, Worst
+from service.records import Decision, DiagnosisState, Judged, StoredSession, Verdict, Worst
 from service.storage.queries.base import Queries
 from service.storage.tables import CommonMotionRow, DecisionRow, DiagnosisRow, SessionRow, StandRow, UnitRow
 
@@ -86,12 +86,18 @@ class Sessions(Queries):
         latest = query.order_by(SessionRow.started_at.desc(), SessionRow.id.desc()).limit(most)
         return tuple(_session_record(*found) for found in self._session.execute(latest))[::-1]
 
-    def without_diagnosis(self, after: str, limit: int) -> tuple[str, ...]:
-        """Ids of sessions that were never diagnosed, from an id on."""
+    def without_diagnosis(self, after: str, limit: int, version: str) -> tuple[str, ...]:
+        """Ids of sessions, from an id on, that were never diagnosed, or on which another version failed."""
         query = (
             select(SessionRow.id)
             .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
-            .where(DiagnosisRow.session_id.is_(None), SessionRow.id > after)
+            .where(
+                or_(
+                    DiagnosisRow.session_id.is_(None),
+                    and_(DiagnosisRow.state == DiagnosisState.FAILED, DiagnosisRow.estimator_version != version),
+                ),
+                SessionRow.id > after,
+            )
         )
         return tuple(self._session.scalars(query.order_by(SessionRow.id).limit(limit)))
 

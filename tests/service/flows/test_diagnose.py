@@ -9,12 +9,13 @@ from threading import Event
 import pytest
 from sqlalchemy import text
 
-from service.errors import NotFoundError, RefusedError
+from service.errors import ConflictError, NotFoundError, RefusedError
 from service.flows.accept_model import accept_model
 from service.flows.diagnose import QUICK_BYTES, InProgress, diagnose, diagnose_now_or_later
 from service.flows.diagnose_pending import diagnose_pending
 from service.flows.recalibrate import recalibrate
 from service.flows.upload import upload
+from service.flows.withdraw_model import withdraw_model
 from service.records import DiagnosisState, NewModel, Scope
 from service.storage import Storage
 from service.storage.queries.history import HistoryQuery
@@ -48,7 +49,7 @@ def test_what_a_crash_interrupted_is_diagnosed_at_the_next_start(storage: Storag
     diagnose_pending(storage, lambda: NOW, InProgress(), Event())
     with storage.database.reading() as store:
         assert all(store.diagnoses.exists(id) for id in ids)
-        assert store.sessions.without_diagnosis("", 10) == ()
+        assert store.sessions.without_diagnosis("", 10, "") == ()
 
 
 def test_a_large_session_is_left_for_later(storage: Storage) -> None:
@@ -152,3 +153,49 @@ def test_every_step_is_in_the_audit(storage: Storage) -> None:
         ("K. Ito", "accept model"),
         ("R. Duarte", "recalibrate"),
     ]
+
+
+def test_a_diagnosis_that_another_version_failed_to_make_is_made_again(storage: Storage) -> None:
+    id = stored(storage)
+    made = diagnose(storage, id, NOW)
+    with storage.database.writing() as store:
+        store.diagnoses.add_once(replace(made, estimator_version="later"))
+    assert diagnose(storage, id, NOW) == made
+    spoil(storage, id, estimator_version="0.0.1")
+    with storage.database.reading() as store:
+        assert store.sessions.without_diagnosis("", 10, made.estimator_version) == (id,)
+    assert diagnose(storage, id, NOW) == made
+    spoil(storage, id, estimator_version=made.estimator_version)
+    assert diagnose(storage, id, NOW).state is DiagnosisState.FAILED
+
+
+def spoil(storage: Storage, id: str, *, estimator_version: str) -> None:
+    """Makes the stored diagnosis one that a version failed to make."""
+    changed = text("UPDATE diagnoses SET state = 'failed', estimator_version = :version WHERE session_id = :id")
+    with storage.database.engine.begin() as connection:
+        connection.execute(changed, {"version": estimator_version, "id": id})
+
+
+def test_a_withdrawn_cause_is_out_of_the_model_and_nothing_is_lost(storage: Storage) -> None:
+    id = stored(storage)
+    accepted = accept_model(storage, diagnose(storage, id, NOW), ACCEPT, NOW)
+    recalibrate(storage, WARM["unit"], NOW)
+    withdrawn = withdraw_model(storage, accepted.id, "R. Duarte", "the thermometer was at fault", NOW)
+    assert (withdrawn.withdraws, withdrawn.cause) == (accepted.id, accepted.cause)
+    later = stored(storage, notes="after the withdrawal", started_at="2026-11-20T08:00:00Z")
+    again = recalibrate(storage, WARM["unit"], NOW)
+    assert (again.recomputed, again.revision) == (1, withdrawn.id)
+    with storage.database.reading() as store:
+        assert store.sessions.get(later).revision == withdrawn.id
+        baseline, extended, now = (store.calibrations.get(id, r) for r in (0, accepted.id, withdrawn.id))
+    assert now.fit.chi2 == baseline.fit.chi2 > extended.fit.chi2
+
+
+def test_what_is_not_in_force_cannot_be_withdrawn(storage: Storage) -> None:
+    accepted = accept_model(storage, diagnose(storage, stored(storage), NOW), ACCEPT, NOW)
+    withdrawn = withdraw_model(storage, accepted.id, "R. Duarte", "a mistake", NOW)
+    for revision in (accepted.id, withdrawn.id):
+        with pytest.raises(ConflictError):
+            withdraw_model(storage, revision, "R. Duarte", "again", NOW)
+    with pytest.raises(NotFoundError):
+        withdraw_model(storage, 10**6, "R. Duarte", "none", NOW)

@@ -85,3 +85,17 @@ def test_every_sensor_s_own_shape_is_said() -> None:
     finding = {"cause": "bias-jump", "sensors": ["A1", "A2"], "nonlinear": shapes[0], "nonlinear_each": shapes}
     assert shape_in_words(finding) == "A1: from row 14; A2: from row 20"
     assert shape_in_words(finding | {"nonlinear_each": [shapes[0]] * 2}) == "from row 14"
+
+
+def test_an_accepted_cause_can_be_withdrawn(client: httpx.Client) -> None:
+    id = send_case(client, drawn(TEMPERATURE))
+    client.post(f"/sessions/{id}/diagnosis/accept", data=ACCEPT, headers=HTML)
+    (model,) = client.get("/api/v1/models").json()["models"]
+    form = {"by": "R. Duarte", "why": "the thermometer was at fault"}
+    shown = client.post(
+        f"/sessions/{id}/diagnosis/withdraw/{model['id']}", data=form, headers=HTML, follow_redirects=True
+    )
+    assert "by R. Duarte: the thermometer was at fault" in shown.text
+    assert "calibrated without it" in shown.text
+    again = client.post(f"/api/v1/models/{model['id']}/withdraw", json=form)
+    assert again.status_code == 409

@@ -1,0 +1,20 @@
+"""Flow: an engineer withdraws an accepted cause; a new revision says so, and the old one stays on record."""
+
+from datetime import datetime
+
+from service.errors import ConflictError
+from service.flows.model_in_force import in_force
+from service.records import ModelRevision
+from service.storage import Storage
+
+
+def withdraw_model(storage: Storage, revision: int, by: str, why: str, now: datetime) -> ModelRevision:
+    """Adds the revision that withdraws another; ConflictError where that one is not in force."""
+    with storage.database.writing() as store:
+        known = store.models.get(revision)
+        if known not in in_force(store.models.of_subject(known.scope, known.subject)):
+            raise ConflictError(f"Revision {known.id} is not in force: withdrawn before, or a withdrawal itself.")
+        made = store.models.withdraw(known, by, why, now)
+        details = {"revision": made.id, "withdraws": known.id, "cause": known.cause, "why": why}
+        store.log.audit(now, by, "withdraw model", f"{known.scope} {known.subject}", details)
+        return made
