@@ -62,7 +62,7 @@ def test_the_readme_s_api_example_has_five_lines() -> None:
     assert len([line for line in blocks(README, "python")[0].splitlines() if line]) == 5
 
 
-@pytest.mark.parametrize("page", ["api.md", "quickstart.md"])
+@pytest.mark.parametrize("page", ["api.md", "quickstart.md", "reports.md"])
 def test_the_examples_of_a_page_work_as_pasted(page: str, address: str, tmp_path: Path) -> None:
     assert "BA-900" in shell(PROJECT / "docs" / page, tmp_path, address)
 

@@ -1,14 +1,22 @@
 """The pictures of the documentation, taken of the demonstration fleet when they are asked for."""
 
+import json
 import os
 from collections.abc import Iterator
+from datetime import UTC, datetime
 from pathlib import Path
 
 import httpx
 import pytest
+import typst
 from playwright.sync_api import Browser
 
 from service.demo.fill import fill
+from service.flows.certificate import certified_session
+from service.flows.fleet import fleet_overview
+from service.reports.certificate import certificate
+from service.reports.printable import printable_data
+from service.reports.typeset import TEMPLATES
 from service.settings import Settings
 from service.storage import Database, Files, Storage
 from tests.databases import Databases
@@ -18,6 +26,7 @@ from tests.serving import serving
 ASKED = "IMU_HEALTH_PICTURES"
 FOLDER = Path(__file__).parents[3] / "docs" / "pictures"
 UNIT = "BA-107"
+NOW = datetime(2026, 11, 21, tzinfo=UTC)
 
 pytestmark = [
     pytest.mark.browser,
@@ -26,14 +35,39 @@ pytestmark = [
 
 
 @pytest.fixture(scope="module")
-def demonstration(sqlite: Databases, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """A service with the demonstration fleet."""
+def filled(sqlite: Databases, tmp_path_factory: pytest.TempPathFactory) -> Settings:
+    """Settings of a service that holds the demonstration fleet."""
     settings = Settings(database_url=sqlite.migrated(), data_folder=tmp_path_factory.mktemp("demonstration"))
     storage = Storage(Database(settings.database), Files(settings.files))
     fill(storage, settings.coverage_factor, lambda: None)
     storage.database.close()
-    with serving(settings) as url:
+    return settings
+
+
+@pytest.fixture(scope="module")
+def demonstration(filled: Settings) -> Iterator[str]:
+    """A service with the demonstration fleet."""
+    with serving(filled) as url:
         yield url
+
+
+def test_picture_of_the_first_page_of_a_certificate(filled: Settings) -> None:
+    storage = Storage(Database(filled.database), Files(filled.files))
+    with storage.database.reading() as store:
+        worst = fleet_overview(store, limit=1)[0].last_session
+    assert worst is not None
+    record = printable_data(certificate(certified_session(storage, worst, NOW)))
+    storage.database.close()
+    pages = typst.compile(
+        TEMPLATES / "certificate.typ",
+        root=TEMPLATES,
+        format="png",
+        ppi=110,
+        sys_inputs={"data": json.dumps(record)},
+        ignore_system_fonts=True,
+    )
+    assert isinstance(pages, list)
+    (FOLDER / "certificate.png").write_bytes(pages[0])
 
 
 @pytest.mark.parametrize(
