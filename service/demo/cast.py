@@ -6,6 +6,7 @@ from datetime import UTC, datetime
 from estimator.session import ACCELEROMETER, GYROSCOPE, ROTATION_ALIGNMENT, TWO_AXIS_STAND
 from service.demo.changes import Change
 from service.demo.hidden import Hidden
+from service.flag_records import FlagState
 
 START = datetime(2023, 11, 14, 8, 30, tzinfo=UTC)
 END = datetime(2026, 11, 12, 8, 30, tzinfo=UTC)
@@ -43,7 +44,27 @@ class Intervention:
     who: str = ""
     sensor: str = ""
     measured: bool = False
-    """Whether the unit was measured the day before and the day after, as found and as left."""
+    """Whether the unit was measured shortly before and shortly after, as found and as left."""
+
+
+@dataclass(frozen=True)
+class Handled:
+    """What somebody did about a flag on a sensor that was out of tolerance."""
+
+    at: datetime
+    sensor: str
+    state: FlagState
+    who: str
+    why: str
+
+
+@dataclass(frozen=True)
+class Remark:
+    """A note on the unit's history."""
+
+    at: datetime
+    text: str
+    who: str
 
 
 @dataclass(frozen=True)
@@ -61,6 +82,8 @@ class Member:
     drifts: tuple[Drift, ...] = ()
     jumps: tuple[Jump, ...] = ()
     services: tuple[Intervention, ...] = ()
+    handled: tuple[Handled, ...] = ()
+    remarks: tuple[Remark, ...] = ()
     noise: dict[int, float] = field(default_factory=dict)
     """Factor on the reading noise of single sessions, by their number from 0; −1 is the last."""
     hidden: Hidden | None = None
@@ -81,9 +104,16 @@ def _replaced(sensor: int, at: datetime) -> Intervention:
     return Intervention(at, "sensor-swap", "Replaced, block aligned again.", new, "M. Okafor", f"A{sensor + 1}")
 
 
-def _readjusted(at: datetime) -> Intervention:
-    all_scales = tuple(Change(i, "scale", -180.0 + 25.0 * i) for i in range(6))
-    return Intervention(at, "adjustment", "Output amplifiers adjusted to nominal gain.", all_scales)
+GAINS = {0: 72.0, 3: -58.0}
+"""Sensors of BA-109 whose amplifiers drift, and how far until they are adjusted, ppm."""
+ADJUSTED = datetime(2025, 2, 11, 9, 0, tzinfo=UTC)
+UNTIL_ADJUSTED = (ADJUSTED - START).days / 365.25
+
+
+def _adjusted() -> Intervention:
+    back = tuple(Change(sensor, "scale", -gain) for sensor, gain in GAINS.items())
+    note = "Amplifiers of A1 and A4 adjusted to nominal gain."
+    return Intervention(ADJUSTED, "adjustment", note, back, "R. Duarte", measured=True)
 
 
 CAST = (
@@ -99,6 +129,7 @@ CAST = (
     Member(
         "BA-103", ACCELEROMETER, "bias of A3 drifts, still within tolerance", 13,
         drifts=(Drift(Change(2, "bias", 34.0)),),
+        remarks=(Remark(datetime(2025, 5, 6, 12, 0, tzinfo=UTC), "Moved to the other hangar by road.", "K. Ito"),),
     ),
     Member(
         "BA-104", ACCELEROMETER, "scale factor of A5 drifts up to its tolerance", 14,
@@ -111,16 +142,32 @@ CAST = (
     Member(
         "BA-106", ACCELEROMETER, "A6 fails: bias and scale factor run away", 15,
         drifts=(Drift(Change(5, "bias", 170.0), power=4.0), Drift(Change(5, "scale", -150.0), power=4.0)),
+        handled=(
+            Handled(
+                datetime(2026, 11, 13, 9, 0, tzinfo=UTC), "A6", FlagState.ACKNOWLEDGED, "K. Ito",
+                "Taken out of service; a replacement of A6 is ordered.",
+            ),
+        ),
     ),
     Member(
         "BA-107", ACCELEROMETER, "A4 wore out and was replaced; a new reference since", 15,
         drifts=(Drift(Change(3, "bias", 150.0), power=1.5, ends=1.6),),
         services=(_replaced(3, datetime(2025, 6, 20, 9, 0, tzinfo=UTC)),),
+        handled=(
+            Handled(
+                datetime(2025, 12, 1, 9, 0, tzinfo=UTC), "A4", FlagState.RESOLVED, "M. Okafor",
+                "A4 was worn and is replaced; the sessions since agree.",
+            ),
+        ),
     ),
     Member("BA-108", ACCELEROMETER, "stable; the last session was too noisy to decide", 12, noise={-1: 60.0}),
     Member(
-        "BA-109", ACCELEROMETER, "stable; amplifiers adjusted half-way", 11,
-        services=(_readjusted(datetime(2025, 2, 11, 9, 0, tzinfo=UTC)),),
+        "BA-109", ACCELEROMETER, "amplifiers of A1 and A4 drifted and were adjusted; measured as found and as left", 11,
+        drifts=tuple(
+            Drift(Change(sensor, "scale", gain * YEARS / UNTIL_ADJUSTED), ends=UNTIL_ADJUSTED)
+            for sensor, gain in GAINS.items()
+        ),
+        services=(_adjusted(),),
     ),
     Member(
         "BA-110", ACCELEROMETER, "joined the fleet last year; A4 sticks since the last session", 6, joined=1.7,

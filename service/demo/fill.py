@@ -4,12 +4,14 @@ from collections.abc import Callable
 from datetime import timedelta
 
 from estimator.session import ACCELEROMETER, GYROSCOPE
-from service.demo.cast import CAST, START, Member
+from service.demo.cast import CAST, START, Handled, Intervention, Member, Remark
 from service.demo.history import files_of
 from service.demo.types import unit_type
-from service.flag_records import NewService
+from service.flag_records import FlagState, Matter, NewService
+from service.flows.annotate import add_note
 from service.flows.diagnose import diagnose
 from service.flows.fleet_condition import fleet_condition
+from service.flows.handle_flag import acknowledge_flag, resolve_flag
 from service.flows.record_service import record_service
 from service.flows.upload import upload
 from service.storage import Storage
@@ -17,6 +19,8 @@ from service.storage import Storage
 UPLOADED_AFTER = timedelta(hours=3)
 """From the session to its upload; the demonstration has its own clock, so that it is always the same."""
 WHO = "demonstration"
+Done = Intervention | Handled | Remark
+"""What people do between sessions."""
 FILES = sum(member.files for member in CAST)
 
 
@@ -37,15 +41,35 @@ def fill(storage: Storage, coverage_factor: float, advance: Callable[[], None]) 
 
 
 def _upload_member(storage: Storage, member: Member, coverage_factor: float, advance: Callable[[], None]) -> None:
-    """One unit's life: sessions in order, each service recorded before the first session that follows it."""
-    waiting = list(member.services)
+    """One unit's life: sessions in order, and what people did in between."""
+    waiting: list[Done] = [*member.services, *member.handled, *member.remarks]
+    waiting.sort(key=lambda done: done.at)
     for file in files_of(member):
         while waiting and waiting[0].at <= file.at:
-            done = waiting.pop(0)
-            new = NewService(done.kind, done.at, done.note, done.who, done.sensor)
-            record_service(storage, member.serial, new, done.at)
+            _do(storage, member.serial, waiting.pop(0))
         at = file.at + UPLOADED_AFTER
         latest = upload(storage, file.content, file.name, at, coverage_factor=coverage_factor, simulated=True, who=WHO)
         advance()
     # The service diagnoses the earlier ones beside its first requests.
     diagnose(storage, latest.id, at)
+    for done in waiting:
+        _do(storage, member.serial, done)
+
+
+def _do(storage: Storage, serial: str, done: Done) -> None:
+    match done:
+        case Intervention():
+            new = NewService(done.kind, done.at, done.note, done.who, done.sensor)
+            record_service(storage, serial, new, done.at)
+        case Handled():
+            _handle(storage, serial, done)
+        case Remark():
+            add_note(storage, serial, done.at, done.text, done.who, done.at)
+
+
+def _handle(storage: Storage, serial: str, done: Handled) -> None:
+    """The open flag on the sensor's tolerance."""
+    with storage.database.reading() as store:
+        opened = {flag.key: flag.id for flag in store.flags.open_of(store.units.key(serial))}
+    act = acknowledge_flag if done.state is FlagState.ACKNOWLEDGED else resolve_flag
+    act(storage, opened[(Matter.TOLERANCE.value, done.sensor)], done.who, done.why, done.at)

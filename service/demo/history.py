@@ -10,7 +10,7 @@ import numpy as np
 from estimator.arrays import unit
 from estimator.parameters import SensorParameters
 from estimator.results import ARCSEC
-from estimator.session import ACCELEROMETER, GYROSCOPE, ROTATION_ALIGNMENT, Array, CalibrationSession
+from estimator.session import ACCELEROMETER, AS_FOUND, AS_LEFT, GYROSCOPE, ROTATION_ALIGNMENT, Array, CalibrationSession
 from estimator.simulate import scattered, simulate
 from estimator.writing import session_document
 from service.demo.blocks import norms, schedule_of, sensors_of
@@ -38,6 +38,8 @@ TURN = np.array([4.0, -7.0, 11.0]) * ARCSEC
 """By which the seat of that stand has turned every block since then: nobody noticed."""
 FLOWN_AFTER = timedelta(days=8, hours=3)
 TURNTABLE_TYPE = "RT-3"
+AROUND_SERVICE = timedelta(days=4)
+"""From a session as found to the service, and from there to the session as left."""
 NOTES = "Simulated session of the demonstration fleet."
 
 
@@ -63,6 +65,7 @@ def files_of(member: Member) -> Iterator[DemoFile]:
         changed = step_of(_changes(member, at), SENSORS, member.kind)
         truth = start.stepped(walked + changed, norm)
         session = _measured(member, at, truth, NOISE[member.kind] * _roughness(member, number), rng)
+        session = replace(session, stage=_stage(member, at))
         if member.hidden is not None and number == member.sessions - 1:
             session = with_effect(session, member.hidden)
         yield _file(session, at)
@@ -99,7 +102,18 @@ def _dates(member: Member, rng: np.random.Generator) -> list[datetime]:
     jitter[0], jitter[-1] = 0.0, -abs(jitter[-1])
     days = [(number + shift) * pace.days for number, shift in enumerate(jitter)]
     hours = rng.integers(0, 8, member.sessions)
-    return [first + timedelta(days=int(day), hours=int(hour)) for day, hour in zip(days, hours, strict=True)]
+    dates = [first + timedelta(days=int(day), hours=int(hour)) for day, hour in zip(days, hours, strict=True)]
+    for service in (service for service in member.services if service.measured):
+        before = max(number for number, at in enumerate(dates) if at < service.at)
+        dates[before], dates[before + 1] = service.at - AROUND_SERVICE, service.at + AROUND_SERVICE
+    return dates
+
+
+def _stage(member: Member, at: datetime) -> str | None:
+    """As found before a service that is measured around, as left after it."""
+    stages = dict.fromkeys((s.at - AROUND_SERVICE for s in member.services if s.measured), AS_FOUND)
+    stages |= dict.fromkeys((s.at + AROUND_SERVICE for s in member.services if s.measured), AS_LEFT)
+    return stages.get(at)
 
 
 def _walk(kind: str, dates: list[datetime], rng: np.random.Generator) -> Array:

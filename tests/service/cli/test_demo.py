@@ -10,6 +10,7 @@ from estimator.reading import read_session
 from service.demo.cast import CAST, END
 from service.demo.fill import FILES, fill, is_wanted
 from service.demo.history import files_of
+from service.flows.flag_list import flag_list
 from service.flows.fleet import fleet_overview
 from service.flows.outlook import outlooks_of_fleet
 from service.flows.stands import stand_conditions
@@ -63,11 +64,19 @@ def test_the_fleet_shows_every_condition(empty: Storage) -> None:
     fill(empty, 2.0, ignore)
     with empty.database.reading() as store:
         units = {unit.serial: unit for unit in fleet_overview(store)}
+        flags = [(flag.unit, flag.place, flag.state.value) for flag in flag_list(store)]
+        notes = [note.text for serial in units for note in store.notes.of_unit(serial)]
+        stages = [session.stage for session in store.sessions.of_unit("BA-109") if session.stage]
         breaks = {serial: store.services.of_unit(serial) for serial in units}
         sessions = store.sessions.page("BA-107", 0, 50)
         stands = stand_conditions(store)
         outlooks = {outlook.serial: outlook for outlook in outlooks_of_fleet(store, END)}
     assert {serial: units[serial].verdict for serial in CONDITIONS} == CONDITIONS
+    assert ("BA-106", "A6", "acknowledged") in flags
+    assert ("BA-107", "A4", "resolved") in flags
+    assert any(state == "raised" for _, _, state in flags)
+    assert notes == ["Moved to the other hangar by road."]
+    assert stages == ["as-found", "as-left"]
     assert all(unit.simulated for unit in units.values())
     assert sum(unit.sessions for unit in units.values()) == FILES
     assert {serial for serial, found in breaks.items() if found} == {"BA-107", "BA-109"}
