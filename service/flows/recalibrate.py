@@ -65,8 +65,8 @@ def recalibrate(
         revision = max(revision, used)
     if outcome[RECOMPUTED]:
         with storage.database.writing() as store:
-            _settle_flags(store, serial, now)
             refresh_outlook(store, serial)
+            _settle_flags(store, serial, now)
     return Recalibrated(serial, len(stored), outcome[RECOMPUTED], outcome[UNCHANGED], outcome[LEFT], revision)
 
 

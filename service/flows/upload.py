@@ -91,8 +91,8 @@ def _store(store: Store, new: Upload, coverage_factor: float) -> Receipt:
     store.history.add(unit, record, parameter_values(new.calibration))
     store.sessions.add_decisions(record.id, judged.decisions, record.revision)
     store.sessions.add_motions(record.id, judged.motions, record.revision)
-    flag_verdict(store, unit, record, judged.decisions, store.fleet.refresh(unit), new.at)
     refresh_outlook(store, record.unit)
+    flag_verdict(store, unit, record, judged.decisions, store.fleet.refresh(unit), new.at)
     details = {"unit": record.unit, "verdict": record.verdict.value, "revision": record.revision}
     store.log.audit(new.at, new.who, "upload", record.id, details)
     return _receipt(record, created=True)

@@ -54,14 +54,17 @@ def _concerns(
 
 
 def _of_finding(finding: dict[str, Any], session: StoredSession, known: set[tuple[str, str]]) -> Iterator[Concern]:
-    """A mere change since earlier sessions is left to the tolerances: they say whether it matters."""
+    """Where several causes are equally possible, all of them must act on the sensor, or all on the stand.
+
+    A mere change since earlier sessions is left to the tolerances: they say whether it matters.
+    """
     name = finding["cause"]
-    scope = cause(name).scope
-    if scope in ABOUT_SENSORS and not cause(name).between:
+    possible = [cause(identifier) for identifier in (name, *finding["alternatives"])]
+    if all(one.scope in ABOUT_SENSORS and not one.between for one in possible):
         for sensor in finding["sensors"]:
             if (name, sensor) not in known:
                 yield Concern(Matter.CAUSE, sensor, 1, _sentence(finding))
-    elif scope == "stand" and session.stand is not None and (name, "") not in known:
+    elif all(one.scope == "stand" for one in possible) and session.stand is not None and (name, "") not in known:
         yield Concern(Matter.STAND, session.stand, 1, _sentence(finding))
 
 

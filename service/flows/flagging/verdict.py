@@ -62,10 +62,13 @@ def _concern(sensor: str, failed: tuple[Decision, ...]) -> Concern:
 
 
 def _no_longer_overdue(store: Store, unit: int, opened: tuple[Flag, ...], session: StoredSession, at: datetime) -> None:
-    """The one matter that resolves itself: the calibration that was due has been done."""
-    for flag in opened:
-        if flag.matter is Matter.OVERDUE:
-            resolve_as_done(store, unit, flag, f"Calibrated on {day_of(session.started_at)}.", at, session.id)
+    """The one matter that resolves itself: the calibration that was due has been done, and the next is not yet due."""
+    overdue = [flag for flag in opened if flag.matter is Matter.OVERDUE]
+    outlook = store.outlooks.of_unit(session.unit) if overdue else None
+    if outlook is None or (outlook.due is not None and outlook.due < at):
+        return
+    for flag in overdue:
+        resolve_as_done(store, unit, flag, f"Calibrated on {day_of(session.started_at)}.", at, session.id)
 
 
 def resolve_as_done(store: Store, unit: int, flag: Flag, why: str, at: datetime, session: str | None) -> None:

@@ -41,3 +41,16 @@ def test_a_unit_that_is_no_longer_due_is_flagged_no_more(storage: Storage) -> No
     flag_overdue(storage, due + timedelta(days=1))
     flag_overdue(storage, due - timedelta(days=1))
     assert states(storage) == [(Matter.OVERDUE, FlagState.RESOLVED)]
+
+
+def test_a_calibration_that_finds_the_unit_out_of_tolerance_leaves_the_one_flag_open(storage: Storage) -> None:
+    upload(storage, session_bytes(), "a.json", NOW)
+    due = unit_outlook(storage, "BA-017", NOW).due
+    assert due is not None
+    flag_overdue(storage, due + timedelta(days=1))
+    for month, late in enumerate((2, 3)):
+        at = due + timedelta(days=late)
+        session = session_bytes(seed=2 + month, a3_moved=300.0, started_at=at.isoformat())
+        upload(storage, session, "b.json", at + timedelta(hours=1))
+        flag_overdue(storage, at + timedelta(days=1))
+    assert [matter for matter, _ in states(storage)].count(Matter.OVERDUE) == 1
