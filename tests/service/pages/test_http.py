@@ -151,3 +151,11 @@ def test_pages_ask_the_database_a_fixed_few_questions(settings: Settings) -> Non
                 found.setdefault(path.split("/")[1], set()).add(len(statements))
     assert all(len(counts) == 1 for counts in found.values()), found
     assert max(max(counts) for counts in found.values()) <= MOST_QUERIES
+
+
+def test_the_fleet_page_leads_to_its_reports(client: httpx.Client) -> None:
+    page = client.get("/").text
+    for form in ("pdf", "xlsx"):
+        address = f"/api/v1/fleet/report?format={form}"
+        assert f'href="{address}"' in page
+        assert client.get(address).status_code == 200
