@@ -14,7 +14,7 @@ probability as its F.
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.special import chdtrc, chdtri, fdtrc
@@ -155,48 +155,88 @@ def freed(evidence: Evidence, traces: Traces) -> Traces | None:
     return replace(traces, shapes=shapes, columns=np.concatenate([traces.columns, own], axis=-1), raw=raw)
 
 
+@dataclass(frozen=True, eq=False)
+class Left:
+    """What the findings so far leave of the evidence."""
+
+    evidence: Evidence
+    taken: Array
+    """(n, f) orthonormal traces of the findings."""
+    z: Array
+    """(n,)"""
+    _pools: dict[tuple[int, ...], tuple[float, float]] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, evidence: Evidence, taken: Array) -> "Left":
+        return cls(evidence, taken, evidence.z - taken @ (taken.T @ evidence.z))
+
+    def pool(self, sensors: tuple[int, ...]) -> tuple[float, float]:
+        """Energy and degrees of freedom of the scatter that a signature must stand out of; NaN where it is stated."""
+        if sensors not in self._pools:
+            self._pools[sensors] = self._pool(sharing(self.evidence, sensors))
+        return self._pools[sensors]
+
+    def _pool(self, sensors: list[int]) -> tuple[float, float]:
+        evidence, readings = self.evidence, self.evidence.readings
+        if not evidence.baseline.unstated[sensors].any():
+            return float("nan"), float("nan")
+        owned = np.isin(evidence.owner, sensors)
+        freedom = float(evidence.spare[owned[:readings]].sum()) + float(owned[readings:].sum())
+        return float((self.z[owned] ** 2).sum()), freedom - float((self.taken[owned] ** 2).sum())
+
+
+def sharing(evidence: Evidence, sensors: tuple[int, ...]) -> list[int]:
+    """The sensors out of whose scatter a signature must stand: its own, or all accelerometers that share the estimate
+    of a row's direction, since what one of them has moves the left-over of the others."""
+    setting = evidence.baseline.setting
+    chosen = list(sensors) or list(range(len(setting.kinds)))
+    coupled = [i for i, kind in enumerate(setting.kinds) if kind == ACCELEROMETER]
+    if np.isinf(evidence.baseline.row_sigma).any() and not set(chosen).isdisjoint(coupled):
+        return sorted({*chosen, *coupled})
+    return chosen
+
+
 def score(evidence: Evidence, traces: Sequence[Traces], taken: Array) -> list[Scored]:
     """Score every shape on what the findings so far leave.
 
     ``taken`` (n, f) orthonormal traces of the findings so far.
     """
-    z = evidence.z - taken @ (taken.T @ evidence.z)
-    return [scored for t in traces for scored in _score(evidence, t, taken, z)]
+    left = Left.of(evidence, taken)
+    return [scored for t in traces for scored in _score(left, t)]
 
 
 def rescored(evidence: Evidence, scored: Scored, taken: Array) -> Scored:
     """One shape scored anew on what other findings leave."""
     raw = np.linalg.norm(evidence.raw(scored.shape.columns), axis=0)
     alone = Traces(scored.cause, (scored.shape,), (scored.lasting,), scored.columns[None], raw[None], scored.places)
-    z = evidence.z - taken @ (taken.T @ evidence.z)
-    again = next(iter(_score(evidence, alone, taken, z)), None)
+    again = next(iter(_score(Left.of(evidence, taken), alone)), None)
     if again is None:
         return replace(scored, statistic=0.0, evidence=-float(np.log(scored.places)), p_value=1.0)
     return again
 
 
-def _score(evidence: Evidence, traces: Traces, taken: Array, z: Array) -> Iterable[Scored]:
-    columns = traces.columns - taken @ (taken.T @ traces.columns)
+def _score(left: Left, traces: Traces) -> Iterable[Scored]:
+    columns = traces.columns - left.taken @ (left.taken.T @ traces.columns)
     norms = np.linalg.norm(columns, axis=1)
     shown = norms > np.maximum(INVISIBLE * traces.raw, 1e-300)
     basis, size, turn = orthonormal(columns * np.where(shown, 1 / np.where(shown, norms, 1.0), 0.0)[:, None, :])
     visible = (shown & (traces.raw > 0)).any(axis=-1)
     live = (size > FAINT * size[:, :1]) & visible[:, None]
-    along = np.where(live, z @ basis, 0.0)
-    power, freedom = (along**2).sum(axis=-1), live.sum(axis=-1)
+    along = np.where(live, left.z @ basis, 0.0)
+    freedom = live.sum(axis=-1)
     inverse = np.where(live, 1 / np.where(live, size, 1.0), 0.0)
     amplitude = (turn.swapaxes(-1, -2) @ (along * inverse)[..., None])[..., 0] / np.where(shown, norms, np.inf)
-    places, used = max(traces.places, 1), (taken**2).sum(axis=1)
+    statistic = equivalent(left, traces.shapes, (along**2).sum(axis=-1), freedom)
+    p_value = np.where(freedom > 0, chdtrc(np.maximum(freedom, 1), statistic), 1.0)
+    places = max(traces.places, 1)
     for s in np.flatnonzero(visible):
-        shape, q = traces.shapes[s], int(freedom[s])
-        statistic = equivalent(evidence, shape, float(power[s]), q, z, used)
-        p_value = float(chdtrc(q, statistic)) if q else 1.0
-        if p_value < WORTH and not within_reason(evidence, traces.cause, shape, amplitude[s]):
+        shape, t, q, p = traces.shapes[s], float(statistic[s]), int(freedom[s]), float(p_value[s])
+        if p < WORTH and not within_reason(left.evidence, traces.cause, shape, amplitude[s]):
             continue
-        if (traces.raw[s] == 0).any() and not seen_within(columns[s][:, traces.raw[s] > 0], z, places):
+        if (traces.raw[s] == 0).any() and not seen_within(columns[s][:, traces.raw[s] > 0], left.z, places):
             continue
-        weight = bayes_factor(statistic, q) - float(np.log(places))
-        yield Scored(traces.cause, shape, traces.lasting[s], traces.columns[s], statistic, q, weight, p_value, places)
+        weight = bayes_factor(t, q) - float(np.log(places))
+        yield Scored(traces.cause, shape, traces.lasting[s], traces.columns[s], t, q, weight, p, places)
 
 
 def seen_within(columns: Array, z: Array, places: int) -> bool:
@@ -237,39 +277,20 @@ def bayes_factor(statistic: float, q: int) -> float:
     return 0.5 * (statistic - q) - 0.5 * q * float(np.log(statistic / q)) - OCCAM * (q - 1)
 
 
-def equivalent(evidence: Evidence, shape: Shape, power: float, q: int, z: Array, used: Array) -> float:
-    """χ² of a signature that is as unlikely as the power it takes out.
+def equivalent(left: Left, shapes: Sequence[Shape], power: Array, q: Array) -> Array:
+    """(S,) χ² of signatures that are as unlikely as the power (S,) that each takes out with its q (S,) amplitudes.
 
     Where the noise of its sensors is estimated from these very residuals, F = (T/q)/((f − T)/(f − q)) takes the place
-    of T, carried over to χ² at the same tail probability. ``used`` (n,) is the share of every row that the findings so
-    far have taken out of z.
+    of T, carried over to χ² at the same tail probability.
     """
-    unstated = evidence.baseline.unstated
-    sensors = sharing(evidence, shape.sensors)
-    if q == 0 or not unstated[sensors].any():
-        return power
-    owned = np.isin(evidence.owner(), sensors)
-    total = float((z[owned] ** 2).sum())
-    freedom = float(evidence.spare[owned[: evidence.readings]].sum()) + float(owned[evidence.readings :].sum())
-    freedom -= float(used[owned].sum())
-    if freedom <= q + 1:
-        return 0.0
-    rest = max(total - power, 1e-6 * max(total, 1e-300))
-    tail = float(fdtrc(q, freedom - q, power / q / (rest / (freedom - q))))
-    if tail < FAINTEST_TAIL:
-        return float((freedom - q) * np.log(total / rest))
-    return float(chdtri(q, tail))
-
-
-def sharing(evidence: Evidence, sensors: tuple[int, ...]) -> list[int]:
-    """The sensors out of whose scatter a signature must stand: its own, or all accelerometers that share the estimate
-    of a row's direction, since what one of them has moves the left-over of the others."""
-    setting = evidence.baseline.setting
-    chosen = list(sensors) or list(range(len(setting.kinds)))
-    coupled = [i for i, kind in enumerate(setting.kinds) if kind == ACCELEROMETER]
-    if np.isinf(evidence.baseline.row_sigma).any() and not set(chosen).isdisjoint(coupled):
-        return sorted({*chosen, *coupled})
-    return chosen
+    total, freedom = np.array([left.pool(shape.sensors) for shape in shapes]).reshape(-1, 2).T
+    rest = np.maximum(total - power, 1e-6 * np.maximum(total, 1e-300))
+    over = np.maximum(freedom - q, 1.0)
+    amplitudes = np.maximum(q, 1)
+    tail = fdtrc(amplitudes, over, power / amplitudes / (rest / over))
+    beyond = over * np.log(np.maximum(total, 1e-300) / rest)
+    unknown = np.where(tail < FAINTEST_TAIL, beyond, chdtri(amplitudes, np.maximum(tail, FAINTEST_TAIL)))
+    return np.where(np.isnan(total) | (q == 0), power, np.where(freedom > q + 1, unknown, 0.0))
 
 
 def ranked(scored: Sequence[Scored]) -> list[tuple[Scored, float]]:

@@ -158,6 +158,7 @@ class Evidence:
             moved = self.between.response @ (self.absorb @ white)
         return np.concatenate([inside, moved])
 
+    @cached_property
     def owner(self) -> Array:
         """(data rows,) index of the sensor a row belongs to; −1 for priors."""
         R, m = self.baseline.residual.shape

@@ -103,7 +103,7 @@ def noisiest(state: Search) -> Excess | None:
     """The sensor whose left-over most exceeds its stated noise; None if none does significantly."""
     evidence = state.evidence
     z, taken = state.left, state.taken()
-    owner, m = evidence.owner(), len(evidence.baseline.unstated)
+    owner, m = evidence.owner, len(evidence.baseline.unstated)
     spare = evidence.spare - (taken[: evidence.readings] ** 2).sum(axis=1)
     best = None
     for i in range(m):
