@@ -5,6 +5,20 @@ from datetime import datetime
 
 
 @dataclass(frozen=True)
+class Rate:
+    """The drift of one parameter of one sensor, in tolerances a year."""
+
+    unit_type: str
+    lot: str | None
+    serial: str
+    sensor: str
+    kind: str
+    parameter: str
+    value: float
+    sigma: float
+
+
+@dataclass(frozen=True)
 class FanPoint:
     """Where a parameter's deviation will be at a date: quantiles, SI; relative for scale."""
 

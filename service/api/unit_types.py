@@ -30,9 +30,10 @@ def read_unit_type(name: TypeName, store: Reading) -> UnitTypeSchema:
 
 @router.put("/{name:path}", responses=errors(400, 404, 422))
 def change_tolerances(name: TypeName, new: NewTolerances, storage: StorageOf, now: Now) -> UnitTypeSchema:
-    """Other tolerances, from the next session on. Past decisions keep theirs; the revision counts up."""
+    """Other tolerances, from the next session on, and another longest interval. Past decisions keep theirs."""
     gyro = None if new.gyro_tolerances is None else _record(new.gyro_tolerances)
-    return UnitTypeSchema.model_validate(set_tolerances(storage, name, _record(new.tolerances), gyro, now))
+    changed = set_tolerances(storage, name, _record(new.tolerances), gyro, now, interval_days=new.maximum_interval_days)
+    return UnitTypeSchema.model_validate(changed)
 
 
 def _record(given: TolerancesSchema) -> Tolerances:

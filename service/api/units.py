@@ -24,6 +24,7 @@ from service.api.schemas.problem import errors
 from service.api.schemas.units import (
     HistoryPage,
     HistoryPointSchema,
+    NewLot,
     UnitPage,
     UnitReportSchema,
     UnitSummarySchema,
@@ -33,6 +34,7 @@ from service.flows.fleet import fleet_overview
 from service.flows.history import unit_history
 from service.flows.outlook import outlook_of
 from service.flows.recalibrate import recalibrate
+from service.flows.set_lot import set_lot
 from service.flows.unit_report import unit_report
 from service.outlook import RiskPoint
 
@@ -117,6 +119,12 @@ def read_outlook(
     risk = None if until is None else found.risk_by(until)
     asked = None if until is None or risk is None else RiskPoint(until, risk)
     return OutlookSchema.model_validate({**vars(found), "until": asked})
+
+
+@router.put("/{serial:path}/lot", responses=errors(400, 404, 422))
+def change_lot(serial: Serial, new: NewLot, storage: StorageOf, now: Now) -> UnitSummarySchema:
+    """Record the unit's production lot; a lot that drifts unlike the others is named on the fleet page."""
+    return UnitSummarySchema.model_validate(set_lot(storage, serial, new.lot or None, now))
 
 
 @router.post("/{serial:path}/recalibrate", responses=errors(404, 422))

@@ -4,6 +4,7 @@ What is stored is worked out when a unit's history changes (`refresh_outlook`); 
 and against the rates of the type's other units.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
 
@@ -11,7 +12,7 @@ from estimator.health.population import standing
 from service.errors import NotFoundError
 from service.flows.forecast import forecast
 from service.flows.motion_in_words import motions_in_words
-from service.outlook import ParameterTrend, UnitOutlook
+from service.outlook import ParameterTrend, Rate, UnitOutlook
 from service.storage import Storage
 from service.storage.store import Store
 from service.units import COVERAGE
@@ -26,7 +27,7 @@ def unit_outlook(storage: Storage, serial: str, now: datetime) -> UnitOutlook:
 
 
 def fleet_outlook(storage: Storage, now: datetime) -> tuple[UnitOutlook, ...]:
-    """Every unit's outlook as it is now, by serial number."""
+    """Every unit's outlook as it is now, by serial number; without fans and risk, which `unit_outlook` has."""
     with storage.database.reading() as store:
         return outlooks_of_fleet(store, now)
 
@@ -38,8 +39,7 @@ def outlook_of(store: Store, serial: str, now: datetime) -> UnitOutlook:
         if not store.units.exists(serial):
             raise NotFoundError(f"There is no unit {serial!r}.")
         return nothing_known(serial)
-    others = store.outlooks.of_type(own.unit_type)
-    return next(outlook for outlook in compared(others, now) if outlook.serial == serial)
+    return compared((own,), store.outlooks.rates(own.unit_type), now)[0]
 
 
 def own_outlook(store: Store, serial: str, now: datetime) -> UnitOutlook | None:
@@ -49,8 +49,8 @@ def own_outlook(store: Store, serial: str, now: datetime) -> UnitOutlook | None:
 
 
 def outlooks_of_fleet(store: Store, now: datetime) -> tuple[UnitOutlook, ...]:
-    """Every unit's outlook within a transaction, in one query."""
-    return compared(store.outlooks.every(), now)
+    """Every unit's outlook within a transaction, in two queries; without fans and risk, which `outlook_of` has."""
+    return compared(store.outlooks.every(), store.outlooks.rates(), now)
 
 
 def refresh_outlook(store: Store, serial: str) -> None:
@@ -76,31 +76,31 @@ def nothing_known(serial: str) -> UnitOutlook:
     return UnitOutlook(serial, None, False, reason, None, None, None, None, None, ())
 
 
-def compared(outlooks: tuple[UnitOutlook, ...], now: datetime) -> tuple[UnitOutlook, ...]:
+def compared(outlooks: Sequence[UnitOutlook], rates: Sequence[Rate], now: datetime) -> tuple[UnitOutlook, ...]:
     """Set against the clock, and every rate against those of the same parameter in other units of the type."""
-    rates = {
-        (o.unit_type, o.serial, t.sensor, t.kind, t.parameter): (t.rate_per_year, t.rate_sigma)
-        for o in outlooks
-        for t in o.trends
-    }
-    groups: dict[tuple[str, str, str], list[tuple[str, str, str, str, str]]] = {}
-    for key in rates:
-        groups.setdefault((key[0], key[3], key[4]), []).append(key)
-    z = {
-        key: value
-        for keys in groups.values()
-        if len({serial for _, serial, *_ in keys}) >= FEWEST_UNITS
-        for key, value in zip(keys, standing([rates[key] for key in keys]), strict=True)
-    }
+    z = dict(zip(((r.serial, r.sensor, r.kind, r.parameter) for r in rates), population_z(rates), strict=True))
 
-    def placed(outlook: UnitOutlook, trend: ParameterTrend) -> ParameterTrend:
-        key = (outlook.unit_type, outlook.serial, trend.sensor, trend.kind, trend.parameter)
-        return replace(trend, population_z=z.get(key))
+    def placed(serial: str, trend: ParameterTrend) -> ParameterTrend:
+        return replace(trend, population_z=z.get((serial, trend.sensor, trend.kind, trend.parameter)))
 
     return tuple(
-        replace(o, overdue=o.due is not None and o.due < now, trends=tuple(placed(o, t) for t in o.trends))
+        replace(o, overdue=o.due is not None and o.due < now, trends=tuple(placed(o.serial, t) for t in o.trends))
         for o in outlooks
     )
+
+
+def population_z(rates: Sequence[Rate]) -> list[float | None]:
+    """How far each rate stands from the same parameter's in its type, in their robust spread; None with few units."""
+    groups: dict[tuple[str, str, str], list[int]] = {}
+    for place, rate in enumerate(rates):
+        groups.setdefault((rate.unit_type, rate.kind, rate.parameter), []).append(place)
+    found: list[float | None] = [None] * len(rates)
+    for places in groups.values():
+        if len({rates[place].serial for place in places}) >= FEWEST_UNITS:
+            z = standing([(rates[place].value, rates[place].sigma) for place in places])
+            for place, value in zip(places, z, strict=True):
+                found[place] = value
+    return found
 
 
 FEWEST_UNITS = 3

@@ -1,8 +1,9 @@
-"""Flow: other tolerances for a unit type, from the next session on; past decisions keep theirs."""
+"""Flow: other tolerances for a unit type, from the next session on, and another longest calibration interval."""
 
 from dataclasses import asdict
 from datetime import datetime
 
+from service.flows.outlook import refresh_outlook
 from service.records import Tolerances, UnitType
 from service.storage import Storage
 
@@ -14,11 +15,20 @@ def set_tolerances(
     gyro_tolerances: Tolerances | None,
     now: datetime,
     *,
+    interval_days: float | None = None,
     who: str = "crew",
 ) -> UnitType:
-    """Adds a revision of the type's tolerances; the same ones again change nothing."""
+    """Adds a revision of the type's tolerances; the same ones again change nothing, and past decisions keep theirs.
+
+    Another interval holds for all units of the type at once; None leaves it as it is.
+    """
     with storage.database.writing() as store:
         current = store.unit_types.hold(name)
+        if interval_days is not None and interval_days != current.maximum_interval_days:
+            current = store.unit_types.set_interval(name, interval_days)
+            for serial in store.units.of_type(name):
+                refresh_outlook(store, serial)
+            store.log.audit(now, who, "interval", name, {"maximum_interval_days": interval_days})
         if (current.tolerances, current.gyro_tolerances) == (tolerances, gyro_tolerances):
             return current
         revised = store.unit_types.revise(name, tolerances, gyro_tolerances, now)

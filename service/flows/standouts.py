@@ -4,7 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from estimator.health.population import group_standing, standing_out
-from service.outlook import ParameterTrend, UnitOutlook
+from service.flows.outlook import population_z
+from service.outlook import Rate
+from service.storage.store import Store
 from service.words import PARAMETER_NAMES
 
 WORTH = 0.1
@@ -20,36 +22,35 @@ class Standout:
     text: str
 
 
-def standouts(outlooks: Sequence[UnitOutlook]) -> tuple[Standout, ...]:
+def fleet_standouts(store: Store) -> tuple[Standout, ...]:
+    """Of the whole fleet, in one query."""
+    return standouts(store.outlooks.rates())
+
+
+def standouts(rates: Sequence[Rate]) -> tuple[Standout, ...]:
     """Units first, the furthest out first; then lots."""
-    placed = [(o, t) for o in outlooks for t in o.trends if t.population_z is not None]
-    out = standing_out([trend.population_z or 0.0 for _, trend in placed])
-    units = [
-        (abs(t.population_z or 0.0), Standout(o.serial, f"{t.sensor} {PARAMETER_NAMES[t.parameter]} {_rate(t)}"))
-        for (o, t), far in zip(placed, out, strict=True)
-        if far and abs(t.rate_per_year) > WORTH * t.tolerance
-    ]
-    ordered = sorted(units, key=lambda found: -found[0])
-    return (*(standout for _, standout in ordered), *_lots(outlooks))
+    placed = [(rate, z) for rate, z in zip(rates, population_z(rates), strict=True) if z is not None]
+    out = standing_out([z for _, z in placed])
+    units = [pair for pair, far in zip(placed, out, strict=True) if far and abs(pair[0].value) > WORTH]
+    ordered = sorted(units, key=lambda pair: -abs(pair[1]))
+    return (*(Standout(rate.serial, _words(rate)) for rate, _ in ordered), *_lots(rates))
 
 
-def _rate(trend: ParameterTrend) -> str:
-    share = 100 * abs(trend.rate_per_year) / trend.tolerance
-    return f"drifts by {share:.0f} % of its tolerance a year, unlike the other units of its type."
+def _words(rate: Rate) -> str:
+    drift = f"drifts by {100 * abs(rate.value):.0f} % of its tolerance a year, unlike the other units of its type."
+    return f"{rate.sensor} {PARAMETER_NAMES[rate.parameter]} {drift}"
 
 
-def _lots(outlooks: Sequence[UnitOutlook]) -> list[Standout]:
-    groups: dict[tuple[str, str, str], list[tuple[UnitOutlook, ParameterTrend]]] = {}
-    for outlook in outlooks:
-        for trend in outlook.trends:
-            groups.setdefault((outlook.unit_type, trend.kind, trend.parameter), []).append((outlook, trend))
+def _lots(rates: Sequence[Rate]) -> list[Standout]:
+    groups: dict[tuple[str, str, str], list[Rate]] = {}
+    for rate in rates:
+        groups.setdefault((rate.unit_type, rate.kind, rate.parameter), []).append(rate)
     z = {
         (unit_type, parameter, lot): found
         for (unit_type, _, parameter), own in groups.items()
-        for lot, found in group_standing(
-            [(t.rate_per_year / t.tolerance, t.rate_sigma / t.tolerance) for _, t in own], [o.lot or "" for o, _ in own]
-        ).items()
-        if len({o.serial for o, _ in own if o.lot == lot}) > 1
+        if any(rate.lot for rate in own)
+        for lot, found in group_standing([(r.value, r.sigma) for r in own], [r.lot or "" for r in own]).items()
+        if len({rate.serial for rate in own if rate.lot == lot}) > 1
     }
     return [
         Standout(None, f"Lot {lot} of {unit_type}: {PARAMETER_NAMES[parameter]} drifts unlike that of the other units.")

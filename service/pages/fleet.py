@@ -5,8 +5,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from urllib.parse import urlencode
 
-from service.flows.standouts import Standout, standouts
-from service.outlook import UnitOutlook
+from service.flows.standouts import Standout
 from service.records import FleetCondition, UnitSummary
 from service.stand_records import StandCondition
 from service.verdicts import REFERENCE, UNDECIDED, Condition, condition_of
@@ -109,11 +108,11 @@ def fleet_page(
     more: bool,
     view: FleetView,
     now: datetime,
-    outlooks: Sequence[UnitOutlook] = (),
+    overdue: int = 0,
+    unlike: Sequence[Standout] = (),
     stands: Sequence[StandCondition] = (),
 ) -> FleetPage:
     """One page of units, worst first; ``more`` when there is a next one."""
-    overdue = sum(outlook.overdue for outlook in outlooks)
     return FleetPage(
         view=view,
         tiles=tuple(_tile(condition_of(v), n, view) for v, n in reversed(condition.verdicts.items())),
@@ -123,7 +122,7 @@ def fleet_page(
         simulated=condition.simulated,
         flags=flags_in_words(condition.flags),
         stands=tuple(stand for stand in stands if stand.has_shifted),
-        standouts=standouts(outlooks)[:MOST_STANDOUTS],
+        standouts=tuple(unlike[:MOST_STANDOUTS]),
         overdue=f"{overdue} unit{'' if overdue == 1 else 's'} overdue for calibration." if overdue else "",
     )
 

@@ -13,8 +13,9 @@ from service.flows.fleet import fleet_overview
 from service.flows.fleet_condition import fleet_condition
 from service.flows.found_and_left import found_and_left
 from service.flows.history import recent_history
-from service.flows.outlook import outlooks_of_fleet, own_outlook
+from service.flows.outlook import own_outlook
 from service.flows.session_report import session_report
+from service.flows.standouts import fleet_standouts
 from service.flows.stands import stand_conditions
 from service.flows.unit_report import unit_report
 from service.flows.upload import upload
@@ -52,8 +53,8 @@ def show_fleet(
     view = FleetView(q.strip(), verdict or "", page)
     units = fleet_overview(store, verdict=verdict, text=view.text or None, page=page, limit=PAGE_SIZE)
     after = fleet_overview(store, verdict=verdict, text=view.text or None, page=page * PAGE_SIZE + 1, limit=1)
-    outlooks, stands = outlooks_of_fleet(store, now), stand_conditions(store)
-    shown = fleet_page(fleet_condition(store), units, bool(after), view, now, outlooks, stands)
+    late, unlike, stands = store.outlooks.overdue(now), fleet_standouts(store), stand_conditions(store)
+    shown = fleet_page(fleet_condition(store), units, bool(after), view, now, late, unlike, stands)
     return render(request, "fleet.html", shown)
 
 

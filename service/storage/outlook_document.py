@@ -1,6 +1,6 @@
-"""An outlook as JSON and back; times are ISO 8601."""
+"""An outlook as JSON and back, in two parts: what the whole fleet is read by, and what only a unit's page draws."""
 
-from dataclasses import asdict
+from dataclasses import is_dataclass
 from datetime import datetime
 from typing import Any
 
@@ -9,34 +9,40 @@ from service.outlook import FanPoint, ParameterTrend, RiskPoint, UnitOutlook
 TIMES = ("due", "reach_50", "reach_90")
 
 
-def outlook_to_dict(outlook: UnitOutlook) -> dict[str, Any]:
-    """What `outlook_from_dict` reads."""
-    written: dict[str, Any] = _written(asdict(outlook))
-    return written
+def outlook_to_dicts(outlook: UnitOutlook) -> tuple[dict[str, Any], dict[str, Any]]:
+    """What `outlook_from_dicts` reads; times are ISO 8601."""
+    written: dict[str, Any] = _written(outlook)
+    fans = [trend.pop("fan") for trend in written["trends"]]
+    return written, {"risk": written.pop("risk"), "fans": fans}
 
 
 def _written(part: Any) -> Any:
-    if isinstance(part, dict):
-        return {key: _written(value) for key, value in part.items()}
+    if is_dataclass(part):
+        return {key: _written(value) for key, value in vars(part).items()}
     if isinstance(part, list | tuple):
         return [_written(value) for value in part]
     return part.isoformat() if isinstance(part, datetime) else part
 
 
-def outlook_from_dict(document: dict[str, Any]) -> UnitOutlook:
-    """The outlook that was written."""
+def outlook_from_dicts(document: dict[str, Any], drawn: dict[str, Any] | None = None) -> UnitOutlook:
+    """The outlook that was written; without its fans and its risk where what is drawn was left in the store."""
+    fans = [[]] * len(document["trends"]) if drawn is None else drawn["fans"]
     own = {**document, **{name: _time(document[name]) for name in TIMES}}
-    own["trends"] = tuple(_trend(entry) for entry in document["trends"])
-    own["risk"] = tuple(RiskPoint(datetime.fromisoformat(p["at"]), p["risk"]) for p in document["risk"])
+    own["trends"] = tuple(_trend(entry, fan) for entry, fan in zip(document["trends"], fans, strict=True))
+    own["risk"] = tuple(RiskPoint(_at(point), point["risk"]) for point in (drawn or {}).get("risk", ()))
     own["together"] = tuple(document["together"])
     return UnitOutlook(**own)
 
 
-def _trend(entry: dict[str, Any]) -> ParameterTrend:
+def _trend(entry: dict[str, Any], fan: list[dict[str, Any]]) -> ParameterTrend:
     times = {name: _time(entry[name]) for name in ("reach_50", "reach_90", "since")}
     steps = tuple(datetime.fromisoformat(at) for at in entry["step_dates"])
-    fan = tuple(FanPoint(**{**point, "at": datetime.fromisoformat(point["at"])}) for point in entry["fan"])
-    return ParameterTrend(**{**entry, **times, "step_dates": steps, "fan": fan})
+    points = tuple(FanPoint(**{**point, "at": _at(point)}) for point in fan)
+    return ParameterTrend(**{**entry, **times, "step_dates": steps, "fan": points})
+
+
+def _at(point: dict[str, Any]) -> datetime:
+    return datetime.fromisoformat(point["at"])
 
 
 def _time(text: str | None) -> datetime | None:

@@ -259,6 +259,7 @@ class OutlookRow(Base):
     unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), primary_key=True, autoincrement=False)
     due: Mapped[datetime | None]
     document: Mapped[dict[str, Any]]
+    drawn: Mapped[dict[str, Any]]
 
 
 class ServiceRow(Base):

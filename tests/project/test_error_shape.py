@@ -20,6 +20,7 @@ BODIES: dict[str, Any] = {
     "/api/v1/sessions/{id}/diagnosis/accept": {"cause": "bias-ramp", "scope": "unit", "by": "K. Ito"},
     "/api/v1/models/{id}/withdraw": {"by": "K. Ito", "why": "seen in error"},
     "/api/v1/units/{serial}/services": {"kind": "repair"},
+    "/api/v1/units/{serial}/lot": {"lot": "2024-07"},
     "/api/v1/units/{serial}/notes": {"text": "dropped", "by": "K. Ito"},
     "/api/v1/notes/{id}/withdraw": {"by": "K. Ito", "why": "done"},
     "/api/v1/sessions/{id}/stage": {"stage": "as-found", "by": "K. Ito"},

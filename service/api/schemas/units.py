@@ -6,6 +6,7 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict, Field
 
 from service.api.schemas.events import ServiceSchema
+from service.api.schemas.fields import Text
 from service.api.schemas.sessions import SessionSchema
 from service.records import Verdict
 
@@ -32,6 +33,17 @@ class NewTolerances(BaseModel):
     gyro_tolerances: TolerancesSchema | None = Field(
         default=None, description="Of the gyros of a block of accelerometers; null for the default ones."
     )
+    maximum_interval_days: float | None = Field(
+        default=None, ge=1, le=36_525, description="Longest time from a session to the next calibration; null keeps it."
+    )
+
+
+class NewLot(BaseModel):
+    """The production lot of a unit."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    lot: Text | None = Field(description="Name of the lot; null where it is not known.", examples=["2024-07"])
 
 
 class UnitTypeSchema(BaseModel):

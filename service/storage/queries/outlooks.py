@@ -1,13 +1,16 @@
 """Outlooks, one a unit, and the changes through time that they are made of."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from datetime import datetime
+from typing import Any
 
-from sqlalchemy import ColumnElement, Row, Select, select
+from sqlalchemy import ColumnElement, Row, Select, func, select
+from sqlalchemy.orm import defer
 
 from estimator.session import IN_SERVICE
-from service.outlook import UnitOutlook
-from service.storage.outlook_document import outlook_from_dict, outlook_to_dict
+from service.outlook import Rate, UnitOutlook
+from service.storage.outlook_document import outlook_from_dicts, outlook_to_dicts
 from service.storage.queries.base import Queries
 from service.storage.tables import DecisionRow, OutlookRow, SessionRow, UnitRow, UnitTypeRow
 
@@ -71,21 +74,28 @@ class Outlooks(Queries):
 
     def put(self, unit: int, outlook: UnitOutlook) -> None:
         """Rewrites a unit's outlook."""
-        self._session.merge(OutlookRow(unit_id=unit, due=outlook.due, document=outlook_to_dict(outlook)))
+        document, drawn = outlook_to_dicts(outlook)
+        self._session.merge(OutlookRow(unit_id=unit, due=outlook.due, document=document, drawn=drawn))
         self._session.flush()
 
     def of_unit(self, serial: str) -> UnitOutlook | None:
         """The outlook of one unit; None before its first session is judged."""
-        row = self._session.execute(_outlooks().where(UnitRow.serial == serial)).one_or_none()
-        return None if row is None else _outlook(row)
+        query = _outlooks().where(UnitRow.serial == serial)
+        row = self._session.execute(query).one_or_none()
+        return None if row is None else _outlook(row, row[0].drawn)
 
-    def of_type(self, name: str) -> tuple[UnitOutlook, ...]:
-        """Of all units of a type."""
-        return tuple(_outlook(row) for row in self._session.execute(_outlooks().where(UnitTypeRow.name == name)))
+    def rates(self, unit_type: str | None = None) -> tuple[Rate, ...]:
+        """Every drift of a type's units, or of the fleet's, in one query."""
+        query = _undrawn() if unit_type is None else _undrawn().where(UnitTypeRow.name == unit_type)
+        return tuple(rate for row in self._session.execute(query) for rate in _rates(*row))
+
+    def overdue(self, now: datetime) -> int:
+        """How many units should have been calibrated by now."""
+        return self._session.scalar(select(func.count()).select_from(OutlookRow).where(OutlookRow.due < now)) or 0
 
     def every(self) -> tuple[UnitOutlook, ...]:
-        """Of the whole fleet, by serial number, in one query."""
-        return tuple(_outlook(row) for row in self._session.execute(_outlooks().order_by(UnitRow.serial)))
+        """Of the whole fleet, by serial number, in one query; without what only a unit's page draws."""
+        return tuple(_outlook(row) for row in self._session.execute(_undrawn().order_by(UnitRow.serial)))
 
 
 def _within(unit: int, since: datetime | None) -> list[ColumnElement[bool]]:
@@ -102,5 +112,17 @@ def _outlooks() -> Select[OutlookRow, str | None, str]:
     )
 
 
-def _outlook(row: Row[OutlookRow, str | None, str]) -> UnitOutlook:
-    return replace(outlook_from_dict(row[0].document), lot=row[1], unit_type=row[2])
+def _undrawn() -> Select[OutlookRow, str | None, str]:
+    """Without what only a unit's page draws."""
+    return _outlooks().options(defer(OutlookRow.drawn))
+
+
+def _rates(row: OutlookRow, lot: str | None, unit_type: str) -> Iterator[Rate]:
+    serial = row.document["serial"]
+    for t in row.document["trends"]:
+        value, sigma = t["rate_per_year"] / t["tolerance"], t["rate_sigma"] / t["tolerance"]
+        yield Rate(unit_type, lot, serial, t["sensor"], t["kind"], t["parameter"], value, sigma)
+
+
+def _outlook(row: Row[OutlookRow, str | None, str], drawn: dict[str, Any] | None = None) -> UnitOutlook:
+    return replace(outlook_from_dicts(row[0].document, drawn), lot=row[1], unit_type=row[2])

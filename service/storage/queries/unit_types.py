@@ -54,6 +54,13 @@ class UnitTypes(Queries):
             raise _missing(name)
         return self._record(row)
 
+    def set_interval(self, name: str, days: float) -> UnitType:
+        """Another longest time from a session to the next calibration."""
+        row = self._row(name)
+        row.maximum_interval_days = days
+        self._session.flush()
+        return self._record(row)
+
     def revise(self, name: str, tolerances: Tolerances, gyro_tolerances: Tolerances | None, now: datetime) -> UnitType:
         """Adds the next revision of a type's tolerances; earlier ones stay."""
         row = self._row(name)

@@ -14,6 +14,18 @@ class Units(Queries):
         """Whether a session of this unit was ever stored."""
         return self._session.scalar(select(UnitRow.id).where(UnitRow.serial == serial)) is not None
 
+    def set_lot(self, serial: str, lot: str | None) -> bool:
+        """Records a unit's production lot; whether it is another one than before."""
+        unit = self._session.scalars(select(UnitRow).where(UnitRow.serial == serial)).one()
+        changed, unit.lot = unit.lot != lot, lot
+        self._session.flush()
+        return changed
+
+    def of_type(self, name: str) -> tuple[str, ...]:
+        """Serial numbers of a type's units, in order."""
+        query = select(UnitRow.serial).join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+        return tuple(self._session.scalars(query.where(UnitTypeRow.name == name).order_by(UnitRow.serial)))
+
     def add_once(self, serial: str, unit_type: str, simulated: bool) -> None:
         """Stores a new unit; one of that serial number that is there already stays as it is."""
         type_id = select(UnitTypeRow.id).where(UnitTypeRow.name == unit_type).scalar_subquery()

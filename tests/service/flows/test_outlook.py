@@ -81,3 +81,20 @@ def test_the_outlook_over_http_with_the_risk_of_waiting(client: httpx.Client) ->
     assert 0.3 < found["until"]["risk"] <= 1
     assert found["due"] == client.get("/api/v1/units").json()["units"][0]["due"]
     assert client.get("/api/v1/units/none/outlook").status_code == 404
+
+
+def test_another_longest_interval_holds_for_every_unit_of_the_type_at_once(client: httpx.Client) -> None:
+    for unit in ("BA-1", "BA-2"):
+        client.post("/api/v1/sessions", content=session_bytes(unit=unit, month=1))
+    kind = client.get("/api/v1/unit-types").json()["unit_types"][0]
+    body = {"tolerances": kind["tolerances"], "maximum_interval_days": 100}
+    changed = client.put(f"/api/v1/unit-types/{kind['name']}", json=body).json()
+    assert (changed["revision"], changed["maximum_interval_days"]) == (1, 100)
+    assert {u["due"] for u in client.get("/api/v1/units").json()["units"]} == {"2026-04-11T09:00:00Z"}
+
+
+def test_a_production_lot_is_recorded_and_taken_back(client: httpx.Client) -> None:
+    client.post("/api/v1/sessions", content=session_bytes())
+    lots = [client.put("/api/v1/units/BA-017/lot", json={"lot": lot}).json()["lot"] for lot in ("2024-07", None)]
+    assert lots == ["2024-07", None]
+    assert client.put("/api/v1/units/none/lot", json={"lot": "x"}).status_code == 404

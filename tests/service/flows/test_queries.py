@@ -33,7 +33,7 @@ PAGES: dict[str, tuple[int, Page]] = {
     "flags": (1, flag_list),
     "flags of a unit": (2, lambda store: flag_list(store, unit="BA-000")),
     "outlook": (2, lambda store: outlook_of(store, "BA-000", NOW)),
-    "outlooks": (1, lambda store: outlooks_of_fleet(store, NOW)),
+    "outlooks": (2, lambda store: outlooks_of_fleet(store, NOW)),
     "stands": (1, stand_conditions),
     "types": (1, unit_types),
 }

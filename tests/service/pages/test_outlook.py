@@ -6,7 +6,7 @@ from datetime import timedelta
 from service.charts.history import history_charts
 from service.charts.tracks import tracks_of
 from service.flows.standouts import standouts
-from service.outlook import FanPoint, ParameterTrend, RiskPoint, UnitOutlook
+from service.outlook import FanPoint, ParameterTrend, Rate, RiskPoint, UnitOutlook
 from service.pages.fleet import FleetView, fleet_page
 from service.pages.outlook import next_calibration
 from service.records import FleetCondition, Verdict
@@ -72,36 +72,28 @@ def test_a_chart_without_a_trend_draws_none() -> None:
 def test_the_fleet_page_marks_what_is_overdue() -> None:
     condition = FleetCondition(units=2, verdicts=dict.fromkeys(Verdict, 0), simulated=0)
     units = [replace(unit_summary("U1"), due=NOON - YEAR), replace(unit_summary("U2"), due=NOON + YEAR)]
-    late = replace(OUTLOOK, overdue=True)
-    page = fleet_page(condition, units, False, FleetView(), NOON, (late, OUTLOOK))
+    page = fleet_page(condition, units, False, FleetView(), NOON, overdue=1)
     assert [row.overdue for row in page.rows] == [True, False]
     assert page.overdue == "1 unit overdue for calibration."
 
 
-def fleet_of(count: int) -> list[UnitOutlook]:
-    """Units of one type whose rates differ a little, in two lots."""
+def rates_of(units: int) -> list[Rate]:
+    """Of units of one type whose biases drift a little, in two lots."""
     return [
-        replace(
-            OUTLOOK, serial=f"U{i}", lot="L1" if i % 2 else "L2",
-            trends=(replace(STILL, rate_per_year=MICRO_G * (i % 5 - 2), population_z=0.3 * (i % 5 - 2)),),
-        )
-        for i in range(count)
-    ]  # fmt: skip
+        Rate("RA-6", "L1" if i % 2 else "L2", f"U{i}", "A1", "accelerometer", "bias", 0.02 * (i % 5 - 2), 0.03)
+        for i in range(units)
+    ]
 
 
 def test_a_unit_that_drifts_unlike_the_others_is_named() -> None:
-    wild = replace(OUTLOOK, serial="W", trends=(replace(DRIFT, population_z=14.0),))
-    found = standouts([*fleet_of(20), wild])
-    assert [(s.unit, s.text) for s in found] == [
+    wild = replace(rates_of(1)[0], serial="W", value=0.24)
+    assert [(s.unit, s.text) for s in standouts([*rates_of(20), wild])] == [
         ("W", "A1 bias drifts by 24 % of its tolerance a year, unlike the other units of its type.")
     ]
 
 
 def test_a_lot_that_drifts_unlike_the_others_is_named() -> None:
-    lot = [
-        replace(o, serial=f"X{i}", lot="L9", trends=(replace(o.trends[0], rate_per_year=9 * MICRO_G),))
-        for i, o in enumerate(fleet_of(6))
-    ]
-    assert [s.text for s in standouts([*fleet_of(24), *lot])] == [
+    lot = [replace(rate, serial=f"X{i}", lot="L9", value=0.09) for i, rate in enumerate(rates_of(8))]
+    assert [s.text for s in standouts([*rates_of(24), *lot])] == [
         "Lot L9 of RA-6: bias drifts unlike that of the other units."
     ]

@@ -1,0 +1,19 @@
+"""Flow: the production lot of a unit, so that a lot that drifts unlike the others can be seen."""
+
+from datetime import datetime
+
+from service.errors import NotFoundError
+from service.records import UnitSummary
+from service.storage import Storage
+
+
+def set_lot(storage: Storage, serial: str, lot: str | None, now: datetime, *, who: str = "crew") -> UnitSummary:
+    """Records the lot, or that none is known; the same one again changes nothing."""
+    with storage.database.writing() as store:
+        store.units.hold(serial)
+        if store.units.set_lot(serial, lot):
+            store.log.audit(now, who, "lot", serial, {"lot": lot})
+        found = store.fleet.unit(serial)
+    if found is None:
+        raise NotFoundError(f"There is no unit {serial!r}.")
+    return found
