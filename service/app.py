@@ -13,7 +13,7 @@ from service import api, pages
 from service.dependencies import Service
 from service.flows.deliver import deliver_until
 from service.flows.diagnose_pending import diagnose_pending
-from service.flows.flagging.overdue import watch_due_dates
+from service.flows.flagging.overdue import watch_fleet
 from service.settings import Settings
 from service.storage import Database, Files, Storage
 
@@ -69,6 +69,6 @@ def _work(service: Service) -> Iterator[tuple[str, Callable[..., None], tuple[ob
     """What is done beside the requests: its name, what does it, and what that needs."""
     storage, clock, hosts = service.storage, service.clock, service.settings.webhook_hosts
     yield "pending diagnoses", diagnose_pending, (storage, clock, service.diagnosing)
-    yield "due dates", watch_due_dates, (storage, clock)
+    yield "fleet", watch_fleet, (storage, clock)
     if hosts:
         yield "outbox", deliver_until, (storage, hosts, clock)

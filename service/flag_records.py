@@ -20,6 +20,8 @@ class Matter(StrEnum):
     """A diagnosis finds structure that no known cause explains."""
     STAND = "stand"
     """A diagnosis finds the stand or the fixture at fault."""
+    SHIFTED = "stand-shifted"
+    """The units measured on a stand show that it has shifted."""
     OVERDUE = "overdue"
     """The unit's calibration is overdue."""
 

@@ -11,6 +11,7 @@ MATTERS = {
     Matter.CAUSE: "Cause found",
     Matter.UNEXPLAINED: "Unexplained",
     Matter.STAND: "Stand at fault",
+    Matter.SHIFTED: "Stand has shifted",
     Matter.OVERDUE: "Calibration overdue",
 }
 STATES = {FlagState.RAISED: "open", FlagState.ACKNOWLEDGED: "acknowledged", FlagState.RESOLVED: "resolved"}

@@ -27,7 +27,7 @@ def flag_diagnosis(store: Store, made: StoredDiagnosis, at: datetime) -> None:
         return
     unit = store.units.hold(session.unit)
     opened = tuple(flag for flag in store.flags.open_of(unit) if flag.matter in MATTERS)
-    concerns = tuple(_concerns(made.document, session, in_force(store.models.of_session(session.id))))
+    concerns = tuple(_concerns(made.document, session, in_force(in_force(store.models.of_session(session.id)))))
     gone = GONE.format(day=day_of(session.started_at))
     clear = {flag.key: gone for flag in opened if _speaks_of(session, flag)}
     settle(store, unit, opened, Found(concerns, clear), session.id, at)

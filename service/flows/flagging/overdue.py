@@ -8,6 +8,7 @@ from threading import Event
 from service.errors import ServiceError
 from service.flag_records import Concern, Matter
 from service.flows.flagging.settle import Found, settle
+from service.flows.flagging.stands import flag_shifted_stands
 from service.flows.flagging.verdict import resolve_as_done
 from service.flows.outlook import fleet_outlook
 from service.outlook import UnitOutlook
@@ -19,15 +20,16 @@ FIRST_LOOK, LOOK_EVERY = 20.0, 3600.0
 log = logging.getLogger("imu_health")
 
 
-def watch_due_dates(storage: Storage, clock: Callable[[], datetime], stop: Event) -> None:
-    """Looks at every unit's due date now and then until ``stop`` is set."""
+def watch_fleet(storage: Storage, clock: Callable[[], datetime], stop: Event) -> None:
+    """Looks at every due date and every stand now and then until ``stop`` is set."""
     pause = FIRST_LOOK
     while not stop.wait(pause):
         pause = LOOK_EVERY
         try:
             flag_overdue(storage, clock())
+            flag_shifted_stands(storage, clock())
         except ServiceError as fault:
-            log.warning("due dates are looked at later: %s", fault)
+            log.warning("due dates and stands are looked at later: %s", fault)
 
 
 def flag_overdue(storage: Storage, now: datetime) -> None:

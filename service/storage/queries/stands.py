@@ -1,11 +1,13 @@
 """Common motions by stand."""
 
+from datetime import datetime
+
 from sqlalchemy import Integer, cast, func, select
 
 from estimator.health.common_motion import AXES, SCALES, SEPARATED
 from service.stand_records import MotionOnStand
 from service.storage.queries.base import Queries
-from service.storage.tables import CommonMotionRow, SessionRow, StandRow, UnitRow
+from service.storage.tables import CommonMotionRow, ConditionRow, SessionRow, StandRow, UnitRow
 
 MOST = 4000
 """Rows, the newest, that stands are judged by."""
@@ -14,6 +16,17 @@ STILL = {AXES: ((0.0,) * 3, ((0.0,) * 3,) * 3), SCALES: ((0.0,), ((0.0,),))}
 
 class Stands(Queries):
     """What stands do to the units that are measured on them."""
+
+    def last_measured(self, stand: str, since: datetime) -> tuple[str, ...]:
+        """Serial numbers of the units whose latest session was on a stand, at a time or later."""
+        query = (
+            select(UnitRow.serial)
+            .join(ConditionRow, ConditionRow.unit_id == UnitRow.id)
+            .join(SessionRow, SessionRow.id == ConditionRow.last_session)
+            .join(StandRow, StandRow.id == SessionRow.stand_id)
+            .where(StandRow.name == stand, SessionRow.started_at >= since)
+        )
+        return tuple(self._session.scalars(query.order_by(UnitRow.serial)))
 
     def motions(self) -> tuple[MotionOnStand, ...]:
         """The newest common motions on any stand, oldest first, in one query; a reference session's is zero."""

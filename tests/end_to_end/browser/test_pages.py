@@ -23,6 +23,7 @@ PATHS = (
     "/sessions/{unfit}/diagnosis",
     "/sessions/{flown}/diagnosis",
     "/sessions/{loose}/diagnosis",
+    "/flags",
     "/upload",
     "/plan",
     "/plan?kind=gyroscope&runs=direct&bias=0.05",

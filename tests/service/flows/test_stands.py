@@ -1,11 +1,18 @@
 """A stand whose seat has turned is found over the units that are measured on it."""
 
 import json
+from datetime import UTC, datetime
 
 import httpx
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from service.flag_records import Matter
+from service.flows.flag_list import flag_list
+from service.flows.flagging.stands import flag_shifted_stands
+from service.flows.handle_flag import resolve_flag
+from service.flows.upload import upload
+from service.storage import Storage
 from tests.builders import ARCSEC, TrueSensor, accelerometer_block, true_sensors
 
 TURN = Rotation.from_rotvec(np.array([5.0, -8.0, 12.0]) * ARCSEC)
@@ -44,3 +51,25 @@ def test_a_turned_stand_is_flagged_and_its_units_are_not(client: httpx.Client) -
     page = client.get(f"/sessions/{latest}", headers={"Accept": "text/html"}).text
     assert "The whole block turned by 15" in page
     assert "mounting or stand, not the sensors" in page
+
+
+def test_a_shifted_stand_raises_one_flag_on_the_units_that_it_measured_last(storage: Storage) -> None:
+    now = datetime(2026, 10, 1, tzinfo=UTC)
+    for number in range(4):
+        last = "S1" if number == 3 else "S2"
+        for month, stand in ((1, "S1"), (3, "S2"), (5, "S1"), (7, "S2"), (9, last)):
+            upload(storage, measured_on(stand, f"BA-{number}", month, seed=10 * number + month), "a.json", now)
+
+    def flagged() -> list[tuple[str, str, str]]:
+        with storage.database.reading() as store:
+            found = [flag for flag in flag_list(store) if flag.matter is Matter.SHIFTED]
+        return sorted((flag.unit, flag.place, flag.state.value) for flag in found)
+
+    flag_shifted_stands(storage, now)
+    assert flagged() == [(f"BA-{number}", "S2", "raised") for number in range(3)]
+    with storage.database.reading() as store:
+        first = next(flag.id for flag in flag_list(store, unit="BA-0") if flag.matter is Matter.SHIFTED)
+    resolve_flag(storage, first, "K. Ito", "seat of S2 mended", now)
+    flag_shifted_stands(storage, now)
+    assert flagged()[0] == ("BA-0", "S2", "resolved")
+    assert len(flagged()) == 3
