@@ -3,8 +3,9 @@
 from dataclasses import dataclass, replace
 from math import degrees
 
+from estimator.health.rule import RULE
 from estimator.reference import gravity
-from estimator.session import ACCELEROMETER, CalibrationSession
+from estimator.session import ACCELEROMETER, IN_SERVICE, CalibrationSession
 from service.charts import ChartSet
 from service.charts.history import history_charts
 from service.charts.residuals import residual_charts
@@ -16,7 +17,7 @@ from service.flows.found_and_left import FoundAndLeft
 from service.flows.known_in_words import combination_in_words
 from service.flows.motion_in_words import motions_in_words
 from service.flows.reason import margin_of
-from service.records import Decision, StoredDiagnosis
+from service.records import Decision, StoredDiagnosis, StoredSession
 from service.reports.moved import Moved, moved
 from service.reports.pictures import picture
 from service.reports.results import ResultTable, result_tables
@@ -93,6 +94,7 @@ class State:
 class Certificate:
     """Everything that the paper says."""
 
+    title: str
     number: str
     unit: str
     day: str
@@ -108,6 +110,8 @@ class Certificate:
     judged: bool
     """Whether there was a reference to judge it by, and a tolerance."""
     rule: str
+    whole_level: bool
+    """Whether a number counts as out of tolerance only if it is a change at the level of all of them."""
     states: tuple[State, ...]
     tables: tuple[ResultTable, ...]
     together: tuple[str, ...]
@@ -137,6 +141,7 @@ def certificate(found: CertifiedSession) -> Certificate:
     k = decisions[0].coverage_factor if decisions else COVERAGE
     known = ((s.name, combination_in_words(c, s.kind)) for s in calibration.sensors for c in s.known)
     return Certificate(
+        title=title_of(session),
         number=session.id[:12],
         unit=session.unit,
         day=day_of(session.started_at),
@@ -150,6 +155,7 @@ def certificate(found: CertifiedSession) -> Certificate:
         coverage=number(k),
         judged=bool(decisions) and not session.is_reference,
         rule=decisions[0].rule if decisions else "",
+        whole_level=any(d.rule.startswith(RULE) for d in decisions),
         states=tuple(State(c.formal, c.meaning, c.key) for c in reversed(CONDITIONS)),
         tables=tuple(_with_reading_unit(t, found.source) for t in _tables(found, k)),
         together=tuple(line.text for line in motions_in_words(found.report.motions, k)),
@@ -164,6 +170,11 @@ def certificate(found: CertifiedSession) -> Certificate:
         stand=calibration.residuals.beta is not None,
         software=found.software,
     )
+
+
+def title_of(session: StoredSession) -> str:
+    """A recording in service checks a calibration; it is none."""
+    return "Check in service" if session.programme == IN_SERVICE else "Calibration certificate"
 
 
 def _tables(found: CertifiedSession, k: float) -> tuple[ResultTable, ...]:

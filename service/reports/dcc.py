@@ -8,6 +8,7 @@ from estimator.results import SensorCalibration
 from service.flows.certificate import CertifiedSession
 from service.flows.finding_in_words import in_words
 from service.records import Decision, Verdict
+from service.reports.certificate import title_of
 from service.reports.elements import DCC, NOT_STATED, SI, XSI, content, dcc, document
 from service.reports.quantities import ONE, deviation_unit, quantity, value_unit
 from service.units import COVERAGE
@@ -103,7 +104,7 @@ def _statement(parent: Element, name: str, declaration: str, verdict: Verdict | 
 
 def _measurement(parent: Element, found: CertifiedSession) -> None:
     session, calibration = found.report.session, found.report.calibration
-    content(parent, "name", f"Calibration, {in_words(session.programme)}")
+    content(parent, "name", f"{title_of(session)}: {in_words(session.programme)}")
     method = dcc(dcc(parent, "usedMethods"), "usedMethod")
     content(method, "name", calibration.method)
     content(method, "description", f"Model revision {session.revision}; block axes held by {calibration.gauge}.")

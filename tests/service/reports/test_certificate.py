@@ -12,6 +12,7 @@ from service.flows.upload import upload
 from service.storage import Storage
 from service.verdicts import condition_of
 from tests.service.diagnosed import ECCENTRIC, diagnosis_of, drawn, send_case
+from tests.service.recordings import recording_bytes
 from tests.service.reports.documents import pages_of, text_of
 from tests.service.sessions import session_bytes
 
@@ -155,6 +156,13 @@ def test_as_found_and_as_left_stand_beside_each_other(client: httpx.Client) -> N
     assert "last service: adjustment, 20 May 2026" in after
     row = after[after.index("A3 bias") :][:60]
     assert row.index("fail") < row.index("pass")
+
+
+def test_a_recording_in_service_is_no_calibration(client: httpx.Client) -> None:
+    sent(client, session_bytes())
+    text = text_of(certificate(client, sent(client, recording_bytes())["id"]))
+    assert ("Check in service" in text, "Calibration certificate" in text) == (True, False)
+    assert "parity/1" in text
 
 
 def test_an_unknown_session_is_not_found(client: httpx.Client) -> None:
