@@ -36,11 +36,11 @@ def causes(state: Search) -> Search:
             wary = with_unknown_noise(state, noisy.sensor)
             best = strongest(wary, wary.traces)
             uneven = course(state, noisy)
-            if uneven is not None and uneven.evidence > (WANDERING if best is None else weight(best)):
-                state = set_apart(state, uneven)
-                continue
             if best is None and not patterned(state, wary, noisy):
-                state = set_apart(state, noisy)
+                state = set_apart(state, uneven if uneven is not None and uneven.evidence > WANDERING else noisy)
+                continue
+            if best is not None and uneven is not None and uneven.evidence > weight(best):
+                state = set_apart(state, uneven)
                 continue
         if best is None:
             break
