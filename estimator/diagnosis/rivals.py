@@ -17,7 +17,7 @@ from estimator.session import Array
 CREDIBLE = 0.995
 """Share of the probability that the named cause and its alternatives hold together."""
 
-CONTAINED = 0.1
+CONTAINED = 0.02
 """A rival that leaves less than this share of a simpler cause's signature merely contains it."""
 
 APART = 5.0
