@@ -12,7 +12,7 @@ import numpy as np
 from estimator.diagnosis.candidates import MANY, rescored, score
 from estimator.diagnosis.greedy import DECISIVE, causes, structures
 from estimator.diagnosis.serial import serial_structure
-from estimator.diagnosis.state import LEVEL, Found, Search, family_level, strongest, total
+from estimator.diagnosis.state import LEVEL, Found, Search, beside, family_level, strongest, total
 
 NAMELESS = 1.5
 """ln evidence by which structure without a name must beat the named causes."""
@@ -103,13 +103,14 @@ def judge_courses(state: Search) -> Search:
     """Withdraw several names on one sensor where its left-over without them is as well a smooth course of no name."""
     m = len(state.baseline.unstated)
     for i in range(m):
-        kept = tuple(f for f in state.found if f.best.shape.sensors != (i,))
-        if len(state.found) - len(kept) < 2:
+        names = tuple(f for f in state.found if f.best.shape.sensors == (i,))
+        if len(names) < 2:
             continue
-        rest = replace(state, found=kept)
+        rest = replace(state, found=tuple(f for f in state.found if f not in names))
         known = not state.baseline.unstated[i]
-        uneven = serial_structure(rest.evidence, rest.left, rest.taken(), i, known=known)
-        if uneven is not None and uneven.evidence - np.log(m) > total(state) - total(rest) + NAMELESS:
+        taken = rest.taken()
+        uneven = serial_structure(rest.evidence, rest.left, taken, i, known=known)
+        if uneven is not None and uneven.evidence - np.log(m) > beside(rest, taken, names) + NAMELESS:
             state = replace(rest, serial=(*rest.serial, uneven))
     return state
 

@@ -4,7 +4,7 @@ The family-wise level is held over the whole catalogue: Bonferroni over causes, 
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from estimator.session import Array
 LEVEL = 0.003
 """Family-wise level: sessions without an effect that get a name; a third of what is allowed, for safety."""
 
+
+NEW = 1e-6
+"""Share of a trace that must lie outside the others' span to count as a direction of its own."""
 
 Group = tuple[str, tuple[int, ...]]
 """What is named: a cause and the indices of its sensors."""
@@ -102,7 +105,7 @@ class Search:
         columns = np.concatenate(parts, axis=1)
         norms = np.linalg.norm(columns, axis=0)
         left, size, _ = np.linalg.svd(columns[:, norms > 0] / norms[norms > 0], full_matrices=False)
-        return left[:, size > 1e-6 * size[0]]
+        return left[:, size > NEW * size[0]]
 
 
 def begin(baseline: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause] = CATALOGUE) -> Search:
@@ -150,20 +153,36 @@ def companions(state: Search, best: Found, traces: Sequence[Traces]) -> list[Fou
     same = [s for sensors, s in leads.items() if sensors and sensors != best.best.shape.sensors]
     families = state.families if traces is state.traces else len(traces)
     others: list[Found] = []
+    known = spanned(state.taken(), best.best.columns)
     for scored in same:
         if scored.cause is not best.best.cause or family_level(scored, families) >= LEVEL:
             continue
-        beside = replace(state, found=(*state.found, best, *others)).taken()
-        level = family_level(rescored(state.evidence, scored, beside), families)
+        level = family_level(rescored(state.evidence, scored, known), families)
         if level < LEVEL:
             others.append(Found(scored, level, best.ranking_of(scored)))
+            known = spanned(known, scored.columns)
     return others
 
 
 def total(state: Search) -> float:
     """ln evidence of everything found together, each weighed on what those before it leave."""
-    weight, before = 0.0, replace(state, found=(), structures=())
-    for member in (*state.found, *state.structures):
-        weight += rescored(state.evidence, member.best, before.taken()).evidence
-        before = replace(before, found=(*before.found, member))
+    return beside(state, np.zeros((len(state.evidence.z), 0)), (*state.found, *state.structures))
+
+
+def beside(state: Search, taken: Array, members: Sequence[Found]) -> float:
+    """ln evidence of some findings beside others whose traces are ``taken`` (n, f), each on what those before leave."""
+    weight = 0.0
+    for member in members:
+        weight += rescored(state.evidence, member.best, taken).evidence
+        taken = spanned(taken, member.best.columns)
     return weight
+
+
+def spanned(taken: Array, columns: Array) -> Array:
+    """(n, f + …) orthonormal columns ``taken`` (n, f) continued by what is new in others (n, q)."""
+    norms = np.linalg.norm(columns, axis=0)
+    new = columns[:, norms > 0] / norms[norms > 0]
+    for _ in range(2):
+        new = new - taken @ (taken.T @ new)
+    left, size, _ = np.linalg.svd(new, full_matrices=False)
+    return np.concatenate([taken, left[:, size > NEW]], axis=1)

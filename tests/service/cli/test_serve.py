@@ -45,7 +45,7 @@ def test_an_empty_database_is_filled_once_with_units_that_say_they_are_simulated
             assert address.startswith("http://127.0.0.1:")
             assert httpx.get(f"{address}/readyz").status_code == 200
             fleet = httpx.get(f"{address}/api/v1/fleet").json()
-            assert (fleet["units"], fleet["simulated"]) == (12, 12)
+            assert (fleet["units"], fleet["simulated"]) == (14, 14)
             assert len(httpx.get(f"{address}/api/v1/sessions", params={"limit": 1000}).json()["sessions"]) == FILES
 
 
