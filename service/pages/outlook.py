@@ -10,6 +10,8 @@ from service.words import PARAMETER_NAMES, day_of
 
 LEVEL = 0.01
 """Chance that any drift is claimed for a unit that has none."""
+FAR = 5.0
+"""Standard uncertainties from which on a distance from the reference is beyond doubt."""
 WAITS = (timedelta(days=91), timedelta(days=182), timedelta(days=365))
 
 
@@ -69,7 +71,24 @@ def drifts(trend: ParameterTrend, judged: int) -> bool:
 def _moving(trends: tuple[ParameterTrend, ...]) -> tuple[str, ...]:
     found = [_drift(trend) for trend in trends if drifts(trend, len(trends))]
     found += [_jump(trend) for trend in trends if trend.step_dates]
+    found += [_wandered(trend) for trend in trends if has_moved(trend) and not _is_said(trend, len(trends))]
     return tuple(found) if found or not trends else ("No parameter drifts beyond what chance explains.",)
+
+
+def has_moved(trend: ParameterTrend) -> bool:
+    """Whether a parameter is far from its reference: beyond its own uncertainty, and a good part of its tolerance."""
+    return abs(trend.level) > max(FAR * trend.level_sigma, trend.tolerance / 2)
+
+
+def _is_said(trend: ParameterTrend, judged: int) -> bool:
+    return drifts(trend, judged) or bool(trend.step_dates)
+
+
+def _wandered(trend: ParameterTrend) -> str:
+    unit = deviation_unit(trend.kind, trend.parameter, abs(trend.level))
+    moved = signed(trend.level, 2 * trend.level_sigma, unit)
+    allowed = in_words(trend.kind, trend.parameter, trend.tolerance)
+    return f"{_place(trend)} has moved by {moved}, at no steady rate; {allowed} are allowed."
 
 
 def _drift(trend: ParameterTrend) -> str:

@@ -20,7 +20,7 @@ DRIFT = ParameterTrend(
     population_z=None, kind="accelerometer", tolerance=50 * MICRO_G, since=NOON,
     fan=tuple(FanPoint(NOON + k * YEAR, *(MICRO_G * (30 + 12 * k + d) for d in (-9, -4, 0, 4, 9))) for k in range(2)),
 )  # fmt: skip
-STILL = replace(DRIFT, sensor="A2", rate_per_year=0.0, significance=0.6)
+STILL = replace(DRIFT, sensor="A2", rate_per_year=0.0, significance=0.6, level=2 * MICRO_G)
 OUTLOOK = UnitOutlook(
     serial="BA-017", due=NOON + YEAR, overdue=False, reason="A1 bias reaches its tolerance.", sensor="A1",
     parameter="bias", reach_50=NOON + 2 * YEAR, reach_90=NOON + YEAR, risk_at_due=0.05, trends=(DRIFT, STILL),
@@ -39,6 +39,13 @@ def test_what_drifts_is_said_and_what_does_not_is_not() -> None:
     )
     quiet = next_calibration(replace(OUTLOOK, trends=(STILL,))).moving
     assert quiet == ("No parameter drifts beyond what chance explains.",)
+
+
+def test_what_has_moved_far_without_a_steady_rate_is_not_called_still() -> None:
+    wandered = replace(STILL, level=-152 * MICRO_G)
+    assert next_calibration(replace(OUTLOOK, trends=(wandered, STILL))).moving == (
+        "A2 bias has moved by −152.0\u00a0±\u00a04.0\u202fµg, at no steady rate; 50 µg are allowed.",
+    )
 
 
 def test_a_sudden_change_is_dated() -> None:
