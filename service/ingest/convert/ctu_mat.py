@@ -1,30 +1,17 @@
 """Czech Technical University (Šipoš, Roháč, Šimánek): means of 49 still orientations of one triad, in g."""
 
-import zlib
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.io import loadmat
-from scipy.io.matlab import MatReadError
 
 from service.ingest.convert.contract import Converter, Document
 from service.ingest.convert.documents import STANDARD_GRAVITY, columns, session, triad
 from service.ingest.convert.files import expect_count, read_bytes, refuse
+from service.ingest.mat import DAMAGED
 
 BYTE_ORDER = slice(126, 128)
-DAMAGED = (
-    OSError,
-    ValueError,
-    TypeError,
-    LookupError,
-    ArithmeticError,
-    NotImplementedError,
-    MemoryError,
-    MatReadError,
-    zlib.error,
-)
-"""What scipy raises on files cut off or written over at various places."""
 FILES = "the MAT file that holds `ACC_meas`, three rows of orientation means in g"
 
 
