@@ -28,3 +28,9 @@ def tangents(axis: Array) -> Array:
     frame[..., 0] = p
     frame[..., 1] = axis[..., [1, 2, 0]] * p[..., [2, 0, 1]] - axis[..., [2, 0, 1]] * p[..., [1, 2, 0]]
     return frame
+
+
+def nearest_turn(vectors: Array, others: Array) -> Array:
+    """(3, 3) rotation R for which the vectors R·v (n, 3) come nearest to others (n, 3) (Kabsch 1976)."""
+    left, _, right = np.linalg.svd(others.T @ vectors)
+    return np.asarray(left @ np.diag([1.0, 1.0, np.linalg.det(left @ right)]) @ right)

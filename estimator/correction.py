@@ -19,10 +19,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from estimator.parameters import ELEMENTS
 from estimator.results import Calibration, SensorCalibration
 from estimator.session import GYROSCOPE, Array, CalibrationSession
 
-ELEMENTS = ("scale", "bias", "quadratic", "axis_1", "axis_2")
 FLATTEST = 1e-6
 """Smallest singular value of the axes, relative to the largest, that still gives all three components."""
 

@@ -11,6 +11,8 @@ import numpy as np
 from estimator.session import Array
 
 ARCSEC = np.pi / 180 / 3600
+NOMINAL_AXES = "nominal-axes"
+"""The gauge of a calibration whose frame the nominal axes hold."""
 
 
 def json_numbers(array: Array) -> Any:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from estimator.arrays import tangents
+from estimator.arrays import nearest_turn, tangents
 from estimator.diagnosis.baseline import Baseline
 from estimator.diagnosis.evidence import Between, parameter_covariance
 from estimator.diagnosis.turning import comparable_directions, free_to_turn
@@ -22,7 +22,7 @@ def deviation_of(earlier: Baseline, now: Baseline) -> tuple[Array, Array]:
     """Parameters of an earlier session seen from now: dimensionless deviation (P,) and covariance (P, P)."""
     p, q, norm = now.parameters, earlier.parameters, now.setting.norm
     m = len(norm)
-    turned = common_turn(q.axis, p.axis) if free_to_turn(now).any() else np.eye(3)
+    turned = nearest_turn(q.axis, p.axis) if free_to_turn(now).any() else np.eye(3)
     frame, old, axis = tangents(p.axis), turned @ tangents(q.axis), q.axis @ turned.T
     step = np.empty((m, 5))
     step[:, 0] = np.log(q.scale / p.scale)
@@ -36,12 +36,6 @@ def deviation_of(earlier: Baseline, now: Baseline) -> tuple[Array, Array]:
     for i in range(m):
         full[5 * i : 5 * i + 5, 5 * i : 5 * i + 5] = mapping[i]
     return step.reshape(-1), full @ parameter_covariance(earlier) @ full.T
-
-
-def common_turn(earlier: Array, now: Array) -> Array:
-    """(3, 3) rotation that brings axes (m, 3) nearest to others (Kabsch 1976)."""
-    left, _, right = np.linalg.svd(now.T @ earlier)
-    return np.asarray(left @ np.diag([1.0, 1.0, np.linalg.det(left @ right)]) @ right)
 
 
 def reference(now: Baseline, history: Sequence[Baseline], keep: Array) -> tuple[Array, Array] | None:

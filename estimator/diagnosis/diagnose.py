@@ -23,6 +23,7 @@ from estimator.diagnosis.results import Diagnosis
 from estimator.diagnosis.search import search
 from estimator.diagnosis.slips import Slip, exchanged_rows, expected_axes, turned_record
 from estimator.diagnosis.state import Search, begin
+from estimator.diagnosis.transfer import newness
 from estimator.session import TWO_AXIS_STAND, CalibrationSession
 
 
@@ -52,15 +53,16 @@ def diagnose(
     if entry is not None:
         state = searched(entry.put_right(right), past, catalogue)
     fitted = amplitudes(state)
+    new = newness(state, fitted)
     return Diagnosis(
         unit=session.unit,
         findings=(
             *(slip_finding(s, rows) for s in slips),
             *([] if entry is None else [entry_finding(entry)]),
-            *findings(state, fitted),
+            *findings(state, fitted, new),
         ),
         structures=structures(state),
-        gain=gain(state, fitted),
+        gain=gain(state, fitted, new),
         limits=limits(state, catalogue),
         baseline=calibrate(rows),
         calibration=extended_calibration(state, fitted),

@@ -16,21 +16,20 @@ from estimator.diagnosis.evidence import Whitener
 from estimator.diagnosis.extend import Amplitudes
 from estimator.diagnosis.results import Gain, Score
 from estimator.diagnosis.state import Search
-from estimator.diagnosis.transfer import transfer
+from estimator.diagnosis.transfer import LN_2PI, transfer
 from estimator.session import Array
 
 FOLDS = 6
-LN_2PI = float(np.log(2 * np.pi))
 
 
-def gain(state: Search, fitted: Amplitudes) -> Gain:
-    """Scores of held-out positions, and of an earlier session, before and after the findings."""
+def gain(state: Search, fitted: Amplitudes, new: Sequence[bool | None]) -> Gain:
+    """Scores of held-out positions and of an earlier session, before and after; ``new``: `newness` of every finding."""
     columns = [f.best.shape.columns for f in state.found if not f.best.cause.between]
     stated = as_stated(state)
     before, after = score(stated, []), score(state.baseline, columns)
     dearer = volume(state.baseline) - volume(stated)
     after = replace(after, log_score=after.log_score + dearer / float(counted(stated).sum()))
-    return Gain(before, after, "positions", transfer(state, fitted))
+    return Gain(before, after, "positions", transfer(state, fitted, new))
 
 
 def as_stated(state: Search) -> Baseline:

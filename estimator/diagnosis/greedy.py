@@ -115,8 +115,8 @@ def noisiest(state: Search) -> Excess | None:
         if freedom < 2 or energy <= freedom:
             continue
         p_family = min(1.0, float(chdtrc(freedom, energy)) * m * state.families)
-        weight = 0.5 * (energy - freedom - freedom * np.log(energy / freedom))
-        value = float(weight - 0.5 * np.log(freedom / 2) - np.log(m))
+        gained = 0.5 * (energy - freedom - freedom * np.log(energy / freedom))
+        value = float(gained - 0.5 * np.log(freedom / 2) - np.log(m))
         if p_family < LEVEL and (best is None or value > best.evidence):
             best = Excess(i, energy / freedom, freedom, value, p_family)
     return best

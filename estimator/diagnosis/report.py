@@ -1,5 +1,7 @@
 """From the search to findings that people read."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from estimator.causes.noise import ExcessNoise
@@ -11,18 +13,17 @@ from estimator.diagnosis.rivals import CREDIBLE, alternatives, ranking, separati
 from estimator.diagnosis.slips import Slip, posterior
 from estimator.diagnosis.state import Excess, Found, Search
 from estimator.diagnosis.structures import Structure as Pattern
-from estimator.diagnosis.transfer import is_new
 from estimator.session import ACCELEROMETER, CalibrationSession
 
 
-def findings(state: Search, fitted: Amplitudes) -> tuple[Finding, ...]:
+def findings(state: Search, fitted: Amplitudes, new: Sequence[bool | None]) -> tuple[Finding, ...]:
     """Named causes, strongest first; the same cause on several sensors is one finding that lists them all."""
-    named = [finding(state, f, fitted, k) for k, f in enumerate(state.found)]
+    named = [finding(state, f, fitted, k, new[k]) for k, f in enumerate(state.found)]
     excess = [excess_finding(state, e) for e in state.excess]
     return tuple(sorted((*merged(named), *excess), key=lambda f: -f.strength))
 
 
-def finding(state: Search, found: Found, fitted: Amplitudes, k: int) -> Finding:
+def finding(state: Search, found: Found, fitted: Amplitudes, k: int, new: bool | None) -> Finding:
     """One named cause."""
     best, names = found.best, [s.name for s in state.baseline.session.sensors]
     sensors = tuple(names[i] for i in best.shape.sensors)
@@ -48,7 +49,7 @@ def finding(state: Search, found: Found, fitted: Amplitudes, k: int) -> Finding:
         sentence=best.cause.sentence.format(sensors=spoken(sensors)),
         advice=best.cause.advice,
         parity=parity_split(state, found),
-        new=is_new(state, fitted, k),
+        new=new,
     )
 
 

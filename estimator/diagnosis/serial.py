@@ -29,6 +29,9 @@ FEWEST = 6
 SIGNAL = 10.0 ** np.arange(-1, 4.1, 0.5)
 """λ: energy of the course over that of the noise."""
 
+LEFT = 0.1
+"""Share of a direction's noise that must be left for it to count."""
+
 CHANCE = 0.1
 """Share of 1/B that white noise reaches at most."""
 
@@ -50,6 +53,7 @@ class Serial:
 
     @property
     def p_value(self) -> float:
+        """Of a course at least as smooth, were there nothing but noise."""
         return float(min(1.0, CHANCE * np.exp(-self.evidence)))
 
     @property
@@ -94,7 +98,7 @@ def serial_structure(evidence: Evidence, left: Array, taken: Array, sensor: int,
     """
     R, m = evidence.baseline.residual.shape
     size, turn = np.linalg.eigh(own_covariance(evidence, taken, sensor))
-    kept = size > 0.1
+    kept = size > LEFT
     if int(kept.sum()) < FEWEST:
         return None
     root = turn[:, kept] * np.sqrt(size[kept])

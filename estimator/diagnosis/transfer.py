@@ -5,6 +5,7 @@ covariance V comes from this session alone. What the baseline there leaves, z, i
 effect, and with it of mean X·a and covariance 1 + X V X' (X the trace of the signature there).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -39,12 +40,15 @@ class Carried:
     """(f,) which of all fitted amplitudes these are."""
 
 
-def transfer(state: Search, fitted: Amplitudes) -> Transfer | None:
-    """Scores of the latest earlier session before and after; None where no finding can have acted there."""
+def transfer(state: Search, fitted: Amplitudes, new: Sequence[bool | None]) -> Transfer | None:
+    """Scores of the latest earlier session before and after; None where no finding can have acted there.
+
+    ``new``: `newness` of every finding.
+    """
     if not state.history:
         return None
     earlier = state.history[-1]
-    carried = carried_to(earlier, state, fitted)
+    carried = carried_to(earlier, state, fitted, new)
     if carried is None:
         return None
     evidence = Evidence.of(earlier)
@@ -52,12 +56,12 @@ def transfer(state: Search, fitted: Amplitudes) -> Transfer | None:
     return Transfer(earlier.session.started_at, before, after)
 
 
-def carried_to(earlier: Baseline, state: Search, fitted: Amplitudes) -> Carried | None:
+def carried_to(earlier: Baseline, state: Search, fitted: Amplitudes, new: Sequence[bool | None]) -> Carried | None:
     """The findings that an earlier session had too, together."""
     parts = [
         part
         for k, found in enumerate(state.found)
-        if not is_new(state, fitted, k) and (part := alone(earlier, found.best, fitted, k)) is not None
+        if not new[k] and (part := alone(earlier, found.best, fitted, k)) is not None
     ]
     if not parts:
         return None
@@ -78,22 +82,28 @@ def alone(earlier: Baseline, scored: Scored, fitted: Amplitudes, k: int) -> Carr
     return Carried(columns[..., : len(places)], fitted.value[places], covariance, places)
 
 
-def is_new(state: Search, fitted: Amplitudes, k: int) -> bool | None:
-    """Whether a finding came since the latest earlier session; None without history or for what moved since.
+def newness(state: Search, fitted: Amplitudes) -> tuple[bool | None, ...]:
+    """Whether each finding came since the latest earlier session; None without history or for what moved since.
 
     The readings of that session say it: with the effect or without. Where they are of two minds, it is how the
     parameters moved.
     """
-    best = state.found[k].best
-    if not state.history or best.cause.between:
-        return None
-    carried = alone(state.history[-1], best, fitted, k)
+    if not state.history:
+        return (None,) * len(state.found)
+    earlier, evidence = state.history[-1], Evidence.of(state.history[-1])
+    return tuple(
+        None if f.best.cause.between else is_new(f.best, evidence, alone(earlier, f.best, fitted, k))
+        for k, f in enumerate(state.found)
+    )
+
+
+def is_new(scored: Scored, evidence: Evidence, carried: Carried | None) -> bool:
+    """Whether one finding came since the session that ``evidence`` is of; ``carried`` as it would show there."""
     if carried is not None:
-        evidence = Evidence.of(state.history[-1])
         gained = agreement(evidence, carried).log_score - agreement(evidence, nothing_of(carried)).log_score
         if abs(gained) * evidence.freedom > CLEAR:
             return gained < 0
-    return not best.lasting
+    return not scored.lasting
 
 
 def nothing_of(carried: Carried) -> Carried:

@@ -35,7 +35,7 @@ import numpy as np
 from scipy import stats
 
 from estimator.health.deviation import Deviation, deviation
-from estimator.results import Calibration, SensorCalibration
+from estimator.results import NOMINAL_AXES, Calibration, SensorCalibration
 from estimator.session import Array
 
 AXES, SCALES = "axes", "scales"
@@ -51,7 +51,6 @@ FEWEST = {AXES: 4, SCALES: 3}
 """Sensors that it takes to tell a common change from a single one."""
 PARALLEL = 1e-3
 """Smallest eigenvalue of AᵀA per sensor below which the axes do not span space."""
-NOMINAL_AXES = "nominal-axes"
 
 
 @dataclass(frozen=True)
@@ -292,7 +291,7 @@ FEWEST_AGREEING = {1: 2, 2: 3}
 
 
 def _evidence(changes: _Changes, fit: _Fit, sensor: int) -> float:
-    """τ: twice what the log likelihood gains when the sensor is left out."""
+    """χ²: twice what the log likelihood gains when the sensor is left out."""
     at = changes.where([sensor])
     pull = fit.weight[at] @ changes.y
     return float(pull @ np.linalg.solve(fit.weight[np.ix_(at, at)], pull))

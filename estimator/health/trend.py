@@ -12,8 +12,8 @@ say of any date follows from the backward recursion of the scores (de Jong & Pen
 
 The walk q is unknown, and few sessions say little of it. Nothing is computed at one best q: the likelihood is taken at
 the nodes of a grid of √q and every answer is the mixture over the nodes, weighted by likelihood × prior. That carries
-the ignorance of q into every bound, as Student's t does for an unknown variance. Prior: √q log-normal about 0.1 T a
-root year (95 % within a factor of nine), ρ = 0.5 T a year: what keeps its tolerance between calibrations at all.
+the ignorance of q into every bound, as Student's t does for an unknown variance. Prior: √q log-normal about 0.2 T a
+root year (95 % within a factor of nineteen), ρ = 0.5 T a year: what keeps its tolerance between calibrations at all.
 
 Rate: its p-value is Σ_q w_q·2Φ(−|r_q|/s_q), the chance of a rate of the other sign, doubled.
 

@@ -27,7 +27,7 @@ from estimator.calibration.free.start import start
 from estimator.forward import measured
 from estimator.parameters import names
 from estimator.reference import gravity
-from estimator.results import Calibration
+from estimator.results import NOMINAL_AXES, Calibration
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
 __all__ = ["accelerometer_rows", "calibrate_free", "check", "gyro_biases", "residual_per_freedom", "solve"]
@@ -66,7 +66,7 @@ def calibrate_free(session: CalibrationSession, *, quadratic: bool | None = None
         biases = gyro_biases(session, gyro)
         parts.append((np.flatnonzero(gyro), of_gyros(biases, scale[gyro], axes[gyro])))
         if gyro.all():
-            return report(session, parts[0][1], fit_of_gyros(biases, names(session.sensors)), "nominal-axes")
+            return report(session, parts[0][1], fit_of_gyros(biases, names(session.sensors)), NOMINAL_AXES)
     g = gravity(session.site)
     rows, stated = accelerometer_rows(session, live, g)
     solution = solve(rows, stated, quadratic)
@@ -75,7 +75,7 @@ def calibrate_free(session: CalibrationSession, *, quadratic: bool | None = None
     own_names = names(tuple(s for s, own in zip(session.sensors, live, strict=True) if own))
     fit = fit_of_accelerometers(solution, used, known, stated, own_names)
     everything = merged([(np.flatnonzero(live), known), *parts])
-    return report(session, everything, fit, "directions" if rows.held else "nominal-axes")
+    return report(session, everything, fit, "directions" if rows.held else NOMINAL_AXES)
 
 
 def residual_per_freedom(session: CalibrationSession) -> float:

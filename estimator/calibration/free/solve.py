@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from estimator.arrays import nearest_turn
 from estimator.calibration.free.information import Information, information, movable, unseen_below
 from estimator.calibration.free.model import Linear, Rows, State, cost, linearise
 from estimator.session import Array
@@ -62,11 +63,10 @@ class Solution:
 
 
 def held_frame(rows: Rows, state: State) -> State:
-    """The state with its frame turned so that the axes show no net turn against the nominal ones (Kabsch 1976)."""
+    """The state with its frame turned so that the axes show no net turn against the nominal ones."""
     if rows.held:
         return state
-    U, _, Vt = np.linalg.svd(rows.nominal_axes.T @ state.axes)
-    return state.turned(U @ np.diag([1.0, 1.0, np.linalg.det(U @ Vt)]) @ Vt)
+    return state.turned(nearest_turn(state.axes, rows.nominal_axes))
 
 
 def search(rows: Rows, state: State, quadratic: bool) -> Solution:
