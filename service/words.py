@@ -1,7 +1,8 @@
 """Names and dates as people write them."""
 
-from datetime import datetime
+from datetime import datetime, timedelta
 
+YEAR = timedelta(days=365.25)
 PARAMETER_NAMES = {
     "scale": "scale factor",
     "bias": "bias",

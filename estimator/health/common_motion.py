@@ -28,7 +28,7 @@ is judged on its whole change. Axes of fewer than four sensors, and scales of fe
 that have parted, either may have moved.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -78,15 +78,24 @@ class CommonMotion:
     @property
     def size(self) -> float:
         """Angle of the rotation, rad, or the relative change with its sign."""
-        return float(np.linalg.norm(self.value)) if self.quantity == AXES else self.value[0]
+        return size_of(self.quantity, self.value)
 
     @property
     def sigma(self) -> float:
-        """One sigma of the size: along the rotation's direction."""
-        covariance, vector = np.array(self.covariance), np.array(self.value)
-        length = float(np.linalg.norm(vector))
-        along = vector / length if length > 0 else np.eye(len(vector))[0]
-        return float(np.sqrt(along @ covariance @ along))
+        """One sigma of the size."""
+        return sigma_of(self.value, self.covariance)
+
+
+def size_of(quantity: str, value: Sequence[float]) -> float:
+    """Angle of a rotation vector (3,), rad, or the relative change of all scales (1,) with its sign."""
+    return float(np.linalg.norm(value)) if quantity == AXES else float(value[0])
+
+
+def sigma_of(value: Sequence[float], covariance: Sequence[Sequence[float]]) -> float:
+    """One sigma of the size of a common change (k,): along its direction, from its covariance (k, k)."""
+    vector, length = np.array(value), float(np.linalg.norm(value))
+    along = vector / length if length > 0 else np.eye(len(vector))[0]
+    return float(np.sqrt(along @ np.array(covariance) @ along))
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,6 +19,7 @@ from service.demo.changes import DEGREE_PER_HOUR, ELEMENT, MICRO, Change, step_o
 from service.demo.hidden import with_effect
 from service.demo.other_programmes import alignment, recording, turntable_truth
 from service.demo.types import SENSORS, TYPE_NAME
+from service.words import YEAR
 
 SEED = 20261112
 STANDS = ("ODG-1", "ODG-2", "ODG-3")
@@ -32,7 +33,6 @@ WANDER = {
     GYROSCOPE: (60e-6, 0.0008 * DEGREE_PER_HOUR, 0.0, 8 * ARCSEC, 8 * ARCSEC),
 }
 """One sigma of every sensor's random walk in a year, dimensionless."""
-YEAR = timedelta(days=365.25)
 TURNED_STAND, TURNED_AT = "ODG-3", START + 2.2 * YEAR
 TURN = np.array([4.0, -7.0, 11.0]) * ARCSEC
 """By which the seat of that stand has turned every block since then: nobody noticed."""

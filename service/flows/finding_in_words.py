@@ -158,7 +158,7 @@ def _choices(finding: Finding) -> tuple[Choice, ...]:
     apart = {s["cause"]: s for s in finding["separations"]}
     names = (finding["cause"], *finding["alternatives"])
     return tuple(
-        Choice(name, _subject(name, finding["sensors"]), _percent(shares.get(name, 0.0)), *_apart(apart.get(name)))
+        Choice(name, cause_on(name, finding["sensors"]), _percent(shares.get(name, 0.0)), *_apart(apart.get(name)))
         for name in names
     )
 
@@ -182,12 +182,13 @@ def _ranking(finding: Finding) -> tuple[Bar, ...]:
     """Rival causes with their shares; those that are out of the question are left out."""
     shown = [r for k, r in enumerate(finding["ranking"]) if k < 3 or r["probability"] > SHOWN_SHARE]
     return tuple(
-        Bar(_subject(r["cause"], r["sensors"]), _percent(r["probability"]), 100 * float(r["probability"]))
+        Bar(cause_on(r["cause"], r["sensors"]), _percent(r["probability"]), 100 * float(r["probability"]))
         for r in shown
     )
 
 
-def _subject(cause: str, sensors: Sequence[str]) -> str:
+def cause_on(cause: str, sensors: Sequence[str]) -> str:
+    """``bias temperature (A5)``."""
     return f"{in_words(cause)} ({', '.join(sensors)})" if sensors else in_words(cause)
 
 

@@ -1,7 +1,7 @@
 """Step: judged changes since the last break → trends, the date of the next calibration and why then."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 
 import numpy as np
@@ -12,9 +12,8 @@ from estimator.health.prognosis import Outlook, Prognosis, Track, prognosis
 from estimator.session import comparable
 from service.outlook import FanPoint, ParameterTrend, RiskPoint, UnitOutlook
 from service.storage.queries.outlooks import ChangeRow, ReferenceRow
-from service.words import PARAMETER_NAMES, day_of, month_of
+from service.words import PARAMETER_NAMES, YEAR, day_of, month_of
 
-YEAR = timedelta(days=365.25)
 FAN_AHEAD = np.linspace(0.0, 1.0, 6)
 """Years after the last session for which a trend's bounds are drawn."""
 FAN_LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
@@ -165,7 +164,7 @@ def _unit(
         trends=trends,
         risk=risk,
     )
-    return UnitOutlook(**{**vars(unit), "risk_at_due": unit.risk_by(due)})
+    return replace(unit, risk_at_due=unit.risk_by(due))
 
 
 def _reason(

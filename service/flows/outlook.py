@@ -17,6 +17,8 @@ from service.storage import Storage
 from service.storage.store import Store
 from service.units import COVERAGE
 
+FEWEST_UNITS = 3
+"""Units of a type that make a population."""
 END_OF_TIME = datetime(9999, 1, 1, tzinfo=UTC)
 
 
@@ -101,7 +103,3 @@ def population_z(rates: Sequence[Rate]) -> list[float | None]:
             for place, value in zip(places, z, strict=True):
                 found[place] = value
     return found
-
-
-FEWEST_UNITS = 3
-"""Units of a type that make a population."""

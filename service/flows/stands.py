@@ -1,19 +1,17 @@
 """Flow: the stands' own health, from what the units measured on them did together."""
 
 from collections.abc import Sequence
-from datetime import datetime, timedelta
+from datetime import datetime
 
 import numpy as np
 
-from estimator.health.common_motion import AXES
+from estimator.health.common_motion import AXES, sigma_of, size_of
 from estimator.health.stands import Motion, StandShift, stand_shifts
 from service.stand_records import MotionOnStand, StandCondition, StandEvidence
 from service.storage.store import Store
-from service.units import deviation_unit, measured, signed
-from service.words import day_of
+from service.units import COVERAGE, deviation_unit, measured, signed
+from service.words import YEAR, day_of
 
-YEAR = timedelta(days=365.25)
-COVERAGE = 2.0
 STEADY = "Nothing that all units measured on it have in common."
 TOO_FEW = "Fewer than three units tell of it."
 
@@ -48,16 +46,13 @@ def _shifts(own: Sequence[MotionOnStand]) -> tuple[StandShift, ...]:
 
 
 def _evidence(shift: StandShift, kind: str, quantity: str, start: datetime) -> StandEvidence:
-    value, covariance = np.array(shift.value), np.array(shift.covariance)
-    size = float(np.linalg.norm(value)) if quantity == AXES else float(value[0])
-    along = value / np.linalg.norm(value) if np.any(value) else np.eye(len(value))[0]
     return StandEvidence(
         kind=kind,
         quantity=quantity,
         since=start + (shift.since or 0.0) * YEAR,
         value=shift.value,
-        size=size,
-        sigma=float(np.sqrt(along @ covariance @ along)),
+        size=size_of(quantity, shift.value),
+        sigma=sigma_of(shift.value, shift.covariance),
         p_value=shift.p_value or 0.0,
         units=shift.units,
         agreeing=shift.agreeing,

@@ -7,7 +7,7 @@ from typing import Any
 from service.charts import ChartSet
 from service.charts.diagnosis import MOST_PANELS, Sides, diagnosis_charts
 from service.flows.diagnosis_in_words import listed
-from service.flows.finding_in_words import FindingView, chance, finding_view, in_words
+from service.flows.finding_in_words import FindingView, cause_on, chance, finding_view, in_words
 from service.flows.model_in_force import in_force
 from service.pages.gain import GainView, gain_view
 from service.pages.limits import LimitsView, limits_view
@@ -170,11 +170,12 @@ def _structures(structures: Sequence[dict[str, Any]]) -> tuple[StructureView, ..
 
 
 def _revision(revision: ModelRevision, session: StoredSession, known: Sequence[ModelRevision]) -> RevisionView:
-    name = in_words(revision.cause) + (f" ({', '.join(revision.sensors)})" if revision.sensors else "")
     withdrawn = next((r for r in known if r.withdraws == revision.id), None)
     holds = revision.id <= session.revision and not (withdrawn and withdrawn.id <= session.revision)
     state = "calibrated with it" if holds else "calibrated without it" if withdrawn else "calibrated before it"
-    return RevisionView(revision, name, f"{revision.scope} {revision.subject}", state, withdrawn)
+    return RevisionView(
+        revision, cause_on(revision.cause, revision.sensors), f"{revision.scope} {revision.subject}", state, withdrawn
+    )
 
 
 def _scopes(session: StoredSession) -> tuple[tuple[str, str], ...]:

@@ -11,7 +11,7 @@ from service.charts.history import history_charts
 from service.charts.residuals import residual_charts
 from service.charts.tracks import tracks_of
 from service.flows.certificate import CertifiedSession
-from service.flows.finding_in_words import FindingView, finding_view, in_words
+from service.flows.finding_in_words import FindingView, cause_on, finding_view, in_words
 from service.flows.fit_in_words import FitWords, fit_in_words
 from service.flows.found_and_left import FoundAndLeft
 from service.flows.known_in_words import combination_in_words
@@ -29,7 +29,7 @@ from service.words import day_of
 MOST_HISTORIES = 6
 """Histories that are drawn, of the parameters closest to their tolerance."""
 MOST_RESIDUALS = 12
-"""Sensors whose residuals are drawn, those with the largest ones."""
+"""Panels of residuals that are drawn, the first of them; the session's page has all."""
 WIDTH = 235
 """Of one drawn panel, pixels."""
 
@@ -262,7 +262,7 @@ def _pair(pair: FoundAndLeft) -> Pair:
 
 def _record(found: CertifiedSession) -> list[Fact]:
     session = found.report.session
-    causes = (f"{in_words(r.cause)}{' (' + ', '.join(r.sensors) + ')' if r.sensors else ''}" for r in found.revisions)
+    causes = (cause_on(r.cause, r.sensors) for r in found.revisions)
     model = f"revision {session.revision}: baseline with {', '.join(causes)}" if session.revision else "baseline (0)"
     return [
         Fact("Input file", f"{session.filename}, {size_in_words(session.size)}"),
