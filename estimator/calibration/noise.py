@@ -1,9 +1,22 @@
-"""Noise of the readings where the file does not state it, and the check of the one it states."""
+"""Noise of the readings where the file does not state it, and the check of the one it states.
+
+Theory
+------
+Restricted likelihood: with P the inverse noise covariance after the model is fitted, the variance v of a sensor's
+readings satisfies v²·y'PAPy = v·tr(PA), A the identity on its readings (Patterson & Thompson 1971, Biometrika 58,
+545). Both sides are of the readings in units of v: the energy E left of them and its degrees of freedom f. What the
+stand's errors do to all sensors at once is weighed off by their covariance; where they are larger than the noise, a
+moment estimate is the small difference of two large numbers.
+
+Sensors of one kind in one block are alike: their variances are taken as drawn about a common value v₀ with `ALIKE`
+degrees of freedom, v = (E + d₀v₀)/(f + d₀) (Smyth 2004, Stat. Appl. Genet. Mol. Biol. 3, 3). A sensor of few rows
+borrows from the others, unless it is plainly noisier than they are.
+"""
 
 import numpy as np
 from scipy import special
 
-from estimator.forward import input_of, jacobian, projected, slope
+from estimator.calibration.refine import FINEST, designed, linearise
 from estimator.parameters import SensorParameters
 from estimator.reference import Geometry
 from estimator.session import Array
@@ -11,45 +24,110 @@ from estimator.session import Array
 SUSPICIOUS = 1e-3
 """Below this p-value the stated noise cannot explain the residuals, and the covariance is enlarged."""
 
-ENOUGH = 10.0
-"""Degrees of freedom that a sensor needs for a noise variance of its own; with fewer, sensors of a kind share one."""
+ALIKE = 6.0
+"""Degrees of freedom with which a sensor's noise is known from the others of its kind: sigmas differ by a third."""
+
+GAINSAID = 0.01
+"""p-value of a sensor's own scatter below which it is noisier than the others of its kind."""
+
+LEAST = 1.0
+"""Degrees of freedom that a noise of its own is divided by at least."""
+
+STEADY = 0.01
+"""Relative change of every variance at which the estimate stands."""
+
+MOST_STEPS = 30
+
+TOGETHER = 256
+"""Sessions worked on at a time."""
 
 
-def estimated_variance(y: Array, p: SensorParameters, geometry: Geometry) -> Array:
-    """Variance of each sensor's readings from its own residuals, the stand's known share taken off.
-
-    A moment estimate (MINQUE): the expectation of the residual sum of squares of a five-parameter fit is
-    σ²·(R − rank) plus what the stand's errors, of stated sigma, leave behind; solved for σ².
+def with_estimated(variance: Array, y: Array, p: SensorParameters, geometry: Geometry) -> Array:
+    """Variances of the readings, those not stated estimated from what the model leaves of all sensors.
 
     Parameters
     ----------
+    variance : (S, R, m) at the input; NaN where it is not stated, infinite for readings that take no part.
     y : (S, R, m); p : (S, m), close to the solution.
 
     Returns
     -------
-    (S, R, m) at the input, constant over the rows; at least a tenth of the raw mean square.
+    (S, R, m) at the input, an estimated one constant over the rows.
     """
-    R = y.shape[1]
-    steep = slope(p, geometry.n)
-    left, values, _ = np.linalg.svd(jacobian(p, geometry.n, geometry.norm).swapaxes(1, 2), full_matrices=False)
-    spans = left * (values > 1e-9 * values[..., :1])[..., None, :]
+    parts = np.split(np.arange(len(y)), range(TOGETHER, len(y), TOGETHER))
+    return np.concatenate([_estimated(variance[k], y[k], p.at(k), geometry) for k in parts])
 
-    def remainder(column: Array) -> Array:
-        """Sum of squares (S, m) of what the fit of each sensor leaves of a (S, R, m) column."""
-        c = column.swapaxes(1, 2)[..., None]
-        return ((c - spans @ (spans.swapaxes(-1, -2) @ c)) ** 2).sum(axis=(-1, -2))
 
-    squares = remainder(y / p.scale[:, None, :] - input_of(p, geometry.n))
-    freedom = np.maximum(R - (spans**2).sum(axis=(-1, -2)), 0.0)
-    swing = (steep * projected(p.axis, geometry.beta) * geometry.beta_sigma).swapaxes(1, 2)
-    stand = (swing**2 * (1.0 - (spans**2).sum(axis=-1))).sum(axis=-1)
-    for column, sigma in zip(geometry.constant, geometry.constant_sigma, strict=True):
-        stand = stand + remainder(sigma * steep * projected(p.axis, column))
-    left_over = np.maximum(squares - stand, 0.1 * squares)
-    if freedom.min() < ENOUGH:
-        alike = (geometry.norm[:, None] == geometry.norm).astype(float)
-        left_over, freedom = left_over @ alike, freedom @ alike
-    return np.broadcast_to((left_over / np.maximum(freedom, 1.0))[:, None, :], y.shape)
+def _estimated(variance: Array, y: Array, p: SensorParameters, geometry: Geometry) -> Array:
+    unstated, floor = np.isnan(variance), (FINEST * geometry.norm) ** 2
+    sensors = np.asarray(unstated.any(axis=1))
+    residual = linearise(y, p, geometry, np.ones(y.shape))[1]
+    value = np.maximum((residual**2).mean(axis=1), floor)
+    for _ in range(MOST_STEPS):
+        energy, freedom = left_over(np.where(unstated, value[:, None, :], variance), y, p, geometry, unstated)
+        expected = typical(value, sensors, geometry.norm)
+        energy, freedom = with_the_others(energy, freedom, expected)
+        new = np.maximum(energy / np.maximum(freedom, LEAST), floor)
+        change = np.where(sensors, new / value, 1.0)
+        value = value * change
+        if np.abs(np.log(change)).max() < STEADY:
+            break
+    return np.where(unstated, value[:, None, :], variance)
+
+
+def left_over(
+    variance: Array, y: Array, p: SensorParameters, geometry: Geometry, counted: Array
+) -> tuple[Array, Array]:
+    """Energy E, as a variance, and degrees of freedom f of what each sensor's counted readings leave: (S, m) each.
+
+    ``variance`` and ``counted`` (bool): (S, R, m).
+    """
+    S, R, m = y.shape
+    weight = 1.0 / variance
+    normal, residual = linearise(y, p, geometry, weight)
+    inverse = np.linalg.inv(normal.matrix)
+    design, beta = designed(p, geometry)
+    columns = np.zeros((S, R, m, len(inverse[0])))
+    one = np.arange(m)
+    columns[..., : 5 * m].reshape(S, R, m, m, 5)[:, :, one, one] = design[..., :5]
+    columns[..., 5 * m :] = design[..., 5:]
+    swing = weight * beta * geometry.beta_sigma
+    shared = 1.0 + (swing * beta * geometry.beta_sigma).sum(axis=-1, keepdims=True)
+
+    def weighed(values: Array) -> Array:
+        common = (swing[..., None] * values).sum(axis=2, keepdims=True) / shared[..., None]
+        return weight[..., None] * values - swing[..., None] * common
+
+    left = residual[..., None] - columns @ (inverse @ normal.rhs[..., None])[:, None]
+    pulled = weighed(left)[..., 0]
+    leaning = weighed(columns)
+    kept = weight - swing**2 / shared - ((leaning @ inverse[:, None]) * leaning).sum(axis=-1)
+    own = np.where(counted, variance, 0.0)
+    return ((own * pulled) ** 2).sum(axis=1), (own * kept).sum(axis=1)
+
+
+def typical(value: Array, sensors: Array, norm: Array) -> Array:
+    """(S, m) the variance to expect of each sensor: the median, in logarithms, of those of its kind.
+
+    value (S, m) of the ``sensors`` (S, m) bool that state none; NaN for the others.
+    """
+    asked = np.where(sensors, np.log(value), np.nan)
+    found = np.full(value.shape, np.nan)
+    for own in np.unique(norm):
+        alike = norm == own
+        known = sensors[:, alike].any(axis=1)
+        found[np.ix_(known, alike)] = np.exp(np.nanmedian(asked[np.ix_(known, alike)], axis=1))[:, None]
+    return np.where(sensors, found, np.nan)
+
+
+def with_the_others(energy: Array, freedom: Array, expected: Array) -> tuple[Array, Array]:
+    """Energy and degrees of freedom (...) of sensors' own scatter, and of what the others let expect of them.
+
+    Nothing is borrowed where the own scatter gainsays it, nor where ``expected`` is NaN.
+    """
+    usual = special.fdtri(np.maximum(freedom, 1.0), ALIKE, 1 - GAINSAID)
+    borrows = energy < usual * expected * np.maximum(freedom, 1.0)
+    return energy + np.where(borrows, ALIKE * expected, 0.0), freedom + np.where(borrows, ALIKE, 0.0)
 
 
 def p_value(chi2: Array, dof: Array) -> Array:

@@ -122,17 +122,24 @@ def assemble(design: Array, weight: Array, beta: Array, beta_sigma: float, prior
 
 def linearise(y: Array, p: SensorParameters, geometry: Geometry, weight: Array) -> tuple[Normal, Array]:
     """Normal equations at p and the residual there (S, R, m)."""
-    k = len(geometry.constant)
-    S, R, m = y.shape
     residual = y / p.scale[:, None, :] - input_of(p, geometry.n)
+    design, beta = designed(p, geometry, residual)
+    return assemble(design, weight, beta, geometry.beta_sigma, geometry.constant_sigma**-2.0), residual
+
+
+def designed(p: SensorParameters, geometry: Geometry, *more: Array) -> tuple[Array, Array]:
+    """Columns (S, R, m, 5 + k + …) of each sensor's own parameters, the constant errors and ``more`` (S, R, m) ones,
+    and (S, R, m) the answer to the row's error of β."""
+    k = len(geometry.constant)
     steep = slope(p, geometry.n)
-    design = np.empty((S, m, R, 6 + k)).swapaxes(1, 2)
+    S, R, m = steep.shape
+    design = np.empty((S, m, R, 5 + k + len(more))).swapaxes(1, 2)
     design[..., :5] = jacobian(p, geometry.n, geometry.norm)
     for i, change in enumerate(geometry.constant, start=5):
         design[..., i] = steep * projected(p.axis, change)
-    design[..., -1] = residual
-    beta = steep * projected(p.axis, geometry.beta)
-    return assemble(design, weight, beta, geometry.beta_sigma, geometry.constant_sigma**-2.0), residual
+    for i, column in enumerate(more, start=5 + k):
+        design[..., i] = column
+    return design, steep * projected(p.axis, geometry.beta)
 
 
 def input_variance(p: SensorParameters, standard_errors: Array, repeatability: Array) -> Array:

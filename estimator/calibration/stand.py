@@ -65,9 +65,9 @@ def noise_variance(
     """
     variance = input_variance(start, errors, np.array([s.bias_repeatability for s in session.sensors]))
     unstated = np.isnan(variance)
-    if unstated.any():
-        variance = np.where(unstated, noise.estimated_variance(y, start, geometry), variance)
     variance = np.where(answers(y)[:, None, :], variance, np.inf)
+    if np.isnan(variance).any():
+        variance = noise.with_estimated(variance, y, start, geometry)
     return variance, np.logical_not(unstated.any(axis=(1, 2)))
 
 

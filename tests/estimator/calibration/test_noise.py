@@ -1,14 +1,16 @@
 """Noise that a file does not state, or understates."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from estimator import calibrate, calibrate_many
+from estimator.calibration.stand import solved
 from estimator.session import CalibrationSession
 from estimator.simulate import simulate
-from tests.estimator.calibration.cases import CASES, Case, errors
+from tests.estimator.calibration.cases import CASES, Case, accelerometers, block, errors
 
 STAND, GYRO = CASES[0], CASES[3]
 
@@ -26,6 +28,39 @@ def test_unstated_noise_gives_honest_intervals(case: Case) -> None:
     results = calibrate_many(sessions(case, 1000, stated=False))
     scaled = np.stack([errors(r, case.truth) / np.sqrt(np.diagonal(r.covariance)) for r in results])
     assert 0.93 <= np.mean(np.abs(scaled) < 1.96) <= 0.97
+
+
+QUIET = replace(
+    STAND,
+    name="far quieter than the stand",
+    schedule=block(accelerometers(bias_repeatability=0.0), 8),
+    noise=np.full(6, 3e-6),
+)
+"""Noise a twentieth of what the stand's errors do to a reading."""
+
+
+def found_noise(sessions: Sequence[CalibrationSession]) -> np.ndarray:
+    """(S, m) sigma of a reading that the calibration took, over the true one."""
+    return np.stack([np.sqrt(solved([s]).fitted.variance[0, 0]) for s in sessions]) * 0.12 / QUIET.noise
+
+
+def test_noise_far_below_the_errors_of_the_stand_gives_honest_intervals() -> None:
+    results = calibrate_many(sessions(QUIET, 600, stated=False))
+    scaled = np.stack([errors(r, QUIET.truth) / np.sqrt(np.diagonal(r.covariance)) for r in results])
+    assert 0.93 <= np.mean(np.abs(scaled) < 1.96) <= 0.97
+
+
+def test_noise_far_below_the_errors_of_the_stand_is_found() -> None:
+    ratio = found_noise(sessions(QUIET, 100, stated=False))
+    assert abs(np.exp(np.log(ratio).mean()) - 1) < 0.05
+    assert np.quantile(ratio, [0.01, 0.99]) == pytest.approx([0.7, 1.3], abs=0.15)
+
+
+def test_a_sensor_noisier_than_the_others_is_found_noisier() -> None:
+    loud = replace(QUIET, noise=QUIET.noise * np.array([1, 1, 5, 1, 1, 1]))
+    ratio = found_noise(sessions(loud, 100, stated=False)).mean(axis=0)
+    assert ratio[2] == pytest.approx(5.0, rel=0.2)
+    assert np.delete(ratio, 2) == pytest.approx(np.ones(5), rel=0.1)
 
 
 def test_unstated_noise_is_called_estimated_and_not_judged() -> None:
