@@ -7,7 +7,7 @@ The simulation, the diagnosis, the extended fit, the detection limits and the do
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -96,6 +96,10 @@ class Shape:
     nonlinear: tuple[float, ...] = ()
     """Values of the nonlinear parameters, in the order of `Cause.nonlinear_units`."""
 
+    def first(self, q: int) -> "Shape":
+        """The same with its first q columns."""
+        return replace(self, columns=self.columns[..., :q])
+
 
 class Cause(ABC):
     """One cause of the catalogue."""
@@ -133,6 +137,11 @@ class Signature(Cause):
     @abstractmethod
     def shapes(self, setting: Setting) -> Iterator[Shape]:
         """Every signature the cause could leave in this session."""
+
+    def columns(self, setting: Setting, shape: Shape) -> Array:
+        """(R, m, q) what the effect of some shape adds in another session."""
+        known = (s for s in self.shapes(setting) if (s.sensors, s.nonlinear) == (shape.sensors, shape.nonlinear))
+        return next(known).columns
 
     def plausible(self, shape: Shape, amplitude: float) -> bool:
         """Whether the cause can have this amplitude (one amplitude)."""
@@ -180,10 +189,17 @@ class SensorCause(Signature):
             if self.kind is not None and setting.kinds[i] != self.kind:
                 continue
             for nonlinear in self.grid_of(setting, i):
-                term = self.term(setting, i, nonlinear)
-                columns = np.zeros((setting.rows, m, term.shape[1]))
-                columns[:, i, :] = term
-                yield Shape((i,), columns, nonlinear)
+                yield Shape((i,), self.placed(setting, i, nonlinear), nonlinear)
+
+    def placed(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, m, q) the term on sensor i."""
+        term = self.term(setting, i, nonlinear)
+        columns = np.zeros((setting.rows, len(setting.kinds), term.shape[1]))
+        columns[:, i, :] = term
+        return columns
+
+    def columns(self, setting: Setting, shape: Shape) -> Array:
+        return self.placed(setting, shape.sensors[0], shape.nonlinear)
 
 
 class CommonCause(Signature):
@@ -195,6 +211,9 @@ class CommonCause(Signature):
 
     def shapes(self, setting: Setting) -> Iterator[Shape]:
         yield Shape((), setting.through(self.change(setting)))
+
+    def columns(self, setting: Setting, shape: Shape) -> Array:
+        return setting.through(self.change(setting))
 
 
 def column(*terms: Array) -> Array:

@@ -35,6 +35,8 @@ class Baseline:
     """(R, m, r) effect of each row's own nuisances."""
     row_sigma: Array
     """(R, r); infinite where nothing is known beforehand."""
+    expected: Array | None = None
+    """(m,) variance that the others of its kind let expect of a sensor, over its own; 0 where they are not asked."""
 
     @property
     def parameters(self) -> SensorParameters:

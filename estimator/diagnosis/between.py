@@ -10,7 +10,7 @@ import numpy as np
 
 from estimator.arrays import nearest_turn, tangents
 from estimator.diagnosis.baseline import Baseline
-from estimator.diagnosis.evidence import Between, parameter_covariance
+from estimator.diagnosis.evidence import Between, Evidence, Past, parameter_covariance
 from estimator.diagnosis.turning import comparable_directions, free_to_turn
 from estimator.session import Array
 
@@ -19,7 +19,7 @@ WITHOUT = 1e-13
 
 
 def deviation_of(earlier: Baseline, now: Baseline) -> tuple[Array, Array]:
-    """Parameters of an earlier session seen from now: dimensionless deviation (P,) and covariance (P, P)."""
+    """Parameters of an earlier session seen from now: dimensionless deviation (P,) and how they map there (P, P)."""
     p, q, norm = now.parameters, earlier.parameters, now.setting.norm
     m = len(norm)
     turned = nearest_turn(q.axis, p.axis) if free_to_turn(now).any() else np.eye(3)
@@ -35,25 +35,7 @@ def deviation_of(earlier: Baseline, now: Baseline) -> tuple[Array, Array]:
     full = np.zeros((5 * m, 5 * m))
     for i in range(m):
         full[5 * i : 5 * i + 5, 5 * i : 5 * i + 5] = mapping[i]
-    return step.reshape(-1), full @ parameter_covariance(earlier) @ full.T
-
-
-def reference(now: Baseline, history: Sequence[Baseline], keep: Array) -> tuple[Array, Array] | None:
-    """Information-weighted mean of the history's parameters, as deviation from now, with covariance.
-
-    ``keep`` (P, q) as in `comparable_directions`; the answer is in its coordinates.
-    """
-    matching = [h for h in history if h.setting.kinds == now.setting.kinds]
-    if not matching:
-        return None
-    information, weighted = np.zeros((keep.shape[1],) * 2), np.zeros(keep.shape[1])
-    for earlier in matching:
-        step, covariance = deviation_of(earlier, now)
-        root = inverse_root(keep.T @ covariance @ keep)
-        information += root.T @ root
-        weighted += root.T @ (root @ (keep.T @ step))
-    covariance = (root := inverse_root(information)).T @ root
-    return covariance @ weighted, covariance
+    return step.reshape(-1), full
 
 
 def inverse_root(matrix: Array) -> Array:
@@ -66,11 +48,19 @@ def inverse_root(matrix: Array) -> Array:
 
 
 def between_sessions(now: Baseline, history: Sequence[Baseline]) -> Between | None:
-    """The whitened move of all parameters since the history; None without a usable history."""
-    keep = comparable_directions(now)
-    found = reference(now, history, keep)
-    if found is None:
+    """The whitened move of all parameters since the history; None without a usable history.
+
+    The reference is the information-weighted mean of the history's parameters.
+    """
+    keep, matching = comparable_directions(now), [h for h in history if h.setting.kinds == now.setting.kinds]
+    if not matching:
         return None
-    step, covariance = found
+    steps, maps = zip(*(deviation_of(earlier, now) for earlier in matching), strict=True)
+    known = [keep.T @ turn @ parameter_covariance(h) @ turn.T @ keep for h, turn in zip(matching, maps, strict=True)]
+    information = [(root := inverse_root(covariance)).T @ root for covariance in known]
+    covariance = (root := inverse_root(np.sum(information, axis=0))).T @ root
+    weights = [keep @ covariance @ own @ keep.T for own in information]
     response = keep @ inverse_root(covariance + keep.T @ parameter_covariance(now) @ keep) @ keep.T
-    return Between(response @ (keep @ -step), response)
+    step = np.sum([weight @ step for weight, step in zip(weights, steps, strict=True)], axis=0)
+    past = [Past(Evidence.of(h), w @ turn) for h, w, turn in zip(matching, weights, maps, strict=True)]
+    return Between(response @ -step, response, tuple(past))

@@ -14,29 +14,24 @@ probability as its F.
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import chdtrc, chdtri, fdtrc
+from scipy.special import chdtrc
 
 from estimator.causes import Shape, Signature
 from estimator.diagnosis.evidence import Evidence
-from estimator.session import ACCELEROMETER, Array
+from estimator.diagnosis.scatter import Left, equivalent
+from estimator.session import Array
 
 FAINT = 0.02
 """A direction of a signature counts when its trace is above this share of the strongest direction's."""
-
-MANY = 16
-"""Sensors from which on effects are not tried both as lasting and as new since the history."""
-
-FAINTEST_TAIL = 1e-280
-"""Tail probability below which its logarithm is taken from the residuals themselves."""
 
 LARGEST = 0.3
 """Largest part of the applied vector that an effect on a stand may be."""
 
 WORTH = 1e-3
-"""p-value from which on it is asked whether an amplitude is within reason."""
+"""p-value below which a signature is looked at as an explanation: is its amplitude within reason, is it a rival?"""
 
 OCCAM = 0.7
 """ln evidence that every amplitude beyond the first costs: the simpler of two causes is the likelier one."""
@@ -96,106 +91,6 @@ class Scored:
         return float(np.sqrt(self.statistic))
 
 
-def traces_of(evidence: Evidence, causes: Iterable[Signature]) -> list[Traces]:
-    """Traces of every available cause, in their order."""
-    setting = evidence.baseline.setting
-    found = []
-    for cause in causes:
-        if not cause.available(setting) or (cause.between and evidence.between is None):
-            continue
-        shapes = tuple(cause.shapes(setting))
-        if shapes:
-            found.extend(_all_traces(evidence, cause, shapes))
-    return found
-
-
-def _all_traces(evidence: Evidence, cause: Signature, shapes: tuple[Shape, ...]) -> list[Traces]:
-    """Traces of one cause. With history: as lasting since then, as new, and with the sensor's own move left open.
-
-    In a block of many sensors the versions would cost gigabytes: there an effect is taken as lasting, and what it
-    moved if it is new shows as the sensors' drift.
-    """
-    if cause.between or cause.nameless or evidence.between is None:
-        return [_version(evidence, cause, shapes, lasting=not cause.between)]
-    lasting = _version(evidence, cause, shapes, lasting=True)
-    if len(evidence.baseline.unstated) > MANY:
-        return [lasting]
-    versions = [lasting, _version(evidence, cause, shapes, lasting=False), freed(evidence, lasting)]
-    return [v for v in versions if v is not None]
-
-
-def _version(evidence: Evidence, cause: Signature, shapes: tuple[Shape, ...], *, lasting: bool) -> Traces:
-    """Traces of all shapes of a cause that either lasts since the history or is new."""
-    q = shapes[0].columns.shape[-1]
-    stacked = np.concatenate([s.columns for s in shapes], axis=-1)
-    trace = evidence.trace(stacked, lasting=lasting)
-    columns = np.moveaxis(trace.reshape(len(trace), len(shapes), q), 1, 0)
-    raw = np.linalg.norm(evidence.raw(stacked), axis=0).reshape(len(shapes), q)
-    shown = (np.linalg.norm(columns, axis=1) > INVISIBLE * raw) & (raw > 0)
-    return Traces(cause, shapes, (lasting,) * len(shapes), columns, raw, int(shown.any(axis=-1).sum()))
-
-
-def freed(evidence: Evidence, traces: Traces) -> Traces | None:
-    """The same with the sensor's move since the history left open; None for causes of no sensor.
-
-    An effect that some of the history had too, at other temperatures or positions, moves the sensor's parameters by
-    an amount that only a diagnosis of every earlier session would tell.
-    """
-    assert evidence.between is not None
-    if not traces.shapes[0].sensors:
-        return None
-    S, n, _ = traces.columns.shape
-    own = np.zeros((S, n, 5))
-    for k, shape in enumerate(traces.shapes):
-        moved = slice(5 * shape.sensors[0], 5 * shape.sensors[0] + 5)
-        own[k, evidence.readings :] = evidence.between.response[:, moved]
-    blank = np.zeros((*traces.shapes[0].columns.shape[:2], 5))
-    shapes = tuple(Shape(s.sensors, np.concatenate([s.columns, blank], axis=-1), s.nonlinear) for s in traces.shapes)
-    raw = np.concatenate([traces.raw, np.zeros((S, 5))], axis=-1)
-    return replace(traces, shapes=shapes, columns=np.concatenate([traces.columns, own], axis=-1), raw=raw)
-
-
-@dataclass(frozen=True, eq=False)
-class Left:
-    """What the findings so far leave of the evidence."""
-
-    evidence: Evidence
-    taken: Array
-    """(n, f) orthonormal traces of the findings."""
-    z: Array
-    """(n,)"""
-    _pools: dict[tuple[int, ...], tuple[float, float]] = field(default_factory=dict)
-
-    @classmethod
-    def of(cls, evidence: Evidence, taken: Array) -> "Left":
-        return cls(evidence, taken, evidence.z - taken @ (taken.T @ evidence.z))
-
-    def pool(self, sensors: tuple[int, ...]) -> tuple[float, float]:
-        """Energy and degrees of freedom of the scatter that a signature must stand out of; NaN where it is stated."""
-        if sensors not in self._pools:
-            self._pools[sensors] = self._pool(sharing(self.evidence, sensors))
-        return self._pools[sensors]
-
-    def _pool(self, sensors: list[int]) -> tuple[float, float]:
-        evidence, readings = self.evidence, self.evidence.readings
-        if not evidence.baseline.unstated[sensors].any():
-            return float("nan"), float("nan")
-        owned = np.isin(evidence.owner, sensors)
-        freedom = float(evidence.spare[owned[:readings]].sum()) + float(owned[readings:].sum())
-        return float((self.z[owned] ** 2).sum()), freedom - float((self.taken[owned] ** 2).sum())
-
-
-def sharing(evidence: Evidence, sensors: tuple[int, ...]) -> list[int]:
-    """The sensors out of whose scatter a signature must stand: its own, or all accelerometers that share the estimate
-    of a row's direction, since what one of them has moves the left-over of the others."""
-    setting = evidence.baseline.setting
-    chosen = list(sensors) or list(range(len(setting.kinds)))
-    coupled = [i for i, kind in enumerate(setting.kinds) if kind == ACCELEROMETER]
-    if np.isinf(evidence.baseline.row_sigma).any() and not set(chosen).isdisjoint(coupled):
-        return sorted({*chosen, *coupled})
-    return chosen
-
-
 def score(evidence: Evidence, traces: Sequence[Traces], taken: Array) -> list[Scored]:
     """Score every shape on what the findings so far leave.
 
@@ -226,7 +121,8 @@ def _score(left: Left, traces: Traces) -> Iterable[Scored]:
     freedom = live.sum(axis=-1)
     inverse = np.where(live, 1 / np.where(live, size, 1.0), 0.0)
     amplitude = (turn.swapaxes(-1, -2) @ (along * inverse)[..., None])[..., 0] / np.where(shown, norms, np.inf)
-    statistic = equivalent(left, traces.shapes, (along**2).sum(axis=-1), freedom)
+    energy, rest = left.scatter(traces.shapes, basis * live[:, None, :], along)
+    statistic = equivalent((along**2).sum(axis=-1), freedom, energy, rest)
     p_value = np.where(freedom > 0, chdtrc(np.maximum(freedom, 1), statistic), 1.0)
     places = max(traces.places, 1)
     for s in np.flatnonzero(visible):
@@ -275,22 +171,6 @@ def bayes_factor(statistic: float, q: int) -> float:
         return 0.0
     statistic = max(statistic, q)
     return 0.5 * (statistic - q) - 0.5 * q * float(np.log(statistic / q)) - OCCAM * (q - 1)
-
-
-def equivalent(left: Left, shapes: Sequence[Shape], power: Array, q: Array) -> Array:
-    """(S,) χ² of signatures that are as unlikely as the power (S,) that each takes out with its q (S,) amplitudes.
-
-    Where the noise of its sensors is estimated from these very residuals, F = (T/q)/((f − T)/(f − q)) takes the place
-    of T, carried over to χ² at the same tail probability.
-    """
-    total, freedom = np.array([left.pool(shape.sensors) for shape in shapes]).reshape(-1, 2).T
-    rest = np.maximum(total - power, 1e-6 * np.maximum(total, 1e-300))
-    over = np.maximum(freedom - q, 1.0)
-    amplitudes = np.maximum(q, 1)
-    tail = fdtrc(amplitudes, over, power / amplitudes / (rest / over))
-    beyond = over * np.log(np.maximum(total, 1e-300) / rest)
-    unknown = np.where(tail < FAINTEST_TAIL, beyond, chdtri(amplitudes, np.maximum(tail, FAINTEST_TAIL)))
-    return np.where(np.isnan(total) | (q == 0), power, np.where(freedom > q + 1, unknown, 0.0))
 
 
 def ranked(scored: Sequence[Scored]) -> list[tuple[Scored, float]]:

@@ -88,6 +88,17 @@ class Between:
     """(P,) whitened deviation of this session's parameters from the history."""
     response: Array
     """(P, P) whitens a parameter change."""
+    past: tuple["Past", ...] = ()
+    """The sessions that the reference is made of."""
+
+
+@dataclass(frozen=True, eq=False)
+class Past:
+    """An earlier session, and what it is to the reference."""
+
+    evidence: "Evidence"
+    weight: Array
+    """(P, P) change of the reference, seen from now, with the parameters found in that session."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,20 +154,19 @@ class Evidence:
         white = self.whiten(columns)
         return np.concatenate([white, np.zeros((self.readings - len(white), white.shape[1]))])
 
-    def trace(self, columns: Array, *, lasting: bool = True) -> Array:
+    def trace(self, columns: Array, before: Array | float | None = None) -> Array:
         """What a signature (R, m, q) leaves: (data rows, q).
 
-        ``lasting``: the effect was there in the history too, so the parameters did not move for it; otherwise the
-        share that the baseline absorbs shows as a move of the parameters.
+        What the baseline absorbs of it shows as a move of the parameters, unless it was there ``before``: (P, q) what
+        the history absorbed of it; 0 of what is new, None where it absorbed as much as now.
         """
         white = self.raw(columns)
         inside = white - self.basis @ (self.basis.T @ white)
         if self.between is None:
             return inside
-        moved = np.zeros((len(self.between.deviation), white.shape[1]))
-        if not lasting:
-            moved = self.between.response @ (self.absorb @ white)
-        return np.concatenate([inside, moved])
+        if before is None:
+            return np.concatenate([inside, np.zeros((len(self.between.deviation), white.shape[1]))])
+        return np.concatenate([inside, self.between.response @ (self.absorb @ white - before)])
 
     @cached_property
     def owner(self) -> Array:

@@ -1,8 +1,11 @@
 """From a session to its fitted baseline simulation, on a stand or in arbitrary orientations."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from estimator.arrays import tangents
+from estimator.calibration.noise import typical
 from estimator.calibration.stand import solved
 from estimator.causes import Setting
 from estimator.diagnosis.baseline import Baseline
@@ -34,7 +37,13 @@ def on_stand(session: CalibrationSession, start: SensorParameters | None) -> Bas
     solution = solved([session], begin)
     fitted, p = solution.fitted, solution.fitted.parameters
     own = SensorParameters(p.scale[0], p.bias[0], p.quadratic[0], p.axis[0])
-    return stand_baseline(session, own, solution.geometry, fitted.residual[0], fitted.variance[0])
+    variance = fitted.variance[0]
+    found = stand_baseline(session, own, solution.geometry, fitted.residual[0], variance)
+    asked = found.unstated & np.isfinite(variance[0])
+    if not asked.any():
+        return found
+    expected = typical(variance[:1], asked[np.newaxis], found.setting.norm)[0] / variance[0]
+    return replace(found, expected=np.nan_to_num(expected))
 
 
 def stand_baseline(

@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from estimator.causes import Shape
+from estimator.causes import Setting, Shape
 from estimator.diagnosis.candidates import Scored, rescored
 from estimator.diagnosis.state import Found, Search
+from estimator.diagnosis.versions import before
+from estimator.session import Array
 
 
 def polished(state: Search) -> Search:
@@ -22,20 +24,24 @@ def polished(state: Search) -> Search:
 def refined(state: Search, found: Found) -> Scored:
     """The best shape near the one found, bent columns appended; the same where nothing is continuous."""
     setting, cause, own = state.baseline.setting, found.best.cause, len(found.best.cause.units)
-    plain = Shape(found.best.shape.sensors, found.best.shape.columns[..., :own], found.best.shape.nonlinear)
-    near = list(cause.polished(setting, plain))
+    near = list(cause.polished(setting, found.best.shape.first(own)))
     if not near:
         return found.best
+    evidence, lasting = state.evidence, found.best.lasting
     taken, rest = state.taken(without=found), found.best.columns[:, own:]
     padding = found.best.shape.columns[..., own:]
 
+    def bend(where: Setting, shape: Shape) -> Array:
+        return cause.bend(where, replace(shape, columns=cause.columns(where, shape)))
+
     def scored(shape: Shape) -> Scored:
-        trace = np.concatenate([state.evidence.trace(shape.columns, lasting=found.best.lasting), rest], axis=1)
-        padded = Shape(shape.sensors, np.concatenate([shape.columns, padding], axis=-1), shape.nonlinear)
-        return rescored(state.evidence, replace(found.best, shape=padded, columns=trace), taken)
+        trace = evidence.trace(shape.columns, before(evidence, cause, [shape]) if lasting else 0.0)
+        padded = replace(shape, columns=np.concatenate([shape.columns, padding], axis=-1))
+        new = replace(found.best, shape=padded, columns=np.concatenate([trace, rest], axis=1))
+        return rescored(evidence, new, taken)
 
     best = max(map(scored, near), key=lambda s: s.statistic)
-    bent = cause.bend(setting, Shape(best.shape.sensors, best.shape.columns[..., :own], best.shape.nonlinear))
-    columns = np.concatenate([best.shape.columns, bent], axis=-1)
-    trace = np.concatenate([best.columns, state.evidence.trace(bent, lasting=best.lasting)], axis=1)
-    return replace(best, shape=Shape(best.shape.sensors, columns, best.shape.nonlinear), columns=trace)
+    bent = bend(setting, best.shape)
+    trace = evidence.trace(bent, before(evidence, cause, [best.shape], bend) if lasting else 0.0)
+    shape = replace(best.shape, columns=np.concatenate([best.shape.columns, bent], axis=-1))
+    return replace(best, shape=shape, columns=np.concatenate([best.columns, trace], axis=1))

@@ -31,7 +31,7 @@ def finding(state: Search, found: Found, fitted: Amplitudes, k: int, new: bool |
     amplitude, sigma = best.cause.reported(
         state.baseline.setting, best.shape, fitted.value[part], np.sqrt(np.diagonal(fitted.covariance)[part])
     )
-    others = alternatives(state, found)
+    others = alternatives(found)
     gyro = best.cause.kind is None and any(state.baseline.setting.kinds[i] != ACCELEROMETER for i in best.shape.sensors)
     return Finding(
         cause=best.cause.identifier,

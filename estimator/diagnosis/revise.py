@@ -9,10 +9,11 @@ from itertools import combinations
 
 import numpy as np
 
-from estimator.diagnosis.candidates import MANY, rescored, score
+from estimator.diagnosis.candidates import rescored, score
 from estimator.diagnosis.greedy import DECISIVE, causes, structures
 from estimator.diagnosis.serial import serial_structure
 from estimator.diagnosis.state import LEVEL, Found, Search, beside, family_level, strongest, total
+from estimator.diagnosis.versions import MANY
 
 NAMELESS = 1.5
 """ln evidence by which structure without a name must beat the named causes."""

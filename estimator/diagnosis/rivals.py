@@ -7,7 +7,7 @@ from scipy.special import logsumexp
 
 from estimator.causes import Signature
 from estimator.diagnosis.baseline import Baseline
-from estimator.diagnosis.candidates import Scored
+from estimator.diagnosis.candidates import WORTH, Scored
 from estimator.diagnosis.evidence import Evidence
 from estimator.diagnosis.planner import PROPOSALS
 from estimator.diagnosis.results import Rival, Separation
@@ -16,9 +16,6 @@ from estimator.session import Array
 
 CREDIBLE = 0.995
 """Share of the probability that the named cause and its alternatives hold together."""
-
-CONTAINED = 0.02
-"""A rival that leaves less than this share of a simpler cause's signature merely contains it."""
 
 APART = 5.0
 """Separation, standard errors, at which two causes are told apart."""
@@ -30,8 +27,13 @@ def probabilities(found: Found) -> list[tuple[Scored, float]]:
     return [(s, float(p)) for (s, _), p in zip(found.ranking, np.exp(values - logsumexp(values)), strict=True)]
 
 
-def alternatives(state: Search, found: Found) -> list[Scored]:
-    """Rivals that the session cannot tell from the named cause, most likely first."""
+def alternatives(found: Found) -> list[Scored]:
+    """Rivals that the session cannot tell from the named cause, most likely first.
+
+    A rival with more amplitudes that contains the named cause pays for each of them in its share (`bayes_factor`):
+    it is listed where it is still likely after that, and else parsimony has ruled it out. What by itself would be no
+    evidence of an effect explains nothing and is no alternative.
+    """
     kept: list[Scored] = []
     reached = 0.0
     for rival, share in probabilities(found):
@@ -39,18 +41,9 @@ def alternatives(state: Search, found: Found) -> list[Scored]:
             break
         reached += share
         known = {found.best.cause.identifier, *(k.cause.identifier for k in kept)}
-        if rival.cause.identifier not in known and not merely_contains(state, rival, found):
+        if rival.cause.identifier not in known and rival.p_value < WORTH:
             kept.append(rival)
     return kept
-
-
-def merely_contains(state: Search, rival: Scored, found: Found) -> bool:
-    """Whether the rival has more amplitudes and its span holds the simpler cause's signature."""
-    if len(rival.cause.units) <= len(found.best.cause.units) or rival.freedom <= found.best.freedom:
-        return False
-    taken = state.taken(without=found)
-    signature = fitted_trace(state, found, taken)
-    return separation(signature, rival.columns, taken) < CONTAINED * float(np.linalg.norm(signature))
 
 
 def fitted_trace(state: Search, found: Found, taken: Array) -> Array:
@@ -115,16 +108,11 @@ def expected_separation(planned: Baseline, named: Scored, value: Array, rival: S
 
 
 def matching(planned: Baseline, scored: Scored) -> Array | None:
-    """The cause's columns (R, m, q) in a planned session, at the same sensors and the nearest nonlinear parameters."""
+    """The cause's columns (R, m, q) in a planned session, at the same sensors and nonlinear parameters."""
     cause = scored.cause
     if not isinstance(cause, Signature) or not cause.available(planned.setting):
         return None
-    shapes = [s for s in cause.shapes(planned.setting) if s.sensors == scored.shape.sensors]
-    if not shapes:
-        return None
-    target = np.array(scored.shape.nonlinear)
-    nearest = min(shapes, key=lambda s: float(np.abs(np.array(s.nonlinear) - target).sum()) if len(target) else 0.0)
-    return nearest.columns
+    return cause.columns(planned.setting, scored.shape)
 
 
 def ranking(state: Search, found: Found, most: int = 8) -> tuple[Rival, ...]:

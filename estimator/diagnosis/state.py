@@ -11,10 +11,11 @@ import numpy as np
 from estimator.causes import CATALOGUE, Cause, Signature
 from estimator.diagnosis.baseline import Baseline
 from estimator.diagnosis.between import between_sessions
-from estimator.diagnosis.candidates import Scored, Traces, ranked, rescored, score, traces_of
+from estimator.diagnosis.candidates import Scored, Traces, ranked, rescored, score
 from estimator.diagnosis.evidence import Between, Evidence
 from estimator.diagnosis.serial import Serial
 from estimator.diagnosis.structures import STRUCTURES
+from estimator.diagnosis.versions import traces_of
 from estimator.session import Array
 
 LEVEL = 0.003

@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from estimator import CalibrationSession, diagnose, read_session
-from estimator.causes import CATALOGUE, Correction
+from estimator.causes import CATALOGUE, Correction, cause
 from estimator.diagnosis.between import between_sessions, inverse_root
+from estimator.diagnosis.evidence import Evidence
 from estimator.diagnosis.measured import baseline_of
 from estimator.diagnosis.slips import exchanged_rows, expected_axes, turned_record
+from estimator.diagnosis.versions import before
 from estimator.session import ACCELEROMETER
 from tests.builders import arbitrary_orientations, true_sensors
 from tests.estimator.causes.hiding import found, scene, scene_for, with_readings
@@ -106,3 +108,30 @@ def test_an_axis_that_turned_alone_is_found_though_the_frame_is_free_to_turn(see
 def test_a_frame_that_is_free_to_turn_names_nothing_by_itself(seed: int) -> None:
     found = diagnose(by_hand(10 * seed), history=[by_hand(10 * seed + 1), by_hand(10 * seed + 2)])
     assert found.findings == ()
+
+
+def reordered(session: CalibrationSession, rows: np.ndarray) -> CalibrationSession:
+    """The session with its positions measured in another order, at the same moments."""
+    return replace(
+        session,
+        readings=session.readings[rows],
+        standard_errors=session.standard_errors[rows],
+        beta=session.beta[rows],
+        flipped=session.flipped[rows],
+    )
+
+
+def test_a_lasting_effect_that_another_schedule_absorbed_otherwise_is_foretold() -> None:
+    """In order around the circle a ramp passes for a tilt of the axis; in a random order it does not."""
+    plain = WHERE.measured(1)
+    around = np.lexsort((plain.beta, plain.flipped))
+    ramp = cause("bias-ramp")
+    added = 0.12 * 3e-6 * (plain.time - plain.time.mean())[:, None] * np.eye(6)[2]
+    now = baseline_of(with_readings(reordered(plain, around), added))
+    past = [baseline_of(with_readings(h, added)) for h in WHERE.earlier(1)]
+    moved = between_sessions(now, past)
+    evidence = Evidence.of(now, moved)
+    (shape,) = [s for s in ramp.shapes(now.setting) if s.sensors == (2,)]
+    foretold = evidence.trace(shape.columns, before(evidence, ramp, [shape]))[evidence.readings :, 0] * 3e-6
+    assert np.linalg.norm(moved.deviation) > 30
+    assert np.linalg.norm(moved.deviation - foretold) < 3 * np.sqrt(len(foretold))

@@ -7,9 +7,10 @@ from scipy.stats import kstest
 
 from estimator import diagnose
 from estimator.causes import cause
-from estimator.diagnosis.candidates import bayes_factor, score, traces_of
+from estimator.diagnosis.candidates import bayes_factor, score
 from estimator.diagnosis.evidence import Evidence
 from estimator.diagnosis.measured import baseline_of
+from estimator.diagnosis.versions import traces_of
 from estimator.session import ACCELEROMETER
 from tests.estimator.causes.hiding import scene, with_readings
 
