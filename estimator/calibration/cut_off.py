@@ -1,7 +1,7 @@
 """A channel that stood at the end of its range: told from the readings of the other sensors, before anything is fitted.
 
-A few clipped readings are a cause that the diagnosis names. A channel that is cut off in a good part of the rows spoils
-every parameter of the block, so such a session is refused.
+On a stand, and where a few readings are clipped, that is a cause which the diagnosis names. In arbitrary orientations
+a channel that is cut off in a good part of the rows spoils every applied vector, so such a session is refused.
 """
 
 import numpy as np

@@ -11,6 +11,7 @@ from estimator.calibration.calibrate import averaged, calibrate
 from estimator.causes import CATALOGUE, Cause, Correction
 from estimator.causes.record import AlphaEntry
 from estimator.diagnosis.baseline import Baseline
+from estimator.diagnosis.clipping import unclipped
 from estimator.diagnosis.evidence import parameter_covariance
 from estimator.diagnosis.extend import amplitudes, extended_calibration, without_effects
 from estimator.diagnosis.gain import gain
@@ -18,7 +19,7 @@ from estimator.diagnosis.limits import limits
 from estimator.diagnosis.measured import baseline_of
 from estimator.diagnosis.nominal import WrongEntry, wrong_elevation
 from estimator.diagnosis.polish import polished
-from estimator.diagnosis.report import entry_finding, findings, slip_finding, structures
+from estimator.diagnosis.report import clip_findings, entry_finding, findings, slip_finding, structures
 from estimator.diagnosis.results import Diagnosis
 from estimator.diagnosis.search import search
 from estimator.diagnosis.slips import Slip, exchanged_rows, expected_axes, turned_record
@@ -46,8 +47,9 @@ def diagnose(
     ScheduleError : the session cannot be calibrated at all.
     """
     rows = averaged(session)
-    past = [averaged(h) for h in history]
-    slips, right = undo_slips(rows, [baseline_of(h) for h in past], catalogue)
+    clips, whole = unclipped(rows, catalogue)
+    past = [unclipped(averaged(h), catalogue)[1] for h in history]
+    slips, right = undo_slips(whole, [baseline_of(h) for h in past], catalogue)
     state = searched(right, past, catalogue)
     entry = None if past else against_nominal(without_effects(state, amplitudes(state)), catalogue)
     if entry is not None:
@@ -57,6 +59,7 @@ def diagnose(
     return Diagnosis(
         unit=session.unit,
         findings=(
+            *clip_findings(clips, state.baseline),
             *(slip_finding(s, rows) for s in slips),
             *([] if entry is None else [entry_finding(entry)]),
             *findings(state, fitted, new),

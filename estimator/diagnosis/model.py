@@ -5,7 +5,9 @@ from dataclasses import replace
 
 from estimator.calibration.calibrate import averaged, calibrate
 from estimator.causes import Signature, cause
+from estimator.causes.sensor import Saturation
 from estimator.diagnosis.candidates import score
+from estimator.diagnosis.clipping import unclipped
 from estimator.diagnosis.extend import amplitudes, extended_calibration
 from estimator.diagnosis.measured import baseline_of
 from estimator.diagnosis.polish import polished
@@ -37,12 +39,15 @@ def calibrate_extended(session: CalibrationSession, causes: Sequence[Accepted]) 
     """
     rows = averaged(session)
     known = [cause(identifier) for identifier, _ in causes]
-    state = begin(baseline_of(rows), (), known)
+    clips, whole = unclipped(rows, known)
+    state = begin(baseline_of(whole), (), known)
+    done = {(Saturation.identifier, (clip.sensor,)) for clip in clips}
     for identifier, sensors in causes:
         for place in places(rows, sensors):
-            state = with_cause(state, identifier, place)
+            if (identifier, place) not in done:
+                state = with_cause(state, identifier, place)
     if not state.found:
-        return calibrate(rows)
+        return calibrate(whole)
     state = polished(state)
     return extended_calibration(state, amplitudes(state))
 

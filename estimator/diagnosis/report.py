@@ -1,10 +1,14 @@
 """From the search to findings that people read."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from estimator.causes.noise import ExcessNoise
+from estimator.causes.sensor import Saturation
+from estimator.diagnosis.baseline import Baseline
+from estimator.diagnosis.clipping import Clip
 from estimator.diagnosis.extend import Amplitudes
 from estimator.diagnosis.nominal import WrongEntry
 from estimator.diagnosis.parity import parity_split
@@ -54,8 +58,9 @@ def finding(state: Search, found: Found, fitted: Amplitudes, k: int, new: bool |
 
 
 def spoken(sensors: tuple[str, ...]) -> str:
-    """``A1``, ``A1 and A2``, ``A1, A2 and A3``."""
-    return " and ".join([", ".join(sensors[:-1]), sensors[-1]] if len(sensors) > 1 else sensors)
+    """``A1``, ``each of A1 and A2``, ``each of A1, A2 and A3``."""
+    names = list(dict.fromkeys(sensors))
+    return f"each of {', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else "".join(names)
 
 
 def nonlinear(state: Search, found: Found) -> dict[str, float]:
@@ -73,7 +78,7 @@ def merged(named: list[Finding]) -> list[Finding]:
     for f in named:
         old = kept.get(f.cause)
         kept[f.cause] = f if old is None else joined(old, f)
-    return list(kept.values())
+    return [replace(f, sentence=f.sentence[:1].upper() + f.sentence[1:]) for f in kept.values()]
 
 
 def joined(a: Finding, b: Finding) -> Finding:
@@ -155,6 +160,38 @@ def slip_finding(slip: Slip, session: CalibrationSession) -> Finding:
         ranking=tuple(ranking_[:8]),
         sentence=slip.cause.sentence.format(sensors=spoken(sensors)),
         advice=slip.cause.advice,
+        parity=None,
+        new=None,
+    )
+
+
+def clip_findings(clips: Sequence[Clip], baseline: Baseline) -> tuple[Finding, ...]:
+    """Clipped sensors as one finding: every limit at the input, with the noise of a reading."""
+    return tuple(merged([clip_finding(clip, baseline) for clip in clips]))
+
+
+def clip_finding(clip: Clip, baseline: Baseline) -> Finding:
+    """One sensor clipped on one side."""
+    cause, sensor = Saturation(), baseline.session.sensors[clip.sensor]
+    period, unit = (1.0, "m/s²") if sensor.kind == ACCELEROMETER else (baseline.session.count_time or 1.0, "rad/s")
+    reading = (clip.reading - (sensor.nominal_offset or 0.0)) / period
+    limit = abs(reading / float(baseline.parameters.scale[clip.sensor]))
+    shown = {unit: limit, "side": clip.side}
+    return Finding(
+        cause=cause.identifier,
+        sensors=(sensor.name,),
+        amplitude=(limit,),
+        sigma=(float(np.sqrt(np.median(baseline.variance[:, clip.sensor]))),),
+        units=(unit,),
+        nonlinear=shown,
+        nonlinear_each=(shown,),
+        p_value=clip.p_value,
+        strength=clip.strength,
+        alternatives=(),
+        separations=(),
+        ranking=(Rival(cause.identifier, (sensor.name,), 1.0, clip.strength),),
+        sentence=cause.sentence.format(sensors=sensor.name),
+        advice=cause.advice,
         parity=None,
         new=None,
     )

@@ -1,0 +1,25 @@
+"""Hidden effects that one flaw each once kept from being named; what put the flaw right must keep finding them."""
+
+import pytest
+
+from tests.blind.cases import draw_case
+from tests.blind.examine import examine
+
+SEED = 2028
+
+
+@pytest.mark.parametrize(
+    ("number", "cause"),
+    [
+        pytest.param(462, "beta-eccentricity", id="unstated noise lost under the stand's errors"),
+        pytest.param(1877, "scale-asymmetry", id="unstated noise of few rows"),
+        pytest.param(744, "gravity-entry", id="a move of all sensors against the scatter of one"),
+        pytest.param(1386, "warm-up", id="absorbed by the history's calibration otherwise than by this one"),
+        pytest.param(1668, "bias-ramp", id="absorbed otherwise, beside a rival with a free shape"),
+        pytest.param(223, "axis-creep", id="contains the simpler cause that fits as well"),
+        pytest.param(1251, "saturation", id="clipped in several rows"),
+    ],
+)
+def test_it_is_named_or_listed(number: int, cause: str) -> None:
+    outcome = examine(draw_case("single", (SEED, number), cause))
+    assert outcome.good, outcome
