@@ -11,14 +11,15 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import chdtrc
 
+from estimator.calibration.noise import with_the_others
 from estimator.diagnosis.serial import Serial, serial_structure
 from estimator.diagnosis.state import LEVEL, Excess, Found, Group, Search, begin, companions, strongest
 
 DECISIVE = 4.0
 """ln evidence by which a signature must beat mere excess noise to be believed without a look at the scatter."""
 
-WANDERING = 1.0
-"""ln evidence from which on a scatter that is too large is taken for a smooth course rather than for mere noise."""
+WANDERING = 0.0
+"""ln evidence from which on a scatter that is too large is as well a smooth course as mere noise, and is not named."""
 
 AGAIN = {"reading-outlier": 3, "bias-jump": 2}
 """How often a cause may happen to one sensor, where it may more than once; what needs more of them is no such cause."""
@@ -101,18 +102,10 @@ def set_apart(state: Search, scatter: Excess | Serial) -> Search:
 
 def noisiest(state: Search) -> Excess | None:
     """The sensor whose left-over most exceeds its stated noise; None if none does significantly."""
-    evidence = state.evidence
-    z, taken = state.left, state.taken()
-    owner, m = evidence.owner, len(evidence.baseline.unstated)
-    spare = evidence.spare - (taken[: evidence.readings] ** 2).sum(axis=1)
+    m = len(state.baseline.unstated)
     best = None
-    for i in range(m):
-        if evidence.baseline.unstated[i] or i in state.spoken_for:
-            continue
-        rows = np.flatnonzero(owner[: evidence.readings] == i)
-        freedom = float(spare[rows].sum())
-        energy = float((z[rows] ** 2).sum())
-        if freedom < 2 or energy <= freedom:
+    for i, (energy, freedom) in enumerate(zip(*scatter(state), strict=True)):
+        if state.baseline.unstated[i] or i in state.spoken_for or freedom < 2 or energy <= freedom:
             continue
         p_family = min(1.0, float(chdtrc(freedom, energy)) * m * state.families)
         gained = 0.5 * (energy - freedom - freedom * np.log(energy / freedom))
@@ -120,6 +113,26 @@ def noisiest(state: Search) -> Excess | None:
         if p_family < LEVEL and (best is None or value > best.evidence):
             best = Excess(i, energy / freedom, freedom, value, p_family)
     return best
+
+
+def scatter(state: Search) -> tuple[list[float], list[float]]:
+    """Energy and degrees of freedom of every sensor's left-over readings."""
+    evidence = state.evidence
+    own = evidence.owner[: evidence.readings] == np.arange(len(state.baseline.unstated))[:, None]
+    spare = evidence.spare - (state.taken()[: evidence.readings] ** 2).sum(axis=1)
+    energy, freedom = own @ state.left[: evidence.readings] ** 2, own @ spare
+    return energy.tolist(), freedom.tolist()
+
+
+def loud(state: Search) -> list[bool]:
+    """Whether each sensor's left-over is plainly larger than stated or, where nothing is stated, than the others'."""
+    expected = state.baseline.expected
+    excess = {e.sensor for e in state.excess}
+    if expected is None:
+        return [i in excess for i in range(len(state.baseline.unstated))]
+    energy, freedom = map(np.array, scatter(state))
+    alike = with_the_others(energy, freedom, expected)[1] > freedom
+    return [i in excess or bool(expected[i] > 0 and not alike[i]) for i in range(len(expected))]
 
 
 def course(state: Search, noisy: Excess) -> Serial | None:

@@ -10,13 +10,16 @@ from itertools import combinations
 import numpy as np
 
 from estimator.diagnosis.candidates import rescored, score
-from estimator.diagnosis.greedy import DECISIVE, causes, structures
+from estimator.diagnosis.greedy import DECISIVE, causes, loud, structures
 from estimator.diagnosis.serial import serial_structure
 from estimator.diagnosis.state import LEVEL, Found, Search, beside, family_level, strongest, total
 from estimator.diagnosis.versions import MANY
 
 NAMELESS = 1.5
 """ln evidence by which structure without a name must beat the named causes."""
+
+BOTH = 3.0
+"""ln evidence by which a cause together with more noise must beat one smooth course."""
 
 DRIFT = "sensor-drift"
 
@@ -101,18 +104,24 @@ def judge_structures(state: Search) -> Search:
 
 
 def judge_courses(state: Search) -> Search:
-    """Withdraw several names on one sensor where its left-over without them is as well a smooth course of no name."""
-    m = len(state.baseline.unstated)
+    """Withdraw names on one sensor where its left-over without them is as well a smooth course of no name.
+
+    Asked where they are several, or one that leaves more scatter than the sensor's noise: both are two faults at once.
+    """
+    m, noisy = len(state.baseline.unstated), loud(state)
     for i in range(m):
         names = tuple(f for f in state.found if f.best.shape.sensors == (i,))
-        if len(names) < 2:
+        if not names or (len(names) == 1 and not noisy[i]):
             continue
         rest = replace(state, found=tuple(f for f in state.found if f not in names))
         known = not state.baseline.unstated[i]
         taken = rest.taken()
         uneven = serial_structure(rest.evidence, rest.left, taken, i, known=known)
-        if uneven is not None and uneven.evidence - np.log(m) > beside(rest, taken, names) + NAMELESS:
-            state = replace(rest, serial=(*rest.serial, uneven))
+        need = beside(rest, taken, names) + (-BOTH if noisy[i] else NAMELESS)
+        if uneven is not None and uneven.evidence - np.log(m) > need:
+            ratio = float(np.prod([e.ratio for e in state.excess if e.sensor == i]))
+            excess = tuple(e for e in rest.excess if e.sensor != i)
+            state = replace(rest, excess=excess, serial=(*rest.serial, replace(uneven, ratio=ratio)))
     return state
 
 

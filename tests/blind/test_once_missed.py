@@ -23,3 +23,17 @@ SEED = 2028
 def test_it_is_named_or_listed(number: int, cause: str) -> None:
     outcome = examine(draw_case("single", (SEED, number), cause))
     assert outcome.good, outcome
+
+
+@pytest.mark.parametrize(
+    "number",
+    [
+        pytest.param(13, id="a warm-up with noise nearly explains it"),
+        pytest.param(28, id="two faults at once nearly explain it"),
+        pytest.param(8, id="no noise stated: one jump nearly explains it"),
+    ],
+)
+def test_a_random_walk_is_structure_and_no_cause(number: int) -> None:
+    outcome = examine(draw_case("outside", (62, number), "random-walk"))
+    assert outcome.good, outcome
+    assert not outcome.findings
