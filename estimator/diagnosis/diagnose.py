@@ -65,7 +65,7 @@ def diagnose(
             *findings(state, fitted, new),
         ),
         structures=structures(state),
-        gain=gain(state, fitted, new),
+        gain=gain(state, baseline_of(rows) if clips or slips else None, fitted, new),
         limits=limits(state, catalogue),
         baseline=calibrate(rows),
         calibration=extended_calibration(state, fitted),

@@ -2,8 +2,9 @@
 
 Positions are held out fold by fold. The rest of the rows fit the model, without and with the signatures, and predict
 the held-out rows with full predictive covariance; all in the whitened frame, where rows are independent. *Before* is
-the baseline with the noise as stated; *after* holds the named causes, excess noise among them. Both log scores are
-densities of the same numbers, readings in their stated sigmas: what a larger sigma costs is counted.
+the baseline of the record as it came, with the noise as stated; *after* holds the named causes, excess noise among
+them, the record put right. Both log scores are densities of the same numbers, readings in their stated sigmas: what a
+larger sigma costs is counted.
 """
 
 from collections.abc import Sequence
@@ -22,13 +23,16 @@ from estimator.session import Array
 FOLDS = 6
 
 
-def gain(state: Search, fitted: Amplitudes, new: Sequence[bool | None]) -> Gain:
-    """Scores of held-out positions and of an earlier session, before and after; ``new``: `newness` of every finding."""
+def gain(state: Search, given: Baseline | None, fitted: Amplitudes, new: Sequence[bool | None]) -> Gain:
+    """Scores of held-out positions and of an earlier session, before and after.
+
+    ``given``: of the record as it came, where it had to be put right; ``new``: `newness` of every finding.
+    """
     columns = [f.best.shape.columns for f in state.found if not f.best.cause.between]
-    stated = as_stated(state)
-    before, after = score(stated, []), score(state.baseline, columns)
-    dearer = volume(state.baseline) - volume(stated)
-    after = replace(after, log_score=after.log_score + dearer / float(counted(stated).sum()))
+    given = given or as_stated(state)
+    before, after = score(given, []), score(state.baseline, columns)
+    dearer = volume(state.baseline) - volume(given)
+    after = replace(after, log_score=after.log_score + dearer / float(counted(given).sum()))
     return Gain(before, after, "positions", transfer(state, fitted, new))
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
+from math import isclose
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,9 @@ from service.units import deviation_unit, measured, number
 from service.verdicts import Condition, condition_of
 
 WORTH_A_LINE = 0.02
+
+SAME = 1e-3
+"""Relative change of a score that nobody would call a gain."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +65,7 @@ def gain_view(
     earlier = gain.get("session")  # absent from documents of earlier versions
     kind = GYROSCOPE if {sensor.kind for sensor in after.sensors} == {GYROSCOPE} else ACCELEROMETER
     return GainView(
-        is_none=gain["before"] == gain["after"],
+        is_none=all(isclose(gain["before"][key], gain["after"][key], rel_tol=SAME) for key in gain["before"]),
         rows=_rows(gain, kind),
         earlier_rows=() if earlier is None else _rows(earlier, kind),
         earlier_at=None if earlier is None else at(earlier["started_at"]),

@@ -105,3 +105,10 @@ def test_an_accepted_saturation_calibrates_by_the_other_rows() -> None:
     extended = calibrate_extended(session, [("saturation", ("A3",))])
     own, true = extended.sensors[SENSOR], WHERE.world.truth.scale[SENSOR]
     assert abs(own.scale.value - true) < 4 * own.scale.sigma
+
+
+def test_the_gain_is_held_against_the_record_as_it_came() -> None:
+    found = diagnose(clipped(WHERE.measured(1), 0.0, 0.8))
+    assert found.gain.before.chi2_per_dof > 100 > 2 > found.gain.after.chi2_per_dof
+    assert found.gain.before.rms > 10 * found.gain.after.rms
+    assert found.gain.before.log_score < found.gain.after.log_score
