@@ -13,13 +13,13 @@ from scipy.special import chdtrc
 
 from estimator.calibration.noise import with_the_others
 from estimator.diagnosis.serial import Serial, serial_structure
-from estimator.diagnosis.state import LEVEL, Excess, Found, Group, Search, begin, companions, strongest
+from estimator.diagnosis.state import LEVEL, Excess, Found, Group, Search, begin, companions, strongest, total
 
 DECISIVE = 4.0
 """ln evidence by which a signature must beat mere excess noise to be believed without a look at the scatter."""
 
-WANDERING = 0.0
-"""ln evidence from which on a scatter that is too large is as well a smooth course as mere noise, and is not named."""
+DOUBTFUL = 0.0
+"""ln evidence from which on a scatter that is too large is as well a smooth course, and is not called noise."""
 
 AGAIN = {"reading-outlier": 3, "bias-jump": 2}
 """How often a cause may happen to one sensor, where it may more than once; what needs more of them is no such cause."""
@@ -38,9 +38,9 @@ def causes(state: Search) -> Search:
             best = strongest(wary, wary.traces)
             uneven = course(state, noisy)
             if best is None and not patterned(state, wary, noisy):
-                state = set_apart(state, uneven if uneven is not None and uneven.evidence > WANDERING else noisy)
+                state = set_apart(state, uneven if uneven is not None and uneven.evidence > DOUBTFUL else noisy)
                 continue
-            if best is not None and uneven is not None and uneven.evidence > weight(best):
+            if best is not None and uneven is not None and uneven.evidence > max(weight(best), both(wary, best)):
                 state = set_apart(state, uneven)
                 continue
         if best is None:
@@ -60,6 +60,14 @@ def causes(state: Search) -> Search:
 def weight(found: Found) -> float:
     """ln evidence of the cause that leads a ranking, all its shapes together."""
     return found.ranking[0][1]
+
+
+def both(wary: Search, first: Found) -> float:
+    """ln evidence of a cause and of another one beside it, while the noise of a sensor is not believed."""
+    state = replace(wary, found=(*wary.found, first))
+    second = strongest(state, [t for t in state.traces if t.cause is not first.best.cause])
+    state = state if second is None else replace(state, found=(*state.found, second))
+    return total(state) - total(wary)
 
 
 def too_often(found: Sequence[Found]) -> frozenset[Group]:
@@ -88,7 +96,7 @@ def with_unknown_noise(state: Search, sensor: int) -> Search:
 def set_apart(state: Search, scatter: Excess | Serial) -> Search:
     """The search begun anew with one sensor's variance as it is, known from its own residuals alone.
 
-    On a sensor whose scatter is no noise nothing more is looked for.
+    On a sensor whose scatter is plainly no noise nothing more is looked for.
     """
     variance, unstated = state.baseline.variance.copy(), state.baseline.unstated.copy()
     variance[:, scatter.sensor] *= scatter.ratio
@@ -138,7 +146,7 @@ def loud(state: Search) -> list[bool]:
 def course(state: Search, noisy: Excess) -> Serial | None:
     """Whether a sensor's scatter, larger than stated, runs smoothly along some order of its rows."""
     found = serial_structure(state.evidence, state.left, state.taken(), noisy.sensor, known=False)
-    return None if found is None else replace(found, ratio=noisy.ratio)
+    return None if found is None else replace(found, ratio=noisy.ratio, excess=noisy.evidence)
 
 
 def unevenness(state: Search) -> Search:

@@ -14,8 +14,9 @@ from estimator.diagnosis.nominal import WrongEntry
 from estimator.diagnosis.parity import parity_split
 from estimator.diagnosis.results import Finding, Rival, Structure
 from estimator.diagnosis.rivals import CREDIBLE, alternatives, ranking, separations
+from estimator.diagnosis.serial import Serial
 from estimator.diagnosis.slips import Slip, posterior
-from estimator.diagnosis.state import Excess, Found, Search
+from estimator.diagnosis.state import PLAIN, Excess, Found, Search
 from estimator.diagnosis.structures import Structure as Pattern
 from estimator.session import ACCELEROMETER, CalibrationSession
 
@@ -209,11 +210,15 @@ def structures(state: Search) -> tuple[Structure, ...]:
         )
         for f in state.structures
     ]
-    uneven = [
-        Structure(f"smooth along {s.order}, in no pattern known", (names[s.sensor],), s.p_value, s.strength)
-        for s in state.serial
-    ]
+    uneven = [Structure(lives(s), (names[s.sensor],), s.p_value, s.strength) for s in state.serial]
     return (*patterns, *uneven)
+
+
+def lives(left_over: Serial) -> str:
+    """Where a left-over lives that fits no pattern, in words."""
+    if left_over.evidence > PLAIN:
+        return f"smooth along {left_over.order}, in no pattern known"
+    return f"larger than stated, as well noise as smooth along {left_over.order}"
 
 
 def entry_finding(entry: WrongEntry) -> Finding:

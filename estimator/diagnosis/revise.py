@@ -119,9 +119,10 @@ def judge_courses(state: Search) -> Search:
         uneven = serial_structure(rest.evidence, rest.left, taken, i, known=known)
         need = beside(rest, taken, names) + (-BOTH if noisy[i] else NAMELESS)
         if uneven is not None and uneven.evidence - np.log(m) > need:
-            ratio = float(np.prod([e.ratio for e in state.excess if e.sensor == i]))
+            own = [e for e in state.excess if e.sensor == i]
+            ratio, larger = float(np.prod([e.ratio for e in own])), float(sum(e.evidence for e in own))
             excess = tuple(e for e in rest.excess if e.sensor != i)
-            state = replace(rest, excess=excess, serial=(*rest.serial, replace(uneven, ratio=ratio)))
+            state = replace(rest, excess=excess, serial=(*rest.serial, replace(uneven, ratio=ratio, excess=larger)))
     return state
 
 

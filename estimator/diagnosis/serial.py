@@ -53,16 +53,18 @@ class Serial:
     """ln Bayes factor against white noise."""
     ratio: float = 1.0
     """Variance of the left-over over the stated one, where it was set apart as larger."""
+    excess: float = 0.0
+    """ln evidence that it is larger."""
 
     @property
     def p_value(self) -> float:
-        """Of a course at least as smooth, were there nothing but noise."""
-        return float(min(1.0, CHANCE * np.exp(-self.evidence)))
+        """Of a left-over at least as smooth and as large, were there nothing but the noise."""
+        return float(min(1.0, CHANCE * np.exp(-self.evidence - self.excess)))
 
     @property
     def strength(self) -> float:
         """In standard errors: those of a normal deviate that weighs as much."""
-        return float(np.sqrt(2 * max(self.evidence, 0.0)))
+        return float(np.sqrt(2 * max(self.evidence + self.excess, 0.0)))
 
 
 def orders(evidence: Evidence, sensor: int) -> dict[str, Array]:

@@ -25,6 +25,9 @@ LEVEL = 0.003
 NEW = 1e-6
 """Share of a trace that must lie outside the others' span to count as a direction of its own."""
 
+PLAIN = 1.0
+"""ln evidence from which on a sensor's left-over is plainly a smooth course, beside which no cause can be told."""
+
 Group = tuple[str, tuple[int, ...]]
 """What is named: a cause and the indices of its sensors."""
 
@@ -69,7 +72,7 @@ class Search:
     structures: tuple[Found, ...] = ()
     excess: tuple[Excess, ...] = ()
     serial: tuple[Serial, ...] = ()
-    """Sensors whose left-over is not white, though no pattern fits it; no cause is named on them any more."""
+    """Sensors whose left-over is not white, though no pattern fits it; where that is plain, no cause is named there."""
     refuted: frozenset[Group] = frozenset()
     """Causes on sensors that would have to act more often than they can."""
 
@@ -136,7 +139,7 @@ def strongest(state: Search, traces: Sequence[Traces], without: Found | None = N
     families = state.families if traces is state.traces else len(traces)
     if without is not None and without.best.shape.sensors:
         traces = [t.at(without.best.shape.sensors) for t in traces]
-    uneven = {s.sensor for s in state.serial}
+    uneven = {s.sensor for s in state.serial if s.evidence > PLAIN}
     scored = score(state.evidence, traces, state.taken(without))
     order = ranked([s for s in scored if uneven.isdisjoint(s.shape.sensors) and s.group not in state.refuted])
     for best, _ in order[:3]:
