@@ -13,13 +13,13 @@ from scipy.special import chdtrc
 
 from estimator.calibration.noise import with_the_others
 from estimator.diagnosis.serial import Serial, serial_structure
-from estimator.diagnosis.state import LEVEL, Excess, Found, Group, Search, begin, companions, strongest, total
+from estimator.diagnosis.state import LEVEL, PLAIN, Excess, Found, Group, Search, begin, companions, strongest, total
 
 DECISIVE = 4.0
 """ln evidence by which a signature must beat mere excess noise to be believed without a look at the scatter."""
 
 DOUBTFUL = 0.0
-"""ln evidence from which on a scatter that is too large is as well a smooth course, and is not called noise."""
+"""ln evidence from which on a scatter that is too large is as well a smooth course as noise, and is said to be both."""
 
 AGAIN = {"reading-outlier": 3, "bias-jump": 2}
 """How often a cause may happen to one sensor, where it may more than once; what needs more of them is no such cause."""
@@ -38,7 +38,7 @@ def causes(state: Search) -> Search:
             best = strongest(wary, wary.traces)
             uneven = course(state, noisy)
             if best is None and not patterned(state, wary, noisy):
-                state = set_apart(state, uneven if uneven is not None and uneven.evidence > DOUBTFUL else noisy)
+                state = set_apart(state, *what_it_is(noisy, uneven))
                 continue
             if best is not None and uneven is not None and uneven.evidence > max(weight(best), both(wary, best)):
                 state = set_apart(state, uneven)
@@ -93,19 +93,26 @@ def with_unknown_noise(state: Search, sensor: int) -> Search:
     return replace(state, baseline=baseline, evidence=replace(state.evidence, baseline=baseline))
 
 
-def set_apart(state: Search, scatter: Excess | Serial) -> Search:
+def what_it_is(noisy: Excess, uneven: Serial | None) -> tuple[Excess | Serial, ...]:
+    """Scatter larger than stated: noise, a smooth course, or noise of which it is doubtful that it is none."""
+    if uneven is None or uneven.evidence <= DOUBTFUL:
+        return (noisy,)
+    return (uneven,) if uneven.evidence > PLAIN else (noisy, replace(uneven, ratio=1.0))
+
+
+def set_apart(state: Search, *scatter: Excess | Serial) -> Search:
     """The search begun anew with one sensor's variance as it is, known from its own residuals alone.
 
     On a sensor whose scatter is plainly no noise nothing more is looked for.
     """
     variance, unstated = state.baseline.variance.copy(), state.baseline.unstated.copy()
-    variance[:, scatter.sensor] *= scatter.ratio
-    unstated[scatter.sensor] = True
+    for one in scatter:
+        variance[:, one.sensor] *= one.ratio
+        unstated[one.sensor] = True
     again = begin(replace(state.baseline, variance=variance, unstated=unstated), state.history, state.catalogue)
-    again = replace(again, excess=state.excess, serial=state.serial)
-    if isinstance(scatter, Excess):
-        return causes(replace(again, excess=(*state.excess, scatter)))
-    return causes(replace(again, serial=(*state.serial, scatter)))
+    excess = (*state.excess, *(s for s in scatter if isinstance(s, Excess)))
+    serial = (*state.serial, *(s for s in scatter if isinstance(s, Serial)))
+    return causes(replace(again, excess=excess, serial=serial))
 
 
 def noisiest(state: Search) -> Excess | None:

@@ -122,7 +122,8 @@ def judge_courses(state: Search) -> Search:
             own = [e for e in state.excess if e.sensor == i]
             ratio, larger = float(np.prod([e.ratio for e in own])), float(sum(e.evidence for e in own))
             excess = tuple(e for e in rest.excess if e.sensor != i)
-            state = replace(rest, excess=excess, serial=(*rest.serial, replace(uneven, ratio=ratio, excess=larger)))
+            others = tuple(s for s in rest.serial if s.sensor != i)
+            state = replace(rest, excess=excess, serial=(*others, replace(uneven, ratio=ratio, excess=larger)))
     return state
 
 
