@@ -46,8 +46,6 @@ class Clip:
     sensor: int
     side: float
     """+1 or −1."""
-    reading: float
-    """The limit, in the file's unit."""
     rows: tuple[int, ...]
     expected: Array
     """Readings to expect in those rows, in the file's unit."""
@@ -94,7 +92,7 @@ def clips_of(session: CalibrationSession, i: int) -> list[Clip]:
         own = slice(start, start := start + len(rows))
         strength, p_value = significance(side * (expected[own] - u[rows]), covariance[own, own], freedom)
         if p_value < LEVEL / (2 * len(session.sensors)):
-            clips.append(Clip(i, side, float(u[rows[0]]), tuple(map(int, rows)), expected[own], p_value, strength))
+            clips.append(Clip(i, side, tuple(map(int, rows)), expected[own], p_value, strength))
     return clips
 
 

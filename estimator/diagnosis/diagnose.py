@@ -59,7 +59,7 @@ def diagnose(
     return Diagnosis(
         unit=session.unit,
         findings=(
-            *clip_findings(clips, state.baseline),
+            *clip_findings(clips, rows, state.baseline),
             *(slip_finding(s, rows) for s in slips),
             *([] if entry is None else [entry_finding(entry)]),
             *findings(state, fitted, new),

@@ -18,6 +18,7 @@ from estimator.diagnosis.serial import Serial
 from estimator.diagnosis.slips import Slip, posterior
 from estimator.diagnosis.state import PLAIN, Excess, Found, Search
 from estimator.diagnosis.structures import Structure as Pattern
+from estimator.forward import measured
 from estimator.session import ACCELEROMETER, CalibrationSession
 
 
@@ -166,17 +167,19 @@ def slip_finding(slip: Slip, session: CalibrationSession) -> Finding:
     )
 
 
-def clip_findings(clips: Sequence[Clip], baseline: Baseline) -> tuple[Finding, ...]:
-    """Clipped sensors as one finding: every limit at the input, with the noise of a reading."""
-    return tuple(merged([clip_finding(clip, baseline) for clip in clips]))
+def clip_findings(clips: Sequence[Clip], session: CalibrationSession, baseline: Baseline) -> tuple[Finding, ...]:
+    """Clipped sensors of a session as it came, as one finding: every limit at the input, with the noise of a reading.
+
+    ``baseline``: of the session put right.
+    """
+    inputs = np.abs(measured(session)[0] / baseline.parameters.scale)
+    return tuple(merged([clip_finding(c, float(inputs[c.rows[0], c.sensor]), baseline) for c in clips]))
 
 
-def clip_finding(clip: Clip, baseline: Baseline) -> Finding:
-    """One sensor clipped on one side."""
+def clip_finding(clip: Clip, limit: float, baseline: Baseline) -> Finding:
+    """One sensor clipped on one side at a limit, m/s² or rad/s at the input."""
     cause, sensor = Saturation(), baseline.session.sensors[clip.sensor]
-    period, unit = (1.0, "m/s²") if sensor.kind == ACCELEROMETER else (baseline.session.count_time or 1.0, "rad/s")
-    reading = (clip.reading - (sensor.nominal_offset or 0.0)) / period
-    limit = abs(reading / float(baseline.parameters.scale[clip.sensor]))
+    unit = "m/s²" if sensor.kind == ACCELEROMETER else "rad/s"
     shown = {unit: limit, "side": clip.side}
     return Finding(
         cause=cause.identifier,

@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 from scipy.io import loadmat, whosmat
-from scipy.io.matlab import MatReadError
+from scipy.io.matlab import MatReadError, matfile_version
 
 from estimator.errors import FormatError
 from service.ingest.limits import MOST_TEXT, check_cells, refusal
@@ -28,7 +28,6 @@ DAMAGED = (
     LookupError,
     ArithmeticError,
     MemoryError,  # a size written over
-    NotImplementedError,  # scipy's word for a header that says version 7.3, which is HDF5 and not this format
     zlib.error,
     MatReadError,
 )
@@ -43,7 +42,7 @@ def read_mat(content: bytes, filename: str) -> dict[str, object]:
         raise refusal(filename, f"unpacks to more than {MOST_TEXT // 1024**2} MiB; average or split the log")
     names = _variables(content, filename)
     try:
-        variables = loadmat(BytesIO(content), variable_names=names)  # type: ignore[arg-type]  # stubs lack file-likes
+        variables = loadmat(of_version_5(content), variable_names=names)  # type: ignore[arg-type]  # stubs lack file-likes
         columns = {name: _cells(variables[name]) for name in names}
     except DAMAGED as error:
         raise _damaged(filename) from error
@@ -53,10 +52,18 @@ def read_mat(content: bytes, filename: str) -> dict[str, object]:
     return with_metadata(metadata[0], columns, filename)
 
 
+def of_version_5(content: bytes) -> BytesIO:
+    """A MAT file for scipy; ValueError where its header says another version, such as 7.3, which is HDF5."""
+    file = BytesIO(content)
+    if matfile_version(file)[0] != 1:  # type: ignore[arg-type]  # stubs lack file-likes
+        raise ValueError("the header says another version than 5")
+    return file
+
+
 def _variables(content: bytes, filename: str) -> list[str]:
     """The names of all variables, once each is known to be of a plain kind and of bearable size."""
     try:
-        declared = whosmat(BytesIO(content), chars_as_strings=False)  # type: ignore[arg-type]  # stubs lack file-likes
+        declared = whosmat(of_version_5(content), chars_as_strings=False)  # type: ignore[arg-type]  # stubs lack file-likes
     except DAMAGED as error:
         raise _damaged(filename) from error
     names = [name for name, _, _ in declared]

@@ -9,7 +9,7 @@ from scipy.io import loadmat
 from service.ingest.convert.contract import Converter, Document
 from service.ingest.convert.documents import STANDARD_GRAVITY, columns, session, triad
 from service.ingest.convert.files import expect_count, read_bytes, refuse
-from service.ingest.mat import DAMAGED
+from service.ingest.mat import DAMAGED, of_version_5
 
 BYTE_ORDER = slice(126, 128)
 FILES = "the MAT file that holds `ACC_meas`, three rows of orientation means in g"
@@ -17,10 +17,11 @@ FILES = "the MAT file that holds `ACC_meas`, three rows of orientation means in 
 
 def array(path: Path) -> Any:
     """What the file holds as ``ACC_meas``; None when it holds nothing of that name."""
-    if read_bytes(path)[BYTE_ORDER] not in (b"IM", b"MI"):
+    content = read_bytes(path)
+    if content[BYTE_ORDER] not in (b"IM", b"MI"):
         raise refuse(path, "file", "is no MAT file of version 5")
     try:
-        return loadmat(path, appendmat=False, variable_names=["ACC_meas"]).get("ACC_meas")
+        return loadmat(of_version_5(content), variable_names=["ACC_meas"]).get("ACC_meas")  # type: ignore[arg-type]  # stubs lack file-likes
     except DAMAGED as fault:
         raise refuse(path, "file", f"is a damaged MAT file: {fault}") from fault
 

@@ -177,6 +177,13 @@ def test_mat_data_that_unpacks_to_gigabytes():
     refused(mat_with() + element, "unpacks to more than 256 MiB")
 
 
+@pytest.mark.parametrize("version", [0, 2, 7])
+def test_mat_whose_header_says_another_version(version):
+    content = bytearray(mat_with(A1=[1.0, 2.0]))
+    content[125 if content[126:128] == b"IM" else 124] = version
+    refused(bytes(content), "damaged")
+
+
 def test_mat_without_metadata():
     buffer = BytesIO()
     savemat(buffer, {"A1": [1.0, 2.0]})
