@@ -25,7 +25,7 @@ browser:
 	@sh tests/install_chromium.sh
 
 test: setup browser
-	$(BIN)/pytest -n auto --maxprocesses 8
+	$(BIN)/pytest -n auto --maxprocesses 8 --dist worksteal
 
 lint: setup
 	$(BIN)/ruff format --check .
