@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from estimator.causes import CATALOGUE, Cause
-from estimator.diagnosis.model import can_be_modelled
+from estimator.diagnosis.explanation.accepted import can_be_modelled
 
 PAGE = Path(__file__).parents[1] / "docs" / "diagnosis" / "causes.md"
 HEAD = """# The catalogue of causes

@@ -10,12 +10,12 @@ from benchmarks.orientations import GRAVITY, NOISE, Case, case, one_degree_off, 
 from benchmarks.papers.markdown import section, table
 from estimator import CalibrationSession, calibrate
 from estimator.arrays import tangents
-from estimator.calibration.descent import descend, levenberg_marquardt
 from estimator.calibration.free import accelerometer_rows
 from estimator.calibration.free.information import information
 from estimator.calibration.free.model import State
-from estimator.calibration.triples import triples_of
 from estimator.parameters import SensorParameters
+from estimator.published.descent import descend, levenberg_marquardt
+from estimator.published.triples import triples_of
 from estimator.session import Array
 
 ACCURACY = 1e-5

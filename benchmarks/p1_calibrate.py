@@ -13,11 +13,11 @@ from scipy.optimize import least_squares
 from benchmarks.block import sessions
 from benchmarks.figures import Figure, side_by_side
 from estimator import CalibrationSession, calibrate
+from estimator.applied_vector import Geometry, stand_geometry
 from estimator.arrays import tangents
 from estimator.calibration.stand import starting_point
 from estimator.forward import measured
 from estimator.parameters import SensorParameters, nominal
-from estimator.reference import Geometry, stand_geometry
 from estimator.session import Array
 
 WORK = "calibrate one session, 6 sensors × 24 positions × 2 runs, full covariance"

@@ -9,9 +9,9 @@ import numpy as np
 from benchmarks.block import sessions
 from benchmarks.figures import Figure, side_by_side
 from estimator import calibrate, calibrate_many
+from estimator.applied_vector import stand_geometry
 from estimator.forward import jacobian
 from estimator.parameters import nominal
-from estimator.reference import stand_geometry
 
 SESSIONS = 500
 

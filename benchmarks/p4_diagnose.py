@@ -16,8 +16,8 @@ from benchmarks.block import sessions
 from benchmarks.figures import Figure, side_by_side
 from estimator import CalibrationSession, diagnose
 from estimator.causes import CATALOGUE, Signature
-from estimator.diagnosis.baseline import Baseline
-from estimator.diagnosis.measured import baseline_of
+from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.forward import input_of
 from estimator.session import Array
 

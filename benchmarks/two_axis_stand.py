@@ -8,8 +8,8 @@ from rich.table import Table
 
 from benchmarks.block import GRAVITY, sessions
 from estimator import CalibrationSession, Site, StandErrors, calibrate, calibrate_many
+from estimator.applied_vector import gravity
 from estimator.parameters import nominal
-from estimator.reference import gravity
 from estimator.results import ARCSEC
 from estimator.session import Array
 from estimator.simulate import scattered, simulate, stand_schedule

@@ -4,10 +4,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from estimator.applied_vector import EARTH_RATE, elevation, magnitude, stand_vector, to_block
 from estimator.arrays import tangents, unit
 from estimator.forward import response
 from estimator.parameters import SensorParameters, nominal
-from estimator.reference import EARTH_RATE, elevation, magnitude, stand_vector, to_block
 from estimator.session import (
     ACCELEROMETER,
     ARBITRARY_ORIENTATIONS,

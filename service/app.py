@@ -3,18 +3,17 @@
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from datetime import UTC, datetime
-from importlib.metadata import version
 from threading import Event, Thread
 
 from fastapi import FastAPI
 from fastapi.concurrency import run_in_threadpool
 
 from service import api, pages
+from service.background.deliver import deliver_until
+from service.background.diagnose_pending import diagnose_pending
+from service.background.watch import watch_fleet
 from service.dependencies import Service
-from service.flows.deliver import deliver_until
-from service.flows.diagnose_pending import diagnose_pending
-from service.flows.flagging.overdue import watch_fleet
-from service.settings import Settings
+from service.settings import VERSION, Settings
 from service.storage import Database, Files, Storage
 
 DESCRIPTION = (
@@ -35,7 +34,7 @@ def create_app(settings: Settings, clock: Callable[[], datetime] = utc_now) -> F
     service = Service(settings, Storage(Database(settings.database), Files(settings.files)), clock)
     app = FastAPI(
         title="imu-health",
-        version=version("imu-health"),
+        version=VERSION,
         description=DESCRIPTION,
         docs_url=None,
         redoc_url=None,

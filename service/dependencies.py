@@ -9,11 +9,11 @@ from typing import Annotated
 from fastapi import BackgroundTasks, Depends, Request
 from starlette.types import Message
 
+from service.background.diagnose_pending import diagnose_quietly
 from service.errors import ServiceError, TooLargeError
 from service.flows.diagnose import InProgress, diagnose_now_or_later
-from service.flows.diagnose_pending import diagnose_quietly
 from service.metrics import Metrics
-from service.records import StoredDiagnosis
+from service.records.diagnosis import StoredDiagnosis
 from service.settings import Settings
 from service.storage import Storage
 from service.storage.store import Store

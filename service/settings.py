@@ -1,11 +1,15 @@
 """What an operator sets, by environment variables that start with IMU_HEALTH_."""
 
+from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated
 
 from platformdirs import user_data_dir
 from pydantic import Field, field_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
+
+VERSION = version("imu-health")
+"""Of the program."""
 
 
 def default_data_folder() -> Path:

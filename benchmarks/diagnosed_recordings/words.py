@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from estimator.diagnosis import Finding
 from estimator.diagnosis.results import Diagnosis, Gain, Score
-from service.units import amplitude_unit, measured, number
+from service.measures import amplitude_unit, measured, number
 
 NOTHING = "Nothing wrong found."
 

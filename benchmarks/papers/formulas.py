@@ -7,7 +7,7 @@ import numpy as np
 from benchmarks.papers.half_sums import simulated
 from benchmarks.papers.markdown import section, table
 from benchmarks.papers.published import ACCELEROMETERS, AXES, STAND
-from estimator.printed import Accuracy, Conditions, checked, printed
+from estimator.published.printed import Accuracy, Conditions, checked, printed
 from estimator.results import ARCSEC
 from estimator.session import StandErrors
 
@@ -60,7 +60,7 @@ def instrument_only() -> list[tuple[object, ...]]:
 
 
 WORDS = """One sigma, root mean square over the six sensors of the cone, N = 12, α = 40°; the estimator is that of
-(22)–(24) with c = 0. *Checked* is the propagation at the head of `estimator/printed.py`."""
+(22)–(24) with c = 0. *Checked* is the propagation at the head of `estimator/published/printed.py`."""
 
 INSTRUMENT = """The text's bias of 1.5e-5 g from the instrument alone is ten times what (28) gives. Its scale of
 3e-4 % is that of the checked formula: the printed (29) gives more than twice as much, so the paper did not compute

@@ -9,7 +9,7 @@ import vl_convert
 from scipy.spatial.transform import Rotation
 
 from benchmarks.papers.published import AXES
-from estimator.reference import stand_vector
+from estimator.applied_vector import stand_vector
 from estimator.session import Array
 
 FOLDER = Path(__file__).parents[2] / "docs" / "pictures"

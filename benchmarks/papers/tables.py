@@ -12,7 +12,7 @@ from estimator.calibration.analytic import coefficients, solve
 from estimator.calibration.stand import solved
 from estimator.forward import measured
 from estimator.parameters import nominal
-from estimator.printed import Accuracy, Conditions, checked, printed
+from estimator.published.printed import Accuracy, Conditions, checked, printed
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array, CalibrationSession
 from estimator.simulate import simulate, stand_schedule
 

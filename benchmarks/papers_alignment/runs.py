@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from estimator.alignment import Model, align
 from estimator.alignment.simulate import Imperfections, Programme, Truth, simulate_alignment, triads
-from estimator.reference import gravity
+from estimator.applied_vector import gravity
 from estimator.results import ARCSEC
 from estimator.session import Array, Site
 

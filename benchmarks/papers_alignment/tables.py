@@ -10,7 +10,7 @@ from estimator.alignment.noise import Noise
 from estimator.alignment.observability import expected, gramian, planned_path
 from estimator.alignment.simulate import Imperfections, Programme, Truth, simulate_rate_table, triads
 from estimator.alignment.sins import mounting_effect
-from estimator.reference import gravity
+from estimator.applied_vector import gravity
 from estimator.results import ARCSEC
 from estimator.session import Site
 

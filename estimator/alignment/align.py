@@ -36,8 +36,8 @@ from estimator.alignment.positions import (
 from estimator.alignment.results import AlignmentResult, Course
 from estimator.alignment.sins import EPS, NABLA, PHI, STATES, UNITS, Model
 from estimator.alignment.strapdown import Strapdown, strapdown
+from estimator.applied_vector import gravity
 from estimator.errors import Problem, ScheduleError
-from estimator.reference import gravity
 from estimator.results import Fit
 from estimator.session import ACCELEROMETER, GYROSCOPE, ROTATION_ALIGNMENT, Array, CalibrationSession
 

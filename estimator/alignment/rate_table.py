@@ -20,8 +20,8 @@ from scipy.stats import chi2 as chi2_distribution
 from estimator.alignment.axes import TINY, Triad, triad
 from estimator.alignment.positions import interval
 from estimator.alignment.results import RateTableResult
+from estimator.applied_vector import EARTH_RATE
 from estimator.errors import Problem, ScheduleError
-from estimator.reference import EARTH_RATE
 from estimator.results import Fit
 from estimator.session import GYROSCOPE, RATE_TABLE, Array, CalibrationSession
 

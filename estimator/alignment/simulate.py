@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from estimator.alignment.sins import earth_rate
-from estimator.reference import gravity
+from estimator.applied_vector import gravity
 from estimator.results import ARCSEC
 from estimator.session import (
     ACCELEROMETER,

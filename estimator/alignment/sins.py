@@ -26,7 +26,7 @@ from enum import StrEnum
 import numpy as np
 from scipy.linalg import expm
 
-from estimator.reference import EARTH_RATE
+from estimator.applied_vector import EARTH_RATE
 from estimator.session import Array
 
 STATES = (

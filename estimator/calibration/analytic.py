@@ -18,9 +18,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from estimator.applied_vector import elevation
 from estimator.arrays import unit
 from estimator.parameters import SensorParameters
-from estimator.reference import elevation
 from estimator.session import Array, CalibrationSession
 
 VANISHES = 1e-6

@@ -16,9 +16,9 @@ borrows from the others, unless it is plainly noisier than they are.
 import numpy as np
 from scipy import special
 
+from estimator.applied_vector import Geometry
 from estimator.calibration.refine import FINEST, designed, linearise
 from estimator.parameters import SensorParameters
-from estimator.reference import Geometry
 from estimator.session import Array
 
 SUSPICIOUS = 1e-3

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from estimator.applied_vector import Geometry
 from estimator.forward import projected, slope
 from estimator.parameters import ELEMENTS, LIMIT, PLAUSIBLE, SensorParameters
-from estimator.reference import Geometry
 from estimator.results import KnownCombination
 from estimator.session import Array
 

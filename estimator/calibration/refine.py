@@ -20,9 +20,9 @@ from typing import Any
 
 import numpy as np
 
+from estimator.applied_vector import Geometry
 from estimator.forward import input_of, jacobian, projected, slope
 from estimator.parameters import LIMIT, PLAUSIBLE, SensorParameters
-from estimator.reference import Geometry
 from estimator.session import Array
 
 RIDGE = PLAUSIBLE**-2

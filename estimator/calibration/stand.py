@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from estimator.applied_vector import Geometry, stand_geometry
 from estimator.calibration import noise
 from estimator.calibration.analytic import answers, closed_form, linear_start
 from estimator.calibration.observability import Spectrum, spectrum
@@ -14,7 +15,6 @@ from estimator.calibration.refine import Fitted, fit, input_variance
 from estimator.calibration.stand_report import Solved, reports
 from estimator.forward import measured
 from estimator.parameters import SensorParameters, nominal
-from estimator.reference import Geometry, stand_geometry
 from estimator.results import Calibration
 from estimator.session import Array, CalibrationSession
 

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from estimator.applied_vector import Geometry
 from estimator.arrays import tangents
 from estimator.calibration.observability import Spectrum, known_bias_quadratic, known_linear
 from estimator.calibration.refine import Fitted
 from estimator.forward import projected, slope
 from estimator.parameters import ELEMENTS, names, units
-from estimator.reference import Geometry
 from estimator.results import Calibration, Estimate, Fit, KnownCombination, Residuals, SensorCalibration
 from estimator.session import Array, CalibrationSession
 

@@ -10,21 +10,21 @@ import numpy as np
 from estimator.calibration.calibrate import averaged, calibrate
 from estimator.causes import CATALOGUE, Cause, Correction
 from estimator.causes.record import AlphaEntry
-from estimator.diagnosis.baseline import Baseline
-from estimator.diagnosis.clipping import unclipped
-from estimator.diagnosis.evidence import parameter_covariance
-from estimator.diagnosis.extend import amplitudes, extended_calibration, without_effects
-from estimator.diagnosis.gain import gain
-from estimator.diagnosis.limits import limits
-from estimator.diagnosis.measured import baseline_of
-from estimator.diagnosis.nominal import WrongEntry, wrong_elevation
-from estimator.diagnosis.polish import polished
-from estimator.diagnosis.report import clip_findings, entry_finding, findings, slip_finding, structures
+from estimator.diagnosis.explanation.detection_limits import limits
+from estimator.diagnosis.explanation.earlier_sessions import newness
+from estimator.diagnosis.explanation.extended_model import amplitudes, extended_calibration, without_effects
+from estimator.diagnosis.explanation.findings import clip_findings, entry_finding, findings, slip_finding, structures
+from estimator.diagnosis.explanation.gain import gain
+from estimator.diagnosis.record.clipping import unclipped
+from estimator.diagnosis.record.errors import Slip, exchanged_rows, expected_axes, turned_record
+from estimator.diagnosis.record.nominal import WrongEntry, wrong_elevation
+from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.diagnosis.residuals.whitened import parameter_covariance
 from estimator.diagnosis.results import Diagnosis
-from estimator.diagnosis.search import search
-from estimator.diagnosis.slips import Slip, exchanged_rows, expected_axes, turned_record
-from estimator.diagnosis.state import Search, begin
-from estimator.diagnosis.transfer import newness
+from estimator.diagnosis.selection.refinement import polished
+from estimator.diagnosis.selection.search import search
+from estimator.diagnosis.selection.search_state import Search, begin
 from estimator.session import TWO_AXIS_STAND, CalibrationSession
 
 

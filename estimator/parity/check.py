@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from estimator.applied_vector import gravity
 from estimator.errors import Problem, ScheduleError
 from estimator.parity.blocks import AUTO, MOTIONS, Selection, select
 from estimator.parity.hypotheses import Evidence
@@ -11,7 +12,6 @@ from estimator.parity.ledger import BLOCK, Ledger
 from estimator.parity.reference import reference_of
 from estimator.parity.regression import Change, regress
 from estimator.parity.results import ParityResult
-from estimator.reference import gravity
 from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor, Site
 

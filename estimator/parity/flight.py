@@ -15,9 +15,9 @@ import numpy as np
 from scipy.ndimage import uniform_filter1d
 from scipy.signal import lfilter
 
+from estimator.applied_vector import gravity
 from estimator.forward import response
 from estimator.parameters import SensorParameters
-from estimator.reference import gravity
 from estimator.session import IN_SERVICE, Array, CalibrationSession, Sensor, Site
 
 SMOOTH = 2.0

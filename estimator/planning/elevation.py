@@ -8,9 +8,9 @@ does not depend on N.
 
 import numpy as np
 
+from estimator.applied_vector import stand_geometry
 from estimator.forward import jacobian
 from estimator.parameters import nominal
-from estimator.reference import stand_geometry
 from estimator.session import CalibrationSession, StandErrors
 
 ROUNDING = 1e-14

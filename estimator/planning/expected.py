@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from estimator.applied_vector import elevation, stand_geometry
 from estimator.calibration.stand import solved
 from estimator.calibration.stand_report import tables
 from estimator.forward import response
 from estimator.parameters import nominal
 from estimator.planning.elevation import conditioning
 from estimator.planning.results import Request, Sweep
-from estimator.reference import elevation, stand_geometry
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Stand
 
 SMALLEST = np.radians(1.0)

@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from estimator.applied_vector import stand_geometry
 from estimator.forward import jacobian, projected, slope
 from estimator.parameters import PLAUSIBLE, nominal
-from estimator.reference import stand_geometry
 from estimator.session import Array, CalibrationSession
 
 GRID = 180

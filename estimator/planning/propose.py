@@ -12,10 +12,10 @@ from scipy.optimize import minimize_scalar
 
 from estimator.calibration.stand import calibrate_stand
 from estimator.causes import CATALOGUE
-from estimator.diagnosis.limits import limits
-from estimator.diagnosis.measured import baseline_of
+from estimator.diagnosis.explanation.detection_limits import limits
+from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.results import Limit
-from estimator.diagnosis.state import begin
+from estimator.diagnosis.selection.search_state import begin
 from estimator.errors import Problem, ScheduleError
 from estimator.planning.elevation import conditioning, optimal_elevation
 from estimator.planning.expected import (
@@ -28,7 +28,7 @@ from estimator.planning.expected import (
 )
 from estimator.planning.positions import optimal_positions
 from estimator.planning.results import PARAMETERS, Judged, Plan, Request
-from estimator.printed import Conditions, gyro_conditions
+from estimator.published.printed import Conditions, gyro_conditions
 from estimator.session import ACCELEROMETER, TWO_AXIS_STAND, Array, CalibrationSession
 
 ELEVATIONS = np.radians(np.arange(15.0, 75.1, 2.5))

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from urllib.parse import quote
 from xml.etree.ElementTree import Element, SubElement, register_namespace, tostring
 
-from service.flag_records import Notice, NoticeKind
+from service.records.flag import Notice, NoticeKind
 
 NAMESPACE = "http://www.w3.org/2005/Atom"
 NEVER = "1970-01-01T00:00:00+00:00"

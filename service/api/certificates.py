@@ -9,10 +9,11 @@ from service.api.schemas.corrections import CorrectionDocument
 from service.api.schemas.fields import SessionId
 from service.api.schemas.problem import errors
 from service.dependencies import Now, StorageOf
-from service.flows.certificate import certified_session
-from service.flows.correction import correction_document
+from service.flows.diagnose import diagnose
 from service.reports.certificate import certificate_pdf
 from service.reports.dcc import certificate_dcc
+from service.views.certificate import certified_session
+from service.views.correction import correction_document
 
 router = APIRouter(prefix="/sessions", tags=["handing on"])
 PDF, XML = "application/pdf", "application/xml"
@@ -33,7 +34,7 @@ def read_certificate(
     ] = "pdf",
 ) -> Response:
     """The session's certificate, for people to sign or as XML; the same record gives the same bytes."""
-    found = certified_session(storage, id, now)
+    found = certified_session(storage, diagnose(storage, id, now))
     name = f"{found.report.session.unit}-{id[:8]}-certificate"
     if format == "dcc":
         return as_file(certificate_dcc(found), XML, f"{name}.xml")

@@ -12,7 +12,7 @@ from service.dependencies import DiagnoserOf, Now, StorageOf
 from service.errors import NotFoundError
 from service.flows.accept_model import accept_model
 from service.flows.diagnose import diagnose
-from service.records import NewModel
+from service.records.model import NewModel
 
 router = APIRouter(prefix="/sessions", tags=["diagnosis"])
 RETRY_AFTER = "2"

@@ -15,11 +15,11 @@ from service.api.schemas.fields import Serial
 from service.api.schemas.problem import errors
 from service.api.schemas.sessions import DecisionSchema, SessionSchema
 from service.dependencies import Now, Reading, SettingsOf, StorageOf
-from service.flag_records import NewService
 from service.flows.annotate import add_note
-from service.flows.found_and_left import found_and_left
 from service.flows.record_service import record_service
-from service.flows.unit_report import unit_report
+from service.records.event import NewService
+from service.views.found_and_left import found_and_left
+from service.views.unit_report import unit_report
 
 router = APIRouter(prefix="/units", tags=["units"])
 

@@ -8,7 +8,8 @@ from urllib.parse import quote
 import polars as pl
 from fastapi import Response
 
-from service.records import HistoryPoint, UnitSummary
+from service.records.history import HistoryPoint
+from service.records.unit import UnitSummary
 
 TIME = pl.Datetime("us", "UTC")
 HISTORY_COLUMNS = {

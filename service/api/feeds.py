@@ -8,7 +8,7 @@ from service.api.atom import atom_feed
 from service.api.calendar import DueDay, calendar
 from service.api.schemas.problem import errors
 from service.dependencies import Now, Reading, StorageOf
-from service.flows.outlook import fleet_outlook
+from service.views.outlook import fleet_outlook
 
 router = APIRouter(prefix="/feeds", tags=["feeds"])
 ATOM, CALENDAR = "application/atom+xml", "text/calendar"

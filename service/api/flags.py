@@ -8,10 +8,10 @@ from service.api.schemas.fields import Limit, Number, Page, Text, next_page
 from service.api.schemas.flags import FlagPage, FlagSchema, Handling
 from service.api.schemas.problem import errors
 from service.dependencies import Now, Reading, StorageOf
-from service.flag_records import FlagState
-from service.flows.flag_list import flag_list
 from service.flows.handle_flag import acknowledge_flag, resolve_flag
+from service.records.flag import FlagState
 from service.storage.store import Store
+from service.views.flag_list import flag_list
 
 router = APIRouter(prefix="/flags", tags=["flags"])
 WantedState = Annotated[FlagState | None, Query(description="Only flags in this state.")]

@@ -9,11 +9,11 @@ from service.api.schemas.fields import Page, next_page
 from service.api.schemas.problem import errors
 from service.api.schemas.units import FleetSchema, UnitPage, UnitSummarySchema
 from service.dependencies import Now, Reading
-from service.flows.fleet import fleet_overview
-from service.flows.fleet_condition import fleet_condition
-from service.flows.fleet_report import fleet_report
 from service.reports.fleet_paper import fleet_pdf
 from service.reports.fleet_workbook import fleet_xlsx
+from service.views.fleet import fleet_overview
+from service.views.fleet_condition import fleet_condition
+from service.views.fleet_report import fleet_report
 
 router = APIRouter(prefix="/fleet", tags=["fleet"])
 PDF = "application/pdf"

@@ -9,9 +9,9 @@ from service.api.schemas.flags import Handling
 from service.api.schemas.models import ModelPage, ModelSchema
 from service.api.schemas.problem import errors
 from service.dependencies import Now, Reading, StorageOf
-from service.flows.model_revisions import model_revisions
 from service.flows.withdraw_model import withdraw_model
-from service.records import Scope
+from service.records.model import Scope
+from service.views.model_revisions import model_revisions
 
 router = APIRouter(prefix="/models", tags=["models"])
 

@@ -7,8 +7,8 @@ from pydantic import BaseModel, Field
 
 from service.api.schemas.problem import errors
 from service.dependencies import StorageOf
-from service.flows.plan import plan
 from service.planning.question import PlanQuestion
+from service.views.plan import plan
 
 router = APIRouter(prefix="/plan", tags=["planning"])
 

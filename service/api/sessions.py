@@ -18,10 +18,10 @@ from service.api.schemas.sessions import (
     SessionSchema,
 )
 from service.dependencies import DiagnoserOf, MetricsOf, Now, Reading, SettingsOf, StorageOf
-from service.flows.session_decisions import session_decisions
-from service.flows.session_list import session_list
+from service.flows.receive import upload
 from service.flows.set_stage import set_stage
-from service.flows.upload import upload
+from service.views.session_decisions import session_decisions
+from service.views.session_list import session_list
 
 router = APIRouter(prefix="/sessions", tags=["sessions"])
 ANY_BYTES = {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}}

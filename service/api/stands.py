@@ -5,7 +5,7 @@ from fastapi import APIRouter
 from service.api.schemas.problem import errors
 from service.api.schemas.stands import StandList, StandSchema
 from service.dependencies import Reading
-from service.flows.stands import stand_conditions
+from service.views.stands import stand_conditions
 
 router = APIRouter(prefix="/stands", tags=["stands"])
 

@@ -9,8 +9,8 @@ from service.api.schemas.problem import errors
 from service.api.schemas.units import NewTolerances, TolerancesSchema, UnitTypePage, UnitTypeSchema
 from service.dependencies import Now, Reading, StorageOf
 from service.flows.set_tolerances import set_tolerances
-from service.flows.unit_types import unit_type, unit_types
-from service.records import Tolerances
+from service.records.unit import Tolerances
+from service.views.unit_types import unit_type, unit_types
 
 router = APIRouter(prefix="/unit-types", tags=["unit types"])
 

@@ -30,13 +30,13 @@ from service.api.schemas.units import (
     UnitSummarySchema,
 )
 from service.dependencies import Now, Reading, SettingsOf, StorageOf
-from service.flows.fleet import fleet_overview
-from service.flows.history import unit_history
-from service.flows.outlook import outlook_of
 from service.flows.recalibrate import recalibrate
 from service.flows.set_lot import set_lot
-from service.flows.unit_report import unit_report
-from service.outlook import RiskPoint
+from service.records.outlook import RiskPoint
+from service.views.fleet import fleet_overview
+from service.views.history import unit_history
+from service.views.outlook import outlook_of
+from service.views.unit_report import unit_report
 
 router = APIRouter(prefix="/units", tags=["units"])
 TABLE = {"type": "string", "format": "binary"}

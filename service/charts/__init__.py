@@ -10,7 +10,7 @@ from typing import Any
 
 import altair as alt
 
-from service.verdicts import Condition
+from service.words.conditions import Condition
 
 DATA_FORM = "points"
 """Name of the main data set of every specification."""

@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from service.records import HistoryPoint, Service
+from service.records.event import Service
+from service.records.history import HistoryPoint
 
 
 @dataclass(frozen=True)

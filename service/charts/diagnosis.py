@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from estimator.results import Residuals, SensorCalibration
 from service.charts import DATA_FORM, ChartSet, Panel, padded, specification
-from service.units import THIN, DeviationUnit, decimals, deviation_unit, number
+from service.measures import THIN, DeviationUnit, decimals, deviation_unit, number
 
 HEIGHT = 130
 MOST_PANELS = 9

@@ -7,8 +7,8 @@ from typing import Any
 import altair as alt
 
 from service.charts import DATA_FORM, ChartSet, Panel, specification
-from service.records import UnitSummary
-from service.verdicts import CONDITIONS, Condition, condition_of
+from service.records.unit import UnitSummary
+from service.words.conditions import CONDITIONS, Condition, condition_of
 
 HEIGHT = 120
 STEP, LAST = 10, 200

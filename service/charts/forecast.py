@@ -7,7 +7,7 @@ from typing import Any
 import altair as alt
 
 from service.charts.tracks import Track
-from service.outlook import ParameterTrend
+from service.records.outlook import ParameterTrend
 
 Trends = Mapping[tuple[str, str, str], ParameterTrend]
 """By sensor, kind and parameter."""

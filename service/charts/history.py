@@ -17,11 +17,10 @@ from service.charts.forecast import (
     trends_by_place,
 )
 from service.charts.tracks import Track, TrackPoint
-from service.flag_records import Note
-from service.outlook import ParameterTrend
-from service.records import Service
-from service.verdicts import CONDITIONS, FIT, NOT_JUDGED, REFERENCE
-from service.words import day_of
+from service.records.event import Note, Service
+from service.records.outlook import ParameterTrend
+from service.words.conditions import CONDITIONS, FIT, NOT_JUDGED, REFERENCE
+from service.words.names import day_of
 
 HEIGHT = 150
 

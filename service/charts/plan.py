@@ -8,7 +8,7 @@ import numpy as np
 from estimator.planning import Plan, Sweep
 from estimator.planning.results import PARAMETERS
 from service.charts import DATA_FORM, ChartSet, Panel, specification
-from service.units import DEVIATION_UNITS, DeviationUnit
+from service.measures import DEVIATION_UNITS, DeviationUnit
 
 HEIGHT = 150
 NAMES = {"scale": "Scale factor", "bias": "Bias", "quadratic": "Quadratic term", "axis": "Axis"}

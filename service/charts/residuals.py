@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from estimator.results import Calibration, Residuals
 from service.charts import DATA_FORM, HIGH, LEFT, LOW, RIGHT, UNIT, ChartSet, Panel, filled, padded, specification
-from service.units import THIN, DeviationUnit, decimals, deviation_unit, number
+from service.measures import THIN, DeviationUnit, decimals, deviation_unit, number
 
 HEIGHT = 130
 RUNS = ("direct", "flipped")

@@ -5,10 +5,12 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from service.charts.changes import Change, changes_of
-from service.records import ALL_PARAMETERS, HistoryPoint, Service
-from service.units import DeviationUnit, deviation_unit, in_unit, limit, measured, signed
-from service.verdicts import NOT_JUDGED, Condition, condition_of
-from service.words import day_of
+from service.measures import DeviationUnit, deviation_unit, in_unit, limit, measured, signed
+from service.records.event import Service
+from service.records.history import HistoryPoint
+from service.records.session import ALL_PARAMETERS
+from service.words.conditions import NOT_JUDGED, Condition, condition_of
+from service.words.names import day_of
 
 
 @dataclass(frozen=True)

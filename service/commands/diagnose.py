@@ -11,9 +11,9 @@ from estimator.errors import SessionError
 from estimator.session import CALIBRATIONS
 from service.commands.console import UNUSABLE, AsJson, Files, for_each, print_json, problem_line, say, screen
 from service.commands.diagnosis_tables import diagnosis_view
-from service.flows.diagnosis_in_words import document_of, inapplicable, state_of
 from service.ingest import read_file
-from service.records import DiagnosisState
+from service.records.diagnosis import DiagnosisState
+from service.words.diagnosis import document_of, inapplicable, state_of
 
 Result = tuple[CalibrationSession, dict[str, Any], DiagnosisState]
 History = Annotated[

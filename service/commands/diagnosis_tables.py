@@ -9,11 +9,11 @@ from rich.table import Table
 from rich.text import Text
 
 from estimator.session import CalibrationSession
-from service.flows.diagnosis_in_words import NOT_APPLICABLE, NOTHING, UNEXPLAINED
-from service.flows.finding_in_words import FindingView, finding_view
+from service.measures import number
 from service.pages.limits import limits_view
-from service.records import DiagnosisState
-from service.units import number
+from service.records.diagnosis import DiagnosisState
+from service.words.diagnosis import NOT_APPLICABLE, NOTHING, UNEXPLAINED
+from service.words.finding import FindingView, finding_view
 
 COLOURS = {
     DiagnosisState.NAMED: "dark_orange",

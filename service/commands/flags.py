@@ -8,7 +8,7 @@ from rich.table import Table
 
 from service.commands.client import connected
 from service.commands.console import DEFAULT_SERVER, AsJson, Server, print_json, screen
-from service.flag_records import FlagState
+from service.records.flag import FlagState
 
 COLOURS = {FlagState.RAISED: "red", FlagState.ACKNOWLEDGED: "yellow", FlagState.RESOLVED: "green"}
 flags = typer.Typer(

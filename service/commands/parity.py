@@ -13,10 +13,10 @@ from estimator.errors import SessionError
 from estimator.parity import ParityAccumulator, ParityResult
 from estimator.parity.results import Sight
 from service.commands.console import UNUSABLE, AsJson, print_json, problem_line, say, screen
-from service.flows.reason_in_service import found_in_words
 from service.ingest import read_upload
 from service.ingest.stream import open_recording
-from service.units import in_words
+from service.measures import in_words
+from service.words.in_service import found_in_words
 
 PARAMETERS = ("bias", "scale", "axis")
 

@@ -10,15 +10,16 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from estimator.diagnosis.orientations import fitted_state
+from estimator.diagnosis.residuals.orientations import fitted_state
 from estimator.errors import Problem, SessionError
 from estimator.planning import OrientationRank, Plan, plan, proposed_orientations, rank_of_orientations
 from estimator.planning.expected import head_kind, input_noise
 from estimator.session import ARBITRARY_ORIENTATIONS, Array, CalibrationSession
 from service.commands.console import UNUSABLE, AsJson, print_json, problem_line, say, screen
 from service.ingest import read_file
+from service.measures import number
 from service.planning.question import PlanQuestion
-from service.planning.words import (
+from service.words.plan import (
     UNSEEN,
     blind,
     headline,
@@ -28,7 +29,6 @@ from service.planning.words import (
     tolerance_in_words,
     unobserved,
 )
-from service.units import number
 
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
 MOST_ORIENTATIONS = 200

@@ -7,9 +7,9 @@ import typer
 
 from service.commands.console import AsJson, print_json, progress, screen
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
-from service.flows.fleet import fleet_overview
 from service.flows.recalibrate import Recalibrated, recalibrate
 from service.storage import Database, Files, Storage
+from service.views.fleet import fleet_overview
 
 PAGE = 1000
 Units = Annotated[

@@ -10,8 +10,8 @@ from rich.table import Table
 from service.commands.client import connected
 from service.commands.console import DEFAULT_SERVER, AsJson, Out, Server, deliver, print_json, screen
 from service.commands.upload import coloured
-from service.records import Verdict
-from service.units import number
+from service.measures import number
+from service.records.decision import Verdict
 
 
 class Format(StrEnum):

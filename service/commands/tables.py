@@ -10,8 +10,8 @@ from rich.text import Text
 
 from estimator.results import Calibration, Estimate, Fit, SensorCalibration
 from estimator.session import CALIBRATIONS, CalibrationSession, Sensor
-from service.advice import what_to_add
-from service.units import deviation_unit, in_unit, measured, number
+from service.measures import deviation_unit, in_unit, measured, number
+from service.words.advice import what_to_add
 
 UNSEEN = "not observable"
 UNLIKELY = 0.001

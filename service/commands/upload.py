@@ -7,8 +7,8 @@ from rich.markup import escape
 
 from service.commands.client import connected
 from service.commands.console import DEFAULT_SERVER, AsJson, Files, Server, for_each, print_json, screen
-from service.records import Verdict
-from service.verdicts import Condition, condition_of
+from service.records.decision import Verdict
+from service.words.conditions import Condition, condition_of
 
 COLOURS = {
     Verdict.PASS: "green",

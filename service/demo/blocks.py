@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from estimator.reference import EARTH_RATE, gravity
+from estimator.applied_vector import EARTH_RATE, gravity
 from estimator.results import ARCSEC
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array, CalibrationSession, Sensor, Site, Stand, StandErrors
 from estimator.simulate import cone, stand_schedule

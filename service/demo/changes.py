@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.reference import EARTH_RATE
+from estimator.applied_vector import EARTH_RATE
 from estimator.results import ARCSEC
 from estimator.session import ACCELEROMETER, Array
 

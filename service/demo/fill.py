@@ -7,14 +7,15 @@ from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.demo.cast import CAST, START, Handled, Intervention, Member, Remark
 from service.demo.history import files_of
 from service.demo.types import unit_type
-from service.flag_records import FlagState, Matter, NewService
 from service.flows.annotate import add_note
 from service.flows.diagnose import diagnose
-from service.flows.fleet_condition import fleet_condition
 from service.flows.handle_flag import acknowledge_flag, resolve_flag
+from service.flows.receive import upload
 from service.flows.record_service import record_service
-from service.flows.upload import upload
+from service.records.event import NewService
+from service.records.flag import FlagState, Matter
 from service.storage import Storage
+from service.views.fleet_condition import fleet_condition
 
 UPLOADED_AFTER = timedelta(hours=3)
 """From the session to its upload; the demonstration has its own clock, so that it is always the same."""

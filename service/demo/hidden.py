@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from estimator.causes import Signature, cause
-from estimator.diagnosis.measured import baseline_of
+from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.session import CalibrationSession
 
 

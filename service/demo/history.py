@@ -19,7 +19,7 @@ from service.demo.changes import DEGREE_PER_HOUR, ELEMENT, MICRO, Change, step_o
 from service.demo.hidden import with_effect
 from service.demo.other_programmes import alignment, recording, turntable_truth
 from service.demo.types import SENSORS, TYPE_NAME
-from service.words import YEAR
+from service.words.names import YEAR
 
 SEED = 20261112
 STANDS = ("ODG-1", "ODG-2", "ODG-3")

@@ -5,8 +5,8 @@ from math import pi
 from estimator.results import ARCSEC
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.demo.blocks import sensors_of
-from service.records import Tolerances, UnitType
-from service.units import STANDARD_GRAVITY
+from service.measures import STANDARD_GRAVITY
+from service.records.unit import Tolerances, UnitType
 
 SENSORS = 6
 TYPE_NAME = {ACCELEROMETER: "RA-6", GYROSCOPE: "RG-6"}

@@ -1,1 +1,1 @@
-"""What the service does, one step a file; each reads as the list of its steps."""
+"""What changes the store, one verb a file; each reads as the list of its steps."""

@@ -3,10 +3,12 @@
 from datetime import datetime
 from typing import Any
 
-from estimator.diagnosis.model import can_be_modelled
+from estimator.diagnosis.explanation.accepted import can_be_modelled
 from estimator.errors import Problem
 from service.errors import RefusedError
-from service.records import ModelRevision, NewModel, Scope, StoredDiagnosis, StoredSession
+from service.records.diagnosis import StoredDiagnosis
+from service.records.model import ModelRevision, NewModel, Scope
+from service.records.session import StoredSession
 from service.storage import Storage
 
 EVIDENCE = ("p_value", "strength", "amplitude", "sigma", "units", "nonlinear", "alternatives", "sentence")

@@ -3,7 +3,7 @@
 from datetime import datetime
 
 from service.errors import ConflictError
-from service.flag_records import Note
+from service.records.event import Note
 from service.storage import Storage
 
 

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import datetime
-from importlib.metadata import version
 from threading import Lock
 from typing import Any
 
@@ -17,13 +16,16 @@ from estimator.diagnosis import diagnose as find_causes
 from estimator.errors import SessionError
 from estimator.session import CALIBRATIONS, CalibrationSession
 from service.errors import NotFoundError
-from service.flows.diagnosis_in_words import NOT_APPLICABLE, document_of, inapplicable, state_of, summary_of
 from service.flows.flagging.diagnosis import flag_diagnosis
-from service.flows.judge import judge
 from service.ingest import read_upload
-from service.records import DiagnosisState, StoredDiagnosis, StoredSession, Verdict
+from service.judging.judge import judge
+from service.records.decision import Verdict
+from service.records.diagnosis import DiagnosisState, StoredDiagnosis
+from service.records.session import StoredSession
+from service.settings import VERSION
 from service.storage import Files, Storage
 from service.storage.store import Store
+from service.words.diagnosis import NOT_APPLICABLE, document_of, inapplicable, state_of, summary_of
 
 MOST_EARLIER = 10
 """Earlier sessions of the unit that a diagnosis looks at."""
@@ -31,7 +33,6 @@ QUICK_BYTES, QUICK_EARLIER_BYTES = 40_000, 400_000
 """Files up to this size are diagnosed within the request that brought them: some tenths of a second."""
 BREAKDOWNS = (SessionError, ArithmeticError, ValueError, LookupError, AssertionError)
 """What a session that the numerics cannot digest ends in; it is stored as such and harms nothing else."""
-VERSION = version("imu-health")
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from datetime import datetime
 
 from service.errors import ConflictError
-from service.flag_records import Flag, FlagState, NoticeKind
+from service.records.flag import Flag, FlagState, NoticeKind
 from service.storage import Storage
 
 DONE = {FlagState.ACKNOWLEDGED: NoticeKind.ACKNOWLEDGED, FlagState.RESOLVED: NoticeKind.RESOLVED}

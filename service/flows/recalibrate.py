@@ -8,13 +8,15 @@ from estimator.errors import SessionError
 from estimator.results import Calibration
 from estimator.session import IN_SERVICE, RATE_TABLE, ROTATION_ALIGNMENT, CalibrationSession, comparable
 from service.flows.flagging.verdict import flag_verdict
-from service.flows.in_service import Compared, compared, judge_recording, reference_in_force
-from service.flows.judge import judge
-from service.flows.model_in_force import calibrated, model_of
-from service.flows.outlook import refresh_outlook
-from service.flows.parameter_values import parameter_values
+from service.flows.refresh_outlook import refresh_outlook
 from service.ingest import read_upload
-from service.records import Judged, Model, StoredSession
+from service.judging.in_service import Compared, compared, judge_recording, reference_in_force
+from service.judging.judge import judge
+from service.judging.model_in_force import calibrated, model_of
+from service.judging.parameter_values import parameter_values
+from service.records.decision import Judged
+from service.records.model import Model
+from service.records.session import StoredSession
 from service.storage import Storage
 from service.storage.store import Store
 

@@ -4,10 +4,9 @@ from datetime import datetime
 
 from estimator.errors import Problem
 from service.errors import RefusedError
-from service.flag_records import NewService
-from service.flows.outlook import refresh_outlook
-from service.flows.storable import CLOCK_LEEWAY
-from service.records import Service
+from service.flows.refresh_outlook import refresh_outlook
+from service.ingest.storable import CLOCK_LEEWAY
+from service.records.event import NewService, Service
 from service.storage import Storage
 from service.storage.store import Store
 

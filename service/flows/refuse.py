@@ -5,7 +5,7 @@ from datetime import datetime
 
 from estimator.errors import Problem
 from service.errors import RefusedError
-from service.flows.storable import plain_filename
+from service.ingest.storable import plain_filename
 from service.storage import Storage
 from service.storage.files import content_hash
 

@@ -3,7 +3,7 @@
 from datetime import datetime
 
 from service.errors import NotFoundError
-from service.records import UnitSummary
+from service.records.unit import UnitSummary
 from service.storage import Storage
 
 

@@ -2,7 +2,7 @@
 
 from datetime import datetime
 
-from service.records import StoredSession
+from service.records.session import StoredSession
 from service.storage import Storage
 
 

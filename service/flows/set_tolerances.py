@@ -3,8 +3,8 @@
 from dataclasses import asdict
 from datetime import datetime
 
-from service.flows.outlook import refresh_outlook
-from service.records import Tolerances, UnitType
+from service.flows.refresh_outlook import refresh_outlook
+from service.records.unit import Tolerances, UnitType
 from service.storage import Storage
 
 

@@ -6,7 +6,7 @@ import httpx
 
 from estimator.errors import Problem
 from service.errors import RefusedError
-from service.flag_records import Webhook
+from service.records.webhook import Webhook
 from service.storage import Storage
 
 SCHEMES = ("http", "https")

@@ -3,8 +3,8 @@
 from datetime import datetime
 
 from service.errors import ConflictError
-from service.flows.model_in_force import in_force
-from service.records import ModelRevision
+from service.judging.model_in_force import in_force
+from service.records.model import ModelRevision
 from service.storage import Storage
 
 

@@ -6,14 +6,16 @@ from typing import Any
 
 from service.charts import ChartSet
 from service.charts.diagnosis import MOST_PANELS, Sides, diagnosis_charts
-from service.flows.diagnosis_in_words import listed
-from service.flows.finding_in_words import FindingView, cause_on, chance, finding_view, in_words
-from service.flows.model_in_force import in_force
+from service.judging.model_in_force import in_force
+from service.measures import number
 from service.pages.gain import GainView, gain_view
 from service.pages.limits import LimitsView, limits_view
 from service.pages.residual_table import ResidualTable, residual_table
-from service.records import DiagnosisReport, DiagnosisState, ModelRevision, Scope, StoredSession
-from service.units import number
+from service.records.diagnosis import DiagnosisReport, DiagnosisState
+from service.records.model import ModelRevision, Scope
+from service.records.session import StoredSession
+from service.words.diagnosis import listed
+from service.words.finding import FindingView, cause_on, chance, finding_view, in_words
 
 PENDING = "Still being found out"
 HEADLINES = {

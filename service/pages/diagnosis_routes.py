@@ -9,13 +9,13 @@ from fastapi.responses import HTMLResponse, RedirectResponse
 from service.dependencies import DiagnoserOf, Now, Reading, SettingsOf, StorageOf
 from service.flows.accept_model import accept_model
 from service.flows.diagnose import diagnose
-from service.flows.diagnosis_report import diagnosis_report
 from service.flows.recalibrate import recalibrate
 from service.flows.withdraw_model import withdraw_model
 from service.pages.diagnosis import diagnosis_page
 from service.pages.forms import NO_NUL, OWN_FORM, SEE_OTHER, Key
 from service.pages.render import render
-from service.records import NewModel, Scope
+from service.records.model import NewModel, Scope
+from service.views.diagnosis_report import diagnosis_report
 
 router = APIRouter(include_in_schema=False)
 

@@ -8,11 +8,11 @@ from fastapi import APIRouter, Form
 from fastapi.responses import RedirectResponse
 
 from service.dependencies import Now, StorageOf
-from service.flag_records import NewService
 from service.flows.annotate import add_note, withdraw_note
 from service.flows.record_service import record_service
 from service.flows.set_stage import set_stage
 from service.pages.forms import NO_NUL, OWN_FORM, SEE_OTHER, By, Key, Number, Why
+from service.records.event import NewService
 
 router = APIRouter(include_in_schema=False, dependencies=OWN_FORM)
 

@@ -4,11 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
-from service.flag_records import Note
-from service.flows.found_and_left import FoundAndLeft
-from service.records import Decision, Service, StoredSession
-from service.units import deviation_unit, limit, measured, signed
-from service.verdicts import NOT_JUDGED, Condition, condition_of
+from service.measures import deviation_unit, limit, measured, signed
+from service.records.decision import Decision
+from service.records.event import Note, Service
+from service.records.session import StoredSession
+from service.views.found_and_left import FoundAndLeft
+from service.words.conditions import NOT_JUDGED, Condition, condition_of
 
 KINDS = {
     "adjustment": "Adjustment",

@@ -6,12 +6,12 @@ from fastapi import APIRouter, Request
 from fastapi.responses import HTMLResponse, RedirectResponse
 
 from service.dependencies import Now, Reading, StorageOf
-from service.flag_records import Flag
-from service.flows.flag_list import open_flags
 from service.flows.handle_flag import acknowledge_flag, resolve_flag
 from service.pages.flags import flags_page
 from service.pages.forms import OWN_FORM, SEE_OTHER, By, Number, Why
 from service.pages.render import render
+from service.records.flag import Flag
+from service.views.flag_list import open_flags
 
 router = APIRouter(prefix="/flags", include_in_schema=False)
 MOST = 200

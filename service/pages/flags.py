@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from service.flag_records import Flag, FlagState, Matter, Notice, NoticeKind
-from service.verdicts import FIT, NOT_JUDGED, UNDECIDED, UNFIT, Condition
+from service.records.flag import Flag, FlagState, Matter, Notice, NoticeKind
+from service.words.conditions import FIT, NOT_JUDGED, UNDECIDED, UNFIT, Condition
 
 MATTERS = {
     Matter.TOLERANCE: "Out of tolerance",

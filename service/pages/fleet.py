@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from datetime import datetime
 from urllib.parse import urlencode
 
-from service.flows.standouts import Standout
-from service.records import FleetCondition, UnitSummary
-from service.stand_records import StandCondition
-from service.verdicts import REFERENCE, UNDECIDED, Condition, condition_of
+from service.records.stand import StandCondition
+from service.records.unit import FleetCondition, UnitSummary
+from service.views.standouts import Standout
+from service.words.conditions import REFERENCE, UNDECIDED, Condition, condition_of
 
 PAGE_SIZE = 50
 MOST_STANDOUTS = 6

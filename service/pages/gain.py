@@ -10,9 +10,10 @@ import numpy as np
 
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import ACCELEROMETER, GYROSCOPE
-from service.records import StoredDiagnosis, StoredSession
-from service.units import deviation_unit, measured, number
-from service.verdicts import Condition, condition_of
+from service.measures import deviation_unit, measured, number
+from service.records.diagnosis import StoredDiagnosis
+from service.records.session import StoredSession
+from service.words.conditions import Condition, condition_of
 
 WORTH_A_LINE = 0.02
 

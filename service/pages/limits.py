@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from service.flows.finding_in_words import in_words
-from service.units import THIN, amplitude_unit, number
+from service.measures import THIN, amplitude_unit, number
+from service.words.finding import in_words
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from math import floor, log10
 
-from service.outlook import ParameterTrend, UnitOutlook
-from service.units import HARD, THIN, DeviationUnit, deviation_unit, in_words, signed
-from service.words import PARAMETER_NAMES, day_of
+from service.measures import HARD, THIN, DeviationUnit, deviation_unit, in_words, signed
+from service.records.outlook import ParameterTrend, UnitOutlook
+from service.words.names import PARAMETER_NAMES, day_of
 
 LEVEL = 0.01
 """Chance that any drift is claimed for a unit that has none."""

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Any
 
-from service.flows.fit_in_words import FitWords
-from service.units import in_words, number
+from service.measures import in_words, number
+from service.words.fit import FitWords
 
 COMMON = (
     "a bias common to all that some acceleration explains, all axes turned together, all scales by one factor, "

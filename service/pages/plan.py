@@ -12,8 +12,10 @@ from estimator.planning.results import PARAMETERS
 from estimator.session import ACCELEROMETER
 from service.charts import ChartSet
 from service.charts.plan import NAMES, plan_charts
+from service.measures import DEVIATION_UNITS, number
 from service.planning.question import NOISE, VARIATION, PlanQuestion
-from service.planning.words import (
+from service.words.conditions import Condition
+from service.words.plan import (
     UNSEEN,
     VERDICTS,
     blind,
@@ -25,8 +27,6 @@ from service.planning.words import (
     tolerance_in_words,
     unobserved,
 )
-from service.units import DEVIATION_UNITS, number
-from service.verdicts import Condition
 
 CONDITIONS = {
     "enough": Condition("pass", "Enough", "enough", "circle", VERDICTS["enough"]),

@@ -6,10 +6,10 @@ from fastapi import APIRouter, Query, Request
 from fastapi.responses import HTMLResponse
 
 from service.dependencies import StorageOf
-from service.flows.plan import plan, plannable_types
 from service.pages.plan import plan_page
 from service.pages.render import render
 from service.planning.question import PlanQuestion
+from service.views.plan import plan, plannable_types
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 

@@ -10,8 +10,8 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from service.pages.assets import asset_url
-from service.verdicts import CONDITIONS, REFERENCE
-from service.words import day_of
+from service.words.conditions import CONDITIONS, REFERENCE
+from service.words.names import day_of
 
 TEMPLATES = Path(__file__).parent / "templates"
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.results import Calibration
-from service.units import deviation_unit, number
+from service.measures import deviation_unit, number
 
 RUNS = ("direct", "flipped")
 

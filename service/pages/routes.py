@@ -8,17 +8,7 @@ from fastapi.responses import HTMLResponse
 
 from service.dependencies import DiagnoserOf, MetricsOf, Now, Reading, SettingsOf, StorageOf
 from service.errors import RefusedError
-from service.flows.flag_list import flag_list
-from service.flows.fleet import fleet_overview
-from service.flows.fleet_condition import fleet_condition
-from service.flows.found_and_left import found_and_left
-from service.flows.history import recent_history
-from service.flows.outlook import own_outlook
-from service.flows.session_report import session_report
-from service.flows.standouts import fleet_standouts
-from service.flows.stands import stand_conditions
-from service.flows.unit_report import unit_report
-from service.flows.upload import upload
+from service.flows.receive import upload
 from service.pages.fleet import PAGE_SIZE, FleetView, fleet_page
 from service.pages.forms import Key
 from service.pages.received import FormFile, FormFiles
@@ -26,8 +16,18 @@ from service.pages.render import render
 from service.pages.session import session_page
 from service.pages.unit import unit_page
 from service.pages.upload import Outcome, upload_page
-from service.records import Verdict
+from service.records.decision import Verdict
 from service.settings import Settings
+from service.views.flag_list import flag_list
+from service.views.fleet import fleet_overview
+from service.views.fleet_condition import fleet_condition
+from service.views.found_and_left import found_and_left
+from service.views.history import recent_history
+from service.views.outlook import own_outlook
+from service.views.session_report import session_report
+from service.views.standouts import fleet_standouts
+from service.views.stands import stand_conditions
+from service.views.unit_report import unit_report
 
 HISTORY_LIMIT = 10_000
 """Points of one unit's history that a page draws, of its newest sessions: 400 of six sensors, 50 of 48."""

@@ -7,14 +7,7 @@ from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import CALIBRATIONS
 from service.charts import ChartSet
 from service.charts.residuals import residual_charts
-from service.flows.fit_in_words import FitWords, fit_in_words
-from service.flows.known_in_words import combination_in_words
-from service.flows.motion_in_words import MotionLine, motions_in_words
-from service.pages.diagnosis import PENDING, TONES
-from service.pages.parity import ParityView, parity_in_words, parity_view
-from service.pages.residual_table import ResidualTable, residual_table
-from service.records import ALL_PARAMETERS, Decision, DiagnosisSummary, SessionReport, StoredSession, Verdict
-from service.units import (
+from service.measures import (
     COVERAGE,
     HARD,
     THIN,
@@ -29,7 +22,16 @@ from service.units import (
     size_in_words,
     value_unit,
 )
-from service.verdicts import Condition, condition_of
+from service.pages.diagnosis import PENDING, TONES
+from service.pages.parity import ParityView, parity_in_words, parity_view
+from service.pages.residual_table import ResidualTable, residual_table
+from service.records.decision import Decision, Verdict
+from service.records.diagnosis import DiagnosisSummary
+from service.records.session import ALL_PARAMETERS, SessionReport, StoredSession
+from service.words.conditions import Condition, condition_of
+from service.words.fit import FitWords, fit_in_words
+from service.words.known import combination_in_words
+from service.words.motion import MotionLine, motions_in_words
 
 
 @dataclass(frozen=True)

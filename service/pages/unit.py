@@ -6,15 +6,18 @@ from dataclasses import dataclass
 from service.charts import ChartSet
 from service.charts.history import history_charts
 from service.charts.tracks import Track, TrackPoint, tolerance_text, tracks_of
-from service.flag_records import Flag, Note
-from service.flows.found_and_left import FoundAndLeft
-from service.outlook import ParameterTrend, UnitOutlook
 from service.pages.events import KINDS, Event, StageTable, events_of, stage_table
 from service.pages.flags import FlagCard, flag_cards
 from service.pages.outlook import NextCalibration, next_calibration
-from service.records import HistoryPoint, Service, StoredSession, UnitReport
-from service.verdicts import NOT_JUDGED, Condition, condition_of
-from service.words import day_of
+from service.records.event import Note, Service
+from service.records.flag import Flag
+from service.records.history import HistoryPoint
+from service.records.outlook import ParameterTrend, UnitOutlook
+from service.records.session import StoredSession
+from service.records.unit import UnitReport
+from service.views.found_and_left import FoundAndLeft
+from service.words.conditions import NOT_JUDGED, Condition, condition_of
+from service.words.names import day_of
 
 HEADINGS = {
     "scale": "Scale factor",

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from estimator.errors import Problem
-from service.records import Receipt
-from service.verdicts import Condition, condition_of
+from service.records.session import Receipt
+from service.words.conditions import Condition, condition_of
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from estimator.session import (
     StandErrors,
 )
 from estimator.simulate import cone, stand_schedule
-from service.units import DEVIATION_UNITS
+from service.measures import DEVIATION_UNITS
 
 HALF_ANGLE = float(np.arccos(1 / np.sqrt(3)))
 """54.7°: three of the axes are orthogonal."""

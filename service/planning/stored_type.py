@@ -5,9 +5,10 @@ import numpy as np
 from estimator.arrays import unit
 from estimator.errors import Problem
 from estimator.session import Sensor
+from service.measures import DEVIATION_UNITS
 from service.planning.question import PlanQuestion
-from service.records import PARAMETERS, UnitType
-from service.units import DEVIATION_UNITS
+from service.records.session import PARAMETERS
+from service.records.unit import UnitType
 
 MOST_SENSORS = 48
 

@@ -3,28 +3,30 @@
 from dataclasses import dataclass, replace
 from math import degrees
 
+from estimator.applied_vector import gravity
 from estimator.health.rule import RULE
-from estimator.reference import gravity
 from estimator.session import ACCELEROMETER, IN_SERVICE, CalibrationSession
 from service.charts import ChartSet
 from service.charts.history import history_charts
 from service.charts.residuals import residual_charts
 from service.charts.tracks import tracks_of
-from service.flows.certificate import CertifiedSession
-from service.flows.finding_in_words import FindingView, cause_on, finding_view, in_words
-from service.flows.fit_in_words import FitWords, fit_in_words
-from service.flows.found_and_left import FoundAndLeft
-from service.flows.known_in_words import combination_in_words
-from service.flows.motion_in_words import motions_in_words
-from service.flows.reason import margin_of
-from service.records import Decision, StoredDiagnosis, StoredSession
+from service.measures import COVERAGE, THIN, number, size_in_words
+from service.records.decision import Decision
+from service.records.diagnosis import StoredDiagnosis
+from service.records.session import StoredSession
 from service.reports.moved import Moved, moved
 from service.reports.pictures import picture
 from service.reports.results import ResultTable, result_tables
 from service.reports.typeset import typeset
-from service.units import COVERAGE, THIN, number, size_in_words
-from service.verdicts import CONDITIONS, Condition, condition_of
-from service.words import day_of
+from service.views.certificate import CertifiedSession
+from service.views.found_and_left import FoundAndLeft
+from service.words.conditions import CONDITIONS, Condition, condition_of
+from service.words.finding import FindingView, cause_on, finding_view, in_words
+from service.words.fit import FitWords, fit_in_words
+from service.words.known import combination_in_words
+from service.words.motion import motions_in_words
+from service.words.names import day_of
+from service.words.verdict import margin_of
 
 MOST_HISTORIES = 6
 """Histories that are drawn, of the parameters closest to their tolerance."""

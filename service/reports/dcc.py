@@ -5,13 +5,13 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from estimator.results import SensorCalibration
-from service.flows.certificate import CertifiedSession
-from service.flows.finding_in_words import in_words
-from service.records import Decision, Verdict
+from service.measures import COVERAGE
+from service.records.decision import Decision, Verdict
 from service.reports.certificate import title_of
 from service.reports.elements import DCC, NOT_STATED, SI, XSI, content, dcc, document
 from service.reports.quantities import ONE, deviation_unit, quantity, value_unit
-from service.units import COVERAGE
+from service.views.certificate import CertifiedSession
+from service.words.finding import in_words
 
 SCHEMA = "3.2.0"
 UNKNOWN_COUNTRY = "ZZ"

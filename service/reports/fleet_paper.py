@@ -7,17 +7,20 @@ from typing import TypeVar
 from service.charts.fleet import fleet_chart
 from service.charts.history import history_charts
 from service.charts.tracks import tracks_of
-from service.flows.fleet_report import FleetReport
-from service.flows.reason import margin_of
-from service.outlook import ParameterTrend, UnitOutlook
-from service.records import Decision, HistoryPoint, Service, UnitSummary, Verdict
+from service.measures import COVERAGE, deviation_unit, measured, number, signed
+from service.records.decision import Decision, Verdict
+from service.records.event import Service
+from service.records.history import HistoryPoint
+from service.records.outlook import ParameterTrend, UnitOutlook
+from service.records.unit import UnitSummary
 from service.reports.moved import Moved, moved
 from service.reports.pictures import picture
 from service.reports.typeset import typeset
 from service.storage.store import Store
-from service.units import COVERAGE, deviation_unit, measured, number, signed
-from service.verdicts import REFERENCE, Condition, condition_of
-from service.words import day_of
+from service.views.fleet_report import FleetReport
+from service.words.conditions import REFERENCE, Condition, condition_of
+from service.words.names import day_of
+from service.words.verdict import margin_of
 
 MOST_RANKED = 100
 MOST_SECTIONS = 40

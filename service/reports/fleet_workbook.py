@@ -3,14 +3,16 @@
 import io
 from collections.abc import Iterator
 
-from service.flows.fleet_report import FleetReport
-from service.flows.reason import margin_of
-from service.outlook import UnitOutlook
-from service.records import Decision, HistoryPoint, UnitSummary
+from service.measures import DEVIATION_UNITS, DeviationUnit, in_unit, value_unit
+from service.records.decision import Decision
+from service.records.history import HistoryPoint
+from service.records.outlook import UnitOutlook
+from service.records.unit import UnitSummary
 from service.reports.sheets import Cell, Column, Kind, Workbook
 from service.storage.store import Store
-from service.units import DEVIATION_UNITS, DeviationUnit, in_unit, value_unit
-from service.verdicts import condition_of
+from service.views.fleet_report import FleetReport
+from service.words.conditions import condition_of
+from service.words.verdict import margin_of
 
 MOST_HISTORY_ROWS = 30_000
 """Rows of the sheet of histories; the newest sessions of every unit share them alike."""

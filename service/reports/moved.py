@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from service.records import Decision
-from service.units import deviation_unit, limit, measured, signed
-from service.verdicts import Condition, condition_of
+from service.measures import deviation_unit, limit, measured, signed
+from service.records.decision import Decision
+from service.words.conditions import Condition, condition_of
 
 
 @dataclass(frozen=True)

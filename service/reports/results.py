@@ -4,8 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from estimator.results import Calibration, Estimate, SensorCalibration
-from service.records import ALL_PARAMETERS, Decision
-from service.units import (
+from service.measures import (
     MINUS,
     THIN,
     UNKNOWN,
@@ -17,7 +16,9 @@ from service.units import (
     number,
     value_unit,
 )
-from service.verdicts import condition_of
+from service.records.decision import Decision
+from service.records.session import ALL_PARAMETERS
+from service.words.conditions import condition_of
 
 HEADINGS = {
     "scale": "Scale factor",

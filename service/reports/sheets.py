@@ -12,7 +12,7 @@ from xlsxwriter.format import Format
 from xlsxwriter.worksheet import Worksheet
 
 from service.reports.pictures import PALETTE
-from service.verdicts import CONDITIONS, REFERENCE
+from service.words.conditions import CONDITIONS, REFERENCE
 
 FORMULA = re.compile(r"^[=+\-@\t\r]")
 """How a text begins that a spreadsheet would work out once it is edited."""

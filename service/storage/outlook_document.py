@@ -4,7 +4,7 @@ from dataclasses import is_dataclass
 from datetime import datetime
 from typing import Any
 
-from service.outlook import FanPoint, ParameterTrend, RiskPoint, UnitOutlook
+from service.records.outlook import FanPoint, ParameterTrend, RiskPoint, UnitOutlook
 
 TIMES = ("due", "reach_50", "reach_90")
 

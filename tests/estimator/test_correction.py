@@ -7,10 +7,10 @@ import pytest
 from scipy import stats
 
 from estimator import calibrate, read_session
+from estimator.applied_vector import stand_geometry
 from estimator.correction import Correction, correction_of
 from estimator.forward import response
 from estimator.parameters import SensorParameters
-from estimator.reference import stand_geometry
 from estimator.session import CalibrationSession
 from estimator.simulate import draw_stand, scattered, simulate
 from tests.builders import (

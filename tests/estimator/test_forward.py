@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from estimator import Site, StandErrors
+from estimator.applied_vector import EARTH_RATE, stand_geometry
 from estimator.arrays import tangents
 from estimator.forward import jacobian, measured, response, slope
 from estimator.parameters import SensorParameters
-from estimator.reference import EARTH_RATE, stand_geometry
 from estimator.simulate import StandDraw, orientation_schedule, simulate
 from tests.builders import GRAVITY
 from tests.estimator.calibration.bound import Happened, readings

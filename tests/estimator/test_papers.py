@@ -15,7 +15,7 @@ from benchmarks.papers.published import ACCELEROMETERS, AXES, GYROS, Published
 from benchmarks.papers.schematics import stand
 from benchmarks.papers.tables import by_half_sums, fitted_noise, sessions, two_sigma
 from estimator.planning import optimal_elevation
-from estimator.printed import checked
+from estimator.published.printed import checked
 
 FOLDER = Path(__file__).parents[2] / "docs"
 PAGE = (FOLDER / "papers.md").read_text(encoding="utf-8")

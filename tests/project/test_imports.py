@@ -8,11 +8,12 @@ import pytest
 from tests.project.source import PACKAGES, Module, modules
 
 SERVICE_LAYERS = (
-    {"settings", "records", "flag_records", "units", "errors"},
-    {"advice", "metrics", "outlook", "planning", "stand_records", "verdicts", "words"},
-    {"ingest", "storage"},
-    {"flows", "charts"},
-    {"reports"},
+    {"settings", "errors", "records", "measures"},
+    {"metrics", "words"},
+    {"ingest", "storage", "planning"},
+    {"judging"},
+    {"flows", "views", "charts"},
+    {"background", "reports"},
     {"dependencies"},
     {"api", "pages"},
     {"app", "demo"},
@@ -24,12 +25,12 @@ ESTIMATOR_LAYERS = (
     {"errors"},
     {"session"},
     {"arrays"},
-    {"reference", "parameters", "reading", "static", "printed"},
+    {"applied_vector", "parameters", "reading", "static"},
     {"results"},
     {"forward", "writing"},
     {"causes"},
     {"simulate", "calibration", "alignment", "parity"},
-    {"correction", "diagnosis", "health", "programmes"},
+    {"correction", "diagnosis", "health", "programmes", "published"},
     {"planning"},
 )
 HOMES = {

@@ -15,6 +15,7 @@ Source: multi-parameter optimisation paper, functional (5), in its maximum-likel
 import numpy as np
 from scipy.stats import chi2
 
+from estimator.applied_vector import gravity
 from estimator.calibration.free.excess import explained
 from estimator.calibration.free.gyros import GyroBiases, rest_biases
 from estimator.calibration.free.information import information
@@ -26,7 +27,6 @@ from estimator.calibration.free.solve import Solution, search, search_with_noise
 from estimator.calibration.free.start import start
 from estimator.forward import measured
 from estimator.parameters import names
-from estimator.reference import gravity
 from estimator.results import NOMINAL_AXES, Calibration
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2 as chi_squared
 
+from estimator.applied_vector import EARTH_RATE
 from estimator.calibration.free.excess import UNLIKELY
-from estimator.reference import EARTH_RATE
 from estimator.session import Array
 
 

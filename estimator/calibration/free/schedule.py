@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from estimator.applied_vector import gravity
 from estimator.errors import Problem, ScheduleError
 from estimator.forward import measured
-from estimator.reference import gravity
 from estimator.session import ACCELEROMETER, CalibrationSession
 
 Mask = NDArray[np.bool_]

@@ -5,7 +5,7 @@ from typing import Any
 
 from pydantic import BaseModel, Field
 
-from service.records import Verdict
+from service.records.decision import Verdict
 
 
 class BlockCorrectionSchema(BaseModel):

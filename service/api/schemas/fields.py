@@ -7,7 +7,7 @@ from typing import Annotated
 from fastapi import Path, Query
 from pydantic import AfterValidator, BeforeValidator, StringConstraints
 
-from service.records import Verdict
+from service.records.decision import Verdict
 
 TEXT = r"^[^\x00]*$"
 """PostgreSQL keeps any character but NUL."""

@@ -5,7 +5,7 @@ from datetime import datetime
 from pydantic import BaseModel, ConfigDict, Field
 
 from service.api.schemas.fields import Name, Reason
-from service.flag_records import FlagState, Matter, NoticeKind
+from service.records.flag import FlagState, Matter, NoticeKind
 
 
 class NoticeSchema(BaseModel):

@@ -6,7 +6,9 @@ from typing import Annotated, Any
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 from service.api.schemas.fields import LongText, Name
-from service.records import DiagnosisState, Scope, Verdict
+from service.records.decision import Verdict
+from service.records.diagnosis import DiagnosisState
+from service.records.model import Scope
 
 
 def _with_a_space(scope: Any) -> Any:

@@ -6,7 +6,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic.config import JsonDict
 
-from service.records import Verdict
+from service.records.decision import Verdict
 
 RECEIPT_EXAMPLE: JsonDict = {
     "id": "3f9a0c5be1d24786aa10",

@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from service.api.schemas.events import ServiceSchema
 from service.api.schemas.fields import Text
 from service.api.schemas.sessions import SessionSchema
-from service.records import Verdict
+from service.records.decision import Verdict
 
 Tolerance = Annotated[float, Field(ge=1e-15, le=1e6, allow_inf_nan=False)]
 

@@ -7,7 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 from service.api.schemas.fields import Name
 from service.api.schemas.flags import NoticeSchema
-from service.flag_records import DeliveryState
+from service.records.webhook import DeliveryState
 
 Url = Annotated[str, StringConstraints(pattern=r"^[!-~]+$", max_length=2000)]
 Secret = Annotated[str, StringConstraints(pattern=r"^[ -~]+$", min_length=16, max_length=200)]

@@ -5,13 +5,15 @@ from datetime import datetime
 from typing import Any
 
 from estimator.causes.catalogue import cause
-from service.flag_records import Concern, Flag, Matter
-from service.flows.diagnosis_in_words import UNEXPLAINED, in_words, listed
 from service.flows.flagging.settle import Found, settle
-from service.flows.model_in_force import in_force
-from service.records import ModelRevision, StoredDiagnosis, StoredSession
+from service.judging.model_in_force import in_force
+from service.records.diagnosis import StoredDiagnosis
+from service.records.flag import Concern, Flag, Matter
+from service.records.model import ModelRevision
+from service.records.session import StoredSession
 from service.storage.store import Store
-from service.words import day_of
+from service.words.diagnosis import UNEXPLAINED, in_words, listed
+from service.words.names import day_of
 
 ABOUT_SENSORS = ("sensor", "environment", "gyro")
 """Scopes of causes that act on a sensor; a slip in the record or the fixture's turn is no matter of the unit."""

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 
-from service.flag_records import Concern, Flag, FlagState, NoticeKind
+from service.records.flag import Concern, Flag, FlagState, NoticeKind
 from service.storage.store import Store
 
 SERVICE = "imu-health"

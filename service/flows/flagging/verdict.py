@@ -3,14 +3,15 @@
 from datetime import datetime
 
 from estimator.session import CALIBRATIONS
-from service.flag_records import Concern, Flag, FlagState, Matter, NoticeKind
 from service.flows.flagging.settle import SERVICE, Found, settle
-from service.flows.reason import reason, worst_of
-from service.records import Decision, StoredSession, Verdict
+from service.records.decision import Decision, Verdict
+from service.records.flag import Concern, Flag, FlagState, Matter, NoticeKind
+from service.records.session import StoredSession
 from service.storage.queries.fleet import Refreshed
 from service.storage.store import Store
-from service.verdicts import condition_of
-from service.words import day_of
+from service.words.conditions import condition_of
+from service.words.names import day_of
+from service.words.verdict import reason, worst_of
 
 FAILS = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
 PASSES = (Verdict.PASS, Verdict.CONDITIONAL_PASS)

@@ -9,7 +9,7 @@ from sqlalchemy import select
 
 from estimator.results import Calibration
 from service.errors import NotFoundError
-from service.records import Judged
+from service.records.decision import Judged
 from service.storage.calibration_document import calibration_from_dict
 from service.storage.queries.base import Queries
 from service.storage.tables import CalibrationRow, SessionRow

@@ -6,7 +6,8 @@ from typing import Any
 
 from sqlalchemy import delete, select
 
-from service.records import DiagnosisState, DiagnosisSummary, StoredDiagnosis, Verdict
+from service.records.decision import Verdict
+from service.records.diagnosis import DiagnosisState, DiagnosisSummary, StoredDiagnosis
 from service.storage.queries.base import Queries
 from service.storage.tables import DiagnosisRow
 

@@ -8,7 +8,7 @@ from itertools import groupby
 from sqlalchemy import Row, select, update
 
 from service.errors import NotFoundError
-from service.flag_records import Concern, Flag, FlagState, Matter, Notice
+from service.records.flag import Concern, Flag, FlagState, Matter, Notice
 from service.storage.queries.base import Queries
 from service.storage.queries.notices import notice_of
 from service.storage.tables import FlagRow, NoticeRow, UnitRow

@@ -8,8 +8,10 @@ from typing import Any
 from sqlalchemy import Select, func, select, update
 from sqlalchemy.orm import defer
 
-from service.flag_records import FlagState
-from service.records import DiagnosisState, FleetCondition, UnitSummary, UnitType, Verdict
+from service.records.decision import Verdict
+from service.records.diagnosis import DiagnosisState
+from service.records.flag import FlagState
+from service.records.unit import FleetCondition, UnitSummary, UnitType
 from service.storage.queries.base import Queries
 from service.storage.queries.unit_types import unit_type_of
 from service.storage.tables import (

@@ -5,7 +5,9 @@ from collections.abc import Iterable, Iterator
 from sqlalchemy import Row, Select, func, select
 from sqlalchemy.orm import aliased
 
-from service.records import Decision, HistoryPoint, Service
+from service.records.decision import Decision
+from service.records.event import Service
+from service.records.history import HistoryPoint
 from service.storage.queries.base import Queries
 from service.storage.queries.history import DECIDED, point_record
 from service.storage.queries.services import service_record

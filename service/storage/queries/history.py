@@ -6,7 +6,9 @@ from datetime import datetime
 
 from sqlalchemy import ColumnElement, func, select
 
-from service.records import HistoryPoint, ParameterValue, StoredSession, Verdict
+from service.records.decision import Verdict
+from service.records.history import HistoryPoint
+from service.records.session import ParameterValue, StoredSession
 from service.storage.queries.base import Queries
 from service.storage.tables import CalibrationRow, DecisionRow, ParameterRow, SessionRow
 

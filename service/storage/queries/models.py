@@ -7,7 +7,7 @@ from typing import Any
 from sqlalchemy import and_, func, or_, select
 
 from service.errors import NotFoundError
-from service.records import ModelRevision, NewModel, Scope
+from service.records.model import ModelRevision, NewModel, Scope
 from service.storage.queries.base import Queries
 from service.storage.tables import ModelRow, SessionRow, StandRow, UnitRow, UnitTypeRow
 

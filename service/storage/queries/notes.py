@@ -5,7 +5,7 @@ from datetime import datetime
 from sqlalchemy import Select, select
 
 from service.errors import NotFoundError
-from service.flag_records import Note, Withdrawal
+from service.records.event import Note, Withdrawal
 from service.storage.queries.base import Queries
 from service.storage.tables import NoteRow, UnitRow, WithdrawalRow
 

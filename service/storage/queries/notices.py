@@ -4,7 +4,7 @@ from datetime import datetime
 
 from sqlalchemy import insert, literal, select
 
-from service.flag_records import Notice, NoticeKind
+from service.records.flag import Notice, NoticeKind
 from service.storage.queries.base import Queries
 from service.storage.tables import DeliveryRow, NoticeRow, UnitRow, WebhookRow
 

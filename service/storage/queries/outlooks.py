@@ -9,7 +9,7 @@ from sqlalchemy import ColumnElement, Row, Select, func, select
 from sqlalchemy.orm import defer
 
 from estimator.session import IN_SERVICE
-from service.outlook import Rate, UnitOutlook
+from service.records.outlook import Rate, UnitOutlook
 from service.storage.outlook_document import outlook_from_dicts, outlook_to_dicts
 from service.storage.queries.base import Queries
 from service.storage.tables import DecisionRow, OutlookRow, SessionRow, UnitRow, UnitTypeRow

@@ -5,8 +5,7 @@ from datetime import datetime
 
 from sqlalchemy import Select, select
 
-from service.flag_records import NewService
-from service.records import Service
+from service.records.event import NewService, Service
 from service.storage.queries.base import Queries
 from service.storage.tables import ServiceRow, UnitRow
 

@@ -9,7 +9,9 @@ from sqlalchemy import Select, and_, or_, select, update
 from estimator.health.common_motion import CommonMotion
 from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
-from service.records import Decision, DiagnosisState, Judged, StoredSession, Verdict, Worst
+from service.records.decision import Decision, Judged, Verdict, Worst
+from service.records.diagnosis import DiagnosisState
+from service.records.session import StoredSession
 from service.storage.queries.base import Queries
 from service.storage.tables import CommonMotionRow, DecisionRow, DiagnosisRow, SessionRow, StandRow, UnitRow
 

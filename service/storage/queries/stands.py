@@ -5,7 +5,7 @@ from datetime import datetime
 from sqlalchemy import Integer, cast, func, select
 
 from estimator.health.common_motion import AXES, SCALES, SEPARATED
-from service.stand_records import MotionOnStand
+from service.records.stand import MotionOnStand
 from service.storage.queries.base import Queries
 from service.storage.tables import CommonMotionRow, ConditionRow, SessionRow, StandRow, UnitRow
 

@@ -6,7 +6,7 @@ from datetime import datetime
 from sqlalchemy import Select, select
 
 from service.errors import NotFoundError
-from service.records import Tolerances, UnitType
+from service.records.unit import Tolerances, UnitType
 from service.storage.queries.base import Queries
 from service.storage.tables import ToleranceRow, UnitRow, UnitTypeRow
 

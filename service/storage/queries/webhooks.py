@@ -6,7 +6,8 @@ from datetime import datetime
 from sqlalchemy import select, update
 
 from service.errors import NotFoundError
-from service.flag_records import Delivery, DeliveryState, Matter, Outgoing, Webhook
+from service.records.flag import Matter
+from service.records.webhook import Delivery, DeliveryState, Outgoing, Webhook
 from service.storage.queries.base import Queries
 from service.storage.queries.notices import notice_of
 from service.storage.tables import DeliveryRow, FlagRow, NoticeRow, UnitRow, WebhookRow

@@ -12,13 +12,14 @@ import typst
 from playwright.sync_api import Browser
 
 from service.demo.fill import fill
-from service.flows.certificate import certified_session
-from service.flows.fleet import fleet_overview
+from service.flows.diagnose import diagnose
 from service.reports.certificate import certificate
 from service.reports.printable import printable_data
 from service.reports.typeset import TEMPLATES
 from service.settings import Settings
 from service.storage import Database, Files, Storage
+from service.views.certificate import certified_session
+from service.views.fleet import fleet_overview
 from tests.databases import Databases
 from tests.end_to_end.browser.conftest import opened
 from tests.serving import serving
@@ -56,7 +57,7 @@ def test_picture_of_the_first_page_of_a_certificate(filled: Settings) -> None:
     with storage.database.reading() as store:
         worst = fleet_overview(store, limit=1)[0].last_session
     assert worst is not None
-    record = printable_data(certificate(certified_session(storage, worst, NOW)))
+    record = printable_data(certificate(certified_session(storage, diagnose(storage, worst, NOW))))
     storage.database.close()
     pages = typst.compile(
         TEMPLATES / "certificate.typ",

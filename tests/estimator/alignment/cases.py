@@ -9,7 +9,7 @@ from estimator.alignment.align import align
 from estimator.alignment.results import AlignmentResult
 from estimator.alignment.simulate import Imperfections, Programme, Truth, simulate_alignment, triads
 from estimator.alignment.sins import Model
-from estimator.reference import gravity
+from estimator.applied_vector import gravity
 from estimator.results import ARCSEC
 from estimator.session import Array, CalibrationSession, Site
 

@@ -5,7 +5,7 @@ import pytest
 
 from estimator.alignment.simulate import Truth
 from estimator.alignment.sins import Model, mounting_effect
-from estimator.reference import gravity
+from estimator.applied_vector import gravity
 from estimator.results import ARCSEC
 from estimator.session import Site
 from tests.estimator.alignment.cases import QUIET, G, aligned

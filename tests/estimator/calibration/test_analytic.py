@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from estimator import StandErrors, calibrate
+from estimator.applied_vector import stand_geometry
 from estimator.calibration.analytic import closed_form, linear_start
 from estimator.forward import measured
 from estimator.parameters import SensorParameters, nominal
-from estimator.reference import stand_geometry
 from estimator.session import Array, CalibrationSession
 from estimator.simulate import simulate
 from tests.builders import GRAVITY

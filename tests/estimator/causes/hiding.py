@@ -6,10 +6,10 @@ from functools import cache
 import numpy as np
 
 from estimator import CalibrationSession, Diagnosis, diagnose
+from estimator.applied_vector import stand_geometry
 from estimator.causes import Correction, Signature, cause
-from estimator.diagnosis.evidence import Evidence
-from estimator.diagnosis.measured import stand_baseline
-from estimator.reference import stand_geometry
+from estimator.diagnosis.residuals.fitted import stand_baseline
+from estimator.diagnosis.residuals.whitened import Evidence
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array
 from estimator.simulate import orientation_schedule, simulate
 from tests.builders import GRAVITY

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from estimator.applied_vector import stand_geometry
 from estimator.causes import CATALOGUE, Cause, Correction, Setting, Shape, Signature, cause
-from estimator.diagnosis.measured import stand_baseline
-from estimator.reference import stand_geometry
+from estimator.diagnosis.residuals.fitted import stand_baseline
 from estimator.session import CalibrationSession
 from tests.estimator.calibration.cases import accelerometers, block, gyros
 from tests.estimator.causes.physics import ACTED, SENSOR, World

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from estimator import CalibrationSession
+from estimator.applied_vector import EARTH_RATE
 from estimator.parameters import SensorParameters
-from estimator.reference import EARTH_RATE
 from estimator.session import ACCELEROMETER
 from estimator.simulate import scattered
 from tests.builders import GRAVITY

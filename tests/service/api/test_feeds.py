@@ -10,7 +10,7 @@ from icalendar import Calendar
 
 from service.api.atom import atom_feed
 from service.api.calendar import DueDay, calendar
-from service.flag_records import Notice, NoticeKind
+from service.records.flag import Notice, NoticeKind
 from tests.service.sessions import session_bytes
 
 ATOM = {"a": "http://www.w3.org/2005/Atom"}

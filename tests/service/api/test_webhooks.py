@@ -10,10 +10,10 @@ import httpx
 import pytest
 
 from service.app import create_app
-from service.flag_records import DeliveryState
-from service.flows.deliver import CLAIM, MOST_ATTEMPTS, deliver_due
-from service.flows.upload import upload
+from service.background.deliver import CLAIM, MOST_ATTEMPTS, deliver_due
+from service.flows.receive import upload
 from service.flows.webhooks import add_webhook, fault_of, remove_webhook
+from service.records.webhook import DeliveryState
 from service.settings import Settings
 from service.storage import Storage
 from tests.service.receiver import Receiver, receiver

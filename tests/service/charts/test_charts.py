@@ -5,7 +5,7 @@ from datetime import timedelta
 
 from service.charts.history import history_charts
 from service.charts.tracks import tracks_of
-from service.records import Service
+from service.records.event import Service
 from tests.service.pages.records import NOON, bias_point
 
 

@@ -5,18 +5,18 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from service.views.outlook import outlooks_of_fleet
 
 from estimator.reading import read_session
 from service.demo.cast import CAST, END
 from service.demo.fill import FILES, fill, is_wanted
 from service.demo.history import files_of
-from service.flows.flag_list import flag_list
-from service.flows.fleet import fleet_overview
-from service.flows.outlook import outlooks_of_fleet
-from service.flows.stands import stand_conditions
-from service.flows.upload import upload
-from service.records import Verdict
+from service.flows.receive import upload
+from service.records.decision import Verdict
 from service.storage import Database, Files, Storage
+from service.views.flag_list import flag_list
+from service.views.fleet import fleet_overview
+from service.views.stands import stand_conditions
 from tests.databases import Databases
 
 CONDITIONS = {

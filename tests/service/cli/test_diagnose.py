@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from service.flows.upload import upload
+from service.flows.receive import upload
 from service.settings import Settings
 from service.storage import Database, Files, Storage
 from tests.databases import Databases

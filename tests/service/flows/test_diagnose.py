@@ -9,14 +9,15 @@ from threading import Event
 import pytest
 from sqlalchemy import text
 
+from service.background.diagnose_pending import diagnose_pending
 from service.errors import ConflictError, NotFoundError, RefusedError
 from service.flows.accept_model import accept_model
 from service.flows.diagnose import QUICK_BYTES, InProgress, diagnose, diagnose_now_or_later
-from service.flows.diagnose_pending import diagnose_pending
 from service.flows.recalibrate import recalibrate
-from service.flows.upload import upload
+from service.flows.receive import upload
 from service.flows.withdraw_model import withdraw_model
-from service.records import DiagnosisState, NewModel, Scope
+from service.records.diagnosis import DiagnosisState
+from service.records.model import NewModel, Scope
 from service.storage import Storage
 from service.storage.queries.history import HistoryQuery
 from tests.service.diagnosed import ECCENTRIC, TEMPERATURE, drawn

@@ -7,12 +7,12 @@ from sqlalchemy import text
 from sqlalchemy.exc import DatabaseError
 
 from service.errors import ConflictError, NotFoundError
-from service.flag_records import Flag, FlagState, Matter, NoticeKind
-from service.flows.flag_list import flag_list
-from service.flows.fleet_condition import fleet_condition
 from service.flows.handle_flag import acknowledge_flag, resolve_flag
-from service.flows.upload import upload
+from service.flows.receive import upload
+from service.records.flag import Flag, FlagState, Matter, NoticeKind
 from service.storage import Storage
+from service.views.flag_list import flag_list
+from service.views.fleet_condition import fleet_condition
 from tests.service.sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)

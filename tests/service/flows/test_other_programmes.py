@@ -7,8 +7,10 @@ import pytest
 
 from service.flows.diagnose import diagnose, task_of
 from service.flows.recalibrate import recalibrate
-from service.flows.upload import upload
-from service.records import DiagnosisState, NewModel, Scope, Verdict
+from service.flows.receive import upload
+from service.records.decision import Verdict
+from service.records.diagnosis import DiagnosisState
+from service.records.model import NewModel, Scope
 from service.storage import Storage
 from tests.service.recordings import recording_bytes
 from tests.service.sessions import session_bytes

@@ -6,9 +6,12 @@ from datetime import UTC, datetime, timedelta
 from estimator.calibration import calibrate
 from estimator.reading import read_session
 from estimator.results import Calibration
-from service.flows.judge import judge
-from service.flows.tolerances import type_of
-from service.records import HistoryPoint, SessionReport, StoredSession, UnitSummary, Verdict
+from service.judging.judge import judge
+from service.judging.tolerances import type_of
+from service.records.decision import Verdict
+from service.records.history import HistoryPoint
+from service.records.session import SessionReport, StoredSession
+from service.records.unit import UnitSummary
 from tests.builders import Document, accelerometer_block
 
 NOON = datetime(2026, 3, 1, 12, tzinfo=UTC)

@@ -4,8 +4,8 @@ import httpx
 import pytest
 
 from service.app import create_app
-from service.flows.finding_in_words import shape_in_words
 from service.settings import Settings
+from service.words.finding import shape_in_words
 from tests.service.diagnosed import ALIASES, TEMPERATURE, UNEXPLAINED, drawn, send, send_case, warm
 from tests.service.pages.test_http import HTML, MOST_QUERIES, counted
 from tests.service.sessions import session_bytes

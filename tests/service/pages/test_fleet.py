@@ -1,7 +1,8 @@
 """The fleet page's context."""
 
 from service.pages.fleet import PAGE_SIZE, FleetView, fleet_page, margin_of
-from service.records import FleetCondition, Verdict
+from service.records.decision import Verdict
+from service.records.unit import FleetCondition
 from tests.service.pages.records import NOON, unit_summary
 
 CONDITION = FleetCondition(units=120, verdicts={v: 20 + 2 * v.severity for v in Verdict}, simulated=0)

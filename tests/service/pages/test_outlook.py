@@ -5,11 +5,12 @@ from datetime import timedelta
 
 from service.charts.history import history_charts
 from service.charts.tracks import tracks_of
-from service.flows.standouts import standouts
-from service.outlook import FanPoint, ParameterTrend, Rate, RiskPoint, UnitOutlook
 from service.pages.fleet import FleetView, fleet_page
 from service.pages.outlook import next_calibration
-from service.records import FleetCondition, Verdict
+from service.records.decision import Verdict
+from service.records.outlook import FanPoint, ParameterTrend, Rate, RiskPoint, UnitOutlook
+from service.records.unit import FleetCondition
+from service.views.standouts import standouts
 from tests.service.pages.records import NOON, bias_point, unit_summary
 
 MICRO_G = 9.80665e-6

@@ -8,7 +8,8 @@ from fastapi import Request
 
 from service.pages.render import render
 from service.pages.unit import unit_page
-from service.records import PARAMETERS, Tolerances, UnitReport, UnitType
+from service.records.session import PARAMETERS
+from service.records.unit import Tolerances, UnitReport, UnitType
 from tests.service.pages.records import NOON, bias_point, unit_summary
 
 SESSIONS, SENSORS = 200, 6

@@ -8,9 +8,9 @@ import httpx
 import pytest
 
 from estimator.health.rule import RULE
-from service.flows.upload import upload
+from service.flows.receive import upload
 from service.storage import Storage
-from service.verdicts import condition_of
+from service.words.conditions import condition_of
 from tests.service.diagnosed import ECCENTRIC, diagnosis_of, drawn, send_case
 from tests.service.recordings import recording_bytes
 from tests.service.reports.documents import pages_of, text_of

@@ -7,15 +7,15 @@ import httpx
 import polars as pl
 import pytest
 
-from service.flows.fleet_report import fleet_report
-from service.flows.upload import upload
+from service.flows.receive import upload
 from service.reports.fleet_paper import fleet_pdf
 from service.reports.fleet_workbook import MOST_HISTORY_ROWS, fleet_xlsx
 from service.storage import Storage
 from service.storage.store import Store
-from tests.service.flows.test_queries import queries
+from service.views.fleet_report import fleet_report
 from tests.service.reports.documents import pages_of, text_of
 from tests.service.sessions import session_bytes
+from tests.service.views.test_queries import queries
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 FORMULA = '=HYPERLINK("http://127.0.0.1/","BA-018")'

@@ -9,7 +9,7 @@ from sqlalchemy import inspect, text
 from sqlalchemy.exc import DatabaseError
 
 from service.errors import AwayError
-from service.flows.upload import upload
+from service.flows.receive import upload
 from service.storage import Database, Storage
 from service.storage.engine import open_engine
 from service.storage.schema import downgrade, head_revision, stored_revision, upgrade

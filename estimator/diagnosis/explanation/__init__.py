@@ -1,0 +1,1 @@
+"""What was found, for people: rivals, sensor or stand, limits, next measurement, extended model, gain."""

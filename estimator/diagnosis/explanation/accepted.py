@@ -1,0 +1,68 @@
+"""Calibration under a model that holds accepted causes: their amplitudes are fitted, whatever their significance."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from estimator.calibration.calibrate import averaged, calibrate
+from estimator.causes import Signature, cause
+from estimator.causes.sensor import Saturation
+from estimator.diagnosis.explanation.extended_model import amplitudes, extended_calibration
+from estimator.diagnosis.record.clipping import unclipped
+from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.diagnosis.selection.refinement import polished
+from estimator.diagnosis.selection.search_state import Found, Search, begin
+from estimator.diagnosis.signatures.scores import score
+from estimator.results import Calibration
+from estimator.session import CalibrationSession
+
+Accepted = tuple[str, tuple[str, ...]]
+"""A cause's identifier and the names of its sensors; none for a cause of the stand or fixture."""
+
+
+def can_be_modelled(identifier: str) -> bool:
+    """Whether a cause can be part of a model: it acts within every session, in the same way each time."""
+    known = cause(identifier)
+    return isinstance(known, Signature) and not known.between and identifier != "reading-outlier"
+
+
+def calibrate_extended(session: CalibrationSession, causes: Sequence[Accepted]) -> Calibration:
+    """Calibrate a session under the baseline model extended with accepted causes.
+
+    Parameters
+    ----------
+    session : of a programme that calibrates a block.
+    causes : what was accepted. A cause that the session cannot show (no thermometer, no such sensor) is left out.
+
+    Raises
+    ------
+    ScheduleError : the session cannot be calibrated at all.
+    """
+    rows = averaged(session)
+    known = [cause(identifier) for identifier, _ in causes]
+    clips, whole = unclipped(rows, known)
+    state = begin(baseline_of(whole), (), known)
+    done = {(Saturation.identifier, (clip.sensor,)) for clip in clips}
+    for identifier, sensors in causes:
+        for place in places(rows, sensors):
+            if (identifier, place) not in done:
+                state = with_cause(state, identifier, place)
+    if not state.found:
+        return calibrate(whole)
+    state = polished(state)
+    return extended_calibration(state, amplitudes(state))
+
+
+def places(session: CalibrationSession, sensors: Sequence[str]) -> list[tuple[int, ...]]:
+    """Where a cause acts, as its shapes say it: sensor by sensor, or nowhere in particular."""
+    names = [s.name for s in session.sensors]
+    return [(names.index(s),) for s in sensors if s in names] if sensors else [()]
+
+
+def with_cause(state: Search, identifier: str, place: tuple[int, ...]) -> Search:
+    """The state with one more cause, at the nonlinear parameters that fit best beside the others."""
+    own = [t for t in state.traces if t.cause.identifier == identifier]
+    found = [s for s in score(state.evidence, own, state.taken()) if s.shape.sensors == place]
+    if not found:
+        return state
+    best = max(found, key=lambda s: s.statistic)
+    return replace(state, found=(*state.found, Found(best, best.p_value, ())))

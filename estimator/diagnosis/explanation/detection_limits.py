@@ -1,0 +1,76 @@
+"""Detection limits: what this session would have found, and what it cannot see.
+
+A signature of q amplitudes whose trace has norm s per unit amplitude is found with 95 % power at the family-wise
+level when amplitude·s reaches the root of the noncentrality at which χ²_q exceeds the threshold with that power.
+"""
+
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+from scipy import optimize
+from scipy.special import chdtri, chndtr
+
+from estimator.causes import Cause, Correction, Signature
+from estimator.diagnosis.results import Limit
+from estimator.diagnosis.selection.search_state import LEVEL, Search
+from estimator.diagnosis.signatures.scores import INVISIBLE, Traces
+
+POWER = 0.95
+
+
+@lru_cache(maxsize=4096)
+def required(q: int, p_single: float) -> float:
+    """Strength that a test of q amplitudes at level ``p_single`` finds with `POWER`."""
+    threshold = float(chdtri(q, p_single))
+
+    def shortfall(strength: float) -> float:
+        return 1.0 - float(chndtr(threshold, q, strength**2)) - POWER
+
+    return float(optimize.brentq(shortfall, 1e-3, 200.0))
+
+
+def limits(state: Search, catalogue: Sequence[Cause]) -> tuple[Limit, ...]:
+    """One limit a cause of the catalogue."""
+    traces = {t.cause.identifier: t for t in state.traces}
+    return tuple(limit(state, c, traces.get(c.identifier)) for c in catalogue)
+
+
+def limit(state: Search, cause: Cause, traces: Traces | None) -> Limit:
+    """The limit of one cause; ``traces`` None where the session lacks what the cause needs."""
+    if isinstance(cause, Correction):
+        lacking = missing(state, cause)
+        return Limit(cause.identifier, None if lacking else (), (), lacking and f"the session lacks {lacking}")
+    if not isinstance(cause, Signature):
+        return excess_limit(state, cause)
+    if traces is None:
+        lacking = missing(state, cause) or "a sensor it acts on"
+        return Limit(cause.identifier, None, cause.units, f"the session lacks {lacking}")
+    norms = np.linalg.norm(traces.columns, axis=1)
+    visible = (norms > INVISIBLE * traces.raw) & (traces.raw > 0)
+    places = int(visible.any(axis=1).sum())
+    if places == 0:
+        return Limit(cause.identifier, None, cause.units, "the calibration absorbs it completely")
+    need = required(1, LEVEL / (places * state.families))
+    worst = [float(need / n[v].min()) if v.any() else float("nan") for n, v in zip(norms.T, visible.T, strict=True)]
+    return Limit(cause.identifier, tuple(w for w in worst if np.isfinite(w)), cause.units, "")
+
+
+def missing(state: Search, cause: Cause) -> str:
+    """What a cause needs and the session lacks."""
+    lacking = sorted(n for n in cause.needs if not state.baseline.setting.has(n))
+    if state.between is None and "history" in cause.needs:
+        lacking.append("history")
+    return ", ".join(lacking)
+
+
+def excess_limit(state: Search, cause: Cause) -> Limit:
+    """Extra standard deviation of one reading that would be called excess noise, at the quietest sensor's noise."""
+    evidence, m = state.evidence, len(state.baseline.unstated)
+    if state.baseline.unstated.all():
+        return Limit(cause.identifier, None, cause.units, "the file states no noise to exceed")
+    freedom = max(evidence.freedom / m, 2.0)
+    threshold = chdtri(freedom, LEVEL / (m * state.families))
+    ratio = threshold / chdtri(freedom, POWER)
+    sigma = float(np.sqrt(np.median(state.baseline.variance)))
+    return Limit(cause.identifier, (sigma * float(np.sqrt(max(ratio - 1, 0.0))),), cause.units, "")

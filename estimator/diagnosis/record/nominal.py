@@ -1,0 +1,77 @@
+"""A wrong elevation told from the nominal axes, where a unit has no history.
+
+The axes of a block stray from nominal, nobody knows how far; a wrong α moves them all in one pattern. Their deviations
+are regressed on that pattern and judged by F: the strays themselves are the noise.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import fdtrc
+
+from estimator.arrays import tangents
+from estimator.causes.record import AlphaEntry
+from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.diagnosis.residuals.whitened import Evidence, parameter_covariance
+from estimator.parameters import LIMIT
+from estimator.session import CalibrationSession
+
+LEVEL = 1e-3
+"""Of one cause against the nominal axes."""
+
+LEAST = np.radians(0.005)
+"""rad; how near to nominal no maker claims to mount his axes."""
+
+ROUNDS = 4
+"""Corrections: the pattern is taken anew at the corrected elevation."""
+
+
+@dataclass(frozen=True, eq=False)
+class WrongEntry:
+    """An entry of the record found wrong against the nominal axes."""
+
+    cause: AlphaEntry
+    amplitude: float
+    sigma: float
+    p_value: float
+    strength: float
+
+    def put_right(self, session: CalibrationSession) -> CalibrationSession:
+        """The session with the entry put right."""
+        return self.cause.put_right(session, self.amplitude)
+
+
+def regression(baseline: Baseline, cause: AlphaEntry) -> tuple[float, float, float, int]:
+    """Amplitude, its sigma, F and the degrees of freedom left, from the axes' deviations from nominal."""
+    evidence = Evidence.of(baseline)
+    (shape,) = cause.shapes(baseline.setting)
+    m = len(baseline.setting.kinds)
+    axes = (5 * np.arange(m)[:, None] + np.array([3, 4])).ravel()
+    answer = (evidence.absorb @ evidence.raw(shape.columns))[axes, 0]
+    nominal = np.stack([s.nominal_axis for s in baseline.session.sensors])
+    frame = tangents(baseline.parameters.axis)
+    stray = (np.swapaxes(frame, -1, -2) @ (baseline.parameters.axis - nominal)[..., None]).ravel()
+    known = np.sqrt(np.diagonal(parameter_covariance(baseline))[axes]) < LIMIT
+    answer, stray = answer[known], stray[known]
+    size = float(answer @ answer)
+    if size == 0 or len(stray) < 4:
+        return 0.0, np.inf, 0.0, 0
+    amount = float(answer @ stray) / size
+    freedom = len(stray) - 1
+    rest = max(float(((stray - answer * amount) ** 2).sum()) / freedom, LEAST**2)
+    return amount, float(np.sqrt(rest / size)), amount**2 * size / rest, freedom
+
+
+def wrong_elevation(session: CalibrationSession, cause: AlphaEntry) -> WrongEntry | None:
+    """The elevation that brings the axes back to nominal, or None where the strays explain them as they are."""
+    baseline = baseline_of(session)
+    amount, sigma, f, freedom = regression(baseline, cause)
+    if freedom < 3 or (p_value := float(fdtrc(1, freedom, f))) > LEVEL:
+        return None
+    total, right = 0.0, session
+    for _ in range(ROUNDS):
+        total += amount
+        right = cause.put_right(session, total)
+        amount, sigma, _, _ = regression(baseline_of(right), cause)
+    return WrongEntry(cause, total, sigma, p_value, float(np.sqrt(f)))

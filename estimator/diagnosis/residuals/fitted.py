@@ -1,0 +1,155 @@
+"""From a session to its fitted baseline simulation, on a stand or in arbitrary orientations."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from estimator.applied_vector import EARTH_RATE, Geometry, elevation, gravity, stand_geometry, stand_vector, to_block
+from estimator.arrays import tangents
+from estimator.calibration.noise import typical
+from estimator.calibration.stand import solved
+from estimator.causes import Setting
+from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.orientations import fitted_state
+from estimator.forward import input_of, measured, projected, slope
+from estimator.parameters import SensorParameters
+from estimator.session import ACCELEROMETER, GYROSCOPE, TWO_AXIS_STAND, Array, CalibrationSession
+
+
+def baseline_of(session: CalibrationSession, start: SensorParameters | None = None) -> Baseline:
+    """The baseline simulation fitted to an averaged session, its noise as stated (or estimated where it is not).
+
+    ``start`` (m,): where what the session does not observe stays; by default near the nominal values.
+    """
+    return on_stand(session, start) if session.programme == TWO_AXIS_STAND else in_orientations(session)
+
+
+def unstated_noise(session: CalibrationSession) -> Array:
+    """(m,) bool: sensors for which the file states no standard errors."""
+    return np.asarray(np.isnan(session.standard_errors).any(axis=0))
+
+
+def on_stand(session: CalibrationSession, start: SensorParameters | None) -> Baseline:
+    """Two-axis stand: the applied vector is known up to the stand's errors."""
+    begin = None
+    if start is not None:
+        begin = SensorParameters(*(v[np.newaxis] for v in (start.scale, start.bias, start.quadratic, start.axis)))
+    solution = solved([session], begin)
+    fitted, p = solution.fitted, solution.fitted.parameters
+    own = SensorParameters(p.scale[0], p.bias[0], p.quadratic[0], p.axis[0])
+    variance = fitted.variance[0]
+    found = stand_baseline(session, own, solution.geometry, fitted.residual[0], variance)
+    asked = found.unstated & np.isfinite(variance[0])
+    if not asked.any():
+        return found
+    expected = typical(variance[:1], asked[np.newaxis], found.setting.norm)[0] / variance[0]
+    return replace(found, expected=np.nan_to_num(expected))
+
+
+def stand_baseline(
+    session: CalibrationSession,
+    own: SensorParameters,
+    g: Geometry,
+    residual: Array,
+    variance: Array,
+) -> Baseline:
+    """The baseline at given parameters of a session on a stand."""
+    steep = slope(own, g.n)
+    rows = len(residual)
+    constant = [steep * projected(own.axis, d) for d in g.constant]
+    setting = Setting(
+        kinds=tuple(s.kind for s in session.sensors),
+        parameters=own,
+        n=g.n,
+        norm=g.norm,
+        beta=session.beta,
+        flipped=session.flipped,
+        d_alpha=raised(session),
+        d_beta=g.beta,
+        time=session.time,
+        temperature=session.temperature,
+        force=force_on_stand(session),
+        latitude=session.site.latitude or 0.0,
+    )
+    return Baseline(
+        session=session,
+        setting=setting,
+        residual=residual,
+        variance=variance,
+        unstated=unstated_noise(session),
+        constant=np.stack(constant, axis=-1) if constant else np.zeros((rows, len(session.sensors), 0)),
+        constant_sigma=g.constant_sigma,
+        row=(steep * projected(own.axis, g.beta))[..., None],
+        row_sigma=np.full((rows, 1), g.beta_sigma),
+    )
+
+
+def planned_on_stand(session: CalibrationSession, like: Baseline) -> Baseline:
+    """A session still to be measured, at the parameters and the typical noise of one that was."""
+    geometry = stand_geometry(session)
+    rows = len(session.readings)
+    variance = np.broadcast_to(np.median(like.variance, axis=0), (rows, len(session.sensors)))
+    nothing = np.zeros(variance.shape)
+    return stand_baseline(session, like.parameters, geometry, nothing, variance)
+
+
+def raised(session: CalibrationSession) -> Array:
+    """(R, m, 3) change of the applied vector per rad of elevation, by the exact vector at two elevations."""
+    assert session.stand is not None
+    assert session.beta is not None
+    step, change = 1e-4, {}
+    for kind in {s.kind for s in session.sensors}:
+        angle = elevation(session.stand, kind)
+        size = gravity(session.site) if kind == ACCELEROMETER else EARTH_RATE
+        up, down = (stand_vector(angle + sign * step, session.beta) for sign in (1, -1))
+        change[kind] = size * to_block((up - down) / (2 * step), session)
+    return np.stack([change[s.kind] for s in session.sensors], axis=1)
+
+
+def force_on_stand(session: CalibrationSession) -> Array | None:
+    """(R, 3) specific force on the block; None where the elevation above the horizon is not stated."""
+    assert session.stand is not None
+    assert session.beta is not None
+    if session.stand.alpha is None:
+        return None
+    return gravity(session.site) * to_block(stand_vector(session.stand.alpha, session.beta), session)
+
+
+def in_orientations(session: CalibrationSession) -> Baseline:
+    """Arbitrary orientations: the applied vector is estimated row by row; gyros at rest see no input."""
+    state = fitted_state(session)
+    y, _ = measured(session)
+    g = gravity(session.site)
+    kinds = tuple(s.kind for s in session.sensors)
+    gyro = np.array([kind == GYROSCOPE for kind in kinds])
+    rows, m = y.shape
+    n = np.where(gyro[None, :, None], 0.0, g * state.directions[:, None, :])
+    norm = np.where(gyro, EARTH_RATE, g)
+    setting = Setting(
+        kinds=kinds,
+        parameters=state.parameters,
+        n=n,
+        norm=norm,
+        beta=None,
+        flipped=None,
+        d_alpha=None,
+        d_beta=None,
+        time=session.time,
+        temperature=session.temperature,
+        force=g * state.directions if state.felt else None,
+        latitude=session.site.latitude or 0.0,
+    )
+    p = state.parameters
+    turn = g * np.where(gyro[None, :, None, None], 0.0, tangents(state.directions)[:, None, :, :])
+    sigma = np.repeat(state.direction_sigma[:, None], 2, axis=1)
+    return Baseline(
+        session=session,
+        setting=setting,
+        residual=y / p.scale - input_of(p, n),
+        variance=state.variance,
+        unstated=unstated_noise(session),
+        constant=np.zeros((rows, m, 0)),
+        constant_sigma=np.zeros(0),
+        row=setting.through(turn),
+        row_sigma=sigma,
+    )

@@ -1,0 +1,1 @@
+"""The search for causes: forward selection, backward elimination, refinement of shapes."""

@@ -1,0 +1,1 @@
+"""What only the papers need: printed formulas, and the published search by triples and coordinate descent."""

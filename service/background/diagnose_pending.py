@@ -1,0 +1,46 @@
+"""Flow: diagnoses that a crash or an older version left undone, one after another."""
+
+import logging
+from collections.abc import Callable
+from datetime import datetime
+from threading import Event
+
+from service.errors import ServiceError
+from service.flows.diagnose import InProgress, diagnose
+from service.settings import VERSION
+from service.storage import Storage
+
+BATCH = 50
+PAUSE = 0.05
+"""Seconds between two diagnoses, so that requests are not kept waiting."""
+log = logging.getLogger("imu_health")
+
+
+def diagnose_pending(storage: Storage, clock: Callable[[], datetime], progress: InProgress, stop: Event) -> None:
+    """Diagnoses every session that has none, until ``stop`` is set; what fails is left to its first reader."""
+    last = ""
+    while not stop.is_set():
+        try:
+            with storage.database.reading() as store:
+                waiting = store.sessions.without_diagnosis(last, BATCH, VERSION)
+        except ServiceError as fault:
+            log.warning("pending diagnoses are left to their readers: %s", fault)
+            return
+        if not waiting:
+            return
+        for id in waiting:
+            if stop.wait(PAUSE):
+                return
+            diagnose_quietly(storage, id, clock(), progress)
+        last = waiting[-1]
+
+
+def diagnose_quietly(storage: Storage, id: str, now: datetime, progress: InProgress) -> None:
+    """Diagnoses a session unless this process is at it; where that is not possible now it stays pending."""
+    with progress.claim(id) as ours:
+        if not ours:
+            return
+        try:
+            diagnose(storage, id, now)
+        except ServiceError as fault:
+            log.warning("the diagnosis of session %s is pending: %s", id, fault)

@@ -1,0 +1,1 @@
+"""A session against its unit's reference: tolerances, decisions, forecasts. Nothing here writes."""

@@ -1,0 +1,188 @@
+"""Step: judged changes since the last break → trends, the date of the next calibration and why then."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
+
+import numpy as np
+from numpy.typing import NDArray
+
+from estimator.health.forecast import AHEAD, RISK_LEVEL, band, reach
+from estimator.health.prognosis import Outlook, Prognosis, Track, prognosis
+from estimator.session import comparable
+from service.records.outlook import FanPoint, ParameterTrend, RiskPoint, UnitOutlook
+from service.storage.queries.outlooks import ChangeRow, ReferenceRow
+from service.words.names import PARAMETER_NAMES, YEAR, day_of, month_of
+
+FAN_AHEAD = np.linspace(0.0, 1.0, 6)
+"""Years after the last session for which a trend's bounds are drawn."""
+FAN_LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
+
+
+@dataclass(frozen=True)
+class TrackKey:
+    """Which parameter of which sensor."""
+
+    sensor: str
+    kind: str
+    parameter: str
+
+
+@dataclass(frozen=True, eq=False)
+class Forecast:
+    """What is stored of a unit, and what its page draws."""
+
+    outlook: UnitOutlook
+    keys: tuple[TrackKey, ...]
+    tracks: tuple[Track, ...]
+    dates: tuple[tuple[datetime, ...], ...]
+    """Of every track's sessions, the reference included."""
+    found: Prognosis | None
+    """None without a track."""
+
+
+def forecast(
+    serial: str,
+    changes: Sequence[ChangeRow],
+    references: Sequence[ReferenceRow],
+    last: datetime | None,
+    since: datetime | None,
+    longest_days: float,
+) -> Forecast:
+    """The outlook of a unit.
+
+    ``last`` is its latest calibration; ``since`` its last break, after which ``changes`` and ``references`` were
+    measured; ``longest_days`` the type's longest interval.
+    """
+    groups = _groups(changes, references)
+    dated = [_track(rows, reference) for rows, reference in groups.values()]
+    tracks, dates = tuple(track for track, _ in dated), tuple(at for _, at in dated)
+    found = prognosis(tracks) if tracks else None
+    told = () if found is None else _trends(tuple(groups), tracks, dates, found)
+    outlook = _unit(serial, told, found, max((at[-1] for at in dates), default=None), last, since, longest_days)
+    return Forecast(outlook, tuple(groups), tracks, dates, found)
+
+
+Group = tuple[list[ChangeRow], ReferenceRow]
+
+
+def _groups(changes: Sequence[ChangeRow], references: Sequence[ReferenceRow]) -> dict[TrackKey, Group]:
+    """The changes of each parameter from one reference; of a sensor with several references the latest programme's."""
+    first: dict[tuple[str, tuple[str, ...]], ReferenceRow] = {}
+    for reference in references:
+        first.setdefault((reference.block, comparable(reference.programme)), reference)
+    groups: dict[TrackKey, Group] = {}
+    for row in changes:
+        own = first.get((row.block, comparable(row.programme)))
+        if own is not None:
+            key = TrackKey(row.sensor, row.kind, row.parameter)
+            rows, known = groups.get(key, ([], own))
+            groups[key] = ([*rows, row], known) if known is own else ([row], own)
+    return groups
+
+
+def _track(rows: Sequence[ChangeRow], reference: ReferenceRow) -> tuple[Track, tuple[datetime, ...]]:
+    """The sessions of a parameter with its reference among them, in order of time."""
+    origin = (reference.at, [0.0] * len(rows[-1].change), rows[-1].origin)
+    points = sorted([origin, *((row.at, row.change, row.own) for row in rows)], key=lambda point: point[0])
+    start = points[0][0]
+    track = Track(
+        time=np.array([(at - start) / YEAR for at, _, _ in points]),
+        change=np.array([change for _, change, _ in points]),
+        sigma=np.array([sigma for _, _, sigma in points]),
+        tolerance=rows[-1].tolerance,
+    )
+    return track, tuple(at for at, _, _ in points)
+
+
+def _trends(
+    keys: Sequence[TrackKey], tracks: Sequence[Track], dates: Sequence[tuple[datetime, ...]], found: Prognosis
+) -> tuple[ParameterTrend, ...]:
+    ahead = np.tile(FAN_AHEAD, (len(found.trends.rate), 1))
+    fans = band(found.trends, ahead, FAN_LEVELS).quantiles
+    parts = zip(keys, tracks, dates, found.outlooks, fans, strict=False)  # the axes' second series have no fan
+    return tuple(_trend(*part) for part in parts)
+
+
+def _trend(
+    key: TrackKey, track: Track, dates: Sequence[datetime], found: Outlook, fan: NDArray[np.float64]
+) -> ParameterTrend:
+    points = zip(FAN_AHEAD, fan.T * track.tolerance, strict=True)
+    return ParameterTrend(
+        sensor=key.sensor,
+        parameter=key.parameter,
+        rate_per_year=found.rate,
+        rate_sigma=found.rate_sigma,
+        significance=found.p_value,
+        step_dates=tuple(dates[k] for k in found.steps),
+        level=found.level,
+        level_sigma=found.level_sigma,
+        reach_50=_after(dates[-1], found.reach_50) if found.is_known else None,
+        reach_90=_after(dates[-1], found.reach_90) if found.is_known else None,
+        population_z=None,
+        kind=key.kind,
+        tolerance=track.tolerance,
+        since=dates[found.steps[-1]] if found.steps else dates[0],
+        fan=tuple(FanPoint(dates[-1] + float(h) * YEAR, *(float(f"{q:.5g}") for q in at)) for h, at in points),
+    )
+
+
+def _after(start: datetime, years: float) -> datetime | None:
+    return start + years * YEAR if np.isfinite(years) else None
+
+
+def _unit(
+    serial: str,
+    trends: tuple[ParameterTrend, ...],
+    found: Prognosis | None,
+    latest: datetime | None,
+    last: datetime | None,
+    since: datetime | None,
+    longest_days: float,
+) -> UnitOutlook:
+    """The unit as a whole: it comes back before its risk passes the level, and never after the longest interval."""
+    if last is None or (since is not None and last < since):
+        reason = "No calibration yet." if since is None else f"Serviced on {day_of(since)}: measure it again."
+        return UnitOutlook(serial, since, False, reason, None, None, None, None, None, ())
+    longest = last + timedelta(days=longest_days)
+    first = min((t for t in trends if t.reach_90), key=lambda t: (t.reach_90, t.reach_50 or longest), default=None)
+    risk, risky = tuple[RiskPoint, ...](), None
+    if found is not None and latest is not None:
+        risk = tuple(RiskPoint(latest + float(a) * YEAR, float(r)) for a, r in zip(AHEAD, found.risk, strict=True))
+        risky = _after(latest, float(reach(found.risk[None], RISK_LEVEL)[0]))
+    due = longest if risky is None else min(longest, max(risky, last))
+    unit = UnitOutlook(
+        serial=serial,
+        due=due,
+        overdue=False,
+        reason=_reason(trends, first, due, longest, last, longest_days),
+        sensor=None if first is None else first.sensor,
+        parameter=None if first is None else first.parameter,
+        reach_50=None if first is None else first.reach_50,
+        reach_90=None if first is None else first.reach_90,
+        risk_at_due=None,
+        trends=trends,
+        risk=risk,
+    )
+    return replace(unit, risk_at_due=unit.risk_by(due))
+
+
+def _reason(
+    trends: Sequence[ParameterTrend],
+    first: ParameterTrend | None,
+    due: datetime,
+    longest: datetime,
+    last: datetime,
+    longest_days: float,
+) -> str:
+    interval = f"calibrate every {longest_days:.0f} days at least"
+    if not trends:
+        return f"One session since the reference was set tells no trend; {interval}."
+    if first is None or first.reach_90 is None:
+        return f"No parameter is expected to reach its tolerance within twelve years; {interval}."
+    name = f"{first.sensor} {PARAMETER_NAMES[first.parameter]}"
+    if first.reach_90 <= last:
+        return f"{name} may be out of its tolerance already."
+    later = f" and as likely as not by {month_of(first.reach_50)}" if first.reach_50 else ""
+    forecast = f"{name} reaches its tolerance with 10 % probability before {month_of(first.reach_90)}{later}"
+    return f"{forecast}; {interval}." if due == longest else f"{forecast}."

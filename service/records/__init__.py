@@ -1,0 +1,1 @@
+"""What flows between the rooms: frozen records, complete at birth, one definition each. SI inside."""

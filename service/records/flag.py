@@ -1,0 +1,106 @@
+"""Flags and the notices that make up their lives."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from enum import StrEnum
+from uuid import NAMESPACE_URL, uuid5
+
+
+class Matter(StrEnum):
+    """What a flag is about."""
+
+    TOLERANCE = "out-of-tolerance"
+    """A sensor is judged fail or conditional fail."""
+    CAUSE = "cause"
+    """A diagnosis names a cause that acts on a sensor."""
+    UNEXPLAINED = "unexplained"
+    """A diagnosis finds structure that no known cause explains."""
+    STAND = "stand"
+    """A diagnosis finds the stand or the fixture at fault."""
+    SHIFTED = "stand-shifted"
+    """The units measured on a stand show that it has shifted."""
+    OVERDUE = "overdue"
+    """The unit's calibration is overdue."""
+
+
+class FlagState(StrEnum):
+    """Where a flag is in its life."""
+
+    RAISED = "raised"
+    ACKNOWLEDGED = "acknowledged"
+    RESOLVED = "resolved"
+
+
+class NoticeKind(StrEnum):
+    """What happened."""
+
+    RAISED = "flag.raised"
+    SEEN = "flag.seen"
+    """A later session shows the matter of an open flag again."""
+    CLEAR = "flag.clear"
+    """A later session no longer shows it: somebody may resolve the flag."""
+    ACKNOWLEDGED = "flag.acknowledged"
+    RESOLVED = "flag.resolved"
+    VERDICT = "verdict.changed"
+
+
+@dataclass(frozen=True)
+class Concern:
+    """A reason to have an open flag."""
+
+    matter: Matter
+    place: str
+    """The sensor or the stand that it is about; empty for the unit as a whole."""
+    severity: int
+    """Of one matter: a larger one is worse."""
+    summary: str
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """Of one matter at one place only one flag is open."""
+        return self.matter, self.place
+
+
+@dataclass(frozen=True)
+class Notice:
+    """What happened to a flag or to a unit's verdict; never changed."""
+
+    id: int
+    unit: str
+    flag: int | None
+    kind: NoticeKind
+    at: datetime
+    who: str
+    text: str
+    session: str | None
+
+    @property
+    def key(self) -> str:
+        """The same wherever and whenever it is told: by it a receiver knows what it has heard before."""
+        return str(uuid5(NAMESPACE_URL, f"imu-health/{self.unit}/{self.at.isoformat()}/{self.id}"))
+
+
+@dataclass(frozen=True)
+class Flag:
+    """A matter that somebody must look after."""
+
+    id: int
+    unit: str
+    matter: Matter
+    place: str
+    state: FlagState
+    severity: int
+    summary: str
+    proposal: str
+    """Why it could be resolved; empty while nothing speaks for it."""
+    session: str | None
+    """The latest session that showed it."""
+    raised_at: datetime
+    changed_at: datetime
+    changes: tuple[Notice, ...] = ()
+    """Its life, oldest first."""
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """Of one matter at one place only one flag is open."""
+        return self.matter, self.place

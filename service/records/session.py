@@ -1,0 +1,83 @@
+"""A stored session, what an upload is answered with, and what a session's page shows."""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from estimator.health.common_motion import CommonMotion
+from estimator.results import Calibration
+from service.records.decision import Decision, Verdict
+
+PARAMETERS = ("scale", "bias", "quadratic", "axis")
+"""What a calibration gives of every sensor."""
+
+
+ALL_PARAMETERS = (*PARAMETERS, "misalignment")
+"""With what only a turntable shows."""
+
+
+@dataclass(frozen=True)
+class StoredSession:
+    """One uploaded session. ``id`` is made from the content, so the same bytes always have the same id."""
+
+    id: str
+    unit: str
+    sha256: str
+    filename: str
+    size: int
+    programme: str
+    stand: str | None
+    operator: str
+    notes: str
+    started_at: datetime
+    """UTC; the upload's time when the file states none."""
+    uploaded_at: datetime
+    verdict: Verdict
+    reason: str
+    """Why the verdict is what it is, in one sentence a technician understands."""
+    is_reference: bool
+    simulated: bool
+    revision: int = 0
+    """The model revision that the calibration in force was made under; 0 is the baseline."""
+    stage: str | None = None
+    """``as-found`` before the unit was worked on, ``as-left`` after; None where neither was said."""
+
+
+@dataclass(frozen=True)
+class ParameterValue:
+    """One parameter of one sensor as a session measured it."""
+
+    sensor: str
+    sensor_index: int
+    kind: str
+    parameter: str
+    value: float | None
+    """SI; None for the axis, which has components instead."""
+    u: float | None
+    """Standard uncertainty; for the axis the root of the trace of its covariance, rad."""
+    axis: tuple[float, float, float] | None
+
+
+@dataclass(frozen=True)
+class Receipt:
+    """The answer to an upload."""
+
+    id: str
+    unit: str
+    verdict: Verdict
+    reason: str
+    created: bool
+    """False when the same bytes were already stored."""
+    is_reference: bool
+    """Whether later sessions are judged against this one."""
+
+
+@dataclass(frozen=True)
+class SessionReport:
+    """Everything a session's page or answer shows."""
+
+    session: StoredSession
+    calibration: Calibration
+    """As computed at upload; `storage` rebuilds it from what it kept."""
+    decisions: tuple[Decision, ...]
+    motions: tuple[CommonMotion, ...] = ()
+    """What all sensors did together since the reference."""

@@ -1,0 +1,95 @@
+"""Units and their types with tolerances; the condition of one unit and of the fleet."""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from service.records.decision import Verdict
+from service.records.event import Service
+from service.records.session import StoredSession
+
+
+@dataclass(frozen=True)
+class Tolerances:
+    """Largest allowed deviation from the reference, per parameter; None where the parameter is not judged."""
+
+    scale: float | None
+    """Relative (1e-6 is 1 ppm)."""
+    bias: float | None
+    """m/s² (rad/s)."""
+    quadratic: float | None
+    """s²/m (s/rad)."""
+    axis: float | None
+    """rad."""
+
+
+@dataclass(frozen=True)
+class UnitType:
+    """A kind of unit: nominal axes and tolerances that all its units share."""
+
+    name: str
+    block: str
+    sensors: tuple[str, ...]
+    nominal_axes: tuple[tuple[float, float, float], ...]
+    nominal_scales: tuple[float, ...]
+    tolerances: Tolerances
+    gyro_tolerances: Tolerances | None
+    """For the gyros of a mixed block; None when the block has one kind of sensor."""
+    revision: int
+    """Counts up with every change of tolerances; decisions name the revision they were made under."""
+    maximum_interval_days: float = 365.0
+    """Longest time from a session to the next calibration."""
+
+
+@dataclass(frozen=True)
+class UnitSummary:
+    """One line of the fleet page."""
+
+    serial: str
+    unit_type: str
+    simulated: bool
+    sessions: int
+    last_session: str | None
+    last_at: datetime | None
+    verdict: Verdict | None
+    """Of the latest session; None when the unit has none."""
+    is_reference: bool
+    """Whether the latest session is one that later ones are judged against."""
+    reason: str
+    worst_sensor: str | None
+    worst_parameter: str | None
+    margin: float | None
+    """1 − (|d| + U)/T of the worst parameter: 1 is spotless, 0 the edge of pass, negative beyond."""
+    diagnosis: str = ""
+    """What the simulation gets wrong about the latest session, in one line; empty where nothing is wrong."""
+    flags: int = 0
+    """How many are open."""
+    due: datetime | None = None
+    """Of the next calibration."""
+    lot: str | None = None
+    """Of production."""
+
+
+@dataclass(frozen=True)
+class FleetCondition:
+    """How many units are in which condition."""
+
+    units: int
+    verdicts: dict[Verdict, int]
+    """Every verdict is a key."""
+    simulated: int
+    flags: int = 0
+    """How many are open on all units together."""
+
+
+@dataclass(frozen=True)
+class UnitReport:
+    """Everything a unit's page or answer shows, apart from its history."""
+
+    summary: UnitSummary
+    unit_type: UnitType
+    reference_session: str | None
+    """What the next session will be judged against; None when the next one becomes the reference."""
+    sessions: tuple[StoredSession, ...]
+    """The latest ones, newest first."""
+    services: tuple[Service, ...]
+    """All known breaks, oldest first."""

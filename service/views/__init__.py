@@ -1,0 +1,1 @@
+"""What is read and put together for showing."""

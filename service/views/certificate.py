@@ -1,0 +1,104 @@
+"""Flow: everything that a certificate of a session states, read from what is stored."""
+
+from dataclasses import dataclass
+from datetime import timedelta
+
+from estimator.results import Calibration
+from estimator.session import AS_LEFT, CALIBRATIONS, IN_SERVICE, CalibrationSession, comparable
+from service.ingest import read_upload
+from service.judging.model_in_force import in_force
+from service.measures import COVERAGE
+from service.records.diagnosis import StoredDiagnosis
+from service.records.event import Service
+from service.records.history import HistoryPoint
+from service.records.model import ModelRevision
+from service.records.session import SessionReport, StoredSession
+from service.records.unit import UnitType
+from service.settings import VERSION
+from service.storage import Storage
+from service.storage.store import Store
+from service.views.found_and_left import FoundAndLeft, found_and_left
+from service.views.history import recent_history
+from service.views.session_report import session_report
+
+MOST_POINTS = 10_000
+"""Points of the unit's history that are read, of the newest sessions up to the certified one."""
+MOST_EARLIER = 50
+"""Earlier sessions among which the one is looked for that shows the unit as found."""
+JUST_AFTER = timedelta(microseconds=1)
+
+
+@dataclass(frozen=True)
+class ReferenceSession:
+    """The session that another was judged against."""
+
+    session: StoredSession
+    calibration: Calibration
+
+
+@dataclass(frozen=True)
+class CertifiedSession:
+    """Everything that a certificate states. It rests on the session and on what came before it, never on later ones."""
+
+    report: SessionReport
+    source: CalibrationSession
+    """What the file says."""
+    unit_type: UnitType
+    reference: ReferenceSession | None
+    """None of a session that is the reference itself."""
+    pair: FoundAndLeft | None
+    """Of a session that shows the unit as left: with the one that shows it as found."""
+    diagnosis: StoredDiagnosis
+    revisions: tuple[ModelRevision, ...]
+    """The accepted causes that its calibration takes into account."""
+    services: tuple[Service, ...]
+    """Of the unit, up to the session."""
+    history: tuple[HistoryPoint, ...]
+    software: str
+    """Version."""
+
+
+def certified_session(storage: Storage, diagnosis: StoredDiagnosis) -> CertifiedSession:
+    """The session of a diagnosis with all that its certificate needs."""
+    id = diagnosis.session
+    with storage.database.reading() as store:
+        report = session_report(store, id)
+        stored = report.session
+        until = stored.started_at + JUST_AFTER
+        return CertifiedSession(
+            report=report,
+            source=read_upload(storage.files.read(stored.sha256), stored.filename),
+            unit_type=store.unit_types.of_unit(stored.unit),
+            reference=_reference(store, stored),
+            pair=_pair(store, report),
+            diagnosis=diagnosis,
+            revisions=in_force([r for r in store.models.of_session(id) if r.id <= stored.revision]),
+            services=tuple(s for s in store.services.of_unit(stored.unit) if s.at < until),
+            history=recent_history(store, stored.unit, MOST_POINTS, until=until),
+            software=VERSION,
+        )
+
+
+def _reference(store: Store, stored: StoredSession) -> ReferenceSession | None:
+    """What the session was judged against."""
+    if stored.is_reference:
+        return None
+    unit, block = store.units.key(stored.unit), store.unit_types.of_unit(stored.unit).block
+    since, until = store.services.around(unit, stored.started_at)
+    alike = CALIBRATIONS if stored.programme == IN_SERVICE else comparable(stored.programme)
+    found = store.sessions.reference(unit, block, since, until, alike)
+    if found is None or found == stored.id:
+        return None
+    return ReferenceSession(store.sessions.get(found), store.calibrations.get(found))
+
+
+def _pair(store: Store, report: SessionReport) -> FoundAndLeft | None:
+    """The unit as found and as left, where the session is the latter."""
+    stored = report.session
+    if stored.stage != AS_LEFT:
+        return None
+    sessions = (*store.sessions.before(stored, None, MOST_EARLIER), stored)
+    k = report.decisions[0].coverage_factor if report.decisions else COVERAGE
+    services = store.services.of_unit(stored.unit)
+    pair = found_and_left(store, store.unit_types.of_unit(stored.unit), sessions, services, k)
+    return pair if pair is not None and pair.left == stored else None

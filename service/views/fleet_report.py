@@ -1,0 +1,39 @@
+"""Flow: the whole fleet for a report, worst units first."""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from service.records.outlook import UnitOutlook
+from service.records.unit import FleetCondition, UnitSummary
+from service.settings import VERSION
+from service.storage.store import Store
+from service.views.fleet import fleet_overview
+from service.views.fleet_condition import fleet_condition
+from service.views.outlook import outlooks_of_fleet
+
+MOST_UNITS = 10_000
+
+
+@dataclass(frozen=True)
+class FleetReport:
+    """The fleet at one moment."""
+
+    at: datetime
+    condition: FleetCondition
+    units: tuple[UnitSummary, ...]
+    """Worst first."""
+    outlooks: tuple[UnitOutlook, ...]
+    """When each must be calibrated next, and why."""
+    software: str
+    """Version."""
+
+
+def fleet_report(store: Store, now: datetime) -> FleetReport:
+    """The condition of every unit."""
+    return FleetReport(
+        at=now,
+        condition=fleet_condition(store),
+        units=fleet_overview(store, limit=MOST_UNITS),
+        outlooks=outlooks_of_fleet(store, now),
+        software=VERSION,
+    )

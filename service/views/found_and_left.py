@@ -1,0 +1,73 @@
+"""Flow: a unit as it was found and as it was left, both against the reference that held when it was found."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from estimator.results import Calibration
+from estimator.session import AS_FOUND, AS_LEFT, CALIBRATIONS
+from service.judging.judge import decisions_of
+from service.records.decision import Decision
+from service.records.event import Service
+from service.records.session import StoredSession
+from service.records.unit import UnitType
+from service.storage.queries.services import epoch
+from service.storage.store import Store
+
+
+@dataclass(frozen=True)
+class FoundAndLeft:
+    """The latest pair of a unit; a session that is still to be measured is None."""
+
+    reference: str | None
+    """The session that both are judged against; None where the unit was found at its reference."""
+    found: StoredSession
+    left: StoredSession | None
+    decisions: tuple[tuple[Decision, Decision | None], ...]
+    """Of every judged parameter as found and as left, in the order of the sensors."""
+
+
+def found_and_left(
+    store: Store,
+    unit_type: UnitType,
+    sessions: Sequence[StoredSession],
+    services: Sequence[Service],
+    coverage_factor: float,
+) -> FoundAndLeft | None:
+    """The latest as-found session among some, and the first as-left one after it; None where nothing was found."""
+    found = max((s for s in sessions if s.stage == AS_FOUND), key=_when, default=None)
+    if found is None:
+        return None
+    later = (s for s in sessions if s.stage == AS_LEFT and _when(s) > _when(found) and s.programme in CALIBRATIONS)
+    left = min(later, key=_when, default=None)
+    since, until = epoch(tuple(service.at for service in services), found.started_at)
+    unit = store.units.key(found.unit)
+    reference = store.sessions.reference(unit, unit_type.block, since, until)
+    known = store.calibrations.in_force(s for s in (reference, found.id, None if left is None else left.id) if s)
+    return FoundAndLeft(
+        None if reference == found.id else reference,
+        found,
+        left,
+        _beside(known, reference, found, left, unit_type, coverage_factor),
+    )
+
+
+def _beside(
+    known: dict[str, Calibration],
+    reference: str | None,
+    found: StoredSession,
+    left: StoredSession | None,
+    unit_type: UnitType,
+    coverage_factor: float,
+) -> tuple[tuple[Decision, Decision | None], ...]:
+    """Both judged by the tolerances that hold now."""
+    if reference is None:
+        return ()
+    before = decisions_of(known[found.id], known[reference], unit_type, coverage_factor)
+    after = decisions_of(known[left.id], known[reference], unit_type, coverage_factor) if left else ()
+    by_key = {(d.sensor, d.parameter): d for d in after}
+    return tuple((d, by_key.get((d.sensor, d.parameter))) for d in before)
+
+
+def _when(session: StoredSession) -> datetime:
+    return session.started_at

@@ -1,0 +1,77 @@
+"""Flow: the stands' own health, from what the units measured on them did together."""
+
+from collections.abc import Sequence
+from datetime import datetime
+
+import numpy as np
+
+from estimator.health.common_motion import AXES, sigma_of, size_of
+from estimator.health.stands import Motion, StandShift, stand_shifts
+from service.measures import COVERAGE, deviation_unit, measured, signed
+from service.records.stand import MotionOnStand, StandCondition, StandEvidence
+from service.storage.store import Store
+from service.words.names import YEAR, day_of
+
+STEADY = "Nothing that all units measured on it have in common."
+TOO_FEW = "Fewer than three units tell of it."
+
+
+def stand_conditions(store: Store) -> tuple[StandCondition, ...]:
+    """Every stand with its condition and the evidence, by name."""
+    motions = store.stands.motions()
+    evidence: dict[str, list[StandEvidence]] = {motion.stand: [] for motion in sorted(motions, key=lambda m: m.stand)}
+    for kind, quantity in dict.fromkeys((motion.kind, motion.quantity) for motion in motions):
+        own = [motion for motion in motions if (motion.kind, motion.quantity) == (kind, quantity)]
+        for shift in _shifts(own):
+            if shift.p_value is not None:
+                evidence[shift.stand].append(_evidence(shift, kind, quantity, own[0].at))
+    sessions = {stand: {(m.unit, m.at) for m in motions if m.stand == stand} for stand in evidence}
+    return tuple(_condition(stand, len(sessions[stand]), found) for stand, found in evidence.items())
+
+
+def _shifts(own: Sequence[MotionOnStand]) -> tuple[StandShift, ...]:
+    """By years from the first of them."""
+    return stand_shifts(
+        [
+            Motion(
+                stand=motion.stand,
+                unit=f"{motion.unit}/{motion.epoch}",
+                time=(motion.at - own[0].at) / YEAR,
+                value=np.array(motion.value),
+                covariance=np.array(motion.covariance),
+            )
+            for motion in own
+        ]
+    )
+
+
+def _evidence(shift: StandShift, kind: str, quantity: str, start: datetime) -> StandEvidence:
+    return StandEvidence(
+        kind=kind,
+        quantity=quantity,
+        since=start + (shift.since or 0.0) * YEAR,
+        value=shift.value,
+        size=size_of(quantity, shift.value),
+        sigma=sigma_of(shift.value, shift.covariance),
+        p_value=shift.p_value or 0.0,
+        units=shift.units,
+        agreeing=shift.agreeing,
+        has_shifted=shift.has_shifted,
+    )
+
+
+def _condition(stand: str, sessions: int, found: Sequence[StandEvidence]) -> StandCondition:
+    shifted = [evidence for evidence in found if evidence.has_shifted]
+    if not shifted:
+        return StandCondition(stand, sessions, False, STEADY if found else TOO_FEW, tuple(found))
+    worst = min(shifted, key=lambda evidence: evidence.p_value)
+    return StandCondition(stand, sessions, True, _reason(worst), tuple(found))
+
+
+def _reason(worst: StandEvidence) -> str:
+    seen = f"seen on {worst.agreeing} of {worst.units} units since {day_of(worst.since)}"
+    if worst.quantity == AXES:
+        size = measured(worst.size, COVERAGE * worst.sigma, deviation_unit(worst.kind, "axis", worst.size))
+        return f"It turns every block by {size}, {seen}: check stand and fixture. The units are judged without it."
+    size = signed(worst.size, COVERAGE * worst.sigma, deviation_unit(worst.kind, "scale", worst.size))
+    return f"It changes every scale factor by {size}, {seen}: check it. The units are judged without it."

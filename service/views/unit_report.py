@@ -1,0 +1,29 @@
+"""Flow: everything that is known of one unit, apart from its history."""
+
+from datetime import datetime
+
+from estimator.session import PROGRAMMES
+from service.errors import NotFoundError
+from service.records.unit import UnitReport
+from service.storage.queries.services import epoch
+from service.storage.store import Store
+
+LATEST = 50
+
+
+def unit_report(store: Store, serial: str, now: datetime) -> UnitReport:
+    """The unit's condition, type, latest sessions and known breaks."""
+    found = store.fleet.unit_with_type(serial)
+    if found is None:
+        raise NotFoundError(f"There is no unit {serial!r}.")
+    summary, unit_type = found
+    unit = store.units.key(serial)
+    services = store.services.of_unit(serial)
+    since, until = epoch(tuple(service.at for service in services), now)
+    return UnitReport(
+        summary=summary,
+        unit_type=unit_type,
+        reference_session=store.sessions.reference(unit, unit_type.block, since, until, PROGRAMMES),
+        sessions=store.sessions.page(serial, 0, LATEST),
+        services=services,
+    )

@@ -1,0 +1,1 @@
+"""Every sentence made from results: one fact is said in one way."""

@@ -1,0 +1,28 @@
+"""What to measure so that a session tells what it leaves open."""
+
+from estimator.results import Calibration
+from estimator.session import ACCELEROMETER
+from service.measures import number
+
+
+def what_to_add(calibration: Calibration) -> str:
+    """The rows that would tell what a session leaves open."""
+    flipped, add = calibration.residuals.flipped, calibration.fit.add
+    if flipped is not None and len(set(flipped)) == 1:
+        return "measure the same positions in the other run too"
+    if not add:
+        return "more or other positions would tell it"
+    up = ", ".join(f"({', '.join(number(x, 2) for x in direction)})" for direction in add)
+    return f"add {len(add)} still orientation{'s' if len(add) > 1 else ''} with up, in block axes, along {up}"
+
+
+def left_open(calibration: Calibration) -> str:
+    """What a calibration does not show of its accelerometers, and what to add; empty where it shows all it must."""
+    needed = ("scale", "bias", "axis")
+    felt = [s for s in calibration.sensors if s.kind == ACCELEROMETER and set(needed) <= set(s.observable)]
+    blind = [s.name for s in felt if not all(s.observable[name] for name in needed)]
+    if not blind or calibration.parity is not None:
+        return ""
+    missing = [name for name in needed if any(not s.observable[name] for s in felt)]
+    who = "every accelerometer" if len(blind) == len(felt) else ", ".join(blind)
+    return f"It does not show {', '.join(missing)} of {who}: {what_to_add(calibration)}."

@@ -1,0 +1,66 @@
+"""Step: how well the model explains the readings, in words."""
+
+from dataclasses import dataclass
+from math import isfinite, sqrt
+
+from estimator.results import Calibration, Fit
+from service.measures import number
+from service.words.advice import what_to_add
+
+
+@dataclass(frozen=True)
+class FitWords:
+    """How well the model fits, for people."""
+
+    headline: str
+    detail: str
+    warnings: tuple[str, ...]
+
+
+def fit_in_words(calibration: Calibration) -> FitWords:
+    """What χ² and its probability say, and what to be careful of."""
+    fit = calibration.fit
+    return FitWords(_headline(fit), _detail(fit), (*_warnings(fit), *_open(calibration)))
+
+
+def _headline(fit: Fit) -> str:
+    if fit.p_value is None:
+        return "The file states no standard errors: the noise was estimated from the residuals."
+    if fit.p_value < 0.001:
+        return "The readings scatter more than the stated noise allows."
+    if fit.p_value < 0.05:
+        return "The model fits, but the residuals are larger than usual."
+    if fit.p_value > 0.999:
+        return "The model fits; the stated noise looks too large."
+    return "The model explains the readings within the stated noise."
+
+
+def _detail(fit: Fit) -> str:
+    chance = ""
+    if fit.p_value is not None:
+        share = "less than 0.01 %" if fit.p_value < 1e-4 else f"{number(100 * fit.p_value, 1 + (fit.p_value < 0.01))} %"
+        chance = f"; a sound model would give this much or more in {share} of sessions"
+    return f"χ² = {number(fit.chi2, 1)} for {fit.dof} degrees of freedom{chance}."
+
+
+def _warnings(fit: Fit) -> list[str]:
+    found = []
+    if fit.covariance_factor > 1 and isfinite(fit.covariance_factor):
+        found.append(
+            f"All uncertainties were enlarged {number(sqrt(fit.covariance_factor), 2)} times, because the stated "
+            "noise cannot explain the residuals. Look for structure in them below."
+        )
+    if not fit.converged:
+        found.append(f"The fit did not settle within {fit.iterations} iterations: do not rely on these numbers.")
+    return found
+
+
+def _open(calibration: Calibration) -> list[str]:
+    """What the session leaves open, and what to add."""
+    fit = calibration.fit
+    if fit.rank >= fit.parameters:
+        return []
+    return [
+        f"The session determines {fit.rank} of {fit.parameters} parameters. The least known is {fit.weakest[0]}; "
+        f"{what_to_add(calibration)}."
+    ]

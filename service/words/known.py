@@ -1,0 +1,52 @@
+"""Step: what is known of parameters that a session cannot tell apart, as a sum in people's units."""
+
+from dataclasses import dataclass
+
+from estimator.results import KnownCombination
+from service.measures import COVERAGE, DeviationUnit, measured, reading_unit, value_unit
+
+READING_TERMS = {
+    "zero_reading": ("K·b", 0),
+    "sensitivity_x": ("K·e_x", 1),
+    "sensitivity_y": ("K·e_y", 1),
+    "sensitivity_z": ("K·e_z", 1),
+    "quadratic_reading": ("K·c", 2),
+}
+"""What readings are linear in: how it is written, and the power of the input that it multiplies."""
+NEGLIGIBLE = 1e-6
+
+
+@dataclass(frozen=True)
+class _Term:
+    """One quantity of a sum, with its coefficient and unit for people."""
+
+    name: str
+    unit: DeviationUnit
+    coefficient: float
+
+
+def combination_in_words(known: KnownCombination, kind: str) -> str:
+    """``bias + 0.5 × quadratic = 12.3 ± 0.4 µg``; readings in their own unit, per g (per °/s) and its square."""
+    terms = [_term(name, coefficient, kind) for name, coefficient in known.coefficients.items()]
+    lead = max(terms, key=lambda t: abs(t.coefficient))
+    unit = DeviationUnit(lead.unit.label, 1 / lead.coefficient)
+    shares = [(t.coefficient / lead.coefficient, t.name) for t in terms]
+    left = " + ".join(_product(share, name) for share, name in shares if abs(share) > NEGLIGIBLE)
+    total = measured(known.value, COVERAGE * known.sigma, unit).rstrip()
+    return f"{left} = {total}".replace("+ −", "− ")
+
+
+def _term(name: str, coefficient: float, kind: str) -> _Term:
+    element = name.rpartition(".")[2]
+    if element in READING_TERMS:
+        written, power = READING_TERMS[element]
+        unit = DeviationUnit("", reading_unit(kind).factor ** power)
+        return _Term(written, unit, coefficient / unit.factor)
+    unit = value_unit(kind, element.partition("_")[0], 0.0)
+    return _Term(element, unit, coefficient / unit.factor)
+
+
+def _product(share: float, name: str) -> str:
+    if share == 1:
+        return name
+    return f"{share:.6f}".rstrip("0").rstrip(".").replace("-", "−") + f" × {name}"

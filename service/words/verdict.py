@@ -1,0 +1,96 @@
+"""Why a session's verdict is what it is, in one sentence that a technician understands."""
+
+from estimator.results import Calibration
+from service.measures import in_words
+from service.records.decision import Decision, Verdict, Worst
+from service.words.advice import left_open
+from service.words.names import PARAMETER_NAMES
+
+FIRST_SESSION = "First session of this unit: it is now the reference that later sessions are judged against."
+NEW_EPOCH = "First session after a service: it is now the reference that later sessions are judged against."
+NOTHING_JUDGED = "Nothing could be judged: no parameter of this session has a tolerance."
+ALL_PASS = "Every parameter is within its tolerance, beyond doubt; closest to it: {closest}."
+
+
+def first_in_words(calibration: Calibration, *, after_service: bool) -> str:
+    """That a session is the reference, and what of the unit it leaves open."""
+    return " ".join(filter(None, (NEW_EPOCH if after_service else FIRST_SESSION, left_open(calibration))))
+
+
+def worst_of(decisions: tuple[Decision, ...]) -> Decision | None:
+    """The decision that the session's verdict hangs on: the worst verdict, and of those the least margin."""
+    return max(decisions, key=lambda d: (d.verdict.severity, -_margin_rank(d)), default=None)
+
+
+def margin_of(decision: Decision) -> float | None:
+    """1 − (|d| + U)/T: 1 is spotless, 0 the edge of pass, negative beyond; None when not observed."""
+    if decision.deviation is None or decision.expanded is None:
+        return None
+    return 1 - (abs(decision.deviation) + decision.expanded) / decision.tolerance
+
+
+def worst_record(decisions: tuple[Decision, ...]) -> Worst:
+    """The worst decision as the store keeps it beside the session."""
+    worst = worst_of(decisions)
+    if worst is None:
+        return Worst(None, None, None)
+    return Worst(worst.sensor, worst.parameter, margin_of(worst))
+
+
+def reason(decisions: tuple[Decision, ...]) -> str:
+    """One sentence on the worst parameter, in people's units."""
+    worst = worst_of(decisions)
+    if worst is None:
+        return NOTHING_JUDGED
+    return _sentence(worst, decisions)
+
+
+def _margin_rank(decision: Decision) -> float:
+    margin = margin_of(decision)
+    return float("inf") if margin is None else margin
+
+
+def _sentence(worst: Decision, decisions: tuple[Decision, ...]) -> str:
+    place = f"{worst.sensor} {_name(worst)}"
+    if worst.deviation is None or worst.expanded is None:
+        return _unseen(worst, decisions)
+    moved = _words(worst, worst.deviation, signed=worst.parameter != "axis")
+    spread, allowed = _words(worst, worst.expanded), _words(worst, worst.tolerance)
+    if worst.verdict is Verdict.PASS:
+        return ALL_PASS.format(closest=f"{place}, moved {moved} (U {spread}) of {allowed} allowed")
+    if worst.verdict is Verdict.FAIL:
+        return f"{place} moved {moved} (U {spread}) beyond the tolerance of {allowed}."
+    if worst.verdict is Verdict.CONDITIONAL_FAIL:
+        return f"{place} moved {moved} (U {spread}): beyond the tolerance of {allowed}, by less than U."
+    if worst.verdict is Verdict.CONDITIONAL_PASS:
+        return f"{place} moved {moved} (U {spread}): within the tolerance of {allowed}, by less than U."
+    return _too_uncertain(place, moved, spread, allowed, worst)
+
+
+def _too_uncertain(place: str, moved: str, spread: str, allowed: str, worst: Decision) -> str:
+    if worst.expanded is not None and worst.expanded > worst.tolerance:
+        return (
+            f"{place} is known to U {spread} only, more than its tolerance of {allowed}: "
+            "measure more positions or better averages, or set a tolerance that can be decided."
+        )
+    return (
+        f"{place} moved {moved} (U {spread}), beyond the tolerance of {allowed} but no more than noise "
+        "makes the largest of so many numbers: measure again."
+    )
+
+
+def _unseen(worst: Decision, decisions: tuple[Decision, ...]) -> str:
+    sensors = [d.sensor for d in decisions if d.parameter == worst.parameter and d.deviation is None]
+    named = ", ".join(sensors[:6]) + (f" and {len(sensors) - 6} more" if len(sensors) > 6 else "")
+    missing = "has none in the reference session to compare with"
+    if worst.value is None:
+        missing = "is not observable in this session: add the positions that show it"
+    return f"{_name(worst).capitalize()} of {named} {missing}."
+
+
+def _name(decision: Decision) -> str:
+    return PARAMETER_NAMES[decision.parameter]
+
+
+def _words(decision: Decision, si: float, *, signed: bool = False) -> str:
+    return in_words(decision.kind, decision.parameter, si, signed=signed)

@@ -1,0 +1,53 @@
+"""Scatter without a pattern: noise in excess, or a course that runs smoothly along some order of the rows."""
+
+import numpy as np
+import pytest
+
+from estimator import Diagnosis, diagnose
+from estimator.diagnosis.signatures.autocorrelation import bayes_factor, kernels
+from estimator.session import ACCELEROMETER, Array
+from tests.estimator.causes.hiding import scene, with_readings
+
+WHERE = scene(ACCELEROMETER, 0)
+ROWS = len(WHERE.world.session.readings)
+
+
+def with_scatter(course: Array, seed: int) -> Diagnosis:
+    """One sensor's readings with something added, in its standard errors."""
+    return diagnose(with_readings(WHERE.measured(seed), course[:, None] * WHERE.noise[0] * np.eye(6)[1]))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_noise_above_the_stated_one_is_excess_noise(seed: int) -> None:
+    found = with_scatter(5 * np.random.default_rng(seed).standard_normal(ROWS), seed)
+    assert [(f.cause, f.sensors) for f in found.findings] == [("excess-noise", ("A2",))]
+    assert not found.unexplained
+
+
+def test_random_walks_are_no_noise() -> None:
+    """One walk in some dozens happens to look like noise."""
+    walks = [12 * np.cumsum(np.random.default_rng(seed).standard_normal(ROWS)) for seed in range(8)]
+    found = [with_scatter(walk, seed) for seed, walk in enumerate(walks)]
+    uneven = [f for f in found if f.unexplained]
+    assert len(uneven) >= 7
+    assert {s for f in uneven for where in f.structures for s in where.sensors} == {"A2"}
+
+
+@pytest.mark.parametrize("known", [False, True])
+def test_bayes_factors_keep_their_promise_under_noise(known: bool) -> None:
+    """Expectation at most one (Markov), and far fewer than 1/B of sound courses reach B."""
+    rng, place = np.random.default_rng(5), np.linspace(0, 1, 30)
+    covariances = kernels(place)
+    drawn = [
+        np.logaddexp.reduce([bayes_factor(c, y, known=known) for c in covariances]) - np.log(len(covariances))
+        for y in rng.standard_normal((400, 30))
+    ]
+    assert np.mean(np.exp(drawn)) < 1.3
+    assert np.mean(np.array(drawn) > np.log(20)) < 0.02
+
+
+def test_a_sensor_that_jumps_again_and_again_has_no_name() -> None:
+    steps = np.repeat([0.0, 30.0, -20.0, 25.0, -15.0, 10.0], ROWS // 6)
+    found = with_scatter(np.concatenate([steps, steps[: ROWS - len(steps)]]), 1)
+    assert found.unexplained
+    assert sum(f.cause == "bias-jump" for f in found.findings) == 0

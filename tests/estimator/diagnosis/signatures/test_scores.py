@@ -1,0 +1,68 @@
+"""Scores of signatures where there is no effect, and what they are worth."""
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.stats import kstest
+
+from estimator import diagnose
+from estimator.causes import cause
+from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.diagnosis.residuals.whitened import Evidence
+from estimator.diagnosis.signatures.lasting import traces_of
+from estimator.diagnosis.signatures.scores import bayes_factor, score
+from estimator.session import ACCELEROMETER
+from tests.estimator.causes.hiding import scene, with_readings
+
+LINEAR = [cause(name) for name in ("cubic-nonlinearity", "bias-ramp", "beta-eccentricity", "flip-misalignment")]
+
+
+def p_values(*, stated: bool) -> list[float]:
+    """Of every place of four causes in twenty sessions without an effect."""
+    where, found = scene(ACCELEROMETER, 0), []
+    for seed in range(20):
+        session = where.measured(seed)
+        if not stated:
+            session = replace(session, standard_errors=np.full(session.readings.shape, np.nan))
+        evidence = Evidence.of(baseline_of(session))
+        nothing = np.zeros((len(evidence.z), 0))
+        found += [s.p_value for s in score(evidence, traces_of(evidence, LINEAR), nothing)]
+    return found
+
+
+def test_without_an_effect_the_score_is_chi_square() -> None:
+    assert kstest(p_values(stated=True), "uniform").pvalue > 1e-3
+
+
+def test_under_unknown_noise_the_score_is_as_rare_as_its_f() -> None:
+    assert kstest(p_values(stated=False), "uniform").pvalue > 1e-3
+
+
+def test_evidence_grows_with_the_score() -> None:
+    for q in (1, 2, 3):
+        values = [bayes_factor(t, q) for t in np.linspace(q + 1e-6, 60, 200)]
+        assert np.all(np.diff(values) > 0)
+
+
+def test_every_amplitude_has_to_pay() -> None:
+    assert bayes_factor(30.0, 1) > bayes_factor(30.0, 2) > bayes_factor(30.0, 3)
+
+
+def test_no_more_than_expected_is_no_evidence() -> None:
+    assert bayes_factor(0.5, 1) == 0.0
+    assert bayes_factor(2.9, 3) == bayes_factor(0.1, 3) < 0.0
+
+
+def test_unknown_noise_names_no_cause_in_sound_sessions() -> None:
+    where = scene(ACCELEROMETER, 0)
+    for seed in range(6):
+        session = replace(where.measured(seed), standard_errors=np.full((48, 6), np.nan))
+        assert not diagnose(session).findings
+
+
+def test_an_effect_is_found_under_unknown_noise() -> None:
+    where = scene(ACCELEROMETER, 0)
+    jump = 0.12 * 2e-3 * (np.arange(48) >= 20)[:, None] * np.eye(6)[2]
+    session = replace(with_readings(where.measured(1), jump), standard_errors=np.full((48, 6), np.nan))
+    (finding,) = diagnose(session).findings
+    assert (finding.cause, finding.sensors, finding.nonlinear) == ("bias-jump", ("A3",), {"row": 21.0})

@@ -1,0 +1,139 @@
+"""An upload is stored whole, once, or not at all."""
+
+import json
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from datetime import UTC, datetime
+from typing import Any
+
+import pytest
+from sqlalchemy import Connection, event, func, select, text
+
+from service.errors import AwayError, NoSpaceError, RefusedError
+from service.flows.receive import upload
+from service.settings import Settings
+from service.storage import Database, Files, Storage
+from service.storage.tables import (
+    AuditRow,
+    CalibrationRow,
+    DecisionRow,
+    ParameterRow,
+    RefusalRow,
+    SessionRow,
+    UnitRow,
+)
+from tests.builders import arbitrary_orientations, gyro_block
+from tests.databases import Databases, PostgresDatabases
+from tests.service.sessions import session_bytes
+
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
+KEPT = (UnitRow, SessionRow, CalibrationRow, ParameterRow, DecisionRow, AuditRow)
+
+
+def counts(storage: Storage) -> list[int]:
+    """Rows of every table that an upload writes to."""
+    with storage.database.engine.connect() as connection:
+        return [connection.scalar(select(func.count()).select_from(table)) or 0 for table in KEPT]
+
+
+@pytest.fixture
+def twin(settings: Settings) -> Iterator[Storage]:
+    """A second service on the same database and folder."""
+    database = Database(settings.database)
+    yield Storage(database, Files(settings.files))
+    database.close()
+
+
+def test_an_upload_leaves_one_row_of_everything(storage: Storage) -> None:
+    upload(storage, session_bytes(), "a.json", NOW)
+    assert counts(storage) == [1, 1, 1, 24, 24, 1]
+
+
+def test_two_services_given_the_same_file_at_once_store_it_once(storage: Storage, twin: Storage) -> None:
+    content = session_bytes()
+    with ThreadPoolExecutor(8) as pool:
+        futures = [pool.submit(upload, place, content, "a.json", NOW) for place in (storage, twin) * 4]
+        receipts = [future.result() for future in futures]
+    assert len({receipt.id for receipt in receipts}) == 1
+    assert sum(receipt.created for receipt in receipts) == 1
+    assert counts(storage) == [1, 1, 1, 24, 24, 1]
+
+
+def test_rival_first_sessions_of_a_unit_leave_one_reference(storage: Storage, twin: Storage) -> None:
+    contents = [session_bytes(seed=seed) for seed in range(6)]
+    with ThreadPoolExecutor(6) as pool:
+        jobs = zip((storage, twin) * 3, contents, strict=True)
+        futures = [pool.submit(upload, place, content, "a.json", NOW) for place, content in jobs]
+        verdicts = [future.result().verdict.value for future in futures]
+    assert sorted(verdicts) == ["pass"] * 5 + ["undecidable"]
+
+
+def test_a_refusal_is_recorded_with_its_problems_and_nothing_else_is(storage: Storage) -> None:
+    with pytest.raises(RefusedError) as caught:
+        upload(storage, b'{"format": 1, "table": {}}', "../bad\n.json", NOW)
+    with storage.database.engine.connect() as connection:
+        row = connection.execute(select(RefusalRow.filename, RefusalRow.size, RefusalRow.problems)).one()
+    assert (row.filename, row.size) == ("bad.json", 26)
+    assert [p["message"] for p in row.problems] == [p.message for p in caught.value.problems]
+    assert counts(storage)[:5] == [0] * 5
+    assert not storage.files.folder.exists()
+
+
+def test_a_unit_with_two_blocks_has_a_reference_for_each(storage: Storage) -> None:
+    gyros = [json.dumps(gyro_block(seed=seed) | {"unit": "BA-017"}).encode() for seed in (1, 2)]
+    files = [session_bytes(), gyros[0], session_bytes(seed=2), gyros[1]]
+    ids = [upload(storage, file, "a.json", NOW).id for file in files]
+    with storage.database.reading() as store:
+        assert [store.sessions.get(id).is_reference for id in ids] == [True, True, False, False]
+
+
+def test_a_full_disk_under_the_database_stores_nothing_and_is_said(sqlite: Databases, tmp_path: Any) -> None:
+    database = Database(sqlite.migrated())
+    storage = Storage(database, Files(tmp_path / "files"))
+
+    def limit(connection: Any, _: Any) -> None:
+        pages = connection.execute("PRAGMA page_count").fetchone()[0]
+        connection.execute(f"PRAGMA max_page_count={pages + 1}")
+
+    event.listen(database.engine, "connect", limit)
+    with pytest.raises(NoSpaceError, match="disk is full"):
+        upload(storage, session_bytes(), "a.json", NOW)
+    assert counts(storage) == [0] * 6
+    event.remove(database.engine, "connect", limit)
+    database.close()
+    assert upload(storage, session_bytes(), "a.json", NOW).created
+    assert counts(storage) == [1, 1, 1, 24, 24, 1]
+    database.close()
+
+
+def test_a_database_killed_at_the_commit_leaves_nothing_and_the_upload_can_be_repeated(
+    postgresql: PostgresDatabases, tmp_path: Any
+) -> None:
+    database = Database(postgresql.migrated())
+    storage = Storage(database, Files(tmp_path / "files"))
+    other = Database(postgresql.server.get_uri())
+
+    def kill(connection: Connection) -> None:
+        mine = connection.scalar(text("SELECT pg_backend_pid()"))
+        with other.engine.connect() as admin:
+            admin.execute(text("SELECT pg_terminate_backend(:pid)"), {"pid": mine})
+
+    event.listen(database.engine, "commit", kill)
+    with pytest.raises(AwayError):
+        upload(storage, session_bytes(), "a.json", NOW)
+    event.remove(database.engine, "commit", kill)
+    assert counts(storage) == [0] * 6
+    assert upload(storage, session_bytes(), "a.json", NOW).created
+    database.close()
+    other.close()
+
+
+def test_a_reference_that_leaves_something_open_says_what_to_add(storage: Storage) -> None:
+    document = arbitrary_orientations(orientations=7)
+    receipt = upload(storage, json.dumps(document).encode(), "seven.json", NOW)
+    assert receipt.is_reference
+    assert "It does not show scale, bias, axis of every accelerometer: add 2 still orientations" in receipt.reason
+
+
+def test_a_reference_that_shows_everything_says_no_more(storage: Storage) -> None:
+    assert upload(storage, session_bytes(), "a.json", NOW).reason.endswith("judged against.")

@@ -1,0 +1,74 @@
+"""List pages cost a fixed number of queries, however much is stored."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from datetime import UTC, datetime
+
+import pytest
+from sqlalchemy import event
+
+from service.flows.receive import upload
+from service.storage import Storage
+from service.storage.store import Store
+from service.views.flag_list import flag_list
+from service.views.fleet import fleet_overview
+from service.views.fleet_condition import fleet_condition
+from service.views.history import unit_history
+from service.views.outlook import outlook_of, outlooks_of_fleet
+from service.views.session_list import session_list
+from service.views.session_report import session_report
+from service.views.stands import stand_conditions
+from service.views.unit_report import unit_report
+from service.views.unit_types import unit_types
+from tests.service.sessions import session_bytes
+
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
+Page = Callable[[Store], object]
+PAGES: dict[str, tuple[int, Page]] = {
+    "fleet": (1, fleet_overview),
+    "condition": (1, fleet_condition),
+    "history": (2, lambda store: unit_history(store, "BA-000")),
+    "unit": (8, lambda store: unit_report(store, "BA-000", NOW)),
+    "sessions": (1, session_list),
+    "flags": (1, flag_list),
+    "flags of a unit": (2, lambda store: flag_list(store, unit="BA-000")),
+    "outlook": (2, lambda store: outlook_of(store, "BA-000", NOW)),
+    "outlooks": (2, lambda store: outlooks_of_fleet(store, NOW)),
+    "stands": (1, stand_conditions),
+    "types": (1, unit_types),
+}
+
+
+@contextmanager
+def counted(storage: Storage) -> Iterator[list[str]]:
+    """The statements that a block sends."""
+    statements: list[str] = []
+
+    def note(_c: object, _k: object, statement: str, *_: object) -> None:
+        statements.append(statement)
+
+    event.listen(storage.database.engine, "before_cursor_execute", note)
+    yield statements
+    event.remove(storage.database.engine, "before_cursor_execute", note)
+
+
+def queries(storage: Storage, page: Page) -> int:
+    """How many queries a page costs."""
+    with storage.database.reading() as store, counted(storage) as statements:
+        page(store)
+    return sum(not statement.startswith("BEGIN") for statement in statements)
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_queries_of_a_page_do_not_grow_with_the_fleet(storage: Storage, name: str) -> None:
+    most, page = PAGES[name]
+    upload(storage, session_bytes(unit="BA-000"), "a.json", NOW)
+    few = queries(storage, page)
+    for i in range(3):
+        upload(storage, session_bytes(unit=f"BA-00{i}", seed=10 + i, m=4 if i else 6), "a.json", NOW)
+    assert queries(storage, page) == few <= most
+
+
+def test_a_session_report_is_four_queries(storage: Storage) -> None:
+    id = upload(storage, session_bytes(), "a.json", NOW).id
+    assert queries(storage, lambda store: session_report(store, id)) == 4

@@ -1,0 +1,75 @@
+"""A stand whose seat has turned is found over the units that are measured on it."""
+
+import json
+from datetime import UTC, datetime
+
+import httpx
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from service.background.shifted_stands import flag_shifted_stands
+from service.flows.handle_flag import resolve_flag
+from service.flows.receive import upload
+from service.records.flag import Matter
+from service.storage import Storage
+from service.views.flag_list import flag_list
+from tests.builders import ARCSEC, TrueSensor, accelerometer_block, true_sensors
+
+TURN = Rotation.from_rotvec(np.array([5.0, -8.0, 12.0]) * ARCSEC)
+
+
+def seated(turned: bool) -> list[TrueSensor]:
+    """Six sensors, turned as a block or not."""
+    sensors = true_sensors(6, bias=1e-3, quadratic=1e-6, tilt=1e-4)
+    if not turned:
+        return sensors
+    axes = TURN.apply(np.array([s.axis for s in sensors]))
+    return [
+        TrueSensor(s.name, tuple(axis), s.scale, s.bias, s.quadratic) for s, axis in zip(sensors, axes, strict=True)
+    ]
+
+
+def measured_on(stand: str, unit: str, month: int, seed: int) -> bytes:
+    """A session of 2026; the seat of S2 turned in June."""
+    document = accelerometer_block(sensors=seated(stand == "S2" and month > 6), unit=unit, seed=seed, positions=24)
+    document["stand"]["id"] = stand
+    return json.dumps(document | {"started_at": f"2026-{month:02d}-01T09:00:00Z"}).encode()
+
+
+def test_a_turned_stand_is_flagged_and_its_units_are_not(client: httpx.Client) -> None:
+    for number in range(4):
+        for month, stand in ((1, "S1"), (3, "S2"), (5, "S1"), (7, "S2"), (9, "S2")):
+            content = measured_on(stand, f"BA-{number}", month, seed=10 * number + month)
+            assert client.post("/api/v1/sessions", content=content).status_code == 201
+    found = {s["stand"]: s for s in client.get("/api/v1/stands").json()["stands"]}
+    assert {stand: s["has_shifted"] for stand, s in found.items()} == {"S1": False, "S2": True}
+    axes = next(e for e in found["S2"]["evidence"] if e["quantity"] == "axes")
+    assert axes["since"] == "2026-07-01T09:00:00Z"
+    assert abs(axes["size"] / ARCSEC - 15.26) < 4 * axes["sigma"] / ARCSEC
+    assert {u["verdict"] for u in client.get("/api/v1/units").json()["units"]} == {"pass"}
+    latest = client.get("/api/v1/units/BA-1").json()["sessions"][0]["id"]
+    page = client.get(f"/sessions/{latest}", headers={"Accept": "text/html"}).text
+    assert "The whole block turned by 15" in page
+    assert "mounting or stand, not the sensors" in page
+
+
+def test_a_shifted_stand_raises_one_flag_on_the_units_that_it_measured_last(storage: Storage) -> None:
+    now = datetime(2026, 10, 1, tzinfo=UTC)
+    for number in range(4):
+        last = "S1" if number == 3 else "S2"
+        for month, stand in ((1, "S1"), (3, "S2"), (5, "S1"), (7, "S2"), (9, last)):
+            upload(storage, measured_on(stand, f"BA-{number}", month, seed=10 * number + month), "a.json", now)
+
+    def flagged() -> list[tuple[str, str, str]]:
+        with storage.database.reading() as store:
+            found = [flag for flag in flag_list(store) if flag.matter is Matter.SHIFTED]
+        return sorted((flag.unit, flag.place, flag.state.value) for flag in found)
+
+    flag_shifted_stands(storage, now)
+    assert flagged() == [(f"BA-{number}", "S2", "raised") for number in range(3)]
+    with storage.database.reading() as store:
+        first = next(flag.id for flag in flag_list(store, unit="BA-0") if flag.matter is Matter.SHIFTED)
+    resolve_flag(storage, first, "K. Ito", "seat of S2 mended", now)
+    flag_shifted_stands(storage, now)
+    assert flagged()[0] == ("BA-0", "S2", "resolved")
+    assert len(flagged()) == 3
