@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from estimator.diagnosis import Finding
 from estimator.diagnosis.results import Diagnosis, Gain, Score
-from service.measures import amplitude_unit, measured, number
+from service.measures import amplitude_measure, measured, number
 
 NOTHING = "Nothing wrong found."
 
@@ -46,7 +46,7 @@ def amplitudes(finding: Finding) -> Iterator[tuple[str, ...]]:
     for k, sensor in enumerate(places):
         part = slice(k * each, (k + 1) * each)
         shown = zip(finding.amplitude[part], finding.sigma[part], finding.units[part], strict=True)
-        yield sensor, *(measured(v, s, amplitude_unit(finding.cause, u, max(abs(v), s))) for v, s, u in shown)
+        yield sensor, *(measured(v, s, amplitude_measure(finding.cause, u, max(abs(v), s))) for v, s, u in shown)
 
 
 def evidence(finding: Finding) -> str:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from estimator.results import Residuals, SensorCalibration
 from service.charts import DATA_FORM, ChartSet, Panel, padded, specification
-from service.measures import THIN, DeviationUnit, decimals, deviation_unit, number
+from service.measures import THIN, Measure, decimals, deviation_measure, number
 
 HEIGHT = 130
 MOST_PANELS = 9
@@ -65,7 +65,7 @@ def _ways(residuals: Residuals) -> tuple[_Across, ...]:
 def _chart_set(sides: Sides, across: _Across, columns: list[int], several: bool) -> ChartSet:
     kind = sides.sensors[columns[0]].kind
     largest = _largest(sides, columns)
-    unit = deviation_unit(kind, "bias", largest)
+    unit = deviation_measure(kind, "bias", largest)
     return ChartSet(
         name=f"diagnosis-{kind}-{across.name}",
         heading=f"{across.heading}, {kind}s" if several else across.heading,
@@ -79,7 +79,7 @@ def _largest(sides: Sides, columns: list[int]) -> float:
     return float(np.max(edges, initial=0.0, where=np.isfinite(edges)))
 
 
-def _panel(sides: Sides, column: int, across: _Across, unit: DeviationUnit) -> Panel:
+def _panel(sides: Sides, column: int, across: _Across, unit: Measure) -> Panel:
     shown = [_rms(side, column, unit) for side in (sides.before, sides.after) if side is not None]
     return Panel(
         title=sides.sensors[column].name,
@@ -89,13 +89,13 @@ def _panel(sides: Sides, column: int, across: _Across, unit: DeviationUnit) -> P
     )
 
 
-def _rms(side: Residuals, column: int, unit: DeviationUnit) -> str:
+def _rms(side: Residuals, column: int, unit: Measure) -> str:
     value = side.value[:, column][np.isfinite(side.value[:, column])]
     rms = float(np.sqrt(np.mean(value**2))) * unit.factor if len(value) else 0.0
     return number(rms, decimals(rms))
 
 
-def _points(sides: Sides, column: int, across: _Across, unit: DeviationUnit) -> list[dict[str, Any]]:
+def _points(sides: Sides, column: int, across: _Across, unit: Measure) -> list[dict[str, Any]]:
     both = [(MODELS[0], sides.before), *([] if sides.after is None else [(MODELS[1], sides.after)])]
     flipped = sides.before.flipped
     return [
@@ -113,7 +113,7 @@ def _points(sides: Sides, column: int, across: _Across, unit: DeviationUnit) -> 
     ]
 
 
-def _spec(across: _Across, unit: DeviationUnit, largest: float) -> dict[str, Any]:
+def _spec(across: _Across, unit: Measure, largest: float) -> dict[str, Any]:
     domain = [-12, 372] if across.name == "beta" else padded(float(across.values.min()), float(across.values.max()))
     ticks = {"values": [0, 90, 180, 270, 360]} if across.name == "beta" else {"tickCount": 5}
     x = alt.X("x:Q", title=across.title, axis=alt.Axis(**ticks), scale=alt.Scale(domain=domain, nice=False, zero=False))
@@ -133,7 +133,7 @@ def _spec(across: _Across, unit: DeviationUnit, largest: float) -> dict[str, Any
     )
 
 
-def _marks(base: alt.Chart, y: alt.Y, unit: DeviationUnit, model: str) -> alt.Chart:
+def _marks(base: alt.Chart, y: alt.Y, unit: Measure, model: str) -> alt.Chart:
     """Before as empty marks, after as full ones; direct round, flipped pointed."""
     first = model == MODELS[0]
     colour = "var(--second)" if first else "var(--accent)"

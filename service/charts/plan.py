@@ -8,7 +8,7 @@ import numpy as np
 from estimator.planning import Plan, Sweep
 from estimator.planning.results import PARAMETERS
 from service.charts import DATA_FORM, ChartSet, Panel, specification
-from service.measures import DEVIATION_UNITS, DeviationUnit
+from service.measures import MEASURES, Measure
 
 HEIGHT = 150
 NAMES = {"scale": "Scale factor", "bias": "Bias", "quadratic": "Quadratic term", "axis": "Axis"}
@@ -35,7 +35,7 @@ def _parameters(plan: Plan, kind: str, sweep: Sweep, at: Any, chosen: float) -> 
     wanted = plan.request.wanted.row() * plan.request.share
     panels = []
     for k, name in enumerate(PARAMETERS):
-        unit, coverage = DEVIATION_UNITS[kind, name], plan.request.coverage
+        unit, coverage = MEASURES[kind, name], plan.request.coverage
         pairs = [(series, getattr(sweep, series)[:, k] * coverage * unit.factor) for series in SERIES[:2]]
         points = [p for series, values in pairs for p in _points(series, at, values)]
         if points:
@@ -45,7 +45,7 @@ def _parameters(plan: Plan, kind: str, sweep: Sweep, at: Any, chosen: float) -> 
     return panels
 
 
-def _panel(title: str, unit: DeviationUnit, points: list[dict[str, Any]], chosen: float) -> Panel:
+def _panel(title: str, unit: Measure, points: list[dict[str, Any]], chosen: float) -> Panel:
     words = f"U of the worst sensor, {unit.label}" if unit.label else "largest over smallest eigenvalue"
     return Panel(
         title=title,
@@ -68,7 +68,7 @@ def _rho(plan: Plan, degrees: Any) -> list[Panel]:
     points = _points("total", degrees, plan.over_elevation.conditioning)
     if not points:
         return []
-    panel = _panel("Conditioning ρ", DeviationUnit("", 1.0), points, float(np.degrees(plan.elevation)))
+    panel = _panel("Conditioning ρ", Measure("", 1.0), points, float(np.degrees(plan.elevation)))
     return [panel]
 
 

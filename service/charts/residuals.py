@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from estimator.results import Calibration, Residuals
 from service.charts import DATA_FORM, HIGH, LEFT, LOW, RIGHT, UNIT, ChartSet, Panel, filled, padded, specification
-from service.measures import THIN, DeviationUnit, decimals, deviation_unit, number
+from service.measures import THIN, Measure, decimals, deviation_measure, number
 
 HEIGHT = 130
 RUNS = ("direct", "flipped")
@@ -57,7 +57,7 @@ def _chart_set(calibration: Calibration, kind: str, across: _Across, several: bo
     residuals = calibration.residuals
     edges = np.abs(np.stack([residuals.value[:, columns], 2 * residuals.sigma[:, columns]]))
     largest = float(np.max(edges, initial=0.0, where=np.isfinite(edges)))
-    unit = deviation_unit(kind, "bias", largest)
+    unit = deviation_measure(kind, "bias", largest)
     return ChartSet(
         name=f"residuals-{kind}-{across.name}",
         heading=f"{across.heading}, {kind}s" if several else across.heading,
@@ -66,7 +66,7 @@ def _chart_set(calibration: Calibration, kind: str, across: _Across, several: bo
     )
 
 
-def _panel(calibration: Calibration, column: int, across: _Across, unit: DeviationUnit) -> Panel:
+def _panel(calibration: Calibration, column: int, across: _Across, unit: Measure) -> Panel:
     residuals = calibration.residuals
     value, sigma = residuals.value[:, column], residuals.sigma[:, column]
     outside = int(np.sum(np.abs(value) > 2 * sigma))
@@ -79,7 +79,7 @@ def _panel(calibration: Calibration, column: int, across: _Across, unit: Deviati
     )
 
 
-def _rows(residuals: Residuals, column: int, across: _Across, unit: DeviationUnit) -> list[dict[str, Any]]:
+def _rows(residuals: Residuals, column: int, across: _Across, unit: Measure) -> list[dict[str, Any]]:
     flipped = np.zeros(len(residuals.value), bool) if residuals.flipped is None else residuals.flipped
     return [
         {
@@ -97,7 +97,7 @@ def _rows(residuals: Residuals, column: int, across: _Across, unit: DeviationUni
     ]
 
 
-def _filled(across: _Across, unit: DeviationUnit, largest: float) -> dict[str, Any]:
+def _filled(across: _Across, unit: Measure, largest: float) -> dict[str, Any]:
     left, right = (-12, 372) if across.name == "beta" else (0, len(across.values) + 1)
     low, high = padded(-largest, largest)
     ranges = {LEFT: left, RIGHT: right, LOW: low, HIGH: high}

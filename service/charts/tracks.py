@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from service.charts.changes import Change, changes_of
-from service.measures import DeviationUnit, deviation_unit, in_unit, limit, measured, signed
+from service.measures import Measure, deviation_measure, in_measure, limit, measured, signed
 from service.records.event import Service
 from service.records.history import HistoryPoint
 from service.records.session import ALL_PARAMETERS
@@ -50,7 +50,7 @@ class Track:
     """Parameter and kind: tracks of one name share a unit and a chart."""
     sensor: str
     parameter: str
-    unit: DeviationUnit
+    unit: Measure
     points: tuple[TrackPoint, ...]
 
     @property
@@ -76,7 +76,7 @@ def _group(by_sensor: dict[str, list[HistoryPoint]], services: Sequence[Service]
     changes = {name: changes_of(by_sensor[name], services) for name in sorted(by_sensor, key=_natural)}
     first = next(iter(changes.values()))[0].point
     largest = max(change.largest for own in changes.values() for change in own)
-    unit = deviation_unit(first.kind, first.parameter, largest)
+    unit = deviation_measure(first.kind, first.parameter, largest)
     return tuple(
         Track(f"{first.parameter}-{first.kind}", name, first.parameter, unit, tuple(_point(c, unit) for c in own))
         for name, own in changes.items()
@@ -89,15 +89,15 @@ def _natural(name: str) -> tuple[str, int, str]:
     return name.rstrip("0123456789"), int(digits or 0), name
 
 
-def _point(change: Change, unit: DeviationUnit) -> TrackPoint:
-    point, allowed = change.point, in_unit(change.tolerance, unit)
+def _point(change: Change, unit: Measure) -> TrackPoint:
+    point, allowed = change.point, in_measure(change.tolerance, unit)
     floor = None if allowed is None else -allowed
     return TrackPoint(
         at=point.at,
         session=point.session,
-        shown=in_unit(change.value, unit),
-        lower=in_unit(change.lower, unit),
-        upper=in_unit(change.upper, unit),
+        shown=in_measure(change.value, unit),
+        lower=in_measure(change.lower, unit),
+        upper=in_measure(change.upper, unit),
         limit_lower=0.0 if floor is not None and change.is_angle else floor,
         limit_upper=allowed,
         epoch=change.epoch,
@@ -108,7 +108,7 @@ def _point(change: Change, unit: DeviationUnit) -> TrackPoint:
     )
 
 
-def _text(change: Change, unit: DeviationUnit) -> str:
+def _text(change: Change, unit: Measure) -> str:
     if change.value is None:
         return "not observable"
     write = measured if change.is_angle else signed

@@ -10,7 +10,7 @@ from rich.text import Text
 
 from estimator.results import Calibration, Estimate, Fit, SensorCalibration
 from estimator.session import CALIBRATIONS, CalibrationSession, Sensor
-from service.measures import deviation_unit, in_unit, measured, number
+from service.measures import deviation_measure, in_measure, measured, number
 from service.words.advice import what_to_add
 
 UNSEEN = "not observable"
@@ -59,7 +59,7 @@ def _cell(sensor: SensorCalibration, parameter: str, estimate: Estimate) -> str:
         return ""
     if estimate.value is None:
         return UNSEEN
-    return measured(estimate.value, estimate.sigma, deviation_unit(sensor.kind, parameter, estimate.value))
+    return measured(estimate.value, estimate.sigma, deviation_measure(sensor.kind, parameter, estimate.value))
 
 
 def _table(*headings: str) -> Table:
@@ -72,15 +72,15 @@ def _table(*headings: str) -> Table:
 def _numbers(declared: Sensor, sensor: SensorCalibration) -> Iterator[str]:
     off = _off_nominal(sensor.scale, declared.nominal_scale)
     for parameter, estimate in (("scale", off), ("bias", sensor.bias), ("quadratic", sensor.quadratic)):
-        unit = deviation_unit(sensor.kind, parameter, estimate.value or 0.0)
+        unit = deviation_measure(sensor.kind, parameter, estimate.value or 0.0)
         yield UNSEEN if estimate.value is None else measured(estimate.value, estimate.sigma, unit)
 
 
 def _axis(sensor: SensorCalibration) -> tuple[str, str]:
     if sensor.axis is None or sensor.axis_sigma is None:
         return UNSEEN, ""
-    unit = deviation_unit(sensor.kind, "axis", sensor.axis_sigma)
-    return " ".join(number(x, 6) for x in sensor.axis), f"{number(in_unit(sensor.axis_sigma, unit), 1)} {unit.label}"
+    unit = deviation_measure(sensor.kind, "axis", sensor.axis_sigma)
+    return " ".join(number(x, 6) for x in sensor.axis), f"{number(in_measure(sensor.axis_sigma, unit), 1)} {unit.label}"
 
 
 def _off_nominal(scale: Estimate, nominal: float) -> Estimate:

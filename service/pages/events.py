@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
-from service.measures import deviation_unit, limit, measured, signed
+from service.measures import deviation_measure, limit, measured, signed
 from service.records.decision import Decision
 from service.records.event import Note, Service
 from service.records.session import StoredSession
@@ -81,7 +81,7 @@ def stage_table(pair: FoundAndLeft | None) -> StageTable | None:
 
 def _row(found: Decision, left: Decision | None) -> StageRow:
     largest = max(abs(d.deviation or 0.0) for d in (found, left) if d is not None)
-    unit = deviation_unit(found.kind, found.parameter, max(largest, found.tolerance))
+    unit = deviation_measure(found.kind, found.parameter, max(largest, found.tolerance))
     is_angle = found.parameter == "axis"
 
     def cell(decision: Decision) -> StageCell:

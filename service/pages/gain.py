@@ -10,7 +10,7 @@ import numpy as np
 
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import ACCELEROMETER, GYROSCOPE
-from service.measures import deviation_unit, measured, number
+from service.measures import deviation_measure, measured, number
 from service.records.diagnosis import StoredDiagnosis
 from service.records.session import StoredSession
 from service.words.conditions import Condition, condition_of
@@ -87,7 +87,7 @@ def at(started_at: str | None) -> datetime | None:
 
 def _rows(gain: dict[str, Any], kind: str) -> tuple[GainRow, ...]:
     before, after = gain["before"], gain["after"]
-    unit = deviation_unit(kind, "bias", max(_known(before["rms"]), _known(after["rms"])))
+    unit = deviation_measure(kind, "bias", max(_known(before["rms"]), _known(after["rms"])))
     measures: Sequence[tuple[str, str, str, float]] = (
         ("rms", f"error of prediction, {unit.label}", "rms", unit.factor),
         ("χ² per degree of freedom", "1 where the noise explains the errors", "chi2_per_dof", 1.0),
@@ -135,18 +135,18 @@ def _relative(before: Estimate, after: Estimate, kind: str) -> str:
     if before.value is None or after.value is None or after.sigma is None:
         return "–"
     change, sigma = after.value / before.value - 1, after.sigma / abs(after.value)
-    return measured(change, sigma, deviation_unit(kind, "scale", max(abs(change), sigma)))
+    return measured(change, sigma, deviation_measure(kind, "scale", max(abs(change), sigma)))
 
 
 def _change(before: Estimate, after: Estimate, kind: str) -> str:
     if before.value is None or after.value is None or after.sigma is None:
         return "–"
     change = after.value - before.value
-    return measured(change, after.sigma, deviation_unit(kind, "bias", max(abs(change), after.sigma)))
+    return measured(change, after.sigma, deviation_measure(kind, "bias", max(abs(change), after.sigma)))
 
 
 def _turned(before: SensorCalibration, after: SensorCalibration) -> str:
     if before.axis is None or after.axis is None or after.axis_sigma is None:
         return "–"
     angle = float(np.linalg.norm(np.cross(before.axis, after.axis)))
-    return measured(angle, after.axis_sigma, deviation_unit(after.kind, "axis", max(angle, after.axis_sigma)))
+    return measured(angle, after.axis_sigma, deviation_measure(after.kind, "axis", max(angle, after.axis_sigma)))

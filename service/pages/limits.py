@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from service.measures import THIN, amplitude_unit, number
+from service.measures import THIN, amplitude_measure, number
 from service.words.finding import in_words
 
 
@@ -50,7 +50,7 @@ def _amplitude(limit: dict[str, Any]) -> str:
     for value, si_unit in zip(limit["amplitude"], limit["units"], strict=False):
         if value is None:
             continue
-        unit = amplitude_unit(limit["cause"], si_unit, value)
+        unit = amplitude_measure(limit["cause"], si_unit, value)
         text = f"{number(float(f'{value * unit.factor:.2g}'))}{THIN}{unit.label}"
         if text not in shown:
             shown.append(text)

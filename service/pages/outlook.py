@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from math import floor, log10
 
-from service.measures import HARD, THIN, DeviationUnit, deviation_unit, in_words, signed
+from service.measures import HARD, THIN, Measure, deviation_measure, in_words, signed
 from service.records.outlook import ParameterTrend, UnitOutlook
 from service.words.names import PARAMETER_NAMES, day_of
 
@@ -85,15 +85,15 @@ def _is_said(trend: ParameterTrend, judged: int) -> bool:
 
 
 def _wandered(trend: ParameterTrend) -> str:
-    unit = deviation_unit(trend.kind, trend.parameter, abs(trend.level))
+    unit = deviation_measure(trend.kind, trend.parameter, abs(trend.level))
     moved = signed(trend.level, 2 * trend.level_sigma, unit)
     allowed = in_words(trend.kind, trend.parameter, trend.tolerance)
     return f"{_place(trend)} has moved by {moved}, at no steady rate; {allowed} are allowed."
 
 
 def _drift(trend: ParameterTrend) -> str:
-    unit = deviation_unit(trend.kind, trend.parameter, abs(trend.rate_per_year))
-    a_year = DeviationUnit(f"{unit.label} a year", unit.factor)
+    unit = deviation_measure(trend.kind, trend.parameter, abs(trend.rate_per_year))
+    a_year = Measure(f"{unit.label} a year", unit.factor)
     rate = signed(trend.rate_per_year, 2 * trend.rate_sigma, a_year)
     return f"{_place(trend)} drifts by {rate}; {in_words(trend.kind, trend.parameter, trend.tolerance)} are allowed."
 

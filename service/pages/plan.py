@@ -12,7 +12,7 @@ from estimator.planning.results import PARAMETERS
 from estimator.session import ACCELEROMETER
 from service.charts import ChartSet
 from service.charts.plan import NAMES, plan_charts
-from service.measures import DEVIATION_UNITS, number
+from service.measures import MEASURES, number
 from service.planning.question import NOISE, VARIATION, PlanQuestion
 from service.words.conditions import Condition
 from service.words.plan import (
@@ -123,7 +123,7 @@ def plan_page(question: PlanQuestion, plan: Plan, types: Sequence[str] = ()) -> 
         unseen=_unseen(plan, kind),
         optimal=_optimal(plan),
         orientations=_orientations(plan),
-        headings=tuple(f"{NAMES[name]}, {DEVIATION_UNITS[kind, name].label}" for name in PARAMETERS),
+        headings=tuple(f"{NAMES[name]}, {MEASURES[kind, name].label}" for name in PARAMETERS),
     )
 
 
@@ -137,7 +137,7 @@ def _field(question: PlanQuestion, name: str, label: str, hint: str = "") -> Fie
 
 
 def _block(q: PlanQuestion) -> tuple[Field, ...]:
-    zero = DEVIATION_UNITS[q.kind, "bias"].label
+    zero = MEASURES[q.kind, "bias"].label
     return (
         _field(q, "sensors", "Sensors on the cone"),
         _field(q, "noise", f"Noise of a reading, 1σ, {zero}", f"{NOISE[q.kind]:g}"),
@@ -158,9 +158,7 @@ def _session(q: PlanQuestion) -> tuple[Field, ...]:
 
 
 def _tolerances(q: PlanQuestion) -> tuple[Field, ...]:
-    return tuple(
-        _field(q, name, f"{NAMES[name]}, {DEVIATION_UNITS[q.kind, name].label}", "not judged") for name in PARAMETERS
-    )
+    return tuple(_field(q, name, f"{NAMES[name]}, {MEASURES[q.kind, name].label}", "not judged") for name in PARAMETERS)
 
 
 def _facts(question: PlanQuestion, plan: Plan) -> tuple[Line, ...]:
@@ -195,7 +193,7 @@ def _sweep(plan: Plan, kind: str, name: str) -> tuple[tuple[str, ...], ...]:
     """The numbers of a chart: where, U of every parameter, ρ."""
     sweep = getattr(plan, name)
     at = sweep.at if name == "over_positions" else np.degrees(sweep.at)
-    factors = np.array([DEVIATION_UNITS[kind, p].factor for p in PARAMETERS]) * plan.request.coverage
+    factors = np.array([MEASURES[kind, p].factor for p in PARAMETERS]) * plan.request.coverage
     return tuple(
         (number(float(x)), *(number(float(f"{u:.3g}")) for u in row), number(float(rho), 1))
         for x, row, rho in zip(at, sweep.total * factors, sweep.conditioning, strict=True)

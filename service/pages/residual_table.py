@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.results import Calibration
-from service.measures import deviation_unit, number
+from service.measures import deviation_measure, number
 
 RUNS = ("direct", "flipped")
 
@@ -34,7 +34,7 @@ def residual_table(calibration: Calibration) -> ResidualTable:
     """Residuals with the unit in each column's head."""
     found = calibration.residuals
     largest = np.nanmax(np.abs(found.value), axis=0, initial=0.0)
-    units = [deviation_unit(s.kind, "bias", x) for s, x in zip(calibration.sensors, largest, strict=True)]
+    units = [deviation_measure(s.kind, "bias", x) for s, x in zip(calibration.sensors, largest, strict=True)]
     shown = found.value * [unit.factor for unit in units]
     beta, flipped = found.beta, found.flipped
     return ResidualTable(

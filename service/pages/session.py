@@ -11,16 +11,16 @@ from service.measures import (
     COVERAGE,
     HARD,
     THIN,
-    DeviationUnit,
+    Measure,
     decimals,
-    deviation_unit,
-    in_unit,
+    deviation_measure,
+    in_measure,
     limit,
     measured,
     number,
     signed,
     size_in_words,
-    value_unit,
+    value_measure,
 )
 from service.pages.diagnosis import PENDING, TONES
 from service.pages.parity import ParityView, parity_in_words, parity_view
@@ -166,17 +166,17 @@ def _value(sensor: SensorCalibration, parameter: str, coverage: float) -> str:
     if parameter == "scale":
         return _scale(estimate.value, spread, sensor.kind)
     largest = max(abs(estimate.value or 0.0), spread or 0.0)
-    return measured(estimate.value, spread, value_unit(sensor.kind, parameter, largest))
+    return measured(estimate.value, spread, value_measure(sensor.kind, parameter, largest))
 
 
 def _scale(value: float | None, spread: float | None, kind: str) -> str:
     """A scale factor is read with its relative uncertainty: ``1.1792038 per g ± 4.0 ppm``."""
-    unit = value_unit(kind, "scale", 0.0)
+    unit = value_measure(kind, "scale", 0.0)
     if value is None or not spread or not value:
         return measured(value, None, unit)
-    relative = deviation_unit(kind, "scale", spread / abs(value))
+    relative = deviation_measure(kind, "scale", spread / abs(value))
     share = spread / abs(value) * relative.factor
-    shown = number(in_unit(value, unit), decimals(in_unit(spread, unit)))
+    shown = number(in_measure(value, unit), decimals(in_measure(spread, unit)))
     return f"{shown} {unit.label} ±{HARD}{number(share, decimals(share))}{THIN}{relative.label}"
 
 
@@ -185,14 +185,14 @@ def _axis(sensor: SensorCalibration, coverage: float) -> str:
         return "not observable"
     vector = ", ".join(number(float(x), 6) for x in sensor.axis)
     spread = coverage * sensor.axis_sigma
-    unit = deviation_unit(sensor.kind, "axis", spread)
+    unit = deviation_measure(sensor.kind, "axis", spread)
     share = spread * unit.factor
     return f"({vector}) ±{HARD}{number(share, decimals(share))}{THIN}{unit.label}"
 
 
-def _decision_unit(decision: Decision) -> DeviationUnit:
+def _decision_unit(decision: Decision) -> Measure:
     sizes = (decision.deviation, decision.expanded, decision.tolerance)
-    return deviation_unit(decision.kind, decision.parameter, max(abs(x or 0.0) for x in sizes))
+    return deviation_measure(decision.kind, decision.parameter, max(abs(x or 0.0) for x in sizes))
 
 
 def _deviation(decision: Decision | None) -> str:

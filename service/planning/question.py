@@ -19,7 +19,7 @@ from estimator.session import (
     StandErrors,
 )
 from estimator.simulate import cone, stand_schedule
-from service.measures import DEVIATION_UNITS
+from service.measures import MEASURES
 
 HALF_ANGLE = float(np.arccos(1 / np.sqrt(3)))
 """54.7°: three of the axes are orthogonal."""
@@ -102,7 +102,7 @@ class PlanQuestion(BaseModel):
 
         def si(parameter: str) -> float | None:
             value: float | None = getattr(self, parameter)
-            return None if value is None else value / DEVIATION_UNITS[kind, parameter].factor
+            return None if value is None else value / MEASURES[kind, parameter].factor
 
         return Wanted(si("scale"), si("bias"), si("quadratic"), si("axis"))
 
@@ -133,7 +133,7 @@ class PlanQuestion(BaseModel):
     def spread(self, kind: str) -> float:
         """Variation of the zero, SI."""
         stated = VARIATION[kind] if self.variation is None else self.variation
-        return stated / DEVIATION_UNITS[kind, "bias"].factor
+        return stated / MEASURES[kind, "bias"].factor
 
     def sigma(self, like: CalibrationSession) -> Array:
         """(m,) one sigma of a reading at the input, variation of the zero included."""
@@ -142,4 +142,4 @@ class PlanQuestion(BaseModel):
 
     def _noise(self, kind: str) -> float:
         stated = NOISE[kind] if self.noise is None else self.noise
-        return stated / DEVIATION_UNITS[kind, "bias"].factor
+        return stated / MEASURES[kind, "bias"].factor

@@ -5,7 +5,7 @@ import numpy as np
 from estimator.arrays import unit
 from estimator.errors import Problem
 from estimator.session import Sensor
-from service.measures import DEVIATION_UNITS
+from service.measures import MEASURES
 from service.planning.question import PlanQuestion
 from service.records.session import PARAMETERS
 from service.records.unit import UnitType
@@ -41,5 +41,5 @@ def asked_of(question: PlanQuestion, unit_type: UnitType) -> PlanQuestion:
     for name in PARAMETERS:
         tolerance = getattr(unit_type.tolerances, name)
         if getattr(question, name) is None and tolerance is not None:
-            filled[name] = tolerance * DEVIATION_UNITS[unit_type.block, name].factor
+            filled[name] = tolerance * MEASURES[unit_type.block, name].factor
     return question.model_copy(update=filled)

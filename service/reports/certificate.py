@@ -188,10 +188,10 @@ def _tables(found: CertifiedSession, k: float) -> tuple[ResultTable, ...]:
 def _with_reading_unit(table: ResultTable, source: CalibrationSession) -> ResultTable:
     """``V per g`` where all its sensors are read in one unit."""
     units = {s.reading_unit for s in source.sensors if s.name in {row.sensor for row in table.rows}}
-    if not table.value_unit.startswith("per ") or len(units) != 1:
+    if not table.value_measure.startswith("per ") or len(units) != 1:
         return table
-    rate = "/s" if source.count_time and "°" in table.value_unit else ""
-    return replace(table, value_unit=f"{units.pop()}{rate} {table.value_unit}")
+    rate = "/s" if source.count_time and "°" in table.value_measure else ""
+    return replace(table, value_measure=f"{units.pop()}{rate} {table.value_measure}")
 
 
 def _facts(found: CertifiedSession) -> list[Fact]:

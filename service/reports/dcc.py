@@ -9,7 +9,7 @@ from service.measures import COVERAGE
 from service.records.decision import Decision, Verdict
 from service.reports.certificate import title_of
 from service.reports.elements import DCC, NOT_STATED, SI, XSI, content, dcc, document
-from service.reports.quantities import ONE, deviation_unit, quantity, value_unit
+from service.reports.quantities import ONE, deviation_measure, quantity, value_measure
 from service.views.certificate import CertifiedSession
 from service.words.finding import in_words
 
@@ -143,7 +143,7 @@ def _scalar(parent: Element, sensor: SensorCalibration, parameter: str, found: C
     declared = next((s for s in found.source.sensors if s.name == sensor.name), None)
     reading = "" if declared is None else declared.reading_unit
     counted = found.source.count_time is not None and sensor.kind != "accelerometer"
-    unit = value_unit(sensor.kind, parameter, reading, counted=counted)
+    unit = value_measure(sensor.kind, parameter, reading, counted=counted)
     name = f"{parameter}, in {reading or '1'} per input" if parameter == "scale" else parameter
     quantity(parent, name, estimate.value, unit, estimate.sigma, k)
 
@@ -161,7 +161,7 @@ def _axis(parent: Element, sensor: SensorCalibration, k: float) -> None:
 def _deviation(parent: Element, decision: Decision) -> None:
     if decision.deviation is None:
         return
-    unit = deviation_unit(decision.kind, decision.parameter)
+    unit = deviation_measure(decision.kind, decision.parameter)
     name = f"{decision.parameter}, deviation from the reference"
     found = quantity(parent, name, decision.deviation, unit, decision.uncertainty, decision.coverage_factor)
     meta = dcc(dcc(found, "measurementMetaData"), "metaData")

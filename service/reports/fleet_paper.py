@@ -7,7 +7,7 @@ from typing import TypeVar
 from service.charts.fleet import fleet_chart
 from service.charts.history import history_charts
 from service.charts.tracks import tracks_of
-from service.measures import COVERAGE, deviation_unit, measured, number, signed
+from service.measures import COVERAGE, deviation_measure, measured, number, signed
 from service.records.decision import Decision, Verdict
 from service.records.event import Service
 from service.records.history import HistoryPoint
@@ -147,7 +147,7 @@ def _standing_out(report: FleetReport) -> tuple[Notice, ...]:
 
 def _drift(trend: ParameterTrend) -> str:
     """``A6 bias drifts +62 ± 4 µg a year``."""
-    unit = deviation_unit(trend.kind, trend.parameter, abs(trend.rate_per_year))
+    unit = deviation_measure(trend.kind, trend.parameter, abs(trend.rate_per_year))
     write = measured if trend.parameter == "axis" else signed
     rate = write(trend.rate_per_year, COVERAGE * trend.rate_sigma, unit)
     return f"{trend.sensor} {trend.parameter} drifts {rate} a year"

@@ -3,7 +3,7 @@
 import io
 from collections.abc import Iterator
 
-from service.measures import DEVIATION_UNITS, DeviationUnit, in_unit, value_unit
+from service.measures import MEASURES, Measure, in_measure, value_measure
 from service.records.decision import Decision
 from service.records.history import HistoryPoint
 from service.records.outlook import UnitOutlook
@@ -78,9 +78,9 @@ def _fleet_row(unit: UnitSummary, outlook: UnitOutlook | None) -> tuple[Cell, ..
 def _parameter_row(serial: str, session: str, decision: Decision) -> tuple[Cell, ...]:
     value, deviation = _units(decision.kind, decision.parameter)
     return (
-        serial, session, decision.sensor, decision.kind, decision.parameter, in_unit(decision.value, value),
-        in_unit(decision.reference, value), value.label, in_unit(decision.deviation, deviation),
-        in_unit(decision.expanded, deviation), decision.coverage_factor, in_unit(decision.tolerance, deviation),
+        serial, session, decision.sensor, decision.kind, decision.parameter, in_measure(decision.value, value),
+        in_measure(decision.reference, value), value.label, in_measure(decision.deviation, deviation),
+        in_measure(decision.expanded, deviation), decision.coverage_factor, in_measure(decision.tolerance, deviation),
         deviation.label, decision.probability_out, margin_of(decision), condition_of(decision.verdict).formal,
         decision.rule,
     )  # fmt: skip
@@ -89,16 +89,16 @@ def _parameter_row(serial: str, session: str, decision: Decision) -> tuple[Cell,
 def _history_row(serial: str, point: HistoryPoint) -> tuple[Cell, ...]:
     value, deviation = _units(point.kind, point.parameter)
     return (
-        serial, point.at, point.sensor, point.kind, point.parameter, in_unit(point.value, value),
-        in_unit(point.lower, value), in_unit(point.upper, value), value.label, in_unit(point.deviation, deviation),
-        in_unit(point.expanded, deviation), deviation.label,
+        serial, point.at, point.sensor, point.kind, point.parameter, in_measure(point.value, value),
+        in_measure(point.lower, value), in_measure(point.upper, value), value.label,
+        in_measure(point.deviation, deviation), in_measure(point.expanded, deviation), deviation.label,
         condition_of(point.verdict, is_reference=point.is_reference).formal, point.revision, point.session,
     )  # fmt: skip
 
 
-def _units(kind: str, parameter: str) -> tuple[DeviationUnit, DeviationUnit]:
+def _units(kind: str, parameter: str) -> tuple[Measure, Measure]:
     """Of a value and of its change; the same in every row of a parameter, so that columns can be compared."""
-    return value_unit(kind, parameter, 0.0), DEVIATION_UNITS[kind, parameter]
+    return value_measure(kind, parameter, 0.0), MEASURES[kind, parameter]
 
 
 def _about(report: FleetReport, sessions: int) -> Iterator[tuple[Cell, ...]]:

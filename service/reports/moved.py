@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from service.measures import deviation_unit, limit, measured, signed
+from service.measures import deviation_measure, limit, measured, signed
 from service.records.decision import Decision
 from service.words.conditions import Condition, condition_of
 
@@ -21,7 +21,7 @@ class Moved:
 def moved(decision: Decision) -> Moved:
     """The decision in people's units."""
     sizes = (decision.deviation, decision.expanded, decision.tolerance)
-    unit = deviation_unit(decision.kind, decision.parameter, max(abs(x or 0.0) for x in sizes))
+    unit = deviation_measure(decision.kind, decision.parameter, max(abs(x or 0.0) for x in sizes))
     one_sided = decision.parameter == "axis"
     write = measured if one_sided else signed
     seen = decision.deviation is not None

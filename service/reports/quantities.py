@@ -13,7 +13,7 @@ READINGS = {"V": r"\volt", "mV": r"\milli\volt", "A": r"\ampere", "mA": r"\milli
 """D-SI of the units that readings come in; counts and pulses have the unit one."""
 
 
-def value_unit(kind: str, parameter: str, reading_unit: str, *, counted: bool) -> str:
+def value_measure(kind: str, parameter: str, reading_unit: str, *, counted: bool) -> str:
     """The D-SI unit of a parameter's value."""
     linear = kind == ACCELEROMETER
     if parameter == "scale":
@@ -22,9 +22,9 @@ def value_unit(kind: str, parameter: str, reading_unit: str, *, counted: bool) -
     return {"bias": INPUT[linear], "quadratic": PER_INPUT[linear]}.get(parameter, RADIAN)
 
 
-def deviation_unit(kind: str, parameter: str) -> str:
+def deviation_measure(kind: str, parameter: str) -> str:
     """The D-SI unit of a deviation: relative for scale, an angle for an axis."""
-    return ONE if parameter == "scale" else value_unit(kind, parameter, "", counted=False)
+    return ONE if parameter == "scale" else value_measure(kind, parameter, "", counted=False)
 
 
 def quantity(parent: Element, name: str, value: float, unit: str, sigma: float | None, k: float) -> Element:

@@ -8,13 +8,13 @@ from service.measures import (
     MINUS,
     THIN,
     UNKNOWN,
-    DeviationUnit,
+    Measure,
     decimals,
-    deviation_unit,
-    in_unit,
+    deviation_measure,
+    in_measure,
     limit,
     number,
-    value_unit,
+    value_measure,
 )
 from service.records.decision import Decision
 from service.records.session import ALL_PARAMETERS
@@ -54,8 +54,8 @@ class ResultTable:
     """One parameter of all sensors of a kind."""
 
     heading: str
-    value_unit: str
-    deviation_unit: str
+    value_measure: str
+    deviation_measure: str
     tolerance: str
     rows: tuple[ResultRow, ...]
 
@@ -66,8 +66,8 @@ class _Column:
 
     parameter: str
     k: float
-    value: DeviationUnit
-    deviation: DeviationUnit
+    value: Measure
+    deviation: Measure
 
 
 def result_tables(
@@ -100,8 +100,8 @@ def _table(
     limits = dict.fromkeys(limit(d.tolerance, column.deviation, parameter == "axis") for d in decisions)
     return ResultTable(
         heading=title,
-        value_unit="" if parameter == "axis" else column.value.label,
-        deviation_unit=column.deviation.label,
+        value_measure="" if parameter == "axis" else column.value.label,
+        deviation_measure=column.deviation.label,
         tolerance=" or ".join(limits),
         rows=tuple(_row(s, before.get(s.name), judged.get((s.name, parameter)), column) for s in sensors),
     )
@@ -113,10 +113,10 @@ def _column(parameter: str, sensors: list[SensorCalibration], decisions: list[De
     moved = [abs(x) for d in decisions for x in (d.deviation, d.expanded, d.tolerance) if x is not None]
     if parameter == "axis":
         spreads = [k * s.axis_sigma for s in sensors if s.axis_sigma is not None]
-        return _Column(parameter, k, *(deviation_unit(kind, "axis", max([*moved, *spreads], default=0.0)),) * 2)
+        return _Column(parameter, k, *(deviation_measure(kind, "axis", max([*moved, *spreads], default=0.0)),) * 2)
     own = [abs(e.value) for s in sensors if (e := getattr(s, parameter)) is not None and e.value is not None]
-    value = value_unit(kind, parameter, max(own, default=0.0))
-    return _Column(parameter, k, value, deviation_unit(kind, parameter, max(moved, default=0.0)))
+    value = value_measure(kind, parameter, max(own, default=0.0))
+    return _Column(parameter, k, value, deviation_measure(kind, parameter, max(moved, default=0.0)))
 
 
 def _row(
@@ -148,9 +148,9 @@ def _value(sensor: SensorCalibration, column: _Column) -> tuple[str, str]:
     if estimate is None or estimate.value is None or estimate.sigma is None:
         return UNSEEN, UNKNOWN
     expanded = column.k * estimate.sigma
-    shown = number(in_unit(estimate.value, column.value), decimals(in_unit(expanded, column.value)))
+    shown = number(in_measure(estimate.value, column.value), decimals(in_measure(expanded, column.value)))
     if column.parameter == "scale":
-        return shown, _spread(abs(expanded / estimate.value), deviation_unit(sensor.kind, "scale", 0.0), label=True)
+        return shown, _spread(abs(expanded / estimate.value), deviation_measure(sensor.kind, "scale", 0.0), label=True)
     return shown, _spread(expanded, column.value)
 
 
@@ -158,14 +158,14 @@ def _deviation(decision: Decision | None, column: _Column) -> str:
     if decision is None or decision.deviation is None:
         return UNKNOWN
     shown = number(
-        in_unit(decision.deviation, column.deviation), decimals(in_unit(decision.expanded, column.deviation))
+        in_measure(decision.deviation, column.deviation), decimals(in_measure(decision.expanded, column.deviation))
     )
     return shown if column.parameter == "axis" or shown.startswith(MINUS) else f"+{shown}"
 
 
-def _spread(si: float | None, unit: DeviationUnit, *, label: bool = False) -> str:
+def _spread(si: float | None, unit: Measure, *, label: bool = False) -> str:
     """An expanded uncertainty with two significant digits."""
-    shown = in_unit(si, unit)
+    shown = in_measure(si, unit)
     return number(shown, decimals(shown)) + (f"{THIN}{unit.label}" if label else "")
 
 

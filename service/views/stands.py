@@ -7,7 +7,7 @@ import numpy as np
 
 from estimator.health.common_motion import AXES, sigma_of, size_of
 from estimator.health.stands import Motion, StandShift, stand_shifts
-from service.measures import COVERAGE, deviation_unit, measured, signed
+from service.measures import COVERAGE, deviation_measure, measured, signed
 from service.records.stand import MotionOnStand, StandCondition, StandEvidence
 from service.storage.store import Store
 from service.words.names import YEAR, day_of
@@ -71,7 +71,7 @@ def _condition(stand: str, sessions: int, found: Sequence[StandEvidence]) -> Sta
 def _reason(worst: StandEvidence) -> str:
     seen = f"seen on {worst.agreeing} of {worst.units} units since {day_of(worst.since)}"
     if worst.quantity == AXES:
-        size = measured(worst.size, COVERAGE * worst.sigma, deviation_unit(worst.kind, "axis", worst.size))
+        size = measured(worst.size, COVERAGE * worst.sigma, deviation_measure(worst.kind, "axis", worst.size))
         return f"It turns every block by {size}, {seen}: check stand and fixture. The units are judged without it."
-    size = signed(worst.size, COVERAGE * worst.sigma, deviation_unit(worst.kind, "scale", worst.size))
+    size = signed(worst.size, COVERAGE * worst.sigma, deviation_measure(worst.kind, "scale", worst.size))
     return f"It changes every scale factor by {size}, {seen}: check it. The units are judged without it."

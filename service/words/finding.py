@@ -6,7 +6,7 @@ from math import floor, log10
 from typing import Any
 
 from estimator.diagnosis.explanation.accepted import can_be_modelled
-from service.measures import HARD, THIN, amplitude_unit, measured, number
+from service.measures import HARD, THIN, amplitude_measure, measured, number
 from service.records.model import ModelRevision
 
 Finding = dict[str, Any]
@@ -97,7 +97,7 @@ def _amplitudes(finding: Finding) -> tuple[str, ...]:
     for k, (value, sigma, si_unit) in enumerate(zip(values, sigmas, units, strict=False)):
         if not value and not sigma:
             continue
-        unit = amplitude_unit(finding["cause"], si_unit, max(abs(value or 0.0), sigma or 0.0))
+        unit = amplitude_measure(finding["cause"], si_unit, max(abs(value or 0.0), sigma or 0.0))
         who = f"{finding['sensors'][k // each]}: " if len(finding["sensors"]) > 1 else ""
         which = f"{_part(finding['cause'], k % each)} " if each > 1 else ""
         shown.append(f"{who}{which}{measured(value, sigma, unit)}")
@@ -126,7 +126,7 @@ def _one_shape(cause: str, nonlinear: dict[str, float]) -> str:
         elif unit == "side":
             parts.append("upper side" if value > 0 else "lower side" if value < 0 else "")
         else:
-            scaled = amplitude_unit(cause, unit, value)
+            scaled = amplitude_measure(cause, unit, value)
             parts.append(f"{number(value * scaled.factor)}{THIN}{scaled.label}")
     text = " and ".join(part for part in parts if part)
     return f"{SHAPES.get(cause, '')} {text}".strip() if text else ""

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from estimator.results import KnownCombination
-from service.measures import COVERAGE, DeviationUnit, measured, reading_unit, value_unit
+from service.measures import COVERAGE, Measure, measured, scale_measure, value_measure
 
 READING_TERMS = {
     "zero_reading": ("K·b", 0),
@@ -21,7 +21,7 @@ class _Term:
     """One quantity of a sum, with its coefficient and unit for people."""
 
     name: str
-    unit: DeviationUnit
+    unit: Measure
     coefficient: float
 
 
@@ -29,7 +29,7 @@ def combination_in_words(known: KnownCombination, kind: str) -> str:
     """``bias + 0.5 × quadratic = 12.3 ± 0.4 µg``; readings in their own unit, per g (per °/s) and its square."""
     terms = [_term(name, coefficient, kind) for name, coefficient in known.coefficients.items()]
     lead = max(terms, key=lambda t: abs(t.coefficient))
-    unit = DeviationUnit(lead.unit.label, 1 / lead.coefficient)
+    unit = Measure(lead.unit.label, 1 / lead.coefficient)
     shares = [(t.coefficient / lead.coefficient, t.name) for t in terms]
     left = " + ".join(_product(share, name) for share, name in shares if abs(share) > NEGLIGIBLE)
     total = measured(known.value, COVERAGE * known.sigma, unit).rstrip()
@@ -40,9 +40,9 @@ def _term(name: str, coefficient: float, kind: str) -> _Term:
     element = name.rpartition(".")[2]
     if element in READING_TERMS:
         written, power = READING_TERMS[element]
-        unit = DeviationUnit("", reading_unit(kind).factor ** power)
+        unit = Measure("", scale_measure(kind).factor ** power)
         return _Term(written, unit, coefficient / unit.factor)
-    unit = value_unit(kind, element.partition("_")[0], 0.0)
+    unit = value_measure(kind, element.partition("_")[0], 0.0)
     return _Term(element, unit, coefficient / unit.factor)
 
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from estimator.health.common_motion import AXES, SEPARATED, UNCLEAR, CommonMotion
-from service.measures import deviation_unit, measured, number, signed
+from service.measures import deviation_measure, measured, number, signed
 
 SIGNIFICANT = 0.01
 NEARLY = 0.94
@@ -41,12 +41,12 @@ def _line(motion: CommonMotion, coverage: float, whose: str) -> MotionLine | Non
 
 def _together(motion: CommonMotion, coverage: float, whose: str) -> str:
     if motion.quantity == AXES:
-        size = measured(motion.size, coverage * motion.sigma, deviation_unit(motion.kind, "axis", motion.size))
+        size = measured(motion.size, coverage * motion.sigma, deviation_measure(motion.kind, "axis", motion.size))
         return (
             f"The whole block{whose} turned by {size} about {_about(motion)} since the reference: "
             "mounting or stand, not the sensors."
         )
-    size = signed(motion.size, coverage * motion.sigma, deviation_unit(motion.kind, "scale", motion.size))
+    size = signed(motion.size, coverage * motion.sigma, deviation_measure(motion.kind, "scale", motion.size))
     cause = "gravity or the stand's elevation" if motion.kind == "accelerometer" else "the stand or its clock"
     return f"All scale factors{whose} changed together by {size} since the reference: {cause}, not the sensors."
 

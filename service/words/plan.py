@@ -5,7 +5,7 @@ from estimator.diagnosis.results import Limit
 from estimator.planning import Judged, Plan
 from estimator.planning.results import PARAMETERS
 from estimator.session import ACCELEROMETER, GYROSCOPE
-from service.measures import DEGREE, DEVIATION_UNITS, STANDARD_GRAVITY, THIN, DeviationUnit, in_unit, number
+from service.measures import DEGREE, MEASURES, STANDARD_GRAVITY, THIN, Measure, in_measure, number
 
 VERDICTS = {
     "enough": "enough: U leaves the tolerance the share that was asked for",
@@ -14,29 +14,29 @@ VERDICTS = {
     "not judged": "no tolerance was given",
 }
 HOUR = 3600.0
-ANGLE = DEVIATION_UNITS["accelerometer", "axis"]
+ANGLE = MEASURES["accelerometer", "axis"]
 UNSEEN = "not observable"
 OF_GYROS = {cause.identifier for cause in (GSensitivity, LatitudeEntry, OffMeridian)}
 
 
-def _limit_units(kind: str) -> dict[str, DeviationUnit]:
+def _limit_measures(kind: str) -> dict[str, Measure]:
     """People's unit of every SI unit of a cause's amplitude; the input is m/s² or rad/s."""
-    zero = DEVIATION_UNITS[kind, "bias"]
+    zero = MEASURES[kind, "bias"]
     per = ("g", STANDARD_GRAVITY) if kind == ACCELEROMETER else ("(°/s)", DEGREE)
     top = ("µg", 1e6 / STANDARD_GRAVITY) if kind == ACCELEROMETER else ("µ°/s", 1e6 / DEGREE)
     return {
         "m/s²": zero,
         "rad": ANGLE,
-        "1": DeviationUnit("ppm", 1e6),
-        "m/s²/K": DeviationUnit(f"{zero.label}/°C", zero.factor),
-        "1/K": DeviationUnit("ppm/°C", 1e6),
-        "m/s²/(K/s)": DeviationUnit(f"{zero.label}/(°C/h)", zero.factor / HOUR),
-        "m/s²/s": DeviationUnit(f"{zero.label}/h" if kind == ACCELEROMETER else "°/h²", zero.factor * HOUR),
-        "1/s": DeviationUnit("ppm/h", 1e6 * HOUR),
-        "rad/s": DeviationUnit(f"{ANGLE.label}/h", ANGLE.factor * HOUR),
-        "(m/s²)⁻¹": DeviationUnit(f"{top[0]}/{per[0]}²", top[1] * per[1] ** 2),
-        "(m/s²)⁻²": DeviationUnit(f"{top[0]}/{per[0]}³", top[1] * per[1] ** 3),
-        "(rad/s)/(m/s²)": DeviationUnit("°/h/g", STANDARD_GRAVITY * 3600 / DEGREE),
+        "1": Measure("ppm", 1e6),
+        "m/s²/K": Measure(f"{zero.label}/°C", zero.factor),
+        "1/K": Measure("ppm/°C", 1e6),
+        "m/s²/(K/s)": Measure(f"{zero.label}/(°C/h)", zero.factor / HOUR),
+        "m/s²/s": Measure(f"{zero.label}/h" if kind == ACCELEROMETER else "°/h²", zero.factor * HOUR),
+        "1/s": Measure("ppm/h", 1e6 * HOUR),
+        "rad/s": Measure(f"{ANGLE.label}/h", ANGLE.factor * HOUR),
+        "(m/s²)⁻¹": Measure(f"{top[0]}/{per[0]}²", top[1] * per[1] ** 2),
+        "(m/s²)⁻²": Measure(f"{top[0]}/{per[0]}³", top[1] * per[1] ** 3),
+        "(rad/s)/(m/s²)": Measure("°/h/g", STANDARD_GRAVITY * 3600 / DEGREE),
     }
 
 
@@ -46,9 +46,9 @@ def limit_in_words(limit: Limit, kind: str) -> str:
         return limit.reason.replace("the session", "the plan")
     if not limit.amplitude:
         return "corrected where it is found"
-    units = _limit_units(kind)
+    units = _limit_measures(kind)
     worst = max(limit.amplitude)
-    unit = units[limit.units[limit.amplitude.index(worst)]] if limit.units else DeviationUnit("", 1.0)
+    unit = units[limit.units[limit.amplitude.index(worst)]] if limit.units else Measure("", 1.0)
     return f"{number(float(f'{worst * unit.factor:.2g}'))}{THIN}{unit.label}"
 
 
@@ -81,7 +81,7 @@ def sigma_in_words(judged: Judged, coverage: float) -> str:
     """``±2.1 µg``: the expanded uncertainty."""
     if judged.sigma is None:
         return UNSEEN
-    unit = DEVIATION_UNITS[judged.kind, judged.parameter]
+    unit = MEASURES[judged.kind, judged.parameter]
     return f"±{number(float(f'{coverage * judged.sigma * unit.factor:.2g}'))}{THIN}{unit.label}"
 
 
@@ -89,8 +89,8 @@ def tolerance_in_words(judged: Judged) -> str:
     """``of 50 µg``, empty where none was given."""
     if judged.tolerance is None:
         return ""
-    unit = DEVIATION_UNITS[judged.kind, judged.parameter]
-    return f"of {number(in_unit(judged.tolerance, unit))}{THIN}{unit.label}"
+    unit = MEASURES[judged.kind, judged.parameter]
+    return f"of {number(in_measure(judged.tolerance, unit))}{THIN}{unit.label}"
 
 
 def duration(seconds: float) -> str:

@@ -2,9 +2,9 @@
 
 import pytest
 
-from service.measures import deviation_unit, limit, measured, number, signed, size_in_words, value_unit
+from service.measures import deviation_measure, limit, measured, number, signed, size_in_words, value_measure
 
-MICRO_G = deviation_unit("accelerometer", "bias", 1e-4)
+MICRO_G = deviation_measure("accelerometer", "bias", 1e-4)
 
 
 def test_value_is_rounded_to_two_digits_of_its_uncertainty() -> None:
@@ -17,19 +17,19 @@ def test_change_carries_its_sign() -> None:
 
 
 def test_large_deviations_change_to_the_coarse_unit() -> None:
-    assert deviation_unit("accelerometer", "bias", 0.3).label == "mg"
-    assert deviation_unit("gyroscope", "bias", 0.1).label == "°/s"
-    assert deviation_unit("gyroscope", "bias", 1e-7).label == "°/h"
+    assert deviation_measure("accelerometer", "bias", 0.3).label == "mg"
+    assert deviation_measure("gyroscope", "bias", 0.1).label == "°/s"
+    assert deviation_measure("gyroscope", "bias", 1e-7).label == "°/h"
 
 
 def test_one_g_squared_of_quadratic_is_its_bias_in_micro_g() -> None:
-    quadratic = deviation_unit("accelerometer", "quadratic", 0.0)
+    quadratic = deviation_measure("accelerometer", "quadratic", 0.0)
     at_one_g = 3e-7 * 9.80665**2
     assert 3e-7 * quadratic.factor == pytest.approx(at_one_g * MICRO_G.factor)
 
 
 def test_scale_is_read_per_g() -> None:
-    unit = value_unit("accelerometer", "scale", 0.0)
+    unit = value_measure("accelerometer", "scale", 0.0)
     assert (unit.label, 0.12 * unit.factor) == ("per g", pytest.approx(1.176798))
 
 
