@@ -4,7 +4,6 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from estimator.causes import CATALOGUE, Cause
-from estimator.diagnosis.explanation.accepted import can_be_modelled
 
 PAGE = Path(__file__).parents[1] / "docs" / "diagnosis" / "causes.md"
 HEAD = """# The catalogue of causes
@@ -41,7 +40,7 @@ def _row(cause: Cause) -> str:
     sentence = cause.sentence.format(sensors="the sensor")
     said = f"{sentence[0].upper()}{sentence[1:]} {cause.advice}"
     needs = ", ".join(sorted(cause.needs)) or "–"
-    accepted = "yes" if can_be_modelled(cause.identifier) else "no"
+    accepted = "yes" if cause.can_be_modelled else "no"
     units = ", ".join(dict.fromkeys(cause.units)) or "–"
     return _line((f"`{cause.identifier}`", cause.equation, units, needs, said, accepted))
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from math import floor, isfinite, log10, pi
 
+from estimator.causes import find
 from estimator.session import GYROSCOPE
 
 STANDARD_GRAVITY = 9.80665
@@ -143,8 +144,6 @@ PER_HOUR = 3600.0
 MICRO_G = 1e6 / STANDARD_GRAVITY
 EARTH_RATE = 7.292115e-5
 """rad/s."""
-ANGLE_RATES = frozenset({"axis-creep", "stand-drift"})
-"""Causes whose rad/s is an angle that grows, not a rate that is measured."""
 AMPLITUDE_MEASURES = {
     "1": PPM,
     "1/K": Measure("ppm/K", 1e6),
@@ -174,7 +173,8 @@ COARSER = {
 
 def amplitude_measure(cause: str, si_unit: str, largest: float) -> Measure:
     """The unit for amplitudes of a cause up to ``largest`` (SI)."""
-    if si_unit == "rad/s" and cause in ANGLE_RATES:
+    known = find(cause)
+    if si_unit == "rad/s" and known is not None and known.grows_an_angle:
         return Measure("arcsec/h", ARCSEC.factor * PER_HOUR)
     unit = AMPLITUDE_MEASURES.get(si_unit, Measure(si_unit, 1.0))
     return unit if abs(largest) * unit.factor < 1e4 else COARSER.get(unit.label, unit)

@@ -1,7 +1,7 @@
 """The catalogue of causes: the physical effects that the baseline simulation lacks, each one small class."""
 
-from estimator.causes.catalogue import CATALOGUE, UNEXPLAINED, cause
-from estimator.causes.contract import Cause, CommonCause, Correction, SensorCause, Setting, Shape, Signature
+from estimator.causes.catalogue import CATALOGUE, UNEXPLAINED, cause, find
+from estimator.causes.contract import Cause, CommonCause, Correction, Entry, SensorCause, Setting, Shape, Signature
 
 __all__ = [
     "CATALOGUE",
@@ -9,9 +9,11 @@ __all__ = [
     "Cause",
     "CommonCause",
     "Correction",
+    "Entry",
     "SensorCause",
     "Setting",
     "Shape",
     "Signature",
     "cause",
+    "find",
 ]

@@ -53,6 +53,11 @@ CATALOGUE: tuple[Cause, ...] = (
 UNEXPLAINED = "unexplained"
 
 
+def find(identifier: str) -> Cause | None:
+    """The cause called ``identifier``; None where the catalogue holds none, as of a result of another version."""
+    return next((c for c in CATALOGUE if c.identifier == identifier), None)
+
+
 def cause(identifier: str) -> Cause:
     """The cause called ``identifier``; KeyError if the catalogue holds none."""
     return {c.identifier: c for c in CATALOGUE}[identifier]

@@ -16,6 +16,9 @@ from estimator.forward import projected, slope
 from estimator.parameters import SensorParameters
 from estimator.session import Array, CalibrationSession
 
+NEEDS = frozenset({"time", "temperature", "stand", "both runs", "gravity", "nominal or history", "history"})
+"""What a cause may need."""
+
 
 @dataclass(frozen=True, eq=False)
 class Setting:
@@ -69,7 +72,7 @@ class Setting:
         return slope(self.parameters, self.n)[..., None] * along
 
     def has(self, need: str) -> bool:
-        """Whether the session provides what a cause needs."""
+        """Whether the session provides what a cause needs; ValueError where ``need`` is none of `NEEDS`."""
         match need:
             case "time":
                 return self.time is not None
@@ -81,8 +84,10 @@ class Setting:
                 return self.flipped is not None and 0 < int(self.flipped.sum()) < self.rows
             case "gravity":
                 return self.force is not None
+            case "history" | "nominal or history":
+                return True  # not of the session: judged where the history is
             case _:
-                return True
+                raise ValueError(f"no session can provide {need!r}: causes may need {', '.join(sorted(NEEDS))}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +107,7 @@ class Shape:
 
 
 class Cause(ABC):
-    """One cause of the catalogue."""
+    """One cause of the catalogue: all that any room knows of it is an attribute here."""
 
     identifier: ClassVar[str]
     scope: ClassVar[str]
@@ -114,12 +119,41 @@ class Cause(ABC):
     """What is wrong, for a maintenance engineer; ``{sensors}`` is filled in."""
     advice: ClassVar[str]
     needs: ClassVar[frozenset[str]] = frozenset()
-    """Of ``time``, ``temperature``, ``stand``, ``both runs``, ``gravity``, ``nominal or history``, ``history``."""
+    """Of `NEEDS`."""
     nonlinear_units: ClassVar[tuple[str, ...]] = ()
     kind: ClassVar[str | None] = None
     """Kind of sensor it acts on; None for both."""
     between: ClassVar[bool] = False
     """Whether it is told by what moved since the history (or from nominal), not by what is left in the session."""
+    repeats: ClassVar[int] = 1
+    """How often it may happen to one sensor in a session; what needs more of them is no such cause."""
+    passing: ClassVar[bool] = False
+    """Whether it belongs to a single session, so that no model can hold it."""
+    moves_parameters: ClassVar[bool] = False
+    """Whether the sensor's parameters really are what it makes of them, so that it stays in the calibration."""
+    grows_an_angle: ClassVar[bool] = False
+    """Whether its rad/s is an angle that grows with time, not a rate that is measured."""
+    clips: ClassVar[bool] = False
+    """Whether it cuts readings off at a limit, beyond which they tell nothing."""
+    shape_words: ClassVar[str] = ""
+    """What its nonlinear parameter is, for people: ``time constant``, ``from`` (a row)."""
+    amplitude_words: ClassVar[tuple[str, ...]] = ()
+    """What each of several amplitudes is, for people; empty where they are mere coefficients."""
+
+    @property
+    def name(self) -> str:
+        """For people: ``bias temperature``."""
+        return self.identifier.replace("-", " ")
+
+    @property
+    def is_of_sensor(self) -> bool:
+        """Whether it is a property of one sensor as it is now, and no mere change since earlier sessions."""
+        return self.scope in ("sensor", "environment", "gyro") and not self.between
+
+    @property
+    def can_be_modelled(self) -> bool:
+        """Whether it can be part of a model: it acts within every session, in the same way each time."""
+        return False
 
     def available(self, setting: Setting) -> bool:
         """Whether the session provides what the cause needs within itself (history is judged elsewhere)."""
@@ -133,6 +167,10 @@ class Signature(Cause):
     """Whether it is a mere pattern, no cause: what lives within one session and has no history."""
     bounded: ClassVar[bool] = False
     """Whether `plausible` has something to say of the amplitude."""
+
+    @property
+    def can_be_modelled(self) -> bool:
+        return not self.between and not self.passing
 
     @abstractmethod
     def shapes(self, setting: Setting) -> Iterator[Shape]:
@@ -161,7 +199,10 @@ class Signature(Cause):
 
 
 class Correction(Cause):
-    """A slip in the record that can be undone: the corrected session is tried instead of a signature."""
+    """A record error that can be undone: the corrected session is tried instead of a signature."""
+
+    of_rows: ClassVar[bool] = False
+    """Whether rows are concerned, not sensors."""
 
     @abstractmethod
     def corrected(self, session: CalibrationSession) -> Iterator[tuple[tuple[int, ...], CalibrationSession]]:
@@ -214,6 +255,14 @@ class CommonCause(Signature):
 
     def columns(self, setting: Setting, shape: Shape) -> Array:
         return setting.through(self.change(setting))
+
+
+class Entry(CommonCause):
+    """A number of the record that may be typed in wrong, one amplitude: it can be corrected by the amount found."""
+
+    @abstractmethod
+    def corrected_by(self, session: CalibrationSession, amount: float) -> CalibrationSession:
+        """The session with ``amount`` (in the unit of the amplitude) added to the entry."""
 
 
 def column(*terms: Array) -> Array:

@@ -97,6 +97,7 @@ class AxisCreep(SensorCause):
     equation = "(k1·(p·n) + k2·(o·n))·(t − t̄)"
     units = ("rad/s", "rad/s")
     needs = frozenset({"time"})
+    grows_an_angle = True
     sentence = "The input axis of {sensors} turns slowly through the session."
     advice = "Check the sensor's fastening and adhesive; repeat after a thermal soak."
 
@@ -114,6 +115,7 @@ class WarmUp(SensorCause):
     units = ("m/s²",)
     needs = frozenset({"time"})
     nonlinear_units = ("s",)
+    shape_words = "time constant"
     sentence = "The zero of {sensors} settles after switching on."
     advice = "Switch the unit on earlier and wait for several time constants before the first position."
     steps = 10
@@ -154,6 +156,8 @@ class BiasJump(SensorCause):
     equation = "k from position j0 on, j0 free"
     units = ("m/s²",)
     nonlinear_units = ("row",)
+    shape_words = "from"
+    repeats = 2
     sentence = "The zero of {sensors} jumps once and stays."
     advice = "Look for what happened then: a shock, a supply switch, a particle in the sensor. Repeat the session."
 

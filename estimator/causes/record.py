@@ -6,12 +6,12 @@ from itertools import combinations
 
 import numpy as np
 
-from estimator.causes.contract import CommonCause, Correction, SensorCause, Setting
+from estimator.causes.contract import CommonCause, Correction, Entry, SensorCause, Setting
 from estimator.forward import jacobian
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
 
-class AlphaEntry(CommonCause):
+class AlphaEntry(Entry):
     identifier = "alpha-entry"
     scope = "record"
     equation = "true α = α + k"
@@ -27,8 +27,7 @@ class AlphaEntry(CommonCause):
         acts = np.array([kind == ACCELEROMETER or ACCELEROMETER not in setting.kinds for kind in setting.kinds])
         return (setting.d_alpha * acts[None, :, None])[..., None]
 
-    def put_right(self, session: CalibrationSession, amount: float) -> CalibrationSession:
-        """The session with ``amount`` (rad) added to the elevation in its record."""
+    def corrected_by(self, session: CalibrationSession, amount: float) -> CalibrationSession:
         stand = session.stand
         assert stand is not None
         if any(s.kind == ACCELEROMETER for s in session.sensors):
@@ -63,6 +62,8 @@ class SensorDrift(SensorCause):
     units = ("1", "m/s²", "rad", "rad")
     needs = frozenset({"history"})
     between = True
+    moves_parameters = True
+    amplitude_words = ("scale factor", "bias", "axis, first tangent", "axis, second tangent")
     sentence = "{sensors} itself moved since the earlier sessions; stand and fixture do not explain it."
     advice = "Watch this sensor: repeat the session to confirm, and plan its adjustment or replacement."
 
@@ -156,6 +157,7 @@ class PositionsSwapped(Correction):
     scope = "record"
     equation = "two rows exchanged"
     units = ()
+    of_rows = True
     sentence = "The readings of two positions are exchanged in the record."
     advice = "Exchange the readings of these two rows and upload the session anew."
 

@@ -133,6 +133,8 @@ class Saturation(SensorCause):
     equation = "reading clipped beyond a limit"
     units = ("m/s²",)
     nonlinear_units = ("m/s²", "side")
+    shape_words = "limit"
+    clips = True
     sentence = "{sensors} is clipped: its reading stops at a limit."
     advice = "Lower the converter's gain or use a range that holds the largest input, and repeat the session."
     deepest = 10
@@ -176,6 +178,9 @@ class ReadingOutlier(SensorCause):
     equation = "k at one position"
     units = ("m/s²",)
     nonlinear_units = ("row",)
+    shape_words = "at"
+    repeats = 3
+    passing = True
     sentence = "{sensors} has one reading that does not belong to the rest."
     advice = "Repeat that position; leave the reading out of the calibration."
 

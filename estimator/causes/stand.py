@@ -114,6 +114,7 @@ class StandDrift(AlphaPattern):
     equation = "δα = k·(t − t̄)"
     units = ("rad/s",)
     needs = frozenset({"stand", "time"})
+    grows_an_angle = True
     sentence = "The stand sinks or tilts slowly through the session."
     advice = "Check the stand's foundation and clamps; level it before and after the session."
 

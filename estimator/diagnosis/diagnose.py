@@ -8,8 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from estimator.calibration.calibrate import averaged, calibrate
-from estimator.causes import CATALOGUE, Cause, Correction
-from estimator.causes.record import AlphaEntry
+from estimator.causes import CATALOGUE, Cause, Correction, Entry
 from estimator.diagnosis.explanation.detection_limits import limits
 from estimator.diagnosis.explanation.earlier_sessions import newness
 from estimator.diagnosis.explanation.extended_model import amplitudes, extended_calibration, without_effects
@@ -17,7 +16,7 @@ from estimator.diagnosis.explanation.findings import clip_findings, entry_findin
 from estimator.diagnosis.explanation.gain import gain
 from estimator.diagnosis.record.clipping import unclipped
 from estimator.diagnosis.record.errors import Slip, exchanged_rows, expected_axes, turned_record
-from estimator.diagnosis.record.nominal import WrongEntry, wrong_elevation
+from estimator.diagnosis.record.nominal import WrongEntry, wrong_entry
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import parameter_covariance
@@ -53,7 +52,7 @@ def diagnose(
     state = searched(right, past, catalogue)
     entry = None if past else against_nominal(without_effects(state, amplitudes(state)), catalogue)
     if entry is not None:
-        state = searched(entry.put_right(right), past, catalogue)
+        state = searched(entry.corrected(right), past, catalogue)
     fitted = amplitudes(state)
     new = newness(state, fitted)
     return Diagnosis(
@@ -79,11 +78,11 @@ def searched(session: CalibrationSession, history: Sequence[CalibrationSession],
 
 
 def against_nominal(session: CalibrationSession, catalogue: Sequence[Cause]) -> WrongEntry | None:
-    """A wrong elevation told from the nominal axes of a session freed of its effects; None where there is none."""
-    elevation = next((c for c in catalogue if isinstance(c, AlphaEntry)), None)
-    if elevation is None or session.programme != TWO_AXIS_STAND:
+    """A wrong entry told from the nominal axes of a session freed of its effects; None where there is none."""
+    entry = next((c for c in catalogue if isinstance(c, Entry)), None)
+    if entry is None or session.programme != TWO_AXIS_STAND:
         return None
-    return wrong_elevation(session, elevation)
+    return wrong_entry(session, entry)
 
 
 def common_start(session: CalibrationSession, history: Sequence[CalibrationSession]) -> tuple[Baseline, list[Baseline]]:
@@ -110,7 +109,7 @@ def undo_slips(
     baseline = baseline_of(session)
     for _ in range(3):
         slip = turned_record(session, baseline, expected_axes(history, session), known)
-        slip = slip or exchanged_rows(baseline)
+        slip = slip or exchanged_rows(baseline, known)
         if slip is None:
             break
         slips.append(slip)

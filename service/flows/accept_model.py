@@ -3,7 +3,7 @@
 from datetime import datetime
 from typing import Any
 
-from estimator.diagnosis.explanation.accepted import can_be_modelled
+from estimator.causes import cause
 from estimator.errors import Problem
 from service.errors import RefusedError
 from service.records.diagnosis import StoredDiagnosis
@@ -37,7 +37,7 @@ def _finding(diagnosis: StoredDiagnosis, new: NewModel) -> dict[str, Any]:
     if not named and not equal:
         shown = ", ".join(f["cause"] for f in findings) or "none"
         raise _refused("cause", f"{new.cause!r} is not among the causes that this session shows ({shown})")
-    if not can_be_modelled(new.cause):
+    if not cause(new.cause).can_be_modelled:
         raise _refused(
             "cause",
             f"{new.cause!r} is a matter of this one record or of what changed since earlier sessions, not a property "

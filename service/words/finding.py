@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from math import floor, log10
 from typing import Any
 
-from estimator.diagnosis.explanation.accepted import can_be_modelled
+from estimator.causes import find
 from service.measures import HARD, THIN, amplitude_measure, measured, number
 from service.records.model import ModelRevision
 
@@ -14,8 +14,6 @@ Finding = dict[str, Any]
 TOLD_APART = 3.0
 """Expected separation below which a proposed measurement would not help."""
 SHOWN_SHARE = 5e-4
-DRIFTED = ("scale factor", "bias", "axis, first tangent", "axis, second tangent")
-SHAPES = {"warm-up": "time constant", "saturation": "limit", "bias-jump": "from", "reading-outlier": "at"}
 
 
 @dataclass(frozen=True)
@@ -78,7 +76,7 @@ def finding_view(finding: Finding, revisions: Sequence[ModelRevision] = ()) -> F
         ranking=_ranking(finding),
         parity=_parity(finding["parity"]),
         since=_since(finding["new"]),
-        acceptable=tuple((name, in_words(name)) for name in names if can_be_modelled(name)),
+        acceptable=tuple((name, in_words(name)) for name in names if (known := find(name)) and known.can_be_modelled),
         sensors=tuple(finding["sensors"]),
         accepted=tuple(r.id for r in revisions if r.cause in names),
     )
@@ -106,7 +104,8 @@ def _amplitudes(finding: Finding) -> tuple[str, ...]:
 
 def _part(cause: str, k: int) -> str:
     """What one of several amplitudes is."""
-    return DRIFTED[k] if cause == "sensor-drift" else f"k{k + 1} ="
+    known = find(cause)
+    return known.amplitude_words[k] if known and known.amplitude_words else f"k{k + 1} ="
 
 
 def shape_in_words(finding: Finding) -> str:
@@ -129,7 +128,8 @@ def _one_shape(cause: str, nonlinear: dict[str, float]) -> str:
             scaled = amplitude_measure(cause, unit, value)
             parts.append(f"{number(value * scaled.factor)}{THIN}{scaled.label}")
     text = " and ".join(part for part in parts if part)
-    return f"{SHAPES.get(cause, '')} {text}".strip() if text else ""
+    known = find(cause)
+    return f"{known.shape_words if known else ''} {text}".strip() if text else ""
 
 
 def _evidence(finding: Finding) -> str:

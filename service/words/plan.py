@@ -1,6 +1,6 @@
 """A plan in words and people's units: verdicts, detection limits, time."""
 
-from estimator.causes.gyro import GSensitivity, LatitudeEntry, OffMeridian
+from estimator.causes import CATALOGUE
 from estimator.diagnosis.results import Limit
 from estimator.planning import Judged, Plan
 from estimator.planning.results import PARAMETERS
@@ -16,7 +16,7 @@ VERDICTS = {
 HOUR = 3600.0
 ANGLE = MEASURES["accelerometer", "axis"]
 UNSEEN = "not observable"
-OF_GYROS = {cause.identifier for cause in (GSensitivity, LatitudeEntry, OffMeridian)}
+OF_GYROS = {cause.identifier for cause in CATALOGUE if cause.kind == GYROSCOPE}
 
 
 def _limit_measures(kind: str) -> dict[str, Measure]:

@@ -4,8 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from estimator.calibration.calibrate import averaged, calibrate
-from estimator.causes import Signature, cause
-from estimator.causes.sensor import Saturation
+from estimator.causes import cause
 from estimator.diagnosis.explanation.extended_model import amplitudes, extended_calibration
 from estimator.diagnosis.record.clipping import unclipped
 from estimator.diagnosis.residuals.fitted import baseline_of
@@ -17,12 +16,6 @@ from estimator.session import CalibrationSession
 
 Accepted = tuple[str, tuple[str, ...]]
 """A cause's identifier and the names of its sensors; none for a cause of the stand or fixture."""
-
-
-def can_be_modelled(identifier: str) -> bool:
-    """Whether a cause can be part of a model: it acts within every session, in the same way each time."""
-    known = cause(identifier)
-    return isinstance(known, Signature) and not known.between and identifier != "reading-outlier"
 
 
 def calibrate_extended(session: CalibrationSession, causes: Sequence[Accepted]) -> Calibration:
@@ -41,7 +34,7 @@ def calibrate_extended(session: CalibrationSession, causes: Sequence[Accepted]) 
     known = [cause(identifier) for identifier, _ in causes]
     clips, whole = unclipped(rows, known)
     state = begin(baseline_of(whole), (), known)
-    done = {(Saturation.identifier, (clip.sensor,)) for clip in clips}
+    done = {(clip.cause.identifier, (clip.sensor,)) for clip in clips}
     for identifier, sensors in causes:
         for place in places(rows, sensors):
             if (identifier, place) not in done:

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from estimator.diagnosis.explanation.accepted import can_be_modelled
 from estimator.diagnosis.explanation.extended_model import Amplitudes
 from estimator.diagnosis.explanation.rivals import matching
 from estimator.diagnosis.residuals.baseline import Baseline
@@ -72,7 +71,7 @@ def carried_to(earlier: Baseline, state: Search, fitted: Amplitudes, new: Sequen
 
 def alone(earlier: Baseline, scored: Scored, fitted: Amplitudes, k: int) -> Carried | None:
     """One finding in an earlier session; None where it acts in one session only or cannot show in that one."""
-    if not can_be_modelled(scored.cause.identifier):
+    if not scored.cause.can_be_modelled:
         return None
     columns = matching(earlier, scored)
     if columns is None:

@@ -14,7 +14,6 @@ from itertools import pairwise
 import numpy as np
 
 from estimator.calibration.calibrate import calibrate
-from estimator.diagnosis.selection.backward import DRIFT
 from estimator.diagnosis.selection.search_state import Excess, Search
 from estimator.diagnosis.signatures.autocorrelation import Serial
 from estimator.diagnosis.signatures.scores import INVISIBLE, Scored
@@ -69,7 +68,7 @@ def without_effects(state: Search, fitted: Amplitudes) -> CalibrationSession:
     """
     session, p = state.baseline.session, state.baseline.parameters
     taken = [f.best for f in state.found]
-    stays = [s.cause.identifier == DRIFT for s in taken]
+    stays = [s.cause.moves_parameters for s in taken]
     readings = session.readings
     if not all(stays):
         inside = [
@@ -100,7 +99,7 @@ def extended_calibration(state: Search, fitted: Amplitudes) -> Calibration:
     taken = [f.best for f in state.found]
     if not taken:
         return plain
-    keep = [s.cause.identifier != DRIFT for s in taken]
+    keep = [not s.cause.moves_parameters for s in taken]
     columns = np.concatenate([s.shape.columns * k for s, k in zip(taken, keep, strict=True)], axis=-1)
     answer = state.evidence.absorb @ state.evidence.raw(columns)
     factors = state.baseline.parameters.si_factors(state.baseline.setting.norm)

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from estimator.causes import Cause
 from estimator.causes.noise import ExcessNoise
-from estimator.causes.sensor import Saturation
 from estimator.diagnosis.explanation.extended_model import Amplitudes
 from estimator.diagnosis.explanation.rivals import CREDIBLE, alternatives, ranking, separations
 from estimator.diagnosis.explanation.sensor_or_stand import parity_split
@@ -24,7 +24,7 @@ from estimator.session import ACCELEROMETER, CalibrationSession
 
 def findings(state: Search, fitted: Amplitudes, new: Sequence[bool | None]) -> tuple[Finding, ...]:
     """Named causes, strongest first; the same cause on several sensors is one finding that lists them all."""
-    named = [finding(state, f, fitted, k, new[k]) for k, f in enumerate(state.found)]
+    named = [(f.best.cause, finding(state, f, fitted, k, new[k])) for k, f in enumerate(state.found)]
     excess = [excess_finding(state, e) for e in state.excess]
     return tuple(sorted((*merged(named), *excess), key=lambda f: -f.strength))
 
@@ -52,7 +52,7 @@ def finding(state: Search, found: Found, fitted: Amplitudes, k: int, new: bool |
         alternatives=tuple(r.cause.identifier for r in others),
         separations=separations(state, found, others),
         ranking=ranking(state, found),
-        sentence=best.cause.sentence.format(sensors=spoken(sensors)),
+        sentence=sentence(best.cause, sensors),
         advice=best.cause.advice,
         parity=parity_split(state, found),
         new=new,
@@ -74,13 +74,19 @@ def nonlinear(state: Search, found: Found) -> dict[str, float]:
     return shown
 
 
-def merged(named: list[Finding]) -> list[Finding]:
-    """Findings of one cause on several sensors put together."""
-    kept: dict[str, Finding] = {}
-    for f in named:
+def merged(named: Sequence[tuple[Cause, Finding]]) -> list[Finding]:
+    """Findings of one cause on several sensors put together, one sentence of all of them."""
+    causes, kept = {cause.identifier: cause for cause, _ in named}, dict[str, Finding]()
+    for _, f in named:
         old = kept.get(f.cause)
         kept[f.cause] = f if old is None else joined(old, f)
-    return [replace(f, sentence=f.sentence[:1].upper() + f.sentence[1:]) for f in kept.values()]
+    return [replace(f, sentence=sentence(causes[f.cause], f.sensors)) for f in kept.values()]
+
+
+def sentence(cause: Cause, sensors: tuple[str, ...]) -> str:
+    """What is wrong with some sensors, in words."""
+    text = cause.sentence.format(sensors=spoken(sensors))
+    return text[:1].upper() + text[1:]
 
 
 def joined(a: Finding, b: Finding) -> Finding:
@@ -100,7 +106,7 @@ def joined(a: Finding, b: Finding) -> Finding:
         alternatives=tuple(x for x in a.alternatives if x in both),
         separations=a.separations,
         ranking=a.ranking,
-        sentence=a.sentence.replace(spoken(a.sensors), spoken(sensors)),
+        sentence=a.sentence,
         advice=a.advice,
         parity=a.parity,
         new=a.new if a.new == b.new else None,
@@ -127,7 +133,7 @@ def excess_finding(state: Search, excess: Excess) -> Finding:
         alternatives=(),
         separations=(),
         ranking=(),
-        sentence=cause.sentence.format(sensors=sensor.name),
+        sentence=sentence(cause, (sensor.name,)),
         advice=cause.advice,
         parity=None,
         new=None,
@@ -137,7 +143,7 @@ def excess_finding(state: Search, excess: Excess) -> Finding:
 def slip_finding(slip: Slip, session: CalibrationSession) -> Finding:
     """A slip in the record, with the other ways to put it right that do as well."""
     names = [s.name for s in session.sensors]
-    rows = slip.cause.identifier == "positions-swapped"
+    rows = slip.cause.of_rows
     sensors = () if rows else tuple(names[i] for i in slip.places)
     reached, alternatives_, ranking_ = 0.0, [], []
     for name, places, share in posterior(slip):
@@ -160,7 +166,7 @@ def slip_finding(slip: Slip, session: CalibrationSession) -> Finding:
         alternatives=tuple(alternatives_),
         separations=(),
         ranking=tuple(ranking_[:8]),
-        sentence=slip.cause.sentence.format(sensors=spoken(sensors)),
+        sentence=sentence(slip.cause, sensors),
         advice=slip.cause.advice,
         parity=None,
         new=None,
@@ -173,12 +179,13 @@ def clip_findings(clips: Sequence[Clip], session: CalibrationSession, baseline: 
     ``baseline``: of the session put right.
     """
     inputs = np.abs(measured(session)[0] / baseline.parameters.scale)
-    return tuple(merged([clip_finding(c, float(inputs[c.rows[0], c.sensor]), baseline) for c in clips]))
+    found = [(c.cause, clip_finding(c, float(inputs[c.rows[0], c.sensor]), baseline)) for c in clips]
+    return tuple(merged(found))
 
 
 def clip_finding(clip: Clip, limit: float, baseline: Baseline) -> Finding:
     """One sensor clipped on one side at a limit, m/s² or rad/s at the input."""
-    cause, sensor = Saturation(), baseline.session.sensors[clip.sensor]
+    cause, sensor = clip.cause, baseline.session.sensors[clip.sensor]
     unit = "m/s²" if sensor.kind == ACCELEROMETER else "rad/s"
     shown = {unit: limit, "side": clip.side}
     return Finding(
@@ -194,7 +201,7 @@ def clip_finding(clip: Clip, limit: float, baseline: Baseline) -> Finding:
         alternatives=(),
         separations=(),
         ranking=(Rival(cause.identifier, (sensor.name,), 1.0, clip.strength),),
-        sentence=cause.sentence.format(sensors=sensor.name),
+        sentence=sentence(cause, (sensor.name,)),
         advice=cause.advice,
         parity=None,
         new=None,

@@ -14,7 +14,6 @@ from scipy.special import fdtrc
 
 from estimator.applied_vector import stand_geometry
 from estimator.causes import Cause
-from estimator.causes.sensor import Saturation
 from estimator.session import TWO_AXIS_STAND, Array, CalibrationSession
 
 FEWEST = 2
@@ -43,6 +42,7 @@ FREE = 1e3
 class Clip:
     """One sensor clipped on one side."""
 
+    cause: Cause
     sensor: int
     side: float
     """+1 or −1."""
@@ -68,15 +68,16 @@ class Clip:
 
 def unclipped(session: CalibrationSession, catalogue: Sequence[Cause]) -> tuple[list[Clip], CalibrationSession]:
     """The sensors clipped in a session on a stand, and the session put right."""
-    if session.programme != TWO_AXIS_STAND or not any(isinstance(c, Saturation) for c in catalogue):
+    cause = next((c for c in catalogue if c.clips), None)
+    if session.programme != TWO_AXIS_STAND or cause is None:
         return [], session
-    clips = [clip for i in range(len(session.sensors)) for clip in clips_of(session, i)]
+    clips = [clip for i in range(len(session.sensors)) for clip in clips_of(session, i, cause)]
     for clip in clips:
         session = clip.put_right(session)
     return clips, session
 
 
-def clips_of(session: CalibrationSession, i: int) -> list[Clip]:
+def clips_of(session: CalibrationSession, i: int, cause: Cause) -> list[Clip]:
     """The sides on which sensor i is clipped."""
     u = session.readings[:, i]
     ends = {side: np.flatnonzero(u == side * (side * u).max()) for side in (1.0, -1.0)}
@@ -92,7 +93,7 @@ def clips_of(session: CalibrationSession, i: int) -> list[Clip]:
         own = slice(start, start := start + len(rows))
         strength, p_value = significance(side * (expected[own] - u[rows]), covariance[own, own], freedom)
         if p_value < LEVEL / (2 * len(session.sensors)):
-            clips.append(Clip(i, side, tuple(map(int, rows)), expected[own], p_value, strength))
+            clips.append(Clip(cause, i, side, tuple(map(int, rows)), expected[own], p_value, strength))
     return clips
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.special import logsumexp
 
 from estimator.causes import Correction
-from estimator.causes.record import PositionsSwapped, exchange_rows
+from estimator.causes.record import exchange_rows
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.errors import SessionError
@@ -94,7 +94,7 @@ def usable(cause: Correction, session: CalibrationSession) -> bool:
     return both or "both runs" not in cause.needs
 
 
-def exchanged_rows(baseline: Baseline) -> Slip | None:
+def exchanged_rows(baseline: Baseline, known: Sequence[Correction]) -> Slip | None:
     """Two rows whose readings are exchanged, or None.
 
     Screened linearly: exchanging rows j and k back changes the left-over by the difference of the two rows'
@@ -102,8 +102,9 @@ def exchanged_rows(baseline: Baseline) -> Slip | None:
     left-over itself, what counts is how far the exchange brings the left-over down.
     """
     chi2, freedom = weighted_square(baseline), baseline.residual.size
+    cause = next((c for c in known if c.of_rows), None)
     blind = bool(baseline.unstated.any())
-    if not blind and chi2 < GROSS * freedom:
+    if cause is None or (not blind and chi2 < GROSS * freedom):
         return None
     session = baseline.session
     pairs = list(combinations(range(len(session.readings)), 2))
@@ -121,8 +122,8 @@ def exchanged_rows(baseline: Baseline) -> Slip | None:
     evidence = float(weight - np.log(len(pairs)))
     if evidence < BETTER or after > chi2 / 4:
         return None
-    rivals = tuple(("positions-swapped", p, float(w - np.log(len(pairs)))) for w, _, p, _ in best)
-    return Slip(PositionsSwapped(), places, right, evidence, rivals)
+    rivals = tuple((cause.identifier, p, float(w - np.log(len(pairs)))) for w, _, p, _ in best)
+    return Slip(cause, places, right, evidence, rivals)
 
 
 def weighted_square(baseline: Baseline) -> float:

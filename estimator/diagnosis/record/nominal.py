@@ -10,7 +10,7 @@ import numpy as np
 from scipy.special import fdtrc
 
 from estimator.arrays import tangents
-from estimator.causes.record import AlphaEntry
+from estimator.causes import Entry
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import Evidence, parameter_covariance
@@ -31,18 +31,18 @@ ROUNDS = 4
 class WrongEntry:
     """An entry of the record found wrong against the nominal axes."""
 
-    cause: AlphaEntry
+    cause: Entry
     amplitude: float
     sigma: float
     p_value: float
     strength: float
 
-    def put_right(self, session: CalibrationSession) -> CalibrationSession:
-        """The session with the entry put right."""
-        return self.cause.put_right(session, self.amplitude)
+    def corrected(self, session: CalibrationSession) -> CalibrationSession:
+        """The session with the entry corrected."""
+        return self.cause.corrected_by(session, self.amplitude)
 
 
-def regression(baseline: Baseline, cause: AlphaEntry) -> tuple[float, float, float, int]:
+def regression(baseline: Baseline, cause: Entry) -> tuple[float, float, float, int]:
     """Amplitude, its sigma, F and the degrees of freedom left, from the axes' deviations from nominal."""
     evidence = Evidence.of(baseline)
     (shape,) = cause.shapes(baseline.setting)
@@ -63,8 +63,8 @@ def regression(baseline: Baseline, cause: AlphaEntry) -> tuple[float, float, flo
     return amount, float(np.sqrt(rest / size)), amount**2 * size / rest, freedom
 
 
-def wrong_elevation(session: CalibrationSession, cause: AlphaEntry) -> WrongEntry | None:
-    """The elevation that brings the axes back to nominal, or None where the strays explain them as they are."""
+def wrong_entry(session: CalibrationSession, cause: Entry) -> WrongEntry | None:
+    """The amount that brings the axes back to nominal, or None where the strays explain them as they are."""
     baseline = baseline_of(session)
     amount, sigma, f, freedom = regression(baseline, cause)
     if freedom < 3 or (p_value := float(fdtrc(1, freedom, f))) > LEVEL:
@@ -72,6 +72,6 @@ def wrong_elevation(session: CalibrationSession, cause: AlphaEntry) -> WrongEntr
     total, right = 0.0, session
     for _ in range(ROUNDS):
         total += amount
-        right = cause.put_right(session, total)
+        right = cause.corrected_by(session, total)
         amount, sigma, _, _ = regression(baseline_of(right), cause)
     return WrongEntry(cause, total, sigma, p_value, float(np.sqrt(f)))

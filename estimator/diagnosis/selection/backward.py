@@ -21,8 +21,6 @@ NAMELESS = 1.5
 BOTH = 3.0
 """ln evidence by which a cause together with more noise must beat one smooth course."""
 
-DRIFT = "sensor-drift"
-
 
 def settle(state: Search) -> Search:
     """Choose every finding anew given the others, until nothing changes; drop what loses its significance."""
@@ -41,13 +39,13 @@ def settle(state: Search) -> Search:
 
 def without_needless_drift(state: Search) -> Search:
     """Take back a sensor's drift where another effect on that sensor, part of the history too, explains its move."""
-    for drift in [f for f in state.found if f.best.cause.identifier == DRIFT]:
+    for drift in [f for f in state.found if f.best.cause.moves_parameters]:
         sensors = drift.best.shape.sensors
         others = [f for f in state.found if f is not drift and f.best.shape.sensors == sensors]
         for other in others:
             rest = replace(state, found=tuple(f for f in state.found if f is not drift))
             again = strongest(rest, rest.traces, without=other)
-            if again is None or again.best.cause.identifier == DRIFT:
+            if again is None or again.best.cause.moves_parameters:
                 continue
             rival = replace(rest, found=tuple(again if f is other else f for f in rest.found))
             if total(rival) > total(state) - DECISIVE:

@@ -32,9 +32,6 @@ DECISIVE = 4.0
 DOUBTFUL = 0.0
 """ln evidence from which on a scatter that is too large is as well a smooth course as noise, and is said to be both."""
 
-AGAIN = {"reading-outlier": 3, "bias-jump": 2}
-"""How often a cause may happen to one sensor, where it may more than once; what needs more of them is no such cause."""
-
 MOST = 8
 """Different causes (and, apart from them, patterns) looked for in one session, each on as many sensors as show it."""
 
@@ -58,7 +55,7 @@ def causes(state: Search) -> Search:
             break
         found = (*state.found, best, *companions(state, best, state.traces))
         often = too_often(found)
-        if often and all(group[0] in AGAIN for group in often):
+        if often and all(f.best.cause.repeats > 1 for f in found if f.best.group in often):
             kept = tuple(f for f in found if f.best.group not in often)
             state = replace(state, found=kept, refuted=state.refuted | often)
         elif often:
@@ -84,7 +81,7 @@ def both(wary: Search, first: Found) -> float:
 def too_often(found: Sequence[Found]) -> frozenset[Group]:
     """Causes named on a sensor more often than they can act there: then it is not that cause."""
     times = Counter(f.best.group for f in found)
-    return frozenset(group for group, n in times.items() if n > AGAIN.get(group[0], 1))
+    return frozenset(f.best.group for f in found if times[f.best.group] > f.best.cause.repeats)
 
 
 def patterned(state: Search, wary: Search, noisy: Excess) -> bool:

@@ -15,8 +15,6 @@ from service.storage.store import Store
 from service.words.diagnosis import UNEXPLAINED, in_words, listed
 from service.words.names import day_of
 
-ABOUT_SENSORS = ("sensor", "environment", "gyro")
-"""Scopes of causes that act on a sensor; a slip in the record or the fixture's turn is no matter of the unit."""
 MATTERS = (Matter.CAUSE, Matter.UNEXPLAINED, Matter.STAND)
 GONE = "The diagnosis of the session of {day} no longer finds it."
 
@@ -62,7 +60,7 @@ def _of_finding(finding: dict[str, Any], session: StoredSession, known: set[tupl
     """
     name = finding["cause"]
     possible = [cause(identifier) for identifier in (name, *finding["alternatives"])]
-    if all(one.scope in ABOUT_SENSORS and not one.between for one in possible):
+    if all(one.is_of_sensor for one in possible):
         for sensor in finding["sensors"]:
             if (name, sensor) not in known:
                 yield Concern(Matter.CAUSE, sensor, 1, _sentence(finding))

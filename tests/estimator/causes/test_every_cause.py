@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from estimator.applied_vector import stand_geometry
-from estimator.causes import CATALOGUE, Cause, Correction, Setting, Shape, Signature, cause
+from estimator.causes import CATALOGUE, Cause, Correction, Setting, Shape, Signature, cause, find
+from estimator.causes.contract import NEEDS
 from estimator.diagnosis.residuals.fitted import stand_baseline
 from estimator.session import CalibrationSession
 from tests.estimator.calibration.cases import accelerometers, block, gyros
@@ -57,7 +58,6 @@ TABLE = [
     "meridian-error",
 ]
 """The agreed identifiers."""
-NEEDS = {"time", "temperature", "stand", "both runs", "gravity", "nominal or history", "history"}
 every = pytest.mark.parametrize("known", CATALOGUE, ids=lambda c: c.identifier)
 every_signature = pytest.mark.parametrize("known", SIGNATURES, ids=lambda c: c.identifier)
 
@@ -162,6 +162,21 @@ def test_what_was_not_recorded_makes_its_causes_unavailable(need: str) -> None:
     setting = setting_of(replace(WORLD, session=replace(WORLD.session, **{need: None})))
     for known in SIGNATURES:
         assert known.available(setting) == (need not in known.needs)
+
+
+def test_a_need_that_no_session_can_provide_is_an_error() -> None:
+    with pytest.raises(ValueError, match="barometer"):
+        setting_of(mixed()).has("barometer")
+
+
+@pytest.mark.parametrize("known", CATALOGUE, ids=lambda c: c.identifier)
+def test_a_model_holds_only_what_acts_in_every_session(known: Cause) -> None:
+    one_time = isinstance(known, Correction) or known.between or known.passing or not isinstance(known, Signature)
+    assert known.can_be_modelled == (not one_time)
+
+
+def test_what_a_result_of_another_version_names_is_not_found() -> None:
+    assert find("ghost-in-the-machine") is None
 
 
 def test_one_run_makes_causes_of_two_unavailable() -> None:

@@ -62,7 +62,7 @@ def test_exchanged_rows_are_found_and_put_right() -> None:
     session = WHERE.measured(1)
     (rows,) = [c for c in SLIPS if not c.between]
     place, wrong = list(rows.corrected(session))[100]
-    undone = exchanged_rows(baseline_of(wrong))
+    undone = exchanged_rows(baseline_of(wrong), SLIPS)
     assert undone is not None
     assert undone.places == place
 
@@ -71,7 +71,7 @@ def test_a_sound_record_is_left_alone() -> None:
     session = WHERE.measured(1)
     baseline = baseline_of(session)
     assert turned_record(session, baseline, expected_axes([], session), SLIPS) is None
-    assert exchanged_rows(baseline) is None
+    assert exchanged_rows(baseline, SLIPS) is None
 
 
 @pytest.mark.parametrize("cause", ["remount-rotation", "gravity-entry", "alpha-entry"])
