@@ -6,7 +6,8 @@ from scipy import stats
 
 from estimator.health.forecast import AHEAD, EARLY, band, passage, predictive, reach, together
 from estimator.health.prognosis import Track, prognosis
-from estimator.health.trend import DIFFUSE, RATE, WALKS, Series, Trends, _filter, _padded, trends
+from estimator.health.state_space import DIFFUSE, RATE, WALKS, filtered
+from estimator.health.trend import Series, Trends, padded, trends
 from estimator.session import Array
 from tests.estimator.health.histories import SIGMA, dates, measured, walk
 
@@ -21,8 +22,8 @@ def stated(series: Series, q: float) -> stats._multivariate.multivariate_normal_
 def test_the_likelihood_is_that_of_the_joint_normal_distribution() -> None:
     rng = np.random.default_rng(1)
     series = [measured(rng, t, walk(rng, t, 0.3)) for t in (dates(rng, 7), dates(rng, 4))]
-    data = _padded(series)
-    found = _filter(data, np.zeros(data.there.shape, dtype=bool)).log_likelihood
+    data = padded(series)
+    found = filtered(data, np.zeros(data.there.shape, dtype=bool)).log_likelihood
     for row, one in zip(found, series, strict=True):
         exact = [stated(one, w**2).logpdf(one.value) + len(one.time) / 2 * np.log(2 * np.pi) for w in WALKS]
         assert row == pytest.approx(exact, rel=1e-9)
