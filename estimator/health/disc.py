@@ -37,7 +37,7 @@ def disc_probability(center: Array, sigma: Array, radius: float) -> float:
 
 
 def _chords(center: float, sigma: float, radius: float) -> tuple[Array, Array]:
-    """Half chords (160,) of the disc across the first axis, unit of the radius, and their probability weights (160,)."""
+    """Half chords (160,) of the disc across the first axis, unit of the radius; their probability weights (160,)."""
     if radius <= 0:
         return np.zeros(1), np.zeros(1)
     reach = (np.array([-REACH, REACH]) * sigma + center) / radius
@@ -49,7 +49,7 @@ def _chords(center: float, sigma: float, radius: float) -> tuple[Array, Array]:
 
 
 def _share(chord: Array, weight: Array, center: float, sigma: float) -> float:
-    """Probability of the disc: weights (n,), relative, times what the second axis leaves inside the half chords (n,)."""
+    """Probability of the disc: weights (n,) times the probability of each half chord (n,) along the second axis."""
     inside = ndtr((chord - center) / sigma) - ndtr((-chord - center) / sigma)
     return min(max(float(np.sum(weight * inside)), 0.0), 1.0)
 

@@ -110,7 +110,7 @@ def band(found: Trends, ahead: Array, levels: tuple[float, ...]) -> Band:
 
     Parameters
     ----------
-    found : B trends.
+    found : B trends, relative to their tolerances.
     ahead : (B, h) years after the last session.
     levels : k probabilities, such as 0.05, 0.25, 0.5, 0.75, 0.95.
     """

@@ -29,8 +29,8 @@ class Track:
     time: Array
     """(n,) years, increasing."""
     change: Array
-    """(n, k) deviation from the recorded reference, SI or relative: k = 1, for an axis 2 along its reference's tangents,
-    rad."""
+    """(n, k) deviation from the recorded reference, SI or relative; k = 1, for an axis 2 along its reference's tangents
+    (rad)."""
     sigma: Array
     """(n, k) standard uncertainty that each session brings, unit of the change; of the reference session its own."""
     tolerance: float

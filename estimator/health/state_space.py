@@ -47,7 +47,7 @@ class Padded:
 
     @property
     def gap(self) -> Array:
-        """(B, n) years since the session before; 0 for the first."""
+        """(B, n) number of years since the session before; 0 for the first."""
         return np.diff(self.time, axis=1, prepend=self.time[:, :1])
 
 
@@ -68,7 +68,10 @@ class Filtered:
 
 
 def filtered(data: Padded, steps: Array) -> Filtered:
-    """Level and rate forward through the sessions, at every node; ``steps`` (B, n) bool say where it may jump."""
+    """Level and rate forward through the sessions, at every node, relative to the tolerance.
+
+    steps : (B, n) bool; where the level may jump.
+    """
     size = (len(data.time), len(WALKS))
     level, r = np.zeros(size), np.zeros(size)
     p00, p01, p11 = np.full(size, DIFFUSE**2), np.zeros(size), np.full(size, RATE**2)

@@ -75,7 +75,7 @@ class Trends:
         return self.time[:, -1]
 
     def at(self, ahead: Array) -> tuple[Array, Array]:
-        """Mean and variance of the level, node by node, at times ahead of the last session.
+        """Mean and variance of the level relative to the tolerance, node by node, after the last session.
 
         Parameters
         ----------
