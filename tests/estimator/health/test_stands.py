@@ -35,6 +35,11 @@ def still(stand: str, unit: str, time: float) -> Array:
     return np.zeros(3)
 
 
+def fitted(stand: str, unit: str, time: float) -> Array:
+    """Each block sits in each stand's fixture in its own way, ten sigmas away from the others."""
+    return 10 * SIGMA * np.random.default_rng([int(stand[1:]), int(unit[1:])]).standard_normal(3)
+
+
 def shifted(stand: str, unit: str, time: float) -> Array:
     return SHIFT if stand == "S1" and time > 2.0 else np.zeros(3)
 
@@ -51,6 +56,10 @@ def test_a_stand_that_shifts_is_flagged_with_date_and_size() -> None:
 def test_stands_that_stay_are_left_alone() -> None:
     alarms = sum(bool(flagged(stand_shifts(fleet(np.random.default_rng(100 + s), still)))) for s in range(200))
     assert alarms <= stats.binom.isf(1e-3, 200, 0.02)
+
+
+def test_blocks_that_each_sit_otherwise_in_a_fixture_do_not_shift_the_stand() -> None:
+    assert not any(flagged(stand_shifts(fleet(np.random.default_rng(s), fitted))) for s in range(20))
 
 
 def test_a_unit_that_was_dropped_is_no_fault_of_any_stand() -> None:

@@ -167,6 +167,15 @@ def test_an_axis_drifts_along_its_direction_and_keeps_its_level_of_false_alarms(
     assert sum(o.p_value < 0.05 for o in still) <= stats.binom.isf(1e-3, 400, 0.05)
 
 
+def test_a_direction_chosen_by_looking_has_the_p_value_of_the_largest_of_all() -> None:
+    """exp(−t²/2), where one number alone would have 2Φ(−|t|)."""
+    rng = np.random.default_rng(7)
+    track = axis_track(rng, 0.0)
+    found = prognosis([track])
+    t = stats.norm.isf(found.trends.p_value[0] / 2)
+    assert found.outlooks[0].p_value == pytest.approx(np.exp(-(t**2) / 2))
+
+
 def test_the_unit_s_risk_is_that_of_all_its_parameters() -> None:
     rng = np.random.default_rng(8)
     drifting, still = axis_track(rng, 6.0), axis_track(rng, 0.0)
