@@ -74,5 +74,10 @@ def test_two_units_are_too_few_to_tell() -> None:
     assert {(s.p_value, s.has_shifted) for s in found} == {(None, False)}
 
 
+def test_a_probability_of_a_stand_that_stays_is_no_more_than_one() -> None:
+    found = [shift for s in range(5) for shift in stand_shifts(fleet(np.random.default_rng(200 + s), still))]
+    assert max(shift.p_value or 0 for shift in found) == 1
+
+
 def test_nothing_measured_is_nothing_said() -> None:
     assert stand_shifts(()) == ()
