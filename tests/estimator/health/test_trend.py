@@ -132,6 +132,18 @@ def paths(found: Trends, rng: np.random.Generator, runs: int = 3000) -> Array:
     return np.array(share)
 
 
+def test_a_level_ahead_is_that_before_a_later_session_that_measures_nothing() -> None:
+    """Node by node; the later session's sigma is a million tolerances."""
+    rng = np.random.default_rng(9)
+    t = dates(rng, 6)
+    one = measured(rng, t, walk(rng, t, 0.3))
+    later = Series(np.append(t, t[-1] + 1.5), np.append(one.value, 0.0), np.append(one.sigma, 1e6), 1.0)
+    mean, variance = trends([one], step_level=0.0).at(np.array([[1.5]]))
+    found = trends([later], step_level=0.0)
+    assert mean[0, :, 0] == pytest.approx(found.mean[0, :, 0], rel=1e-6)
+    assert variance[0, :, 0] == pytest.approx(found.covariance[0, :, 0], rel=1e-6)
+
+
 def test_quantiles_of_the_band_hold_what_they_name() -> None:
     found, ahead = trends(drawn("walk", 5)), np.tile([0.5, 2.0], (5, 1))
     edge = band(found, ahead, (0.05, 0.5)).quantiles
