@@ -100,7 +100,7 @@ def flight(
 
 
 def detection() -> Table:
-    """Share of drifts of one of six sensors that are detected, and laid to it, over their size."""
+    """Share of drifts of one of six sensors that are detected, and attributed to it, over their size."""
     rows: list[tuple[object, ...]] = []
     for kind in ("aerobatic", "transport", "rest"):
         for part, sizes in (("bias, µg", (5, 10, 20, 40)), ("scale, ppm", (5, 10, 20, 40)), ("axis, ″", (1, 2, 4, 8))):
@@ -110,7 +110,7 @@ def detection() -> Table:
 
 
 def rates(kind: str, part: str, size: float) -> str:
-    """Found, isolated, and laid to another sensor, per cent."""
+    """Found, isolated, and attributed to another sensor, per cent."""
     found = []
     for seed in range(RUNS // 4):
         drawn, known = reference(6, seed)

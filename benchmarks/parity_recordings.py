@@ -106,7 +106,7 @@ def with_drift(half: Half, sensor: int, bias: float, scale: float) -> Calibratio
 
 
 def drift_curve() -> Table:
-    """Share of drifts found, isolated and laid to another sensor."""
+    """Share of drifts found, isolated and attributed to another sensor."""
     rows: list[tuple[object, ...]] = []
     sizes = [(f"bias {b:g} mg", b, 0.0) for b in BIASES] + [(f"scale {s:g} ppm", 0.0, s) for s in SCALES]
     for name, group in by_session().items():
@@ -122,7 +122,7 @@ def drift_curve() -> Table:
                     right += r.isolated == own
                     wrong += r.isolated not in (None, own)
             rows.append((name, label, tried, *(f"{100 * n / tried:.0f} %" for n in (found, right, wrong))))
-    columns = ("session", "drift put in", "tried", "found", "laid to its sensor", "laid to another")
+    columns = ("session", "drift put in", "tried", "found", "attributed to its sensor", "attributed to another")
     return table("A drift put into real recordings", columns, rows)
 
 

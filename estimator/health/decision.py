@@ -1,10 +1,10 @@
 """A session judged against the unit's reference session: every parameter of every sensor. The rule: see `rule`.
 
-What all sensors did together (`common_motion`) is taken off first: a sensor is judged on what is left.
+What all sensors did together (`common_motion`) is taken off first: a sensor is judged on its residual.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import ndtr
@@ -17,8 +17,10 @@ from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import Array
 
 PARAMETERS = ("scale", "bias", "quadratic", "axis", "misalignment")
+"""In the order judged."""
 FLOOR = 1e-9
-"""Standard uncertainties below this part of the tolerance are taken as this part of it."""
+"""Standard uncertainties below this part of the tolerance are taken as this part of it: without noise the rule would
+divide by zero."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,33 @@ class Judgement:
 
 
 @dataclass(frozen=True)
+class _Case:
+    """One parameter of one sensor that is to be judged."""
+
+    sensor: SensorCalibration
+    origin: SensorCalibration | None
+    """The sensor in the reference; None where the reference lacks it."""
+    parameter: str
+    tolerance: float
+    split: Split | None
+    """The common change of this parameter, where it was separated."""
+
+    @property
+    def change(self) -> Deviation | None:
+        """The deviation, or its residual beside the common change; None where it is not known."""
+        if self.origin is None or self.origin.kind != self.sensor.kind:
+            return None
+        whole = deviation(self.sensor, self.origin, self.parameter)
+        found = whole if self.split is None else self.split.residuals.get(self.sensor.name, whole)
+        return found if found is not None and found.is_finite else None
+
+    @property
+    def motion(self) -> CommonMotion | None:
+        """The common change that was taken off."""
+        return None if self.split is None or self.sensor.name not in self.split.residuals else self.split.motion
+
+
+@dataclass(frozen=True)
 class _Assessed:
     """A deviation in the numbers that the rule needs."""
 
@@ -93,21 +122,20 @@ def judge(
     """
     if splits is None:
         splits = () if reference is None else common_motion(calibration, reference, tolerances)
-    parts = {(s.motion.kind, "axis" if s.motion.quantity == AXES else "scale"): s for s in splits if s.left}
+    parts = {(s.motion.kind, "axis" if s.motion.quantity == AXES else "scale"): s for s in splits if s.residuals}
     origins = {sensor.name: sensor for sensor in (reference or calibration).sensors}
     cases = [
-        (sensor, origins.get(sensor.name), parameter, tolerances[sensor.kind, parameter])
+        _Case(sensor, origins.get(sensor.name), parameter, tolerance, parts.get((sensor.kind, parameter)))
         for sensor in calibration.sensors
         for parameter in PARAMETERS
-        if parameter in sensor.observable and (sensor.kind, parameter) in tolerances
+        if parameter in sensor.observable and (tolerance := tolerances.get((sensor.kind, parameter))) is not None
     ]
-    assessed = [None if reference is None else _assess(*case, coverage_factor, parts) for case in cases]
-    judged = sum(a is not None and coverage_factor * a.u <= case[3] for a, case in zip(assessed, cases, strict=True))
-    factors = critical_factors(judged, _noise_dof(calibration, reference), level)
-    return tuple(
-        _judgement(*case, a, coverage_factor, factors, parts.get((case[0].kind, case[2])))
-        for case, a in zip(cases, assessed, strict=True)
+    assessed = [None if reference is None else _assess(case, coverage_factor) for case in cases]
+    judged = sum(
+        a is not None and coverage_factor * a.u <= case.tolerance for a, case in zip(assessed, cases, strict=True)
     )
+    factors = critical_factors(judged, _noise_dof(calibration, reference), level)
+    return tuple(_judgement(case, a, coverage_factor, factors) for case, a in zip(cases, assessed, strict=True))
 
 
 def _noise_dof(calibration: Calibration, reference: Calibration | None) -> float:
@@ -116,23 +144,18 @@ def _noise_dof(calibration: Calibration, reference: Calibration | None) -> float
     return min([max(fit.dof, 1) for fit in fits if fit.noise == "estimated"], default=np.inf)
 
 
-def _assess(
-    sensor: SensorCalibration,
-    origin: SensorCalibration | None,
-    parameter: str,
-    tolerance: float,
-    k: float,
-    parts: Mapping[tuple[str, str], Split],
-) -> _Assessed | None:
-    change = None if origin is None or origin.kind != sensor.kind else deviation(sensor, origin, parameter)
-    if change is not None and (sensor.kind, parameter) in parts:
-        change = parts[sensor.kind, parameter].left.get(sensor.name, change)
-    if change is None or not (np.isfinite(change.vector).all() and np.isfinite(change.covariance).all()):
+def _assess(case: _Case, k: float) -> _Assessed | None:
+    """None where the change is not known."""
+    change = case.change
+    if change is None:
         return None
-    return _assess_scalar(change, tolerance) if change.vector.size == 1 else _assess_axis(change, tolerance, k)
+    return (
+        _assess_scalar(change, case.tolerance) if change.vector.size == 1 else _assess_axis(change, case.tolerance, k)
+    )
 
 
 def _assess_scalar(change: Deviation, tolerance: float) -> _Assessed:
+    """A normal number."""
     y = float(change.vector[0])
     u = max(float(np.sqrt(change.covariance[0, 0])), FLOOR * tolerance)
     out = float(ndtr((y - tolerance) / u) + ndtr((-y - tolerance) / u))
@@ -140,6 +163,7 @@ def _assess_scalar(change: Deviation, tolerance: float) -> _Assessed:
 
 
 def _assess_axis(change: Deviation, tolerance: float, k: float) -> _Assessed:
+    """Two normal numbers, judged by their length."""
     covariance = change.covariance + (FLOOR * tolerance) ** 2 * np.eye(2)
     length = judge_length(change.vector, covariance, tolerance, k)
     mahalanobis = float(np.sqrt(change.vector @ np.linalg.solve(covariance, change.vector)))
@@ -148,64 +172,59 @@ def _assess_axis(change: Deviation, tolerance: float, k: float) -> _Assessed:
     return _Assessed(change, length.value, length.expanded / k, length.probability_beyond, scale, is_vector=True)
 
 
-def _judgement(
-    sensor: SensorCalibration,
-    origin: SensorCalibration | None,
-    parameter: str,
-    tolerance: float,
-    found: _Assessed | None,
-    k: float,
-    factors: tuple[float, float],
-    part: Split | None,
-) -> Judgement:
-    value, reference = _values(sensor, origin, parameter)
-    critical = None if found is None else factors[found.is_vector] * found.critical_scale
-    verdict = UNDECIDABLE
-    if found is not None and critical is not None:
-        verdict = state(abs(found.y), k * found.u, tolerance, critical)
-    motion = None if found is None else _motion_of(part, sensor.name)
-    return Judgement(
-        sensor=sensor.name,
-        kind=sensor.kind,
-        parameter=parameter,
+def _judgement(case: _Case, found: _Assessed | None, k: float, factors: tuple[float, float]) -> Judgement:
+    """The case with its verdict; ``factors`` of `critical_factors`."""
+    value, reference = _values(case)
+    judgement = Judgement(
+        sensor=case.sensor.name,
+        kind=case.sensor.kind,
+        parameter=case.parameter,
         value=value,
         reference=reference,
-        deviation=None if found is None else found.y,
-        uncertainty=None if found is None else found.u,
-        expanded=None if found is None else k * found.u,
-        tolerance=tolerance,
-        probability_out=None if found is None else found.probability_out,
+        deviation=None,
+        uncertainty=None,
+        expanded=None,
+        tolerance=case.tolerance,
+        probability_out=None,
+        critical=None,
+        verdict=UNDECIDABLE,
+    )
+    if found is None:
+        return judgement
+    critical, motion = factors[found.is_vector] * found.critical_scale, case.motion
+    return replace(
+        judgement,
+        deviation=found.y,
+        uncertainty=found.u,
+        expanded=k * found.u,
+        probability_out=found.probability_out,
         critical=critical,
-        verdict=verdict,
-        change=None if found is None else tuple(map(float, found.change.vector)),
-        change_own=None if found is None else _sigmas(found.change.own),
-        change_origin=None if found is None else _sigmas(found.change.origin),
+        verdict=state(abs(found.y), k * found.u, case.tolerance, critical),
+        change=tuple(map(float, found.change.vector)),
+        change_own=_sigmas(found.change.own),
+        change_origin=_sigmas(found.change.origin),
         common=None if motion is None else motion.size,
         common_sigma=None if motion is None else motion.sigma,
         common_p=None if motion is None else motion.p_value,
     )
 
 
-def _motion_of(part: Split | None, sensor: str) -> CommonMotion | None:
-    """The common part that was taken off this sensor's change."""
-    return None if part is None or sensor not in part.left else part.motion
-
-
 def _sigmas(covariance: Array) -> tuple[float, ...]:
+    """Standard uncertainty of each number, from a covariance (n, n), SI or relative, squared."""
     return tuple(float(np.sqrt(max(variance, 0.0))) for variance in np.diagonal(covariance))
 
 
 def _value(sensor: SensorCalibration, parameter: str) -> float | None:
+    """Of a parameter that is a number."""
     estimate: Estimate = getattr(sensor, parameter) or NOT_SEEN
     return estimate.value
 
 
-def _values(
-    sensor: SensorCalibration, origin: SensorCalibration | None, parameter: str
-) -> tuple[float | None, float | None]:
+def _values(case: _Case) -> tuple[float | None, float | None]:
     """Measured and reference value; a session that becomes the reference is its own origin."""
-    if parameter != "axis":
-        return _value(sensor, parameter), None if origin is None else _value(origin, parameter)
+    sensor, origin = case.sensor, case.origin
+    if case.parameter != "axis":
+        return _value(sensor, case.parameter), None if origin is None else _value(origin, case.parameter)
     if sensor.axis is None or origin is None or origin.axis is None:
         return None, None
     return float(np.hypot(*axis_offset(sensor.axis, origin.axis, origin.axis_tangents))), 0.0

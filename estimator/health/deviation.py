@@ -8,6 +8,7 @@ from estimator.results import Estimate, SensorCalibration
 from estimator.session import Array
 
 NOT_SEEN = Estimate(None, None)
+"""Stands for a parameter that a calibration does not hold at all."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -15,16 +16,23 @@ class Deviation:
     """A measured change."""
 
     vector: Array
-    """(1,) for scale (relative), bias, quadratic; (2,) for the axis, along the tangents of the reference axis, rad."""
+    """(1,) for scale (relative), bias (m/s²; rad/s), quadratic (s²/m); (2,) for the axis, along the tangents of the
+    reference axis, rad."""
     own: Array
-    """(1, 1) or (2, 2), the share of this session in the covariance."""
+    """(1, 1) or (2, 2), the share of this session in the covariance, unit of the vector squared."""
     origin: Array
-    """(1, 1) or (2, 2), the share of the reference session, which all sessions judged against it have in common."""
+    """(1, 1) or (2, 2), the share of the reference session, which all sessions judged against it have in common, unit
+    of the vector squared."""
 
     @property
     def covariance(self) -> Array:
-        """(1, 1) or (2, 2), of both sessions."""
+        """(2, 2) for the axis, rad², otherwise (1, 1), SI or relative squared; of both sessions."""
         return self.own + self.origin
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether every number of it is known."""
+        return bool(np.isfinite(self.vector).all() and np.isfinite(self.covariance).all())
 
 
 def deviation(current: SensorCalibration, reference: SensorCalibration, parameter: str) -> Deviation | None:
@@ -44,6 +52,7 @@ def deviation(current: SensorCalibration, reference: SensorCalibration, paramete
 
 
 def _scalar(change: float, own: float, origin: float) -> Deviation:
+    """One number with one sigma of each session."""
     return Deviation(np.array([change]), np.array([[own**2]]), np.array([[origin**2]]))
 
 
@@ -65,8 +74,8 @@ def axis_offset(axis: Array, reference: Array, tangents: Array) -> Array:
 
     Parameters
     ----------
-    axis, reference : (3,) unit vectors.
-    tangents : (3, 2) orthonormal, orthogonal to the reference.
+    axis, reference : (3,) unit vectors, dimensionless.
+    tangents : (3, 2) orthonormal columns, orthogonal to the reference, dimensionless.
     """
     across = tangents.T @ axis
     length = float(np.hypot(*across))

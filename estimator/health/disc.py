@@ -14,6 +14,7 @@ from scipy.special import ndtr
 from estimator.session import Array
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(160)
+"""(160,) dimensionless; so many that the probability is right to 1e-10 for a sigma of a twentieth of the disc."""
 REACH = 9.0
 """Standard deviations beyond which a normal density is left out (1e-18)."""
 
@@ -23,8 +24,8 @@ def disc_probability(center: Array, sigma: Array, radius: float) -> float:
 
     Parameters
     ----------
-    center : (2,) mean, any unit.
-    sigma : (2,) standard deviations along the same axes, both positive; the smaller one first resolves best.
+    center : (2,) mean, unit of the radius.
+    sigma : (2,) standard deviations along the same axes, same unit, both positive; the smaller one first resolves best.
     radius : radius of the disc around the origin.
 
     Notes
@@ -36,7 +37,7 @@ def disc_probability(center: Array, sigma: Array, radius: float) -> float:
 
 
 def _chords(center: float, sigma: float, radius: float) -> tuple[Array, Array]:
-    """(160,) half chords of the disc across the first axis, and the weight of the density at each."""
+    """Half chords (160,) of the disc across the first axis, unit of the radius; their probability weights (160,)."""
     if radius <= 0:
         return np.zeros(1), np.zeros(1)
     reach = (np.array([-REACH, REACH]) * sigma + center) / radius
@@ -48,7 +49,7 @@ def _chords(center: float, sigma: float, radius: float) -> tuple[Array, Array]:
 
 
 def _share(chord: Array, weight: Array, center: float, sigma: float) -> float:
-    """The weights times what the second axis leaves inside each chord."""
+    """Probability of the disc: weights (n,) times the probability of each half chord (n,) along the second axis."""
     inside = ndtr((chord - center) / sigma) - ndtr((-chord - center) / sigma)
     return min(max(float(np.sum(weight * inside)), 0.0), 1.0)
 
@@ -70,8 +71,8 @@ def judge_length(vector: Array, covariance: Array, limit: float, coverage_factor
 
     Parameters
     ----------
-    vector : (2,) measured deviation.
-    covariance : (2, 2) its covariance, positive definite.
+    vector : (2,) measured deviation, any unit (of an axis rad).
+    covariance : (2, 2) its covariance, positive definite, unit of the vector squared.
     limit : the tolerance that the length is compared with, unit of the vector.
     coverage_factor : k; the one-sided level of the limits is Φ(k).
 
@@ -91,7 +92,10 @@ def judge_length(vector: Array, covariance: Array, limit: float, coverage_factor
 
 
 def _length_with(probability: float, measured: float, sigma: Array) -> float:
-    """The true length, along the axis of largest variance, with P(|x| ≤ measured) = probability; 0 if none has it."""
+    """The true length along the axis of largest variance for which P(|x| ≤ measured) is the probability; 0 if none is.
+
+    sigma : (2,) standard deviations, rising, unit of the length.
+    """
     chord, weight = _chords(0.0, sigma[0], measured)
 
     def excess(length: float) -> float:
@@ -100,5 +104,4 @@ def _length_with(probability: float, measured: float, sigma: Array) -> float:
     if excess(0.0) <= 0:
         return 0.0
     reach = measured + REACH * float(sigma[1])
-    found: float = brentq(excess, 0.0, reach, xtol=1e-5 * float(sigma[1]))
-    return found
+    return float(brentq(excess, 0.0, reach, xtol=1e-5 * float(sigma[1])))

@@ -14,22 +14,25 @@ none of them is out is the product.
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize.elementwise import find_root
 from scipy.special import log_ndtr, ndtr
 
-from estimator.health.trend import WALKS, Trends
+from estimator.health.state_space import WALKS
+from estimator.health.trend import Trends
 from estimator.session import Array
 
 AHEAD = np.concatenate([[0.0], np.geomspace(0.02, 12.0, 30)])
-"""Years at which the chance is worked out; between them it is interpolated."""
-HORIZON = float(AHEAD[-1])
+"""(31,) years at which the chance is worked out; between them it is interpolated. Twelve years outlast any interval."""
 NODES, WEIGHTS = np.polynomial.hermite_e.hermegauss(7)
+"""(7,) of the level, in sigmas, and their weights, dimensionless: exact for polynomials of degree 13."""
 MEDIAN, EARLY = 0.5, 0.1
+"""Chances whose dates are stated: as likely as not, and the 90 % bound."""
 RISK_LEVEL = 0.05
 """Chance of a unit being out of tolerance that its next calibration must come before."""
 
 
 def passage(found: Trends, ahead: Array = AHEAD) -> Array:
-    """Chance that each series has reached its tolerance.
+    """Probability that each series has reached its tolerance.
 
     Parameters
     ----------
@@ -38,7 +41,7 @@ def passage(found: Trends, ahead: Array = AHEAD) -> Array:
 
     Returns
     -------
-    (B, h), never falling.
+    chance : (B, h) probability, never falling.
     """
     p00, p01, p11 = (found.covariance[..., i, None] for i in range(3))
     level = found.mean[..., :1] + np.sqrt(np.maximum(p00, 0.0)) * NODES
@@ -55,7 +58,14 @@ def passage(found: Trends, ahead: Array = AHEAD) -> Array:
 
 
 def _first_passage(distance: Array, rate: Array, free: Array, q: Array, t: Array) -> Array:
-    """The closed form; 1 where the tolerance is reached already."""
+    """(B, Q, l, h) probability of the closed form; 1 where the tolerance is reached already.
+
+    Parameters
+    ----------
+    distance : (B, Q, l, 1) a, tolerances.
+    rate, free : (B, Q, l, 1) μ, tolerances a year, and (B, Q, 1, 1) κ², tolerances squared a year squared.
+    q, t : (Q, 1, 1) tolerances squared a year, and (h,) years.
+    """
     spread = np.sqrt(q * t + free * t**2)
     ahead = np.maximum(distance, 0.0)
     beyond = ndtr((rate * t - ahead) / spread)
@@ -65,19 +75,23 @@ def _first_passage(distance: Array, rate: Array, free: Array, q: Array, t: Array
 
 
 def reach(chance: Array, level: float, ahead: Array = AHEAD) -> Array:
-    """(B,) years until the chance (B, h) of having reached the tolerance is ``level``; infinite beyond the horizon."""
-    found = np.full(len(chance), np.inf)
-    for i, row in enumerate(chance):
-        if row[-1] >= level:
-            k = int(np.argmax(row >= level))
-            low, high = (row[k - 1], row[k]) if k else (level, level)
-            share = (level - low) / (high - low) if high > low else 0.0
-            found[i] = ahead[k - 1] + share * (ahead[k] - ahead[k - 1]) if k else 0.0
-    return found
+    """When the chance of having reached the tolerance passes a level.
+
+    Parameters
+    ----------
+    chance : (B, h) probability, never falling.
+    level : the probability asked for.
+    ahead : (h,) years at which the chances hold.
+
+    Returns
+    -------
+    (B,) years; infinite beyond the last of ``ahead``.
+    """
+    return np.array([np.interp(level, row, ahead, right=np.inf) for row in chance])
 
 
 def together(chance: Array) -> Array:
-    """(h,) chance that any of B parameters (B, h) has reached its tolerance."""
+    """(h,) probability that any of B parameters, each with a probability (B, h), has reached its tolerance."""
     return np.asarray(-np.expm1(np.log1p(-np.minimum(chance, 1 - 1e-15)).sum(axis=0)))
 
 
@@ -88,32 +102,46 @@ class Band:
     ahead: Array
     """(B, h) years."""
     quantiles: Array
-    """(B, k, h)"""
+    """(B, k, h) tolerances."""
 
 
 def band(found: Trends, ahead: Array, levels: tuple[float, ...]) -> Band:
-    """Quantiles of the mixture, by bisection.
+    """Quantiles of the mixture.
 
     Parameters
     ----------
-    found : B trends.
+    found : B trends, relative to their tolerances.
     ahead : (B, h) years after the last session.
     levels : k probabilities, such as 0.05, 0.25, 0.5, 0.75, 0.95.
     """
     mean, variance = found.at(ahead)
     sigma = np.sqrt(variance + 1e-18)
-    low, high = (mean - 12 * sigma).min(axis=1), (mean + 12 * sigma).max(axis=1)
-    wanted = np.array(levels)[:, None]
-    lower, upper = (np.repeat(edge[:, None], len(levels), axis=1) for edge in (low, high))
-    for _ in range(50):
-        middle = (lower + upper) / 2
-        below = np.einsum("bqkh,bq->bkh", ndtr((middle[:, None] - mean[:, :, None]) / sigma[:, :, None]), found.weight)
-        lower, upper = np.where(below < wanted, middle, lower), np.where(below < wanted, upper, middle)
-    return Band(ahead, (lower + upper) / 2)
+    series, level, date = np.ogrid[: len(mean), : len(levels), : mean.shape[2]]
+
+    def excess(x: Array, i: Array, p: Array, h: Array) -> Array:
+        """Share of the mixture below levels x (n,), tolerances, less the probability p (n,); i, h (n,) places."""
+        below = ndtr((x[..., None] - mean[i, :, h]) / sigma[i, :, h])
+        return np.asarray((below * found.weight[i]).sum(axis=-1) - p)
+
+    wanted = np.array(levels)[level]
+    edges = ((mean - 12 * sigma).min(axis=1), (mean + 12 * sigma).max(axis=1))
+    roots = find_root(excess, tuple(edge[:, None] for edge in edges), args=(series, wanted, date))
+    return Band(ahead, np.asarray(roots.x))
 
 
 def predictive(found: Trends, ahead: Array, value: Array, sigma: Array) -> Array:
-    """Chance of a later reading below ``value``, B × h, each with its own standard uncertainty, all in tolerances."""
+    """Probability of a later reading below a value.
+
+    Parameters
+    ----------
+    found : B trends.
+    ahead : (B, h) years after the last session.
+    value, sigma : (B, h) tolerances; each value with its own standard uncertainty.
+
+    Returns
+    -------
+    (B, h) probability.
+    """
     mean, variance = found.at(ahead)
     spread = np.sqrt(variance + sigma[:, None] ** 2)
     return np.asarray(np.einsum("bqh,bq->bh", ndtr((value[:, None] - mean) / spread), found.weight))

@@ -7,6 +7,7 @@ do not explain the finding or name several sensors: then nobody passes.
 """
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import ndtr
@@ -19,6 +20,7 @@ from estimator.results import Calibration
 
 RULE = "parity/1"
 PARAMETERS = ("scale", "bias", "axis")
+"""In the order judged; parity says nothing of the second-order term."""
 
 
 def judge_parity(
@@ -38,49 +40,68 @@ def judge_parity(
     coverage_factor : k.
     """
     return tuple(
-        judged(result, sensor, parameter, reference, tolerances[result.kind, parameter], coverage_factor)
+        _judged(_Case(result, sensor, parameter, tolerance), reference, coverage_factor)
         for sensor in result.sensors
         for parameter in PARAMETERS
-        if (result.kind, parameter) in tolerances
+        if (tolerance := tolerances.get((result.kind, parameter))) is not None
     )
 
 
-def judged(
-    result: ParityResult, sensor: SensorParity, parameter: str, reference: Calibration, tolerance: float, k: float
-) -> Judgement:
-    """One parameter of one sensor."""
-    sight: Sight = getattr(sensor, parameter)
-    origin = None if parameter == "axis" else getattr(reference.sensor(sensor.name), parameter).value
+@dataclass(frozen=True)
+class _Case:
+    """One parameter of one sensor that is to be judged."""
+
+    result: ParityResult
+    sensor: SensorParity
+    parameter: str
+    tolerance: float
+
+    @property
+    def sight(self) -> Sight:
+        """What the recording shows of it."""
+        sight: Sight = getattr(self.sensor, self.parameter)
+        return sight
+
+    @property
+    def is_candidate(self) -> bool:
+        """Whether its change would explain what was detected."""
+        return any(c.sensor == self.sensor.name and c.kind in (self.parameter, SEVERAL) for c in self.result.candidates)
+
+
+def _judged(case: _Case, reference: Calibration, k: float) -> Judgement:
+    """The case with its verdict; the measured value is the reference's, moved by the change."""
+    sight, name, parameter = case.sight, case.sensor.name, case.parameter
+    origin = None if parameter == "axis" else getattr(reference.sensor(name), parameter).value
     size, sigma = sight.size, sight.sigma
     value = size
     if size is not None and origin is not None:
         value = origin + size * (abs(origin) if parameter == "scale" else 1.0)
     return Judgement(
-        sensor=sensor.name,
-        kind=result.kind,
+        sensor=name,
+        kind=case.result.kind,
         parameter=parameter,
         value=value,
         reference=0.0 if parameter == "axis" else origin,
         deviation=size,
         uncertainty=sigma,
         expanded=None if sigma is None else k * sigma,
-        tolerance=tolerance,
-        probability_out=probability_out(sight, tolerance),
+        tolerance=case.tolerance,
+        probability_out=probability_out(sight, case.tolerance),
         critical=sight.detectable,
-        verdict=verdict(result, sensor.name, parameter, sight, tolerance, k),
+        verdict=_verdict(case, k),
     )
 
 
-def verdict(result: ParityResult, sensor: str, parameter: str, sight: Sight, tolerance: float, k: float) -> str:
+def _verdict(case: _Case, k: float) -> str:
     """The state, as the head of this file says."""
+    result, sight, tolerance = case.result, case.sight, case.tolerance
     if sight.size is None or sight.sigma is None or sight.detectable is None:
         return UNDECIDABLE
-    found = [c for c in result.candidates if c.sensor == sensor and c.kind in (parameter, SEVERAL)]
-    if found:
+    if case.is_candidate:
         own = state(abs(sight.size), k * sight.sigma, tolerance, 0.0)
         return own if result.isolated or own != PASS else UNDECIDABLE
-    settled = not result.detected or (result.isolated is not None and result.explained)
-    return PASS if settled and sight.detectable <= tolerance else UNDECIDABLE
+    is_settled = not result.detected or result.isolated is not None
+    return PASS if is_settled and sight.detectable <= tolerance else UNDECIDABLE
 
 
 def probability_out(sight: Sight, tolerance: float) -> float | None:

@@ -13,7 +13,7 @@ from scipy.special import ndtri
 
 from estimator.session import Array
 
-NORMAL_MEDIAN = 0.6744897501960817
+NORMAL_MEDIAN = float(ndtri(0.75))
 """Median of |x| of a standard normal."""
 
 
@@ -22,7 +22,7 @@ def spread(values: Array, sigmas: Array) -> tuple[float, float]:
 
     Parameters
     ----------
-    values, sigmas : (n,) any unit.
+    values, sigmas : (n,) one sigma each, both in any one unit: rates relative to the tolerance, relative changes, rad.
     """
     centre = float(np.median(values))
     away = np.abs(values - centre)

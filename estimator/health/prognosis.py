@@ -16,9 +16,10 @@ from estimator.health.trend import STEP_LEVEL, Series, Trends, trends
 from estimator.session import Array
 
 RECENT = 60
-"""Sessions, the newest, that a trend is made of."""
+"""Sessions, the newest, that a trend is made of; older ones hardly tell of a level that walks."""
 KNOWN = 0.5
-"""A level is known well enough for a forecast while its sigma is below this part of the tolerance."""
+"""A level is known well enough for a forecast while its sigma is below this part of the tolerance: U = 2·u below T, as
+the decision rule asks."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,10 +29,12 @@ class Track:
     time: Array
     """(n,) years, increasing."""
     change: Array
-    """(n, k) deviation from the recorded reference: k = 1, for an axis 2 along its reference's tangents."""
+    """(n, k) deviation from the recorded reference, SI or relative; k = 1, for an axis 2 along its reference's tangents
+    (rad)."""
     sigma: Array
-    """(n, k) standard uncertainty that each session brings; of the reference session its own."""
+    """(n, k) standard uncertainty that each session brings, unit of the change; of the reference session its own."""
     tolerance: float
+    """Unit of the change."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +49,7 @@ class Outlook:
     steps: tuple[int, ...]
     """Places in the track's sessions at which the value was first seen after a sudden change."""
     chance: Array
-    """(h,) of having reached the tolerance by `AHEAD` after the track's last session."""
+    """(h,) probability of having reached the tolerance by `AHEAD` after the track's last session."""
     reach_50: float
     """Years after the last session; infinite beyond the horizon."""
     reach_90: float
@@ -65,7 +68,7 @@ class Prognosis:
     trends: Trends
     """Of every track's main series, then of the axes' second ones; in tolerances."""
     risk: Array
-    """(h,) chance that any known parameter has reached its tolerance by `AHEAD` after the latest session."""
+    """(h,) probability that any known parameter has reached its tolerance by `AHEAD` after the latest session."""
 
 
 def prognosis(tracks: Sequence[Track]) -> Prognosis:
@@ -80,14 +83,12 @@ def prognosis(tracks: Sequence[Track]) -> Prognosis:
     chance = passage(found)
     for place, (i, _) in enumerate(across):
         chance[i] = np.minimum(chance[i] + chance[len(tracks) + place], 1.0)
-    early, median = reach(chance[: len(tracks)], EARLY), reach(chance[: len(tracks)], MEDIAN)
-    outlooks = tuple(
-        _outlook(track, found, i, chance[i], early[i], median[i]) for i, track in enumerate(tracks)
-    )  # fmt: skip
+    outlooks = tuple(_outlook(track, found, i, chance[i]) for i, track in enumerate(tracks))
     return Prognosis(outlooks, found, _risk(tracks, outlooks))
 
 
 def _series(track: Track) -> list[Series]:
+    """Of a number its deviations, of an axis those along and across the direction it points in."""
     time, change, sigma = track.time[-RECENT:], track.change[-RECENT:], track.sigma[-RECENT:]
     if change.shape[1] == 1:
         return [Series(time, change[:, 0], sigma[:, 0], track.tolerance)]
@@ -97,14 +98,16 @@ def _series(track: Track) -> list[Series]:
 
 
 def direction(track: Track) -> Array:
-    """(2,) where the axis points from its reference: the mean of the last three sessions, by their precision."""
+    """(2,) unit vector, dimensionless: where the axis points from its reference, the mean of the last three sessions by
+    their precision."""
     weight = track.sigma[-3:].max(axis=1, keepdims=True) ** -2.0
     mean = (weight * track.change[-3:]).sum(axis=0)
     length = float(np.hypot(*mean))
     return mean / length if length > 0 else np.array([1.0, 0.0])
 
 
-def _outlook(track: Track, found: Trends, i: int, chance: Array, early: float, median: float) -> Outlook:
+def _outlook(track: Track, found: Trends, i: int, chance: Array) -> Outlook:
+    """Of a track whose main series is the i-th; chance (h,) is the probability of having reached the tolerance."""
     unit = track.tolerance
     last = int(found.there[i].sum()) - 1
     skipped = max(len(track.time) - RECENT, 0)
@@ -119,14 +122,15 @@ def _outlook(track: Track, found: Trends, i: int, chance: Array, early: float, m
         p_value=p,
         steps=tuple(int(k) + skipped for k in np.flatnonzero(found.steps[i])),
         chance=chance,
-        reach_50=float(median),
-        reach_90=float(early),
+        reach_50=float(reach(chance[None], MEDIAN)[0]),
+        reach_90=float(reach(chance[None], EARLY)[0]),
         is_known=bool(found.level_sigma[i, last] < KNOWN),
         series=i,
     )
 
 
 def _risk(tracks: Sequence[Track], outlooks: Sequence[Outlook]) -> Array:
+    """(h,) probability that any known parameter is out by `AHEAD` after the latest session of all tracks."""
     latest = max(float(track.time[-1]) for track in tracks)
     rows = [
         np.interp(AHEAD + latest - float(track.time[-1]), AHEAD, outlook.chance)

@@ -40,6 +40,7 @@ FAIL = "fail"
 RULE = "ILAC-G8-four-state/2"
 """2: what all sensors of the block did together is taken off before a sensor is judged."""
 SESSION_LEVEL = 0.01
+"""α: one false alarm in a hundred sessions of a unit that has not changed."""
 
 
 def state(size: float, expanded: float, tolerance: float, critical: float) -> str:

@@ -8,10 +8,10 @@ that is measured elsewhere. For a stand and a date the contrast of a unit is
 the reference session itself counting as a motion of zero; in the difference the unit's own reference drops out. Over
 the units c_u = δ + a_u + e_u: δ the stand's shift, e_u with the covariance of the sessions, a_u with the scatter τ²
 that units have anyway (how a block is seated, what its sensors do on their own), the typical one over all stands and
-dates. δ is the
-generalised least squares mean, δᵀV⁻¹δ is chi-square with k degrees of freedom when the stand has not moved. The level
-1 % is shared by all dates and stands that were looked at (Bonferroni), and a stand is flagged only when at least three
-units show the shift and four in five of them in its direction: a single unit that was dropped is no fault of the stand.
+dates. δ is the generalised least squares mean, δᵀV⁻¹δ is chi-square with k degrees of freedom when the stand has not
+moved. The level 1 % is shared by all dates and stands that were looked at (Bonferroni), and a stand is flagged only
+when at least three units show the shift and four in five of them in its direction: a single unit that was dropped is no
+fault of the stand. Values are in rad (turns) or relative (scales), covariances in rad² or relative².
 """
 
 from collections.abc import Sequence
@@ -24,10 +24,13 @@ from estimator.health.population import spread
 from estimator.session import Array
 
 LEVEL = 0.01
+"""Chance that any stand of a fleet is flagged although none moved."""
 FEWEST_UNITS = 3
+"""Two that differ cannot say which of them changed."""
 MOST_DATES = 48
-"""Of one stand that are looked at, evenly among its sessions."""
+"""Of one stand that are looked at, evenly among its sessions: work and Bonferroni's price grow with them."""
 AGREEING = 0.8
+"""Share of the units that must show the shift; one in five may differ."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +44,7 @@ class Motion:
     value: Array
     """(k,) rotation vector, rad (k = 3), or relative change of all scales (k = 1); zero at a unit's reference."""
     covariance: Array
-    """(k, k) total; of a reference session zero."""
+    """(k, k) total, rad² or relative²; of a reference session zero."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +59,9 @@ class StandShift:
     since: float | None
     """Date of the first session that shows the shift, years; None where too few units tell."""
     value: tuple[float, ...]
-    """δ."""
+    """(k,) δ, rad or relative; empty where too few units tell."""
     covariance: tuple[tuple[float, ...], ...]
+    """(k, k) of δ, rad² or relative²."""
     p_value: float | None
     """Corrected for the dates and stands that were looked at."""
     has_shifted: bool
@@ -98,9 +102,9 @@ class _Contrast:
 
     since: float
     value: Array
-    """(u, k)"""
+    """(u, k) rad or relative."""
     covariance: Array
-    """(u, k, k) of the sessions."""
+    """(u, k, k) of the sessions, rad² or relative²."""
 
 
 def _scatter(contrast: _Contrast) -> float:
@@ -111,14 +115,17 @@ def _scatter(contrast: _Contrast) -> float:
 
 @dataclass(frozen=True, eq=False)
 class _Case:
-    """One stand and one date."""
+    """One stand and one date, over all units."""
 
     since: float
     units: int
     agreeing: int
     value: Array
+    """(k,) δ, rad or relative."""
     covariance: Array
+    """(k, k) of δ, rad² or relative²."""
     p: float
+    """Of δ by chance, before the correction for all stands and dates."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,15 +133,15 @@ class _Table:
     """Motions as arrays: n sessions of units numbered from 0."""
 
     unit: Array
-    """(n,)"""
+    """(n,) number of each unit."""
     time: Array
-    """(n,)"""
+    """(n,) years."""
     there: Array
-    """(n,) whether on the stand that is looked at."""
+    """(n,) bool; whether on the stand that is looked at."""
     value: Array
-    """(n, k)"""
+    """(n, k) rad or relative."""
     covariance: Array
-    """(n, k, k)"""
+    """(n, k, k) rad² or relative²."""
 
 
 def _contrasts(stand: str, motions: Sequence[Motion]) -> list[_Contrast]:
@@ -154,6 +161,7 @@ def _contrasts(stand: str, motions: Sequence[Motion]) -> list[_Contrast]:
 
 
 def _contrast(since: float, table: _Table) -> _Contrast:
+    """Of every unit that was measured there since the date, and also elsewhere or before."""
     after = table.there & (table.time >= since)
     (late, p, some), (early, q, others) = (_means(table, part) for part in (after, ~after))
     both = (some > 0) & (others > 0)
@@ -161,6 +169,7 @@ def _contrast(since: float, table: _Table) -> _Contrast:
 
 
 def _case(contrast: _Contrast, scatter: float) -> _Case:
+    """The units' mean contrast; ``scatter`` is τ², rad² or relative²."""
     k = contrast.value.shape[1]
     weight = np.linalg.inv(contrast.covariance + (scatter + 1e-24) * np.eye(k))
     covariance = np.linalg.inv(weight.sum(axis=0))
@@ -171,7 +180,8 @@ def _case(contrast: _Contrast, scatter: float) -> _Case:
 
 
 def _means(table: _Table, part: Array) -> tuple[Array, Array, Array]:
-    """Mean of every unit over a part of the sessions, its covariance, and how many there are."""
+    """Mean (units, k) of every unit over a part of the sessions, rad or relative, its covariance (units, k, k), and how
+    many there are (units,); ``part`` (n,) bool."""
     units, k = int(table.unit.max()) + 1, table.value.shape[1]
     count = np.bincount(table.unit[part], minlength=units)
     value, covariance = np.zeros((units, k)), np.zeros((units, k, k))
@@ -182,6 +192,7 @@ def _means(table: _Table, part: Array) -> tuple[Array, Array, Array]:
 
 
 def _worst(stand: str, cases: Sequence[_Case], looked: int) -> StandShift:
+    """A stand's most evident date, among all ``looked`` at."""
     if not cases:
         return StandShift(stand, 0, 0, None, (), (), None, False)
     case = min(cases, key=lambda c: (c.p, c.since))

@@ -1,7 +1,8 @@
 """A recording's result in the terms of a calibration, so that it is stored, drawn and judged like every other.
 
 Of every parameter: the reference's value and the change that the recording shows, each as if it alone had changed, or
-beside the change of the isolated sensor. The uncertainty is that of the change. The second-order term is not spoken of.
+beside the change of the isolated sensor. The uncertainty is that of the change. Of the second-order term parity says
+nothing.
 """
 
 import numpy as np
@@ -75,12 +76,12 @@ def changed(known: Estimate, sight: Sight, unit_size: float) -> Estimate:
 
 
 def square(sight: Sight, size: int) -> Array:
-    """Covariance of a sight; NaN where nothing is seen."""
+    """(n, n) covariance of a sight of n numbers, relative, SI or rad, squared; NaN where nothing is seen."""
     return np.full((size, size), np.nan) if sight.covariance is None else np.array(sight.covariance)
 
 
 def covariance_of(sensor: SensorParity, known: SensorCalibration) -> Array:
-    """(4, 4) of one sensor's changes, each by itself."""
+    """(4, 4) of one sensor's scale (reading units per m/s²), bias (m/s²) and axis (rad), each by itself."""
     scale = known.scale.value or 1.0
     return np.asarray(block_diag(scale**2 * square(sensor.scale, 1), square(sensor.bias, 1), square(sensor.axis, 2)))
 

@@ -18,30 +18,34 @@ from estimator.errors import Problem, ScheduleError
 from estimator.parity.ledger import Blocks, Ledger
 
 Mask = NDArray[np.bool_]
+"""One bool a block."""
 
 AUTO, STILL, ANY = "auto", "still", "any"
 MOTIONS = (AUTO, STILL, ANY)
 
 FLOOR = 0.05
-"""Part of the blocks that is taken to be the stillest; its upper end is the floor."""
+"""Part of the blocks that is taken to be the stillest; its upper end is the floor. A recording must rest so long."""
 
 MOVING = 3.0
-"""Variance within a block, in floors, from which it counts as moving."""
+"""Variance within a block, in floors, from which it counts as moving; noise alone hardly reaches it."""
 
 RESTLESS = 25.0
-"""Variance within the quietest blocks, in that of neighbouring samples, from which even they are moving."""
+"""Variance within the quietest blocks, in that of neighbouring samples, from which even they are moving. White noise
+gives 1, noise that is correlated over n samples about n."""
 
 SPOILT = 3.0
-"""Mean square of the parity of moving blocks, in that of still ones, from which moving blocks are left out."""
+"""Mean square of the parity of moving blocks, in that of still ones, from which moving blocks are left out: they then
+say less than they disturb."""
 
 ENOUGH_STILL = 12
-"""Still blocks from which the moving ones can be done without."""
+"""Still blocks from which the moving ones can be done without: the fewest groups, and half as many again."""
 
 GROUPS = 32
-"""Groups that a long recording is cut into."""
+"""Groups that a long recording is cut into: sigma is known to an eighth from so many, and they are
+long enough to be independent."""
 
 FEWEST_GROUPS = 8
-"""Groups below which the noise cannot be known from the recording."""
+"""Groups below which the noise cannot be known from the recording: eight know sigma to a quarter."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,8 +55,8 @@ class Selection:
     blocks: Blocks
     group: NDArray[np.intp]
     """(B,) number of the group of each block."""
-    still: NDArray[np.bool_]
-    """(B,)"""
+    still: Mask
+    """(B,) bool; whether at rest."""
     saturated: tuple[str, ...]
     """Channels that ran into the end of their range somewhere."""
     left_out: dict[str, int]
@@ -62,6 +66,7 @@ class Selection:
 
     @property
     def groups(self) -> int:
+        """G."""
         return int(self.group[-1]) + 1
 
 
@@ -118,7 +123,7 @@ def wanted(blocks: Blocks, ledger: Ledger, still: Mask, clean: Mask, motion: str
     return still if p[moving].mean() > SPOILT * p[rest].mean() else np.ones_like(still)
 
 
-def grouped(blocks: Blocks, still: NDArray[np.bool_]) -> NDArray[np.intp]:
+def grouped(blocks: Blocks, still: Mask) -> NDArray[np.intp]:
     """(B,) number of the group of each block: stretches of one kind, long ones cut, short ones joined."""
     aim = max(len(blocks) / GROUPS, 1.0)
     breaks = (np.diff(blocks.first) > 1) | (np.diff(still.astype(np.int8)) != 0)

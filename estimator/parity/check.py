@@ -16,6 +16,7 @@ from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor, Site
 
 FALSE_ALARM = 0.01
+"""One unchanged block in a hundred may be called changed, as in a session (`health.rule`)."""
 
 COMMON = 12
 """Dimensions that no recording shows: three of a common bias, nine of a linear map of the applied vector."""
@@ -60,7 +61,7 @@ class ParityAccumulator:
         self.ledger = Ledger(self.reference, length)
 
     def add(self, readings: Array) -> None:
-        """The next rows (R, sensors), as in the file; ScheduleError where one is not a number."""
+        """The next rows (R, m) of all m sensors, reading units as in the file; ScheduleError where one is no number."""
         bad = np.flatnonzero(~np.isfinite(readings).all(axis=1))
         if len(bad):
             row = self._samples + int(bad[0]) + 1
@@ -84,13 +85,14 @@ class ParityAccumulator:
         return self._judged(selection, change, Evidence(change), false_alarm)
 
     def _judged(self, selection: Selection, change: Change, evidence: Evidence, false_alarm: float) -> ParityResult:
+        """All that is said of a recording."""
         detected = evidence.detected(false_alarm)
         found = evidence.candidates() if detected else []
         named = {h.sensor for h in found}
         explained = not detected or evidence.explained(found[0])
         isolated = found if explained and len(named) == 1 else []
         m = len(self.reference.names)
-        whole = change.excited @ change.theta
+        fitted = change.excited @ change.theta
         spread = np.kron(change.excited, np.eye(change.theta.shape[1]))
         return ParityResult(
             unit=self.unit,
@@ -105,8 +107,8 @@ class ParityAccumulator:
             isolated=self.reference.names[isolated[0].sensor] if isolated else None,
             explained=explained,
             complete=change.complete,
-            constant=whole[0],
-            slope=whole[1:].T / change.norm,
+            constant=fitted[0],
+            slope=fitted[1:].T / change.norm,
             covariance=spread @ change.covariance @ spread.T,
             excited=change.excited,
             unobservable=COMMON,
@@ -124,7 +126,7 @@ class ParityAccumulator:
         )
 
     def _middles(self, selection: Selection) -> Array:
-        """(groups,) s, or blocks."""
+        """(groups,) middle of each group, s since the start, or a number of blocks where no rate is known."""
         share = np.bincount(selection.group)
         middle = np.bincount(selection.group, weights=selection.blocks.first + 0.5) / share
         return np.asarray(middle if self._rate is None else middle * self.ledger.length / self._rate)

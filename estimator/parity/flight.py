@@ -21,7 +21,7 @@ from estimator.parameters import SensorParameters
 from estimator.session import IN_SERVICE, Array, CalibrationSession, Sensor, Site
 
 SMOOTH = 2.0
-"""s from one manoeuvre to the next."""
+"""s from one manoeuvre to the next: what a pilot takes."""
 
 
 @dataclass(frozen=True)
@@ -34,12 +34,15 @@ class Manoeuvre:
     pitch: float = 0.0
     """rad"""
     load: float = 1.0
+    """Along the lift, in g."""
     side: float = 0.0
     """Sideways load, in g."""
     slow_roll: bool = False
+    """Whether the block is turned through the roll; otherwise a turn is coordinated."""
 
 
 CRUISE = Manoeuvre(20.0)
+"""Straight and level."""
 TRANSPORT = (
     CRUISE,
     Manoeuvre(15.0, pitch=0.2),
@@ -48,7 +51,7 @@ TRANSPORT = (
     Manoeuvre(15.0, pitch=-0.12, load=0.9),
     Manoeuvre(10.0, side=-0.08),
 )
-"""Climb, turn, slip, descent."""
+"""Climb, turn, slip, descent: what passengers bear."""
 AEROBATIC = (
     CRUISE,
     Manoeuvre(10.0, pitch=0.9, load=1.6),
@@ -57,6 +60,7 @@ AEROBATIC = (
     Manoeuvre(8.0, load=3.0),
     Manoeuvre(12.0, roll=-2 * np.pi, slow_roll=True, pitch=0.3),
 )
+"""Steep climb, slow rolls, a dive and its recovery: turns the specific force through the whole sphere."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +93,7 @@ def profile(manoeuvres: Sequence[Manoeuvre], seconds: float, rate: float, g: flo
 
 
 def of_one(m: Manoeuvre, rate: float) -> Array:
-    """(R, 5) roll, pitch, load, side load and whether it is a slow roll, of one manoeuvre."""
+    """(R, 5) roll and pitch, rad, load and side load, g, and whether it is a slow roll (1 or 0), of one manoeuvre."""
     count = int(m.seconds * rate)
     roll = m.roll * np.arange(count) / count if m.slow_roll else np.full(count, m.roll)
     level = np.full((count, 4), [m.pitch, m.load, m.side, float(m.slow_roll)])
@@ -97,7 +101,7 @@ def of_one(m: Manoeuvre, rate: float) -> Array:
 
 
 def vibration(sigma: float, count: int, rate: float, rng: np.random.Generator) -> Array:
-    """(R, 3) half a rotor's two harmonics, half broad band."""
+    """(R, 3) m/s²: half a rotor's two harmonics, half broad band."""
     t = np.arange(count) / rate
     phases = rng.uniform(0, 2 * np.pi, (2, 3))
     rotor = sum(np.sin(2 * np.pi * 0.17 * rate * k * t[:, None] + phases[k - 1]) for k in (1, 2))
@@ -105,7 +109,7 @@ def vibration(sigma: float, count: int, rate: float, rng: np.random.Generator) -
 
 
 def wander(weather: Weather, shape: tuple[int, int], rate: float, rng: np.random.Generator) -> Array:
-    """(R, m) first-order Gauss–Markov process of each sensor."""
+    """(R, m) first-order Gauss–Markov process of each sensor, m/s²."""
     keep = float(np.exp(-1.0 / (rate * weather.wander_time)))
     steps = weather.wander * np.sqrt(1 - keep**2) * rng.standard_normal(shape)
     steps[0] = weather.wander * rng.standard_normal(shape[1])

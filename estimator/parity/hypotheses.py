@@ -25,7 +25,9 @@ ELEMENTS = {BIAS: [1], SCALE: [0], AXIS: [3, 4], SEVERAL: [1, 0, 3, 4]}
 """Columns of `Reference.signatures` that a kind of change moves."""
 
 WRONG_SENSOR = 0.01
+"""Chance that the true sensor is passed over; the level of the detection, once more."""
 POWER = 0.95
+"""With which a change of the stated size is found; what is passed must have been found 19 times in 20."""
 ALIKE = 1e-4
 """Share of a signature left after a rival's best fit below which the two are the same."""
 UNSEEN = 1e-6
@@ -34,15 +36,16 @@ UNSEEN = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Hypothesis:
-    """One sensor changed in one way."""
+    """One sensor changed in one way. q numbers of parity, k of the change."""
 
     sensor: int
     kind: str
     whitened: Array
-    """(q, k) signature in units of sigma."""
+    """(q, k) signature, in standard errors per unit of the change."""
     basis: Array
-    """(q, r) orthonormal basis of it."""
+    """(q, r) orthonormal basis of it, dimensionless."""
     ratio: float
+    """Fall of χ², dimensionless."""
     score: float
     """−2 ln of the probability of the ratio by chance."""
     p_value: float
@@ -52,6 +55,7 @@ class Evidence:
     """A change, whitened, with all hypotheses tried."""
 
     def __init__(self, change: Change) -> None:
+        """``seen`` (q,) is Θ in standard errors; ``all`` every sensor × kind."""
         self.change = change
         root = np.linalg.cholesky(change.covariance)
         self.seen = solve_triangular(root, change.theta.ravel(), lower=True)
@@ -70,6 +74,7 @@ class Evidence:
         return self.change.dof / max(self.own_noise, 1e-3)
 
     def _tried(self, sensor: int, kind: str, whitened: Array) -> Hypothesis:
+        """Its ratio, and how improbable that is by chance; whitened (q, k), standard errors per unit of the change."""
         U, sizes, _ = np.linalg.svd(whitened, full_matrices=False)
         basis = U[:, sizes > UNSEEN * max(sizes[0], np.finfo(float).tiny)]
         ratio = float(((basis.T @ self.seen) ** 2).sum())
@@ -83,15 +88,16 @@ class Evidence:
         return float(chi2.sf(left / scale, effective))
 
     def moments(self, q: int) -> tuple[float, float]:
-        """χ² of q numbers as scale·χ²(dof): s numbers a sensor, with a covariance from few groups (Hotelling)."""
+        """χ² of q numbers as scale·χ²(dof): s numbers a sensor, with a covariance from few groups (Hotelling).
+
+        F of s and ν − s + 1 degrees of freedom has a variance from four of the latter on; ν is s + 4 at least.
+        """
         s = self.change.excited.shape[1]
         nu = max(self.dof, s + 4.0)
         second = nu - s + 1
         one = s * nu / second
-        mean_one = one * second / (second - 2)
-        variance_one = one**2 * f.var(s, second) if second > 4 else 4.0 * s
         parts = q / s
-        mean, variance = parts * mean_one, parts * variance_one
+        mean, variance = parts * (one * second / (second - 2)), parts * (one**2 * f.var(s, second))
         return variance / (2 * mean), 2 * mean**2 / variance
 
     def detected(self, false_alarm: float) -> bool:
@@ -159,7 +165,7 @@ class Evidence:
         )
 
     def beside(self, h: Hypothesis, isolated: list[Hypothesis]) -> Array:
-        """(q, r) orthonormal basis of what stands beside a hypothesis: the isolated sensor's change, less its own."""
+        """(q, r) orthonormal, dimensionless: the isolated sensor's change beside a hypothesis, less its own."""
         if not isolated or any(h is found for found in isolated):
             return np.empty((len(self.seen), 0))
         best = isolated[0]
@@ -182,7 +188,7 @@ class Evidence:
 
 
 def separations(hypotheses: list[Hypothesis]) -> Array:
-    """(n,) least share of each signature's energy that another sensor's change, no richer than it, leaves of it."""
+    """(n,) least relative share of each signature's energy that another sensor's change, no richer, leaves of it."""
     q = len(hypotheses[0].basis)
     bases = np.zeros((len(hypotheses), q, 2))
     for h, basis in zip(hypotheses, bases, strict=True):
@@ -200,7 +206,10 @@ def tail(ratio: float, k: int, dof: float) -> tuple[float, float]:
 
 
 def log_tail(x: float, k: int) -> float:
-    """ln of the upper tail of χ² with k = 1 to 4 degrees of freedom, in closed form because x may be large."""
+    """ln of the upper tail of χ² with k = 1 to 4 degrees of freedom, in closed form.
+
+    x may be large, and `scipy.stats.chi2.logsf` is −∞ from about 1,500 on.
+    """
     if k % 2 == 0:
         return -x / 2 + (float(np.log1p(x / 2)) if k == 4 else 0.0)
     first = float(np.log(2.0) + norm.logsf(np.sqrt(x)))

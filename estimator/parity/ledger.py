@@ -5,7 +5,7 @@ are twice as long from then on. A block keeps the mean of each sensor's input, h
 the extreme readings, by which a channel that ran into its end is known.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,16 +14,16 @@ from estimator.parity.reference import Reference
 from estimator.session import Array
 
 BLOCK = 1.0
-"""s of samples that make the first blocks."""
+"""s of samples that make the first blocks: vibration averages out, a manoeuvre does not."""
 
 MOST = 4096
-"""Blocks kept at most; even."""
+"""Blocks kept at most, an hour of seconds; even, so that they can be joined two by two."""
 
 RAIL_SAMPLES = 10
 """Samples at one extreme reading from which it may be the end of the converter's range."""
 
 RAIL_PEAK = 5
-"""How many times more often it must stand than the reading next to it."""
+"""How many times more often it must stand than the reading next to it; the tail of noise falls more gently."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,23 +33,23 @@ class Blocks:
     first: NDArray[np.int64]
     """(B,) place of the block, in blocks since the start; a gap is a block that was left out."""
     samples: Array
-    """(B,)"""
+    """(B,) number in each."""
     mean: Array
     """(B, m) of the inputs, m/s² (rad/s)."""
     motion: Array
-    """(B,) variance of the inputs within the block, averaged over the sensors; 0 for rows that are averages."""
+    """(B,) variance of the inputs within the block, averaged over the sensors, (m/s²)² ((rad/s)²); 0 for averages."""
     jitter: Array
     """(B,) the same from the differences of neighbouring samples: noise shows in it, slow motion does not."""
     lowest: Array
-    """(B, m) smallest reading."""
+    """(B, m) smallest reading, reading units."""
     highest: Array
-    """(B, m) largest reading."""
+    """(B, m) largest reading, reading units."""
 
     def __len__(self) -> int:
         return len(self.first)
 
     def at(self, chosen: Array) -> "Blocks":
-        """Some of the blocks."""
+        """Some of the blocks: by number (n,), or by bool (B,)."""
         return Blocks(*(column[chosen] for column in vars(self).values()))
 
     def joined(self) -> "Blocks":
@@ -72,12 +72,13 @@ class Rails:
     """The two outermost readings of each channel at one end, and how often each stood there."""
 
     def __init__(self, sign: float, m: int) -> None:
+        """``sign`` is 1 for the upper end, −1 for the lower; m channels."""
         self.sign = sign
         self.value = np.full((2, m), -np.inf)
         self.count = np.zeros((2, m), dtype=np.int64)
 
     def add(self, readings: Array) -> None:
-        """Count samples (R, m) in."""
+        """Count samples (R, m) in, reading units."""
         u = self.sign * readings
         top = u.max(axis=0)
         second = np.where(u < top, u, -np.inf).max(axis=0)
@@ -85,6 +86,7 @@ class Rails:
             self._merge(value, (u == value).sum(axis=0))
 
     def _merge(self, value: Array, count: NDArray[np.int64]) -> None:
+        """A reading of each channel (m,), reading units, that stood ``count`` (m,) times."""
         for place in (0, 1):
             same = self.value[place] == value
             self.count[place] += np.where(same, count, 0)
@@ -96,7 +98,7 @@ class Rails:
 
     @property
     def limit(self) -> Array:
-        """(m,) the reading at which a channel is cut off, NaN where none is seen."""
+        """(m,) the reading at which a channel is cut off, reading units; NaN where none is seen."""
         cut = (self.count[0] >= RAIL_SAMPLES) & (self.count[0] > RAIL_PEAK * self.count[1])
         return np.where(cut, self.sign * self.value[0], np.nan)
 
@@ -116,7 +118,7 @@ class Ledger:
         self.ends = (Rails(1.0, len(reference.names)), Rails(-1.0, len(reference.names)))
 
     def add(self, readings: Array) -> None:
-        """The next samples, (R, all sensors), in the order measured."""
+        """The next samples (R, m) of all m sensors of the recording, reading units, in the order measured."""
         self._waiting.append(np.asarray(readings, dtype=float))
         waiting = np.concatenate(self._waiting)
         whole = len(waiting) // self.length * self.length
@@ -126,7 +128,7 @@ class Ledger:
             self._take(waiting[start : min(start + step, whole)])
 
     def _take(self, readings: Array) -> None:
-        """Whole blocks of samples, few enough to fit."""
+        """Whole blocks of samples (R, m), reading units, few enough to fit."""
         length = self.length
         chunks = readings.reshape(-1, length, readings.shape[1])
         u = readings[:, self.reference.column]
@@ -150,6 +152,7 @@ class Ledger:
             self._halve()
 
     def _halve(self) -> None:
+        """Join neighbours, so that the blocks are twice as long."""
         blocks = self.blocks()
         even = len(blocks) // 2 * 2
         left = blocks.at(np.arange(even, len(blocks)))
@@ -161,7 +164,7 @@ class Ledger:
 
     def _odd(self, left: Blocks) -> None:
         """A block without a neighbour is kept as it is: half as long as the others, and weighted so."""
-        self._kept.append(Blocks(**{**vars(left), "first": np.array([self._count])}))
+        self._kept.append(replace(left, first=np.array([self._count])))
         self._count += 1
 
     def blocks(self) -> Blocks:

@@ -13,8 +13,10 @@ from estimator.results import Calibration, SensorCalibration
 from estimator.session import ACCELEROMETER, Array, Sensor
 
 FEWEST = 4
+"""Sensors: three measure the vector, one more checks them."""
 QUADRATIC = ELEMENTS.index("quadratic")
 NEEDED = ("scale", "bias", "axis")
+"""What the reference must know of a sensor that takes part."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,41 +28,43 @@ class Reference:
     column: NDArray[np.intp]
     """(m,) place of each among the recording's sensors."""
     scale: Array
-    """(m,)"""
+    """(m,) K, reading units per m/s² (rad/s)."""
     bias: Array
-    """(m,)"""
+    """(m,) b, m/s² (rad/s)."""
     quadratic: Array
-    """(m,) zero where the reference does not know it, and of gyros: what the Earth's rate tells of it is far too little
-    at the rates of a recording."""
+    """(m,) c, s²/m; zero where the reference does not know it, and of gyros: what the Earth's rate tells of it is far
+    too little at the rates of a recording."""
     offset: Array
-    """(m,) reading that stands for zero."""
+    """(m,) reading that stands for zero, reading units."""
     axes: Array
-    """(m, 3) H"""
+    """(m, 3) H, dimensionless."""
     tangents: Array
-    """(m, 3, 2)"""
+    """(m, 3, 2) orthonormal, orthogonal to each axis, dimensionless."""
     covariance: Array
-    """(5 m, 5 m) of the reference, scale relative; zero where it does not know an element."""
+    """(5 m, 5 m) of the reference, SI with scale relative; zero where it does not know an element."""
     repeatability: Array
-    """(m,) one sigma of the zero from one use to the next."""
+    """(m,) one sigma of the zero from one use to the next, m/s² (rad/s)."""
     parity: Array
-    """(m, d) V, orthonormal."""
+    """(m, d) V, orthonormal, dimensionless."""
 
     @property
     def visible(self) -> Array:
-        """(m,) share of a sensor's change, in energy, that lies in parity space: 1 − eᵢᵀ(HᵀH)⁻¹eᵢ."""
+        """(m,) relative share of a sensor's change, in energy, that lies in parity space: 1 − eᵢᵀ(HᵀH)⁻¹eᵢ."""
         return np.asarray((self.parity**2).sum(axis=1))
 
     def inputs(self, readings: Array) -> Array:
-        """(R, m) what the sensors say was applied: u/K − b − c·a², from readings (R, all sensors)."""
+        """(R, m) what the sensors say was applied, m/s² (rad/s): u/K − b − c·a², from readings (R, n) of all n sensors
+        of the recording, reading units."""
         w = (readings[:, self.column] - self.offset) / self.scale - self.bias
         return 2.0 * w / (1.0 + np.sqrt(np.maximum(1.0 + 4.0 * self.quadratic * w, 0.0)))
 
     def vector(self, inputs: Array) -> Array:
-        """(R, 3) the vector that fits the inputs best."""
+        """(R, 3) the vector that fits the inputs (R, m) best, m/s² (rad/s)."""
         return np.asarray(inputs @ np.linalg.pinv(self.axes).T)
 
     def signatures(self, norm: float) -> Array:
-        """(m, 4, 5) change of a row of ΔA by each element of `parameters.ELEMENTS`, scale relative; ``norm`` is g.
+        """(m, 4, 5) change of a row of ΔA, m/s² (rad/s) per SI unit of each element of `parameters.ELEMENTS`, scale
+        relative; ``norm`` is g, m/s² (rad/s).
 
         The quadratic term is no straight line and stays zero here.
         """
@@ -81,13 +85,13 @@ def reference_of(sensors: Sequence[Sensor], calibration: Calibration, kind: str)
     """
     own = [(k, s) for k, s in enumerate(sensors) if s.kind == kind]
     known = {s.name: s for s in calibration.sensors if s.kind == kind}
-    strange = [
+    unknown = [
         Problem(f"sensors[{k + 1}].name", f"{s.name} is not in the reference calibration; name sensors as there")
         for k, s in own
         if s.name not in known
     ]
-    if strange:
-        raise ScheduleError(strange)
+    if unknown:
+        raise ScheduleError(unknown)
     used = [(k, s, known[s.name]) for k, s in own if all(known[s.name].observable[part] for part in NEEDED)]
     if len(used) < FEWEST:
         raise ScheduleError([Problem("sensors", too_few(len(used), len(own), kind))])

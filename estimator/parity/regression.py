@@ -1,4 +1,4 @@
-"""Θ, the sensors' changes as parity sees them, with a covariance that is honest whatever the colour of the noise.
+"""Θ, the sensors' changes as parity sees them, with a covariance that holds whatever the colour of the noise.
 
 Regression. p = Vᵀa of every block on z = Qᵀ(1, n/g), where Q (4, s) spans what the recording excites: the mean of
 (1, n/g), and those directions of n that change. A recording at one orientation has s = 1.
@@ -6,15 +6,15 @@ Regression. p = Vᵀa of every block on z = Qᵀ(1, n/g), where Q (4, s) spans w
 Noise. Sensors are noisy independently of one another, each in its own way. Each group of `blocks` has its part D_k in
 the error of Θ, known from its residuals (cluster-robust, Bell and McCaffrey 2002); brought back to the sensors by V,
 the parts give each sensor an (s, s) covariance Ω_i: with P = V·Vᵀ, E[Σ D_ki D_kiᵀ] = Σ_j P_ij²·Ω_j. Where sensors
-cannot be told apart in parity (P∘P singular) it does not matter how noise is shared out. Few groups make Ω uncertain,
-so each is drawn towards their mean. Noise so slow that neighbouring groups still agree makes this too small: it is
-enlarged by (1 + ρ)/(1 − ρ), ρ the correlation of neighbouring groups of all sensors together.
+cannot be distinguished in parity (P∘P singular) it does not matter how noise is shared out. Few groups make Ω
+uncertain, so each is drawn towards their mean. Noise so slow that neighbouring groups still agree makes this too small:
+it is enlarged by (1 + ρ)/(1 − ρ), ρ the correlation of neighbouring groups of all sensors together.
 
 Reference. Its own error looks exactly like a change of the sensors: its covariance goes through the signatures. So does
 the repeatability of the zero from one use to the next, where the file states it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -36,7 +36,7 @@ LEAST_DOF = (4.0, 2.0, 16.0)
 """Of the noise, however slow it is: the first and the second times d, at most the third; more sensors tell more."""
 
 APART = 0.01
-"""Relative eigenvalue of P∘P below which sensors are not told apart; it matters as much as its square root."""
+"""Relative eigenvalue of P∘P below which sensors are not distinguished; it matters as much as its square root."""
 
 DRAWN = 6.0
 """Groups' worth of belief that all sensors are equally noisy."""
@@ -50,35 +50,36 @@ class Change:
     norm: float
     """g, m/s²; for gyros the root mean square rate."""
     excited: Array
-    """(4, s) Q, orthonormal columns."""
+    """(4, s) Q, orthonormal columns, dimensionless."""
     theta: Array
-    """(s, d)"""
+    """(s, d) Θ, m/s² (rad/s)."""
     noise: Array
-    """(q, q) covariance of θ.ravel() from the recording's noise."""
+    """(q, q) covariance of θ.ravel() from the recording's noise, (m/s²)² ((rad/s)²)."""
     known: Array
-    """(q, q) from the reference calibration and the stated repeatability."""
+    """(q, q) the same from the reference calibration and the stated repeatability."""
     dof: float
     """Groups less what was fitted to each sensor."""
     residual_rms: float
     """Of the parity vector's elements after the fit, block means, m/s² (rad/s)."""
     quadratic: Array
-    """(m, s) how a² runs along z: what a change of c looks like."""
+    """(m, s) how a² runs along z: what a change of c looks like, (m/s²)²."""
     course: Array
-    """(groups, m) means over the groups of V·p."""
+    """(groups, m) means over the groups of V·p, m/s² (rad/s)."""
     course_sigma: Array
-    """(m,) scatter of the groups' means about the fit."""
+    """(m,) scatter of the groups' means about the fit, m/s² (rad/s)."""
 
     @property
     def covariance(self) -> Array:
+        """(q, q) of θ.ravel(), (m/s²)² ((rad/s)²)."""
         return self.noise + self.known
 
     @property
     def complete(self) -> bool:
-        """Whether bias and scale can be told apart: all four of (1, n) are excited."""
+        """Whether bias and scale can be distinguished: all four of (1, n) are excited."""
         return self.excited.shape[1] == 4
 
     def signature(self, sensor: int, rows: Array) -> Array:
-        """(q, k) of one sensor, from k columns of its row of ΔA, rows (4, k)."""
+        """(q, k) of one sensor, m/s² (rad/s) per unit of the change, from k columns of its row of ΔA, rows (4, k)."""
         z = self.excited.T @ rows
         return np.einsum("sk,d->sdk", z, self.reference.parity[sensor]).reshape(-1, rows.shape[1])
 
@@ -126,11 +127,14 @@ def regress(selection: Selection, reference: Reference, norm: float | None) -> C
         course=course,
         course_sigma=about.std(axis=0),
     )
-    return Change(**{**vars(change), "known": known_covariance(change)})
+    return replace(change, known=known_covariance(change))
 
 
 def excited(x: Array, w: Array, selection: Selection, groups: int) -> Array:
-    """(4, s) orthonormal: the mean of x, and the directions of n that change, in several groups."""
+    """(4, s) orthonormal: the mean of x, and the directions of n that change, in several groups.
+
+    x (B, 4) and the weights w (B,) of the blocks are dimensionless.
+    """
     mean = (w[:, None] * x).sum(axis=0) / w.sum()
     apart = x[:, 1:] - mean[1:]
     scatter = np.zeros((groups, 3, 3))
@@ -145,7 +149,15 @@ def excited(x: Array, w: Array, selection: Selection, groups: int) -> Array:
 
 
 def scores(z: Array, w: Array, residual: Array, selection: Selection, G: Array) -> Array:
-    """(groups, s, d) each group's part in the error of Θ; residuals freed of what the fit took from them (CR2)."""
+    """(groups, s, d) each group's part in the error of Θ, m/s² (rad/s): residuals freed of what the fit took (CR2).
+
+    Parameters
+    ----------
+    z : (B, s) regressors, dimensionless.
+    w : (B,) weights of the blocks, dimensionless.
+    residual : (B, d) p − z·Θ, m/s² (rad/s).
+    G : (s, s) zᵀ·diag(w)·z, dimensionless.
+    """
     groups, s = selection.groups, z.shape[1]
     root = np.linalg.cholesky(G)
     white = np.linalg.solve(root, z.T).T
@@ -159,7 +171,7 @@ def scores(z: Array, w: Array, residual: Array, selection: Selection, G: Array) 
 
 
 def group_means(w: Array, rows: Array, selection: Selection) -> Array:
-    """(groups, k) weighted means of rows (B, k)."""
+    """(groups, k) means of rows (B, k), unit of the rows; weights w (B,) of the blocks, dimensionless."""
     total = np.zeros((selection.groups, rows.shape[1]))
     np.add.at(total, selection.group, w[:, None] * rows)
     return total / np.bincount(selection.group, weights=w)[:, None]
@@ -169,6 +181,7 @@ def neighbours(z: Array, w: Array, residual: Array, selection: Selection, G: Arr
     """Correlation of the residuals of neighbouring groups, all sensors together, without what the fit adds to it.
 
     The fit alone makes neighbours differ: by the hat matrix of the groups' means, and by 2ρ/groups as any correlation.
+    z (B, s), w (B,), residual (B, d) m/s² (rad/s) and G (s, s): see `scores`.
     """
     size = np.sqrt(np.bincount(selection.group, weights=w))[:, None]
     mean = group_means(w, residual, selection) * size
@@ -180,7 +193,10 @@ def neighbours(z: Array, w: Array, residual: Array, selection: Selection, G: Arr
 
 
 def sensor_noise(moved: Array, V: Array, groups: int) -> Array:
-    """(m, s, s) covariance of Θ from each sensor's own noise."""
+    """(m, s, s) covariance of Θ from each sensor's own noise, (m/s²)² ((rad/s)²).
+
+    moved (groups, s, d), m/s² (rad/s), from `scores`; V (m, d), dimensionless.
+    """
     D = moved @ V.T
     observed = np.einsum("gsm,gtm->mst", D, D)
     shares = np.linalg.pinv((V @ V.T) ** 2, rcond=APART, hermitian=True)
@@ -193,7 +209,7 @@ def sensor_noise(moved: Array, V: Array, groups: int) -> Array:
 
 
 def known_covariance(change: Change) -> Array:
-    """(q, q) the reference's own error and the zero's repeatability, as changes of the sensors look."""
+    """(q, q) the reference's own error and the zero's repeatability as they show in Θ, (m/s²)² ((rad/s)²)."""
     reference = change.reference
     shown = reference.signatures(change.norm)
     columns = [change.signature(i, rows) for i, rows in enumerate(shown)]

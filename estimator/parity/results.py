@@ -41,7 +41,7 @@ class Sight:
     detectable: float | None
     """Size that is detected with 95 % power at the stated level."""
     isolable: float | None
-    """Size that is also laid to this sensor with 95 % power; None where another sensor's change looks the same."""
+    """Size that is also attributed to this sensor with 95 % power; None where another's change looks the same."""
 
     @property
     def size(self) -> float | None:
@@ -93,19 +93,23 @@ class ParityResult:
     constant: Array
     """(d,) change of bias in parity space, m/s² (rad/s)."""
     slope: Array
-    """(d, 3) change per unit of the applied vector in parity space."""
+    """(d, 3) change per unit of the applied vector in parity space, dimensionless."""
     covariance: Array
-    """(4 d, 4 d) of (constant, g·slope columns); what is not excited is not known, see ``excited``."""
+    """(4 d, 4 d) of (constant, g·slope columns), (m/s²)² ((rad/s)²); only what is ``excited`` is known."""
     excited: Array
-    """(4, s) directions of (1, n/g) that the recording excites."""
+    """(4, s) directions of (1, n/g) that the recording excites, dimensionless."""
     unobservable: int
     """Dimensions of the sensors' 4 m changes that no recording shows: those of a common bias and any linear map."""
     residual_rms: float
+    """Of the parity vector's elements after the fit, block means, m/s² (rad/s)."""
     blocks: int
+    """Of the recording; ``used`` of them, in ``groups`` independent stretches."""
     used: int
     groups: int
     left_out: dict[str, int]
+    """Blocks not used, by reason."""
     saturated: tuple[str, ...]
+    """Channels that ran into the end of their range."""
     block_seconds: float | None
     duration: float | None
     """s"""

@@ -10,12 +10,15 @@ from estimator.arrays import tangents
 from estimator.health import Judgement, judge
 from estimator.health.common_motion import CommonMotion, Split, common_motion
 from estimator.results import ARCSEC, Calibration
-from estimator.session import ACCELEROMETER, Array
+from estimator.session import ACCELEROMETER, GYROSCOPE, Array
 from estimator.simulate import cone
 from tests.estimator.health.cases import TOLERANCES, block
 
 TURN = np.array([3.0, 12.0, -4.0]) * ARCSEC
 SIGMA = 0.8 * ARCSEC
+SCALE_SIGMA = 2e-6
+STAND_SCALE = 6e-6
+"""Of one session, relative: each sensor's own, and the stand's."""
 CONE = float(np.arccos(1 / np.sqrt(3)))
 
 
@@ -31,7 +34,7 @@ def covariance_of(m: int, common: float = 3.0) -> Array:
     for i, basis in enumerate(tangents(axes)):
         design[5 * i + 3 : 5 * i + 5, :3] = np.cross(axes[i], basis.T)
         design[5 * i, 3] = 0.12
-    own = np.tile([0.12 * 2e-6, 2e-5, 1e-7, SIGMA, SIGMA], m)
+    own = np.tile([0.12 * SCALE_SIGMA, 2e-5, 1e-7, SIGMA, SIGMA], m)
     spread = np.array([ARCSEC, ARCSEC, ARCSEC, 2e-6]) * common
     return np.diag(own**2) + design @ np.diag(spread**2) @ design.T
 
@@ -65,7 +68,7 @@ def tilted(m: int, sensor: int, arcsec: float) -> Array:
 def test_without_noise_the_turn_is_exact_and_nothing_is_left() -> None:
     found = split(6, None)["axes"]
     assert found.motion.value == pytest.approx(TURN, abs=1e-10)
-    assert max(np.abs(d.vector).max() for d in found.left.values()) < 1e-9
+    assert max(np.abs(d.vector).max() for d in found.residuals.values()) < 1e-9
 
 
 def test_a_common_factor_is_taken_off_all_scales() -> None:
@@ -75,15 +78,60 @@ def test_a_common_factor_is_taken_off_all_scales() -> None:
     found = split(6, np.random.default_rng(1), moved)["scales"]
     assert found.motion.left_out == ("A3",)
     assert found.motion.size == pytest.approx(40e-6, abs=3 * found.motion.sigma)
-    assert found.left["A3"].vector[0] == pytest.approx(90e-6, abs=3 * np.sqrt(found.left["A3"].covariance[0, 0]))
+    assert found.residuals["A3"].vector[0] == pytest.approx(
+        90e-6, abs=3 * np.sqrt(found.residuals["A3"].covariance[0, 0])
+    )
 
 
 @pytest.mark.parametrize("m", [4, 6, 8])
 def test_a_sensor_that_tilts_alone_is_found_and_does_not_smear(m: int) -> None:
     found = [split(m, np.random.default_rng([m, seed]), tilted(m, 1, 30.0))["axes"] for seed in range(40)]
     assert [f.motion.left_out for f in found].count(("A2",)) >= 38
-    sizes = [np.hypot(*d.vector) for f in found for name, d in f.left.items() if name != "A2"]
+    sizes = [np.hypot(*d.vector) for f in found for name, d in f.residuals.items() if name != "A2"]
     assert np.quantile(sizes, 0.95) < 4 * np.sqrt(2) * SIGMA
+
+
+def scaled(*sigmas: float) -> tuple[Calibration, Calibration]:
+    """A session without noise whose scales moved by so many standard errors of the change, and its reference."""
+    moved, m = np.zeros((len(sigmas), 5)), len(sigmas)
+    moved[:, 0] = 0.12 * SCALE_SIGMA * np.sqrt(2) * np.array(sigmas)
+    return measured(m, None, moved, np.zeros(3)), block(axes_of(m), np.zeros((m, 5)), covariance_of(m), np.zeros(3))
+
+
+def test_a_sensor_that_explains_the_change_nearly_as_well_is_left_out_too() -> None:
+    """Without A1 χ² is 13.2, without A2 in its place 21.9: less than 2·ln 100 more."""
+    found = common_motion(*scaled(5.4, 4.2, 0, 0, 0))[1].motion
+    assert found.left_out == ("A1", "A2")
+
+
+def test_a_sensor_that_explains_the_change_far_worse_is_kept() -> None:
+    """Without A1 χ² is 12, without A2 in its place 31."""
+    assert common_motion(*scaled(6.4, 4.0, 0, 0, 0))[1].motion.left_out == ("A1",)
+
+
+def test_what_sensors_may_do_on_their_own_widens_the_common_factor() -> None:
+    """Closed form: the mean of six changes, each with both sessions' noise and a tenth of the tolerance."""
+    now, then = scaled(0, 0, 0, 0, 0, 0)
+    found = common_motion(now, then, {(ACCELEROMETER, "scale"): 1e-4})[1].motion
+    each = 2 * SCALE_SIGMA**2 + (0.1 * 1e-4) ** 2
+    assert found.sigma == pytest.approx(np.sqrt(each / 6 + 2 * STAND_SCALE**2), rel=1e-4)
+
+
+def test_a_judgement_takes_its_tolerances_into_the_split() -> None:
+    now, then = scaled(4.6, -4.6, 0, 0, 0, 0)
+    found = judge(now, then, TOLERANCES)
+    split = common_motion(now, then, TOLERANCES)
+    assert found == judge(now, then, TOLERANCES, splits=split)
+    assert found != judge(now, then, TOLERANCES, splits=common_motion(now, then))
+
+
+@pytest.mark.parametrize("changed", [0, 1])
+def test_a_sensor_of_another_kind_in_one_session_has_no_part(changed: int) -> None:
+    both = list(scaled(0, 0, 0, 0))
+    first, *others = both[changed].sensors
+    both[changed] = replace(both[changed], sensors=(replace(first, kind=GYROSCOPE), *others))
+    found = {(s.motion.kind, s.motion.quantity): s.motion.sensors for s in common_motion(*both)}
+    assert found[ACCELEROMETER, "scales"] == ("A2", "A3", "A4")
 
 
 def test_two_sensors_that_tilt_are_both_found_among_eight() -> None:
@@ -112,21 +160,21 @@ def test_a_drift_within_its_tolerance_is_not_shared_out_among_the_others() -> No
         moved = tilted(6, 1, 12.0)
         moved[:, 3:] += 0.7 * ARCSEC * rng.standard_normal((6, 2))
         now, then = measured(6, rng, moved), block(axes_of(6), _errors(6, rng), covariance_of(6), np.zeros(3))
-        left = common_motion(now, then, {(ACCELEROMETER, "axis"): 20 * ARCSEC})[0].left["A2"]
+        left = common_motion(now, then, {(ACCELEROMETER, "axis"): 20 * ARCSEC})[0].residuals["A2"]
         sizes.append(np.hypot(*left.vector) / ARCSEC)
     assert np.median(sizes) == pytest.approx(12, abs=1)
 
 
 def test_three_axes_cannot_tell_who_moved_and_are_judged_whole() -> None:
     found = split(3, np.random.default_rng(4), tilted(3, 1, 30.0))["axes"]
-    assert (found.motion.state, found.left) == ("too-few-sensors", {})
+    assert (found.motion.state, found.residuals) == ("too-few-sensors", {})
 
 
 def test_two_camps_of_scales_are_left_as_they_are() -> None:
     moved = np.zeros((4, 5))
     moved[:2, 0] = 0.12 * 90e-6
     found = split(4, np.random.default_rng(5), moved)["scales"]
-    assert (found.motion.state, found.left) == ("unclear", {})
+    assert (found.motion.state, found.residuals) == ("unclear", {})
 
 
 def test_parallel_axes_do_not_hold_a_turn() -> None:
@@ -144,7 +192,7 @@ def test_the_turn_and_what_is_left_have_honest_covariances() -> None:
     assert abs(np.mean(turns) - 3) < 4 * np.sqrt(6 / 500)
     alarms = sum((f["axes"].motion.p_value or 0) < 0.01 for f in found)
     assert alarms <= stats.binom.isf(1e-3, 500, 0.01)
-    left = [d.vector @ np.linalg.solve(d.covariance, d.vector) for f in found for d in f["axes"].left.values()]
+    left = [d.vector @ np.linalg.solve(d.covariance, d.vector) for f in found for d in f["axes"].residuals.values()]
     assert np.mean(left) == pytest.approx(2, abs=0.12)
     outs = sum(bool(f["axes"].motion.left_out or f["scales"].motion.left_out) for f in found)
     assert outs <= stats.binom.isf(1e-3, 500, 0.002)
@@ -197,4 +245,4 @@ def test_a_frame_held_by_the_axes_themselves_shows_no_turn() -> None:
     one = block(axes, still, free, np.zeros(3), gauge="nominal-axes")
     found = {s.motion.quantity: s for s in common_motion(one, block(axes, still, free, 9 * TURN))}["axes"]
     assert (found.motion.state, found.motion.p_value) == ("separated", None)
-    assert max(np.abs(d.vector).max() for d in found.left.values()) < 0.02 * ARCSEC
+    assert max(np.abs(d.vector).max() for d in found.residuals.values()) < 0.02 * ARCSEC

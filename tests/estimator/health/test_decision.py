@@ -1,11 +1,14 @@
 """A session judged against its reference: deviations, states, and how often a healthy unit is called unfit."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import stats
 
 from estimator.health import Judgement, judge
-from estimator.session import ACCELEROMETER
+from estimator.health.rule import critical_factors
+from estimator.session import ACCELEROMETER, GYROSCOPE
 from tests.estimator.health.cases import TOLERANCES, calibration, sensor
 
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
@@ -35,8 +38,8 @@ def test_uncertainties_of_both_sessions_add_in_quadrature() -> None:
 
 
 def test_the_probability_of_being_out_is_that_of_both_tails() -> None:
-    found = judged({"bias": (4e-4, 1e-4)})["bias"]
-    assert found.probability_out == pytest.approx(stats.norm.sf(1.0) + stats.norm.sf(9.0))
+    found = judged({"bias": (1e-4, 4e-4)})["bias"]
+    assert found.probability_out == pytest.approx(stats.norm.sf(1.0) + stats.norm.sf(1.5))
 
 
 def test_an_axis_is_judged_by_its_angle() -> None:
@@ -87,6 +90,39 @@ def test_a_parameter_without_a_tolerance_is_not_judged() -> None:
 def test_a_measurement_without_noise_is_judged_too() -> None:
     current, same = calibration(sensor(offset=(5e-4, 0.0))), calibration(sensor())
     assert [j.verdict for j in judge(current, same, TOLERANCES)] == ["pass", "pass", "pass", "fail"]
+
+
+def critical(parameter: str, **fits: int) -> float:
+    """The smallest change that counts, in standard uncertainties; ``fits``: degrees of freedom of estimated noise."""
+    current, then = (
+        calibration(sensor(offset=offset, covariance=TIGHT), noise="estimated" if key in fits else "stated",
+                    dof=fits.get(key, 50)) for key, offset in (("now", (5e-5, 0.0)), ("then", (0.0, 0.0)))
+    )  # fmt: skip
+    found = next(j for j in judge(current, then, TOLERANCES) if j.parameter == parameter)
+    assert found.critical is not None
+    return found.critical / (found.uncertainty or 0)
+
+
+def test_a_change_of_a_number_is_measured_against_the_factor_of_numbers() -> None:
+    assert critical("bias") == pytest.approx(critical_factors(4)[0])
+
+
+def test_a_change_of_an_axis_is_measured_against_the_factor_of_vectors() -> None:
+    """The angle's U is k times one of its two equal sigmas."""
+    assert critical("axis") == pytest.approx(critical_factors(4)[1], rel=1e-3)
+
+
+def test_noise_known_from_few_readings_asks_for_a_larger_change() -> None:
+    assert critical("bias", now=8) == pytest.approx(critical_factors(4, dof=8)[0])
+
+
+def test_the_worse_known_noise_of_both_sessions_counts() -> None:
+    assert critical("bias", now=30, then=8) == critical("bias", now=8, then=30) == critical("bias", then=8)
+
+
+def test_a_sensor_of_another_kind_is_no_reference() -> None:
+    then = calibration(replace(sensor(), kind=GYROSCOPE))
+    assert {j.verdict for j in judge(calibration(sensor()), then, TOLERANCES)} == {"undecidable"}
 
 
 def healthy(rng: np.random.Generator, common: float) -> tuple[Judgement, ...]:

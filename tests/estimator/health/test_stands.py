@@ -35,6 +35,11 @@ def still(stand: str, unit: str, time: float) -> Array:
     return np.zeros(3)
 
 
+def fitted(stand: str, unit: str, time: float) -> Array:
+    """Each block sits in each stand's fixture in its own way, ten sigmas away from the others."""
+    return 10 * SIGMA * np.random.default_rng([int(stand[1:]), int(unit[1:])]).standard_normal(3)
+
+
 def shifted(stand: str, unit: str, time: float) -> Array:
     return SHIFT if stand == "S1" and time > 2.0 else np.zeros(3)
 
@@ -53,6 +58,10 @@ def test_stands_that_stay_are_left_alone() -> None:
     assert alarms <= stats.binom.isf(1e-3, 200, 0.02)
 
 
+def test_blocks_that_each_sit_otherwise_in_a_fixture_do_not_shift_the_stand() -> None:
+    assert not any(flagged(stand_shifts(fleet(np.random.default_rng(s), fitted))) for s in range(20))
+
+
 def test_a_unit_that_was_dropped_is_no_fault_of_any_stand() -> None:
     def dropped(stand: str, unit: str, time: float) -> Array:
         return 30 * SHIFT if unit == "U3" and time > 1.5 else np.zeros(3)
@@ -63,6 +72,11 @@ def test_a_unit_that_was_dropped_is_no_fault_of_any_stand() -> None:
 def test_two_units_are_too_few_to_tell() -> None:
     found = stand_shifts(fleet(np.random.default_rng(1), shifted, units=2))
     assert {(s.p_value, s.has_shifted) for s in found} == {(None, False)}
+
+
+def test_a_probability_of_a_stand_that_stays_is_no_more_than_one() -> None:
+    found = [shift for s in range(5) for shift in stand_shifts(fleet(np.random.default_rng(200 + s), still))]
+    assert max(shift.p_value or 0 for shift in found) == 1
 
 
 def test_nothing_measured_is_nothing_said() -> None:

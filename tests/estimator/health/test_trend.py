@@ -6,7 +6,8 @@ from scipy import stats
 
 from estimator.health.forecast import AHEAD, EARLY, band, passage, predictive, reach, together
 from estimator.health.prognosis import Track, prognosis
-from estimator.health.trend import DIFFUSE, RATE, WALKS, Series, Trends, _filter, _padded, trends
+from estimator.health.state_space import DIFFUSE, RATE, WALKS, filtered
+from estimator.health.trend import Series, Trends, padded, trends
 from estimator.session import Array
 from tests.estimator.health.histories import SIGMA, dates, measured, walk
 
@@ -21,8 +22,8 @@ def stated(series: Series, q: float) -> stats._multivariate.multivariate_normal_
 def test_the_likelihood_is_that_of_the_joint_normal_distribution() -> None:
     rng = np.random.default_rng(1)
     series = [measured(rng, t, walk(rng, t, 0.3)) for t in (dates(rng, 7), dates(rng, 4))]
-    data = _padded(series)
-    found = _filter(data, np.zeros(data.there.shape, dtype=bool)).log_likelihood
+    data = padded(series)
+    found = filtered(data, np.zeros(data.there.shape, dtype=bool)).log_likelihood
     for row, one in zip(found, series, strict=True):
         exact = [stated(one, w**2).logpdf(one.value) + len(one.time) / 2 * np.log(2 * np.pi) for w in WALKS]
         assert row == pytest.approx(exact, rel=1e-9)
@@ -131,6 +132,18 @@ def paths(found: Trends, rng: np.random.Generator, runs: int = 3000) -> Array:
     return np.array(share)
 
 
+def test_a_level_ahead_is_that_before_a_later_session_that_measures_nothing() -> None:
+    """Node by node; the later session's sigma is a million tolerances."""
+    rng = np.random.default_rng(9)
+    t = dates(rng, 6)
+    one = measured(rng, t, walk(rng, t, 0.3))
+    later = Series(np.append(t, t[-1] + 1.5), np.append(one.value, 0.0), np.append(one.sigma, 1e6), 1.0)
+    mean, variance = trends([one], step_level=0.0).at(np.array([[1.5]]))
+    found = trends([later], step_level=0.0)
+    assert mean[0, :, 0] == pytest.approx(found.mean[0, :, 0], rel=1e-6)
+    assert variance[0, :, 0] == pytest.approx(found.covariance[0, :, 0], rel=1e-6)
+
+
 def test_quantiles_of_the_band_hold_what_they_name() -> None:
     found, ahead = trends(drawn("walk", 5)), np.tile([0.5, 2.0], (5, 1))
     edge = band(found, ahead, (0.05, 0.5)).quantiles
@@ -164,6 +177,15 @@ def test_an_axis_drifts_along_its_direction_and_keeps_its_level_of_false_alarms(
     assert drifting.level > 0
     still = prognosis([axis_track(rng, 0.0) for _ in range(400)]).outlooks
     assert sum(o.p_value < 0.05 for o in still) <= stats.binom.isf(1e-3, 400, 0.05)
+
+
+def test_a_direction_chosen_by_looking_has_the_p_value_of_the_largest_of_all() -> None:
+    """exp(−t²/2), where one number alone would have 2Φ(−|t|)."""
+    rng = np.random.default_rng(7)
+    track = axis_track(rng, 0.0)
+    found = prognosis([track])
+    t = stats.norm.isf(found.trends.p_value[0] / 2)
+    assert found.outlooks[0].p_value == pytest.approx(np.exp(-(t**2) / 2))
 
 
 def test_the_unit_s_risk_is_that_of_all_its_parameters() -> None:

@@ -59,7 +59,7 @@ def test_p_values_of_unchanged_blocks_are_spread():
         ("axis", lambda true: tilted(true, 2, 3e-4 * np.cross(true.axes[2], [0.0, 0.0, 1.0]))),
     ],
 )
-def test_a_change_is_laid_to_its_sensor(kind, change):
+def test_a_change_is_attributed_to_its_sensor(kind, change):
     found = results(6, change=change, runs=20)
     assert all(r.detected for r in found)
     assert sum(r.isolated == "A3" for r in found) >= 19

@@ -1,0 +1,83 @@
+"""Which sensors moved on their own: generalised least squares, likelihood ratios and rivals (see `common_motion`)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from estimator.health.changes import Changes
+from estimator.session import Array
+
+LEVEL = 0.001
+"""Chance that a sensor of a block without a single motion is left out: a tenth of the level of a session's verdict."""
+RIVAL = 2 * np.log(100)
+"""A rival explanation whose χ² is higher by less than this (likelihood a hundredth) is not ruled out."""
+FEWEST_AGREEING = {1: 2, 2: 3}
+"""By rows a sensor: three axes that kept their angles, two scales that kept their ratio."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """Generalised least squares over some sensors."""
+
+    gain: Array
+    """(k, m r) x = gain·y, dimensionless."""
+    weight: Array
+    """(m r, m r) W, 1/rad² or 1/relative²."""
+    chi2: float
+
+
+def fit(changes: Changes, inside: list[int]) -> Fit:
+    """From the sensors ``inside``; the others are free.
+
+    C is widened by S = s²·A·Aᵀ, which changes neither x nor a residual, but keeps a covariance that is singular
+    along A (a frame held by the axes themselves) from being inverted as it is.
+    """
+    at, n = changes.where(inside), len(changes.y)
+    a, c = changes.design[at], changes.covariance[np.ix_(at, at)]
+    typical = max(float(np.trace(c)) / len(at), 1e-18)
+    v = np.linalg.inv(c + typical * (a @ a.T) + 1e-12 * typical * np.eye(len(at)))
+    g = np.linalg.solve(a.T @ v @ a, a.T @ v)
+    w = v - v @ a @ g
+    gain, weight = np.zeros((a.shape[1], n)), np.zeros((n, n))
+    gain[:, at], weight[np.ix_(at, at)] = g, w
+    return Fit(gain, weight, float(changes.y @ weight @ changes.y))
+
+
+def moved(changes: Changes) -> list[int] | None:
+    """The sensors that moved on their own; None when that cannot be told."""
+    m, out = len(changes.names), list[int]()
+    limit = stats.chi2.isf(-np.expm1(np.log1p(-LEVEL) / m), changes.rows)
+    while _is_majority(changes, out):
+        inside = [i for i in range(m) if i not in out]
+        found = fit(changes, inside)
+        evidence = [_evidence(changes, found, i) for i in inside]
+        if max(evidence) <= limit:
+            suspects = out + _rivals(changes, out, found.chi2)
+            return suspects if _is_majority(changes, suspects) else None
+        out = [*out, inside[int(np.argmax(evidence))]]
+    return None
+
+
+def _is_majority(changes: Changes, out: list[int]) -> bool:
+    """Whether the sensors that remain say what the block did: more than half, and enough to agree on it."""
+    m = len(changes.names)
+    return 2 * (m - len(out)) > m and m - len(out) >= FEWEST_AGREEING[changes.rows]
+
+
+def _evidence(changes: Changes, found: Fit, sensor: int) -> float:
+    """χ²: twice what the log likelihood gains when the sensor is left out."""
+    at = changes.where([sensor])
+    pull = found.weight[at] @ changes.y
+    return float(pull @ np.linalg.solve(found.weight[np.ix_(at, at)], pull))
+
+
+def _rivals(changes: Changes, out: list[int], chi2: float) -> list[int]:
+    """The sensors that could be left out instead of one of these and fit nearly as well."""
+    inside = [i for i in range(len(changes.names)) if i not in out]
+
+    def fits(kept: int, gone: int) -> bool:
+        swapped = sorted([*(i for i in inside if i != kept), gone])
+        return fit(changes, swapped).chi2 - chi2 < RIVAL
+
+    return [kept for kept in inside if any(fits(kept, gone) for gone in out)]
