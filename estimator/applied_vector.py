@@ -11,7 +11,10 @@ import numpy as np
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Site, Stand, StandErrors
 
 EARTH_RATE = 7.292115e-5
-"""rad/s."""
+"""rad/s, against the stars; WGS 84 (NIMA TR8350.2)."""
+
+STANDARD_GRAVITY = 9.80665
+"""m/s² in one g, by definition (CGPM 1901): what data sheets and people count in, not the gravity of a site."""
 
 FLIP = np.array([-1.0, -1.0, 1.0])
 """The block turned 180° about Z, as the signs of the reference vector that give the same products."""

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.errors import Problem, ScheduleError
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
@@ -50,9 +51,6 @@ MOST_BLOCKS = 1.0
 RESTLESS = 3.0
 """Scatter of an interval's block means, in usual ones, from which the interval has a standard error of its own."""
 
-
-STANDARD_GRAVITY = 9.8
-"""m/s²; near enough to say what moves."""
 
 MOTION = 0.02
 """g; change of a reading from quarter to quarter of a stretch from which the block moves."""

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from estimator.alignment.sins import earth_rate
-from estimator.applied_vector import gravity
+from estimator.applied_vector import STANDARD_GRAVITY, gravity
 from estimator.results import ARCSEC
 from estimator.session import (
     ACCELEROMETER,
@@ -56,8 +56,8 @@ class Truth:
 class Imperfections:
     """Noise of the sensors and the table."""
 
-    accelerometer: float = 5e-6 * 9.80665
-    """Density of white noise, m/s²/√Hz."""
+    accelerometer: float = 5e-6 * STANDARD_GRAVITY
+    """Density of white noise, m/s²/√Hz (5 µg/√Hz unless given)."""
     gyro: float = 0.001 * ARCSEC * 60
     """Density of white noise, rad/s/√Hz (0.001 °/√h unless given)."""
     sway: float = 0.0
