@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from estimator.applied_vector import elevation, stand_geometry
+from estimator.applied_vector import stand_geometry
 from estimator.calibration.stand import solved
 from estimator.calibration.stand_report import tables
 from estimator.forward import response
@@ -12,9 +12,6 @@ from estimator.parameters import nominal
 from estimator.planning.elevation import conditioning
 from estimator.planning.results import Request, Sweep
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Stand
-
-SMALLEST = np.radians(1.0)
-"""rad; the elevation stays this far from level and upright, where the closed form has no answer."""
 
 
 def head_kind(like: CalibrationSession) -> str:
@@ -112,9 +109,3 @@ def swept(sessions: list[CalibrationSession], at: Array) -> Sweep:
         repeatability=np.stack([worst(steady) for _, steady in pairs]),
         conditioning=np.array([conditioning(s) for s in sessions]),
     )
-
-
-def stated_elevation(like: CalibrationSession) -> float:
-    """The elevation that the session's stand states, rad."""
-    assert like.stand is not None
-    return elevation(like.stand, head_kind(like))

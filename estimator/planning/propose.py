@@ -17,7 +17,7 @@ from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.results import Limit
 from estimator.diagnosis.selection.search_state import begin
 from estimator.errors import Problem, ScheduleError
-from estimator.planning.elevation import conditioning, optimal_elevation
+from estimator.planning.elevation import conditioning, gyro_errors, optimal_elevation
 from estimator.planning.expected import (
     expected_sigmas,
     head_kind,
@@ -28,7 +28,6 @@ from estimator.planning.expected import (
 )
 from estimator.planning.positions import optimal_positions
 from estimator.planning.results import PARAMETERS, Judged, Plan, Request
-from estimator.published.printed import Conditions, gyro_conditions
 from estimator.session import ACCELEROMETER, TWO_AXIS_STAND, Array, CalibrationSession
 
 ELEVATIONS = np.radians(np.arange(15.0, 75.1, 2.5))
@@ -145,8 +144,7 @@ def by_formula(session: CalibrationSession, N: int) -> float:
     assert session.stand is not None
     errors = session.stand.sigma
     if head_kind(session) != ACCELEROMETER:
-        bare = Conditions(alpha=0.0, positions=N, magnitude=1.0, noise=0.0, bias_variation=0.0, stand=errors)
-        errors = gyro_conditions(bare, session.site.latitude or 0.0).stand
+        errors = gyro_errors(errors, session.site.latitude or 0.0)
     return optimal_elevation(errors, N)
 
 

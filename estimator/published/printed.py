@@ -21,6 +21,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from estimator.planning.elevation import gyro_errors
 from estimator.session import Array, StandErrors
 
 
@@ -56,10 +57,8 @@ class Accuracy:
 
 
 def gyro_conditions(c: Conditions, latitude: float) -> Conditions:
-    """(31), for gyros: the latitude's error raises, levelling and meridian share in the tilt."""
-    across = np.hypot(c.stand.theta_y * np.sin(latitude), c.stand.meridian * np.cos(latitude))
-    raised = float(np.hypot(c.stand.alpha, c.stand.latitude))
-    return replace(c, stand=replace(c.stand, alpha=raised, theta_y=float(across)))
+    """The conditions with the stand's errors as they act on gyros, (31); latitude in rad."""
+    return replace(c, stand=gyro_errors(c.stand, latitude))
 
 
 def printed(axes: Array, c: Conditions) -> Accuracy:
