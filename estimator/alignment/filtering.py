@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.alignment.kalman import State, correct, predict
+from estimator.alignment.kalman import KalmanState, correct, predict
 from estimator.alignment.noise import TINY, Noise
 from estimator.alignment.sins import ALL, PHI, STOP, TAU, Model, Path, V, dynamics, process_noise, transition
 from estimator.results import ARCSEC
@@ -59,7 +59,7 @@ class Filtered:
     sigmas: Array
     innovations: Array
     innovation_sigmas: Array
-    last: State
+    last: KalmanState
     chi2: float
     """Sum over all innovations."""
     measured: int
@@ -77,7 +77,7 @@ def run(path: Path, setting: Setting, measured: Measured, model: Model) -> Filte
     H, R = velocity_measurement(n, setting)
     H_table, R_table = table_measurement()
     shown = path.begins | path.ends
-    state = State(np.zeros(n), np.diag(PRIOR[:n] ** 2))
+    state = KalmanState(np.zeros(n), np.diag(PRIOR[:n] ** 2))
     estimates, sigmas = np.empty((2, len(Phi), n))
     innovations, innovation_sigmas = np.empty((2, len(Phi), 2))
     chi2, count = 0.0, 0

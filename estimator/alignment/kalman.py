@@ -8,7 +8,7 @@ from estimator.session import Array
 
 
 @dataclass(frozen=True, eq=False)
-class State:
+class KalmanState:
     """An estimate (n,) and its covariance (n, n)."""
 
     x: Array
@@ -28,16 +28,16 @@ class Innovation:
         return float(self.value @ np.linalg.solve(self.covariance, self.value))
 
 
-def predict(state: State, Phi: Array, Q: Array) -> State:
+def predict(state: KalmanState, Phi: Array, Q: Array) -> KalmanState:
     """One step ahead: x = Φx, P = ΦPΦᵀ + Q."""
-    return State(Phi @ state.x, Phi @ state.P @ Phi.T + Q)
+    return KalmanState(Phi @ state.x, Phi @ state.P @ Phi.T + Q)
 
 
-def correct(state: State, z: Array, H: Array, R: Array) -> tuple[State, Innovation]:
+def correct(state: KalmanState, z: Array, H: Array, R: Array) -> tuple[KalmanState, Innovation]:
     """A measurement z = Hx + noise of covariance R: the corrected state and the innovation."""
     S = H @ state.P @ H.T + R
     K = np.linalg.solve(S, H @ state.P).T
     innovation = Innovation(z - H @ state.x, S)
     rest = np.eye(len(state.x)) - K @ H
     P = rest @ state.P @ rest.T + K @ R @ K.T
-    return State(state.x + K @ innovation.value, 0.5 * (P + P.T)), innovation
+    return KalmanState(state.x + K @ innovation.value, 0.5 * (P + P.T)), innovation

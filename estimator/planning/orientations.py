@@ -90,8 +90,8 @@ def rank_of_orientations(
     ScheduleError : fewer than three accelerometers, or no orientation.
     """
     felt, directions = usable(sensors, directions)
-    rows, state = planned_rows(axes_of(felt), directions, noise, direction_sigma)
-    told = information(rows, state, quadratic)
+    rows, unknowns = planned_rows(axes_of(felt), directions, noise, direction_sigma)
+    told = information(rows, unknowns, quadratic)
     free = np.linalg.norm(told.basis, axis=1) > 0
     seen = observed(told.covariance, told.unseen, free)
     labels = names(felt)

@@ -92,7 +92,7 @@ def residual_per_freedom(session: CalibrationSession) -> float:
     solution = solve(rows, stated, quadratic=False)
     if not solution.knowledge.full or solution.dof < 1:
         return float("inf")
-    squares = ((rows.y - predicted(solution.state)) * g / np.exp(solution.state.log_scale)) ** 2
+    squares = ((rows.y - predicted(solution.unknowns)) * g / np.exp(solution.unknowns.log_scale)) ** 2
     return float(np.sqrt(squares.sum() / solution.dof) * (1 + 1 / np.sqrt(2 * solution.dof)))
 
 
@@ -134,9 +134,9 @@ def solve(rows: Rows, stated: bool, quadratic: bool | None) -> Solution:
     """The search, with or without the quadratic term, with or without stated noise."""
     run = search if stated else search_with_noise
     solution = run(rows, start(rows), bool(quadratic))
-    if quadratic is not None or not information(solution.rows, solution.state, quadratic=True).full:
+    if quadratic is not None or not information(solution.rows, solution.unknowns, quadratic=True).full:
         return solution
-    extended = run(solution.rows, solution.state, True)
+    extended = run(solution.rows, solution.unknowns, True)
     return extended if useful(explained(extended) if stated else extended) else solution
 
 
@@ -146,7 +146,7 @@ def useful(extended: Solution) -> bool:
         return False
     terms = np.arange(2, len(extended.knowledge.covariance), 5)
     covariance = extended.knowledge.covariance[np.ix_(terms, terms)]
-    c = extended.state.quadratic
+    c = extended.unknowns.quadratic
     known = np.all(np.diagonal(covariance) < USEFUL_QUADRATIC**2)
     return bool(known or chi2.sf(c @ np.linalg.solve(covariance, c), len(c)) < PLAIN_QUADRATIC)
 

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.linalg import qr
 
 from estimator.calibration.free.information import movable, unseen_below
-from estimator.calibration.free.model import Rows, State, linearise
+from estimator.calibration.free.model import Rows, Unknowns, linearise
 from estimator.parameters import PLAUSIBLE
 from estimator.session import Array
 
@@ -29,19 +29,19 @@ NOISE = 1e-5
 
 def planned_rows(
     axes: Array, directions: Array, noise: float = NOISE, direction_sigma: float | None = None
-) -> tuple[Rows, State]:
+) -> tuple[Rows, Unknowns]:
     """Orientations (R, 3) still to be measured by sensors along axes (m, 3), at the nominal parameters."""
     R = len(directions)
     prior = np.full(R, 0.0 if direction_sigma is None else direction_sigma**-2.0)
     stated = directions if direction_sigma is not None else np.zeros((R, 3))
     zero = np.zeros(len(axes))
     rows = Rows(directions @ axes.T, np.full((R, len(axes)), noise), stated, prior, axes)
-    return rows, State(zero, zero, zero, axes, directions)
+    return rows, Unknowns(zero, zero, zero, axes, directions)
 
 
-def shares(rows: Rows, state: State) -> Array:
+def shares(rows: Rows, unknowns: Unknowns) -> Array:
     """(R, 5 m, 5 m) what each orientation adds to the information."""
-    linear = linearise(rows, state)
+    linear = linearise(rows, unknowns)
     R, m = rows.y.shape
     full = np.zeros((R, m, 5, m, 5))
     each = np.arange(m)
@@ -77,10 +77,10 @@ def completion(
 ) -> Array:
     """(k, 3) directions that bring a set to full rank, fewest first; none where it has it, or cannot get it."""
     known = asked(axes)
-    rows, state = planned_rows(known, directions, noise, direction_sigma)
+    rows, unknowns = planned_rows(known, directions, noise, direction_sigma)
     candidates = grid()
-    basis = movable(rows.nominal_axes, state.axes, rows.held, quadratic)
-    own = basis.T @ shares(rows, state).sum(axis=0) @ basis
+    basis = movable(rows.nominal_axes, unknowns.axes, rows.held, quadratic)
+    own = basis.T @ shares(rows, unknowns).sum(axis=0) @ basis
     offered = basis.T @ shares(*planned_rows(known, candidates, noise, direction_sigma)) @ basis
     ridge = PLAUSIBLE**-2 * np.eye(basis.shape[1])
     chosen: list[int] = []

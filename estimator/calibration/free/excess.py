@@ -38,8 +38,8 @@ def explained(solution: Solution) -> Solution:
     stated, found, last = solution.rows.sigma, solution, np.inf
     for _ in range(ROUNDS):
         added = added_noise(found, stated, solution.dof)
-        sigma = np.hypot(stated, added * np.exp(found.state.log_scale))
-        found = search(solution.rows.weighted(sigma), found.state, solution.quadratic)
+        sigma = np.hypot(stated, added * np.exp(found.unknowns.log_scale))
+        found = search(solution.rows.weighted(sigma), found.unknowns, solution.quadratic)
         if abs(added - last) < SETTLED * added or not found.converged:
             break
         last = added
@@ -48,9 +48,9 @@ def explained(solution: Solution) -> Solution:
 
 def added_noise(found: Solution, stated: Array, dof: int) -> float:
     """Sigma at the input, in g, that brings χ² of the residuals as they are to its degrees of freedom."""
-    gain = np.exp(found.state.log_scale)
-    squares = (found.rows.y - predicted(found.state)) ** 2
-    turned = found.rows.prior[:, None] * (found.rows.directions - found.state.directions) ** 2
+    gain = np.exp(found.unknowns.log_scale)
+    squares = (found.rows.y - predicted(found.unknowns)) ** 2
+    turned = found.rows.prior[:, None] * (found.rows.directions - found.unknowns.directions) ** 2
 
     def surplus(log_sigma: float) -> float:
         variance = stated**2 + (np.exp(log_sigma) * gain) ** 2

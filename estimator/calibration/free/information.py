@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.arrays import tangents
-from estimator.calibration.free.model import Linear, Rows, State, linearise
+from estimator.calibration.free.model import Linear, Rows, Unknowns, linearise
 from estimator.parameters import PLAUSIBLE
 from estimator.session import Array
 
@@ -78,14 +78,14 @@ def unseen_below(values: Array) -> float:
     return max(PLAUSIBLE**-2, ROUNDING * float(values[-1]))
 
 
-def information(rows: Rows, state: State, quadratic: bool, linear: Linear | None = None) -> Information:
-    """What orientations ``state.directions`` tell of sensors like ``state`` under the noise of ``rows``.
+def information(rows: Rows, unknowns: Unknowns, quadratic: bool, linear: Linear | None = None) -> Information:
+    """What orientations ``unknowns.directions`` tell of sensors like ``unknowns`` under the noise of ``rows``.
 
     Only `rows.sigma`, `rows.prior` and `rows.nominal_axes` are used: the readings play no part. ``linear`` is the
-    linearisation at the state, where it is at hand.
+    linearisation at the unknowns, where it is at hand.
     """
-    basis = movable(rows.nominal_axes, state.axes, rows.held, quadratic)
-    schur = (linear or linearise(rows, state)).schur
+    basis = movable(rows.nominal_axes, unknowns.axes, rows.held, quadratic)
+    schur = (linear or linearise(rows, unknowns)).schur
     values, vectors = np.linalg.eigh(basis.T @ schur @ basis)
     vectors = basis @ vectors
     known = values > unseen_below(values)

@@ -42,17 +42,17 @@ def of_accelerometers(solution: Solution, sigma: Array, scale: Array, g: float) 
     scale : (m,) nominal scales, which the search worked in.
     g : m/s².
     """
-    state, rows, m = solution.state, solution.rows, len(scale)
-    gain = np.exp(state.log_scale)
-    parameters = SensorParameters(scale * gain, g * state.offset / gain, state.quadratic / g, state.axes)
-    T = to_bias(state.offset, gain)
+    unknowns, rows, m = solution.unknowns, solution.rows, len(scale)
+    gain = np.exp(unknowns.log_scale)
+    parameters = SensorParameters(scale * gain, g * unknowns.offset / gain, unknowns.quadratic / g, unknowns.axes)
+    T = to_bias(unknowns.offset, gain)
     covariance = T @ solution.knowledge.covariance @ T.T
     unseen = T @ solution.knowledge.unseen
     observable = observed(covariance, unseen, np.linalg.norm(solution.knowledge.basis, axis=1) > 0)
     factors = parameters.si_factors(np.full(m, g))
     known = tuple(combinations(i, parameters, covariance, unseen, observable, factors) for i in range(m))
     covariance = np.where(np.outer(observable, observable), covariance * np.outer(factors, factors), np.nan)
-    residual = (rows.y - predicted(state)) * (g / gain)
+    residual = (rows.y - predicted(unknowns)) * (g / gain)
     return Knowledge(parameters, covariance, observable.reshape(m, 5), known, residual, sigma * (g / gain))
 
 

@@ -56,7 +56,7 @@ class Rows:
 
 
 @dataclass(frozen=True, eq=False)
-class State:
+class Unknowns:
     """Where the search stands: parameters of m sensors and R orientations."""
 
     log_scale: Array
@@ -80,10 +80,10 @@ class State:
         """(R, 3, 2) along which the orientations turn."""
         return tangents(self.directions)
 
-    def stepped(self, parameters: Array, turns: Array) -> "State":
+    def stepped(self, parameters: Array, turns: Array) -> "Unknowns":
         """Moved by (5 m,) parameters and (R, 2) turns of the orientations."""
         step = parameters.reshape(-1, 5)
-        return State(
+        return Unknowns(
             log_scale=self.log_scale + step[:, 0],
             offset=self.offset + step[:, 1],
             quadratic=self.quadratic + step[:, 2],
@@ -91,21 +91,21 @@ class State:
             directions=unit(self.directions + (self.direction_tangents @ turns[..., None])[..., 0]),
         )
 
-    def turned(self, rotation: Array) -> "State":
+    def turned(self, rotation: Array) -> "Unknowns":
         """The block's frame turned: v → rotation·v for every axis and every orientation."""
         return replace(self, axes=self.axes @ rotation.T, directions=self.directions @ rotation.T)
 
 
-def predicted(state: State) -> Array:
+def predicted(unknowns: Unknowns) -> Array:
     """(R, m) what the sensors should read."""
-    s = state.directions @ state.axes.T
-    return np.exp(state.log_scale) * (s + state.quadratic * s * s) + state.offset
+    s = unknowns.directions @ unknowns.axes.T
+    return np.exp(unknowns.log_scale) * (s + unknowns.quadratic * s * s) + unknowns.offset
 
 
-def cost(rows: Rows, state: State) -> float:
+def cost(rows: Rows, unknowns: Unknowns) -> float:
     """χ²: squared residuals of the readings and of the stated directions, in their sigmas."""
-    readings = np.sum(((rows.y - predicted(state)) / rows.sigma) ** 2)
-    return float(readings + np.sum(rows.prior[:, None] * (rows.directions - state.directions) ** 2))
+    readings = np.sum(((rows.y - predicted(unknowns)) / rows.sigma) ** 2)
+    return float(readings + np.sum(rows.prior[:, None] * (rows.directions - unknowns.directions) ** 2))
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,27 +143,27 @@ class Linear:
         return (self.inverse @ left[..., None])[..., 0]
 
 
-def jacobian(state: State) -> tuple[Array, Array]:
+def jacobian(unknowns: Unknowns) -> tuple[Array, Array]:
     """Derivatives of `predicted`: (R, m, 5) by each sensor's parameters, (R, m, 2) by the orientation's turns."""
-    s = state.directions @ state.axes.T
-    gain = np.exp(state.log_scale)
-    slope = gain * (1.0 + 2.0 * state.quadratic * s)
+    s = unknowns.directions @ unknowns.axes.T
+    gain = np.exp(unknowns.log_scale)
+    slope = gain * (1.0 + 2.0 * unknowns.quadratic * s)
     own = np.empty((*s.shape, 5))
-    own[..., 0] = gain * (s + state.quadratic * s * s)
+    own[..., 0] = gain * (s + unknowns.quadratic * s * s)
     own[..., 1] = 1.0
     own[..., 2] = gain * s * s
-    own[..., 3:] = slope[..., None] * np.einsum("rk,mka->rma", state.directions, state.axis_tangents)
-    shared = slope[..., None] * np.einsum("mk,rka->rma", state.axes, state.direction_tangents)
+    own[..., 3:] = slope[..., None] * np.einsum("rk,mka->rma", unknowns.directions, unknowns.axis_tangents)
+    shared = slope[..., None] * np.einsum("mk,rka->rma", unknowns.axes, unknowns.direction_tangents)
     return own, shared
 
 
-def linearise(rows: Rows, state: State) -> Linear:
-    """Jacobian, normal equations and Schur complement at a state."""
+def linearise(rows: Rows, unknowns: Unknowns) -> Linear:
+    """Jacobian, normal equations and Schur complement at a unknowns."""
     R, m = rows.y.shape
-    own, shared = jacobian(state)
+    own, shared = jacobian(unknowns)
     own, shared = own / rows.sigma[..., None], shared / rows.sigma[..., None]
-    residual = (rows.y - predicted(state)) / rows.sigma
-    missed = np.einsum("rk,rka->ra", rows.directions - state.directions, state.direction_tangents)
+    residual = (rows.y - predicted(unknowns)) / rows.sigma
+    missed = np.einsum("rk,rka->ra", rows.directions - unknowns.directions, unknowns.direction_tangents)
     D = np.swapaxes(shared, 1, 2) @ shared + rows.prior[:, None, None] * np.eye(2)
     D += (LEAST_TURN * np.trace(D, axis1=1, axis2=2) + np.finfo(float).tiny ** 0.5)[:, None, None] * np.eye(2)
     inverse = np.linalg.inv(D)

@@ -45,7 +45,7 @@ def fit_of_accelerometers(
 
 def to_add(solution: Solution) -> tuple[tuple[float, float, float], ...]:
     """Directions of up that complete what the orientations leave open."""
-    rows, up = solution.rows, solution.state.directions
+    rows, up = solution.rows, solution.unknowns.directions
     sigma = None if not rows.held else float(rows.prior.max() ** -0.5)
     found = completion(rows.nominal_axes, up, quadratic=solution.quadratic, direction_sigma=sigma)
     return tuple((float(x), float(y), float(z)) for x, y, z in found)

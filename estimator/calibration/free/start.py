@@ -10,7 +10,7 @@ Source: the ellipsoid fit is the classical multi-position calibration.
 import numpy as np
 
 from estimator.arrays import unit
-from estimator.calibration.free.model import Rows, State, cost
+from estimator.calibration.free.model import Rows, Unknowns, cost
 from estimator.session import Array
 
 PLAIN = 0.02
@@ -29,19 +29,19 @@ FLAT = 1e-3
 """Ratio of the quadric's eigenvalues below which it is no ellipsoid."""
 
 
-def start(rows: Rows) -> State:
+def start(rows: Rows) -> Unknowns:
     """Parameters and orientations from linear estimates; of several the one that fits best."""
     found = [with_directions(rows)] if rows.held else from_shape(rows)
-    return min((oriented(rows, *linear) for linear in found), key=lambda state: cost(rows, state))
+    return min((oriented(rows, *linear) for linear in found), key=lambda unknowns: cost(rows, unknowns))
 
 
-def oriented(rows: Rows, sensitivity: Array, offset: Array) -> State:
-    """State with sensitivity (m, 3), offset (m,) and the orientations that fit them best."""
+def oriented(rows: Rows, sensitivity: Array, offset: Array) -> Unknowns:
+    """Unknowns with sensitivity (m, 3), offset (m,) and the orientations that fit them best."""
     gain = np.maximum(np.linalg.norm(sensitivity, axis=1), LEAST_GAIN)
     directions = unit((rows.y - offset) @ np.linalg.pinv(sensitivity).T)
     if rows.held:
         directions = np.where(rows.prior[:, None] > 0, rows.directions, directions)
-    return State(np.log(gain), offset, np.zeros_like(gain), sensitivity / gain[:, None], directions)
+    return Unknowns(np.log(gain), offset, np.zeros_like(gain), sensitivity / gain[:, None], directions)
 
 
 def with_directions(rows: Rows) -> tuple[Array, Array]:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from estimator.alignment.kalman import State, correct, predict
+from estimator.alignment.kalman import KalmanState, correct, predict
 from estimator.alignment.noise import at_rest
 from estimator.alignment.observability import planned_path
 from estimator.alignment.simulate import Imperfections, Programme, Truth, true_attitude, true_inputs
@@ -72,7 +72,7 @@ def test_the_transition_is_that_of_the_differential_equation() -> None:
 
 def test_a_correction_keeps_the_covariance_symmetric_and_positive() -> None:
     rng = np.random.default_rng(1)
-    state = State(np.zeros(3), np.diag([1e6, 1.0, 1e-12]))
+    state = KalmanState(np.zeros(3), np.diag([1e6, 1.0, 1e-12]))
     for _ in range(200):
         H = rng.standard_normal((1, 3))
         state, _ = correct(predict(state, np.eye(3), 1e-15 * np.eye(3)), np.zeros(1), H, np.array([[1e-10]]))
