@@ -35,7 +35,7 @@ from estimator.alignment.positions import (
 )
 from estimator.alignment.results import AlignmentResult, Course
 from estimator.alignment.sins import EPS, NABLA, PHI, STATES, UNITS, Model
-from estimator.alignment.strapdown import Strapdown, strapdown
+from estimator.alignment.strapdown import Motion, Strapdown, strapdown
 from estimator.applied_vector import gravity
 from estimator.errors import Problem, ScheduleError
 from estimator.results import Fit
@@ -52,16 +52,12 @@ class Record:
     """A turntable session, reduced to three axes and checked, from the first stop on. R rows."""
 
     session: CalibrationSession
-    row: float
-    """Time of a row, s."""
+    motion: Motion
+    """As the sensors say, before any bias is taken off."""
     per_step: int
     """Rows of a filter step."""
     angle: Array
     """(R,) of the table, rad."""
-    rates: Array
-    """(R, 3) rad/s."""
-    forces: Array
-    """(R, 3) m/s²."""
     stops: list[Stop]
     noise: Noise
 
@@ -83,7 +79,7 @@ def align(
         noisy for a heading.
     """
     record = prepared(session, mounting)
-    start = coarse(record.stops, record.rates, record.forces, record.noise.gyro, record.row)
+    start = coarse(record.stops, record.motion, record.noise.gyro)
     computed = _computed(record, start)
     setting = _setting(record)
     measured = Measured(computed.velocity, _turned(record, computed))
@@ -110,11 +106,9 @@ def prepared(session: CalibrationSession, mounting: tuple[float, float] = (0.0, 
     noise = _noise(found, gyros, accelerometers, row, per_step)
     return Record(
         session=session,
-        row=row,
+        motion=Motion(rates[begin:], accelerometers.values[begin:], row),
         per_step=per_step,
         angle=session.turn_angle[begin:],
-        rates=rates[begin:],
-        forces=accelerometers.values[begin:],
         stops=[Stop(stop.first - begin, stop.last - begin, stop.angle) for stop in found],
         noise=noise,
     )
@@ -143,11 +137,12 @@ def _computed(record: Record, start: Coarse) -> Strapdown:
     """The strapdown, with the coarse zeros taken off."""
     latitude = record.session.site.latitude
     assert latitude is not None
-    stop_of_row = np.full(len(record.rates), -1)
+    motion = record.motion
+    stop_of_row = np.full(len(motion.rates), -1)
     for number, stop in enumerate(record.stops):
         stop_of_row[stop.first : stop.last] = number
-    rates, forces = record.rates - start.gyro_bias, record.forces - start.accelerometer_bias
-    return strapdown(start.attitude, rates, forces, record.row, latitude, stop_of_row, record.per_step)
+    left = Motion(motion.rates - start.gyro_bias, motion.forces - start.accelerometer_bias, motion.row)
+    return strapdown(start.attitude, left, latitude, stop_of_row, record.per_step)
 
 
 def _setting(record: Record) -> Setting:
@@ -221,7 +216,7 @@ def _fit(record: Record, filtered: Filtered) -> Fit:
     dof = filtered.measured - n
     p_value = float(chi2_distribution.sf(filtered.chi2, dof))
     factor = max(1.0, filtered.chi2 / dof) if p_value < UNLIKELY else 1.0
-    step = record.row * record.per_step
+    step = record.motion.row * record.per_step
     return Fit(
         chi2=filtered.chi2,
         dof=dof,

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.alignment.positions import Stop
+from estimator.alignment.strapdown import Motion
 from estimator.arrays import unit
 from estimator.errors import Problem, ScheduleError
 from estimator.session import Array
@@ -30,27 +31,26 @@ class Coarse:
     """(3,) m/s², the third 0."""
 
 
-def coarse(found: list[Stop], rates: Array, forces: Array, gyro_noise: Array, row: float) -> Coarse:
+def coarse(found: list[Stop], motion: Motion, gyro_noise: Array) -> Coarse:
     """The start of the fine alignment.
 
     Parameters
     ----------
     found : the stops, two different angles at least.
-    rates, forces : (R, 3), rad/s and m/s².
+    motion : as the sensors say.
     gyro_noise : (3, 3) density, (rad/s)²/Hz.
-    row : time of a row, s.
 
     Raises
     ------
     ScheduleError : the gyros do not tell the Earth's rotation from their noise.
     """
     angles = np.array([stop.angle for stop in found])
-    rate = np.array([rates[stop.first : stop.last].mean(axis=0) for stop in found])
-    force = np.array([forces[stop.first : stop.last].mean(axis=0) for stop in found])
+    rate = np.array([motion.rates[stop.first : stop.last].mean(axis=0) for stop in found])
+    force = np.array([motion.forces[stop.first : stop.last].mean(axis=0) for stop in found])
     design = turning_design(angles)
     north, gyro_bias, inverse = _solved(design, rate)
     _, accelerometer_bias, _ = _solved(design, force)
-    shortest = min(stop.last - stop.first for stop in found) * row
+    shortest = min(stop.last - stop.first for stop in found) * motion.row
     _require_heading(north, inverse, gyro_noise, shortest)
     up = unit(force[0] - accelerometer_bias)
     east = unit(np.cross(rate[0] - gyro_bias, up))

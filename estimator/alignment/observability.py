@@ -34,7 +34,7 @@ from estimator.alignment.filtering import (
     table_measurement,
     velocity_measurement,
 )
-from estimator.alignment.simulate import Programme, Truth, table_angle, true_attitude, true_inputs
+from estimator.alignment.simulate import Programme, Truth, table_angle, true_attitude, true_motion
 from estimator.alignment.sins import ALL, NABLA, PHI, STATES, STOP, Model, Path, dynamics, transition
 from estimator.alignment.strapdown import strapdown
 from estimator.session import Array
@@ -65,11 +65,11 @@ def planned_path(programme: Programme, latitude: float, g: float, heading: float
     """The path of a level table run by a programme; g in m/s², angles in rad."""
     stops = np.zeros((len(programme.angles), 2))
     attitude = true_attitude(programme, Truth(heading=heading), stops)
-    rates, forces = true_inputs(attitude, programme.row, latitude, g)
+    motion = true_motion(attitude, programme.row, latitude, g)
     _, course = table_angle(programme)
     stop_of_row = np.where(course[1:] % 1 == 0, course[1:], -1).astype(int)
     per_step = max(round(1.0 / programme.row), 1)
-    return strapdown(attitude[0], rates, forces, programme.row, latitude, stop_of_row, per_step).path
+    return strapdown(attitude[0], motion, latitude, stop_of_row, per_step).path
 
 
 def expected(path: Path, setting: Setting, model: Model) -> Expected:

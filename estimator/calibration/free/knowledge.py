@@ -33,6 +33,18 @@ class Knowledge:
     """(R, m) one sigma at the input."""
 
 
+@dataclass(frozen=True, eq=False)
+class Told:
+    """What the orientations tell of the elements ln K, b/g, c·g and the axis' turns of m sensors. P = 5 m."""
+
+    covariance: Array
+    """(P, P) dimensionless, of the part that is seen."""
+    unseen: Array
+    """(P, k) directions that nothing tells of, dimensionless."""
+    observable: Array
+    """(P,) bool."""
+
+
 def of_accelerometers(solution: Solution, sigma: Array, scale: Array, g: float) -> Knowledge:
     """The accelerometers' parameters in SI with their covariance.
 
@@ -50,7 +62,8 @@ def of_accelerometers(solution: Solution, sigma: Array, scale: Array, g: float) 
     unseen = T @ solution.knowledge.unseen
     observable = observed(covariance, unseen, np.linalg.norm(solution.knowledge.basis, axis=1) > 0)
     factors = parameters.si_factors(np.full(m, g))
-    known = tuple(combinations(i, parameters, covariance, unseen, observable, factors) for i in range(m))
+    told = Told(covariance, unseen, observable)
+    known = tuple(combinations(i, parameters, told, factors) for i in range(m))
     covariance = np.where(np.outer(observable, observable), covariance * np.outer(factors, factors), np.nan)
     residual = (rows.y - predicted(unknowns)) * (g / gain)
     return Knowledge(parameters, covariance, observable.reshape(m, 5), known, residual, sigma * (g / gain))
@@ -76,26 +89,24 @@ def observed(covariance: Array, unseen: Array, free: Array) -> Array:
     return found.ravel()
 
 
-def combinations(
-    i: int, p: SensorParameters, covariance: Array, unseen: Array, observable: Array, factors: Array
-) -> tuple[KnownCombination, ...]:
+def combinations(i: int, p: SensorParameters, told: Told, factors: Array) -> tuple[KnownCombination, ...]:
     """What is known of sensor i's lost scale, bias and quadratic: the combinations that unseen directions leave alone.
 
-    Dimensionless covariance (P, P) and unseen directions (P, k); ``factors`` (P,) take elements to SI.
+    ``factors`` (P,) take the dimensionless elements to SI.
     """
     own = slice(5 * i, 5 * i + 3)
-    lost = 5 * i + np.flatnonzero(~observable[own] & (np.linalg.norm(unseen[own], axis=1) > 0))
+    lost = 5 * i + np.flatnonzero(~told.observable[own] & (np.linalg.norm(told.unseen[own], axis=1) > 0))
     if len(lost) < 2:
         return ()
     values = np.array([p.scale[i], p.bias[i], p.quadratic[i]])[lost % 5]
     found = []
-    for a in null_space(unseen[lost].T).T:
+    for a in null_space(told.unseen[lost].T).T:
         coefficients = a / factors[lost]
         found.append(
             KnownCombination(
                 coefficients={ELEMENTS[k % 5]: float(c) for k, c in zip(lost, coefficients, strict=True)},
                 value=float(coefficients @ values),
-                sigma=float(np.sqrt(a @ covariance[np.ix_(lost, lost)] @ a)),
+                sigma=float(np.sqrt(a @ told.covariance[np.ix_(lost, lost)] @ a)),
             )
         )
     return tuple(found)
