@@ -6,7 +6,7 @@ from estimator.session import Array
 
 
 def unit(vector: Array) -> Array:
-    """(..., 3) vectors scaled to length one."""
+    """Vectors (n, 3), leading axes free, of any unit scaled to length one: the same shape, dimensionless."""
     return vector / np.linalg.norm(vector, axis=-1, keepdims=True)
 
 
@@ -15,11 +15,11 @@ def tangents(axis: Array) -> Array:
 
     Parameters
     ----------
-    axis : (..., 3) unit vectors.
+    axis : (n, 3) unit vectors, leading axes free, dimensionless.
 
     Returns
     -------
-    (..., 3, 2), columns p and o with p × o = axis.
+    (n, 3, 2) dimensionless, columns p and o with p × o = axis.
     """
     helper = np.eye(3)[np.abs(axis).argmin(axis=-1)]
     frame = np.empty((*axis.shape, 2))
@@ -31,6 +31,9 @@ def tangents(axis: Array) -> Array:
 
 
 def nearest_turn(vectors: Array, others: Array) -> Array:
-    """(3, 3) rotation R for which the vectors R·v (n, 3) come nearest to others (n, 3) (Kabsch 1976)."""
+    """(3, 3) rotation R, dimensionless, for which the vectors R·v come nearest to others (Kabsch 1976).
+
+    vectors, others : (n, 3), any unit that both share.
+    """
     left, _, right = np.linalg.svd(others.T @ vectors)
     return np.asarray(left @ np.diag([1.0, 1.0, np.linalg.det(left @ right)]) @ right)

@@ -42,9 +42,10 @@ from estimator.results import Fit
 from estimator.session import ACCELEROMETER, GYROSCOPE, ROTATION_ALIGNMENT, Array, CalibrationSession
 
 STEP = 1.0
-"""s; the filter's step, as nearly as whole rows allow."""
+"""s; the filter's step, as nearly as whole rows allow: short beside every turn and the Schuler period, long enough that
+a session is a thousand steps or so."""
 UNLIKELY = 1e-3
-"""Probability of a larger χ² below which the covariance is enlarged."""
+"""Probability of a larger χ² below which the covariance is enlarged: true noise is mistrusted once in a thousand."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,6 +119,7 @@ def _noise(found: list[Stop], gyros: Triad, accelerometers: Triad, row: float, p
     """As the file states it for single rows, else from the readings at the stops."""
 
     def means(values: Array) -> list[Array]:
+        """Of each stop the means (k, 3) over filter steps of values (R, 3), m/s² or rad/s."""
         parts = [values[stop.first : stop.last] for stop in found]
         return [part[: len(part) // per_step * per_step].reshape(-1, per_step, 3).mean(axis=1) for part in parts]
 
@@ -134,7 +136,7 @@ def _noise(found: list[Stop], gyros: Triad, accelerometers: Triad, row: float, p
 
 
 def _computed(record: Record, start: Coarse) -> Strapdown:
-    """The strapdown, with the coarse zeros taken off."""
+    """The strapdown, with the coarse biases taken off."""
     latitude = record.session.site.latitude
     assert latitude is not None
     motion = record.motion
@@ -160,7 +162,7 @@ def _setting(record: Record) -> Setting:
 
 
 def _turned(record: Record, computed: Strapdown) -> Array:
-    """(K, 3) φ since the first stop as the turntable shows it: its direction never changes."""
+    """(K, 3) φ since the first stop as the turntable shows it, rad: its direction never changes."""
     steps = len(computed.attitude)
     angle = record.angle[record.per_step - 1 :: record.per_step][:steps]
     table = computed.attitude @ Rotation.from_rotvec(-angle[:, None] * [0.0, 0.0, 1.0]).as_matrix()
@@ -202,7 +204,7 @@ def _result(record: Record, start: Coarse, computed: Strapdown, filtered: Filter
 
 
 def _totals(estimates: Array, start: Coarse) -> Array:
-    """The estimates with the coarse zeros that were taken off before the filter."""
+    """The estimates (K, n), SI, with the coarse biases that were taken off before the filter."""
     whole = estimates.copy()
     whole[:, EPS] += start.gyro_bias
     whole[:, NABLA] += start.accelerometer_bias[:2]

@@ -9,18 +9,22 @@ from estimator.session import Array
 
 @dataclass(frozen=True, eq=False)
 class KalmanState:
-    """An estimate (n,) and its covariance (n, n)."""
+    """What a filter knows of n states, each in its own unit."""
 
     x: Array
+    """(n,) estimate."""
     P: Array
+    """(n, n) its covariance."""
 
 
 @dataclass(frozen=True, eq=False)
 class Innovation:
-    """What a measurement said beyond what was expected, (k,), and the covariance that this should have, (k, k)."""
+    """What a measurement of k components, each in its own unit, said beyond what was expected."""
 
     value: Array
+    """(k,) ν."""
     covariance: Array
+    """(k, k) S, that ν should have."""
 
     @property
     def chi2(self) -> float:
@@ -29,12 +33,15 @@ class Innovation:
 
 
 def predict(state: KalmanState, Phi: Array, Q: Array) -> KalmanState:
-    """One step ahead: x = Φx, P = ΦPΦᵀ + Q."""
+    """One step ahead: x = Φx, P = ΦPΦᵀ + Q; Phi and Q (n, n), each row and column per the unit of its state."""
     return KalmanState(Phi @ state.x, Phi @ state.P @ Phi.T + Q)
 
 
 def correct(state: KalmanState, z: Array, H: Array, R: Array) -> tuple[KalmanState, Innovation]:
-    """A measurement z = Hx + noise of covariance R: the corrected state and the innovation."""
+    """A measurement z = Hx + noise of covariance R: the corrected state and the innovation.
+
+    z : (k,), of any units, per which H (k, n) and R (k, k) are.
+    """
     S = H @ state.P @ H.T + R
     K = np.linalg.solve(S, H @ state.P).T
     innovation = Innovation(z - H @ state.x, S)

@@ -51,7 +51,7 @@ class Expected:
     sigmas: Array
     """(n,) one sigma at the end, SI."""
     prior: Array
-    """(n,) one sigma before."""
+    """(n,) one sigma before, SI."""
     observable: tuple[bool, ...]
     rank: int
     """Number of directions, of n, that are told well enough to be of use."""
@@ -88,7 +88,7 @@ def expected(path: Path, setting: Setting, model: Model) -> Expected:
 
 
 def gramian(path: Path, setting: Setting, model: Model) -> Array:
-    """(n, n) of the states but ς at the start, in units of `USEFUL`; no prior and no gyro noise.
+    """(n, n) of the states but ς at the start, dimensionless, in units of `USEFUL`; no prior and no gyro noise.
 
     Every step's velocity counts with the scatter that white accelerometer noise gives it.
     """
@@ -110,7 +110,7 @@ def gramian(path: Path, setting: Setting, model: Model) -> Array:
 
 
 def hidden(attitude: Array, E_xz: float, E_yz: float, g: float) -> Array:
-    """The state (13,) at attitude C (3, 3) that velocity does not see while the block turns about the vertical.
+    """The state (13,), SI, at attitude C (3, 3) that velocity does not see while the block turns about the vertical.
 
     Parameters
     ----------

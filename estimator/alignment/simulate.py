@@ -42,7 +42,9 @@ class Truth:
     """What is wrong with the block and how it stands; SI."""
 
     gyro_bias: Array = field(default_factory=lambda: np.zeros(3))
+    """(3,) rad/s."""
     accelerometer_bias: Array = field(default_factory=lambda: np.zeros(3))
+    """(3,) m/s²."""
     mounting: tuple[float, float] = (0.0, 0.0)
     """E_xz, E_yz, rad."""
     kappa: float = 0.0
@@ -70,7 +72,7 @@ class Imperfections:
 
 
 def triads(axes: Array | None = None) -> tuple[Sensor, ...]:
-    """Accelerometers A1… and gyros G1… along axes (m, 3); x, y, z unless given. Readings in SI."""
+    """Accelerometers A1… and gyros G1… along axes (m, 3), unit vectors; x, y, z unless given. Readings in SI."""
     directions = np.eye(3) if axes is None else axes
     made = [
         Sensor(f"{letter}{i + 1}", kind, axis, 1.0, unit)
@@ -81,7 +83,7 @@ def triads(axes: Array | None = None) -> tuple[Sensor, ...]:
 
 
 def table_angle(programme: Programme) -> tuple[Array, Array]:
-    """(R + 1,) angle of the table at the ends of rows, from time 0 on, and how far each is on its way between stops."""
+    """(R + 1,) angle of the table, rad, at the ends of rows, from time 0 on, and places (R + 1,) between the stops."""
     angle, course = [], []
     for number, target in enumerate(programme.angles):
         if number:
@@ -97,7 +99,7 @@ def table_angle(programme: Programme) -> tuple[Array, Array]:
 
 
 def true_attitude(programme: Programme, truth: Truth, leaning: Array) -> Array:
-    """(R + 1, 3, 3) C at the ends of rows; leaning (stops, 2) tilts the turn axis at every stop, rad."""
+    """(R + 1, 3, 3) C at the ends of rows, dimensionless; leaning (stops, 2) tilts the turn axis at every stop, rad."""
     angle, course = table_angle(programme)
     lean = np.stack([np.interp(course, np.arange(len(leaning)), column) for column in leaning.T], axis=1)
     level = Rotation.from_rotvec([*truth.tilt, 0.0]) * Rotation.from_rotvec([0.0, 0.0, truth.heading])
@@ -129,7 +131,7 @@ def simulate_alignment(
     imperfections: Imperfections | None = None,
     unit: str = "simulated",
 ) -> tuple[CalibrationSession, Array]:
-    """A rotation-alignment session, and the true attitude (R, 3, 3) at the end of every row.
+    """A rotation-alignment session, and the true attitude C (R, 3, 3), dimensionless, at the end of every row.
 
     Errors of ``truth`` are those of the block's axes; the noise is every sensor's own.
     """

@@ -31,13 +31,13 @@ class Strapdown:
 
     path: Path
     attitude: Array
-    """(K, 3, 3) C̃ at the end of each step."""
+    """(K, 3, 3) C̃ at the end of each step, dimensionless."""
     velocity: Array
     """(K, 2) east and north at the end of each step, m/s."""
 
 
 def attitudes(start: Array, rates: Array, row: float, latitude: float, per_step: int) -> Array:
-    """(K, B, 3, 3) C̃ at the end of every row, in K steps of B rows.
+    """(K, B, 3, 3) C̃, dimensionless, at the end of every row, in K steps of B rows.
 
     Parameters
     ----------
@@ -89,7 +89,10 @@ def strapdown(start: Array, motion: Motion, latitude: float, stop_of_row: Array,
 
 
 def velocities(increments: Array, step: float, latitude: float) -> Array:
-    """(K, 2) horizontal velocity from its increments (K, 3) by the specific force, the Earth's rotation included."""
+    """(K, 2) horizontal velocity, m/s, from its increments (K, 3), m/s, by specific force, with the Earth's rotation.
+
+    step in s, latitude in rad.
+    """
     turn = 2j * earth_rate(latitude)[2] * step
     time = np.arange(1, len(increments) + 1)
     gained = (increments[:, 0] + 1j * increments[:, 1]) * np.exp(turn * (time - 0.5))

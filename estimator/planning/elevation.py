@@ -16,7 +16,7 @@ from estimator.parameters import nominal
 from estimator.session import CalibrationSession, StandErrors
 
 ROUNDING = 1e-14
-"""Ratio of eigenvalues below which the smaller one is zero."""
+"""Ratio of eigenvalues below which the smaller one is zero: rounding of doubles."""
 
 
 def optimal_elevation(sigma: StandErrors, positions: int) -> float:

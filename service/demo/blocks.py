@@ -65,5 +65,5 @@ def sigma_of(kind: str) -> StandErrors:
 
 
 def norms(kind: str, sensors: int) -> Array:
-    """(m,) length of the reference vector, m/s² or rad/s."""
+    """(m,) length of the applied vector, m/s² or rad/s."""
     return np.full(sensors, gravity(SITE) if kind == ACCELEROMETER else EARTH_RATE)

@@ -4,7 +4,7 @@ from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.causes.gyro import GSensitivity, LatitudeEntry, OffMeridian
 from estimator.diagnosis.results import Limit
 from estimator.planning import Judged, Plan
-from estimator.planning.results import PARAMETERS
+from estimator.results import PARAMETERS
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.measures import DEGREE, MEASURES, THIN, Measure, in_measure, number
 

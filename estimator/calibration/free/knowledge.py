@@ -28,9 +28,9 @@ class Knowledge:
     known: tuple[tuple[KnownCombination, ...], ...]
     """(m,)"""
     residual: Array
-    """(R, m) at the input."""
+    """(R, m) at the input, m/s² (rad/s)."""
     noise: Array
-    """(R, m) one sigma at the input."""
+    """(R, m) one sigma at the input, m/s² (rad/s)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,7 @@ def of_accelerometers(solution: Solution, sigma: Array, scale: Array, g: float) 
     Parameters
     ----------
     sigma : (R, m) stated or estimated noise, dimensionless.
-    scale : (m,) nominal scales, which the search worked in.
+    scale : (m,) nominal scales, which the search worked in, reading units per m/s².
     g : m/s².
     """
     unknowns, rows, m = solution.unknowns, solution.rows, len(scale)
@@ -70,7 +70,10 @@ def of_accelerometers(solution: Solution, sigma: Array, scale: Array, g: float) 
 
 
 def to_bias(offset: Array, gain: Array) -> Array:
-    """(5 m, 5 m) from the search's elements to ln K, b/g, c·g and the axis' turns: b/g = o·exp(−λ)."""
+    """(5 m, 5 m) from the search's elements to ln K, b/g, c·g and the axis' turns: b/g = o·exp(−λ).
+
+    offset, gain : (m,) o and exp(λ), dimensionless.
+    """
     T = np.eye(5 * len(offset))
     bias = 5 * np.arange(len(offset)) + 1
     T[bias, bias] = 1 / gain
@@ -81,6 +84,7 @@ def to_bias(offset: Array, gain: Array) -> Array:
 def observed(covariance: Array, unseen: Array, free: Array) -> Array:
     """(P,) bool: free, and no unseen direction of plausible size moves it by more than its own sigma.
 
+    covariance : (P, P); unseen : (P, k) directions; both dimensionless. free : (P,) bool, whether it may move.
     An axis is observed with both its turns or not at all.
     """
     moved = PLAUSIBLE * np.linalg.norm(unseen, axis=1)
@@ -113,7 +117,7 @@ def combinations(i: int, p: SensorParameters, told: Told, factors: Array) -> tup
 
 
 def of_gyros(gyros: GyroBiases, scale: Array, axes: Array) -> Knowledge:
-    """Biases, and nothing else, of k gyros."""
+    """Biases, and nothing else, of k gyros: scale (k,), reading units per rad/s, and axes (k, 3) stay nominal."""
     k = len(gyros.bias)
     covariance = np.full((k, 5, k, 5), np.nan)
     covariance[:, 1, :, 1] = np.diag(gyros.sigma**2)
@@ -125,7 +129,10 @@ def of_gyros(gyros: GyroBiases, scale: Array, axes: Array) -> Knowledge:
 
 
 def of_nothing(readings: Array, scale: Array, axes: Array) -> Knowledge:
-    """Sensors that answer to nothing: readings (R, k) of constant value, which is all that is known of them."""
+    """Sensors that answer to nothing: readings (R, k) of constant value, which is all that is known of them.
+
+    readings in reading units; nominal scale (k,) per m/s² (rad/s); nominal axes (k, 3), unit vectors.
+    """
     R, k = readings.shape
     zero = np.zeros(k)
     return Knowledge(
@@ -150,6 +157,7 @@ def merged(parts: list[tuple[Indices, Knowledge]]) -> Knowledge:
     known = [c for _, k in parts for c in k.known]
 
     def joined(name: str) -> Array:
+        """One of the parameters (m,) or (m, 3), in its SI unit, in the session's order."""
         return np.concatenate([getattr(k.parameters, name) for _, k in parts])[order]
 
     return Knowledge(

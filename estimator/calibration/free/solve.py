@@ -15,6 +15,7 @@ from estimator.calibration.free.model import Linear, Rows, Unknowns, cost, linea
 from estimator.session import Array
 
 MAX_ITERATIONS = 200
+"""Of one search; three are usual, and one that has not ended by then says so."""
 MOST_ITERATIONS = 600
 """Of all searches while the noise settles."""
 
@@ -25,16 +26,21 @@ STILL = 1e-13
 """Dimensionless steps below this are rounding."""
 
 LEAST_DAMPING = 1e-12
+"""Relative to the largest information: less is rounding, and damping must be able to grow back in a few steps."""
+
+FIRST_DAMPING = 1e-4
+"""The same, at the start, which is good to a few per cent: nearly a Gauss–Newton step."""
 
 LONGEST = 0.5
-"""Dimensionless; no element moves further in one step."""
+"""Dimensionless; no element moves further in one step; a turn along a tangent means little beyond."""
 
 NOISE_ROUNDS = 25
+"""Rounds of search and noise; the last is taken where they do not settle."""
 NOISE_SETTLED = 1e-4
 """Relative change of the noise between rounds below which it has settled."""
 
 ENOUGH_REDUNDANCY = 10.0
-"""Redundancy that a sensor's readings need to have a noise variance of their own."""
+"""Redundancy that a sensor's readings need to have a noise variance of their own: it tells a sigma to a quarter."""
 
 LEAST_NOISE = 1e-12
 """Dimensionless; readings are not better than rounding."""
@@ -63,7 +69,7 @@ class Solution:
 
 
 def held_frame(rows: Rows, unknowns: Unknowns) -> Unknowns:
-    """The unknowns with its frame turned so that the axes show no net turn against the nominal ones."""
+    """The unknowns with the frame turned so that the axes show no net turn against the nominal ones."""
     if rows.held:
         return unknowns
     return unknowns.turned(nearest_turn(unknowns.axes, rows.nominal_axes))
@@ -72,7 +78,7 @@ def held_frame(rows: Rows, unknowns: Unknowns) -> Unknowns:
 def search(rows: Rows, unknowns: Unknowns, quadratic: bool) -> Solution:
     """Least χ² from a start. Not reaching it is a result (`converged` False)."""
     unknowns = held_frame(rows, unknowns)
-    damping, chi2 = 1e-4, cost(rows, unknowns)
+    damping, chi2 = FIRST_DAMPING, cost(rows, unknowns)
     linear, iterations, converged = linearise(rows, unknowns), 0, False
     basis = movable(rows.nominal_axes, unknowns.axes, rows.held, quadratic)
     while not converged and iterations < MAX_ITERATIONS:
@@ -93,9 +99,9 @@ def search(rows: Rows, unknowns: Unknowns, quadratic: bool) -> Solution:
 
 
 def proposal(linear: Linear, basis: Array, damping: float) -> tuple[Array, Array, float]:
-    """Damped step of the parameters (5 m,), of the orientations (R, 2), and the fall of χ² that it promises.
+    """Damped step of the parameters (5 m,), turns of the orientations (R, 2), rad, and the fall of χ² they promise.
 
-    Directions that the set does not determine stay where they are.
+    ``basis`` (5 m, F), dimensionless as in `movable`. Directions that the set does not determine stay where they are.
     """
     values, vectors = np.linalg.eigh(basis.T @ linear.schur @ basis)
     right = vectors.T @ (basis.T @ linear.reduced)
@@ -111,7 +117,7 @@ def proposal(linear: Linear, basis: Array, damping: float) -> tuple[Array, Array
 
 
 def redundancy(rows: Rows, unknowns: Unknowns, knowledge: Information) -> Array:
-    """(R, m) part of each reading's variance that the fit leaves in its residual: 1 − leverage."""
+    """(R, m) part of each reading's variance that the fit leaves in its residual: 1 − leverage, dimensionless."""
     linear = linearise(rows, unknowns)
     m = rows.y.shape[1]
     through = (linear.shared[:, :, None, :] @ linear.inverse[:, None])[:, :, 0, :]
@@ -123,7 +129,7 @@ def redundancy(rows: Rows, unknowns: Unknowns, knowledge: Information) -> Array:
 
 
 def noise_variance(solution: Solution) -> Array:
-    """(m,) factors by which the variances used must be multiplied to agree with the residuals."""
+    """(m,) factors, dimensionless, by which the variances used must be multiplied to agree with the residuals."""
     rows = solution.rows
     left = redundancy(rows, solution.unknowns, solution.knowledge).sum(axis=0)
     squares = (linearise(rows, solution.unknowns).residual ** 2).sum(axis=0)
