@@ -12,7 +12,7 @@ from estimator import CalibrationSession, calibrate
 from estimator.arrays import tangents
 from estimator.calibration.free import accelerometer_rows
 from estimator.calibration.free.information import information
-from estimator.calibration.free.model import State
+from estimator.calibration.free.model import Unknowns
 from estimator.parameters import SensorParameters
 from estimator.published.descent import descend, levenberg_marquardt
 from estimator.published.triples import triples_of
@@ -155,9 +155,9 @@ def bound(drawn: Case, session: CalibrationSession) -> Array:
     rows, _ = accelerometer_rows(session, np.ones(m, dtype=bool), GRAVITY)
     assert drawn.schedule.directions is not None
     gain = truth.scale / 0.12
-    state = State(np.log(gain), gain * truth.bias / GRAVITY, np.zeros(m), truth.axis, drawn.schedule.directions)
+    unknowns = Unknowns(np.log(gain), gain * truth.bias / GRAVITY, np.zeros(m), truth.axis, drawn.schedule.directions)
     held = type(rows)(rows.y, rows.sigma, rows.directions, rows.prior, truth.axis)
-    found = information(held, state, quadratic=False).covariance.reshape(m, 5, m, 5)
+    found = information(held, unknowns, quadratic=False).covariance.reshape(m, 5, m, 5)
     keep = [0, 1, 3, 4]
     return found[:, keep][:, :, :, keep].reshape(4 * m, 4 * m)
 

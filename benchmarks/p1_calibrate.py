@@ -1,7 +1,7 @@
 """P1: `calibrate` one block session with full covariance, against `scipy.optimize.least_squares` sensor by sensor.
 
 The peer fits the same five parameters of each sensor to the same readings under the same reading noise, from the same
-start, and takes each sensor's covariance from its Jacobian. It is given the reference vectors for nothing. What it
+start, and takes each sensor's covariance from its Jacobian. It is given the applied vectors for nothing. What it
 leaves out: the stand's errors, which are common to all sensors, and so the covariance between sensors.
 """
 

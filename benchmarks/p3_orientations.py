@@ -17,7 +17,7 @@ from benchmarks.orientations import case, sphere
 from estimator import calibrate
 from estimator.arrays import tangents, unit
 from estimator.calibration.free import accelerometer_rows
-from estimator.calibration.free.model import Rows, State, predicted
+from estimator.calibration.free.model import Rows, Unknowns, predicted
 from estimator.calibration.free.solve import held_frame
 from estimator.published.descent import descend, levenberg_marquardt
 from estimator.published.triples import Triples, triples_of
@@ -42,17 +42,17 @@ def likelihood(rows: Rows) -> Callable[[], Array]:
     directions = unit(rows.y @ np.linalg.pinv(rows.nominal_axes).T)
     frames, turns = tangents(rows.nominal_axes), tangents(directions)
 
-    def state(x: Array) -> State:
+    def unknowns(x: Array) -> Unknowns:
         own, moved = x[: 4 * m].reshape(m, 4), x[4 * m :].reshape(R, 2)
         axes = unit(rows.nominal_axes + (frames @ own[:, 2:, None])[..., 0])
-        return State(own[:, 0], own[:, 1], np.zeros(m), axes, unit(directions + (turns @ moved[..., None])[..., 0]))
+        return Unknowns(own[:, 0], own[:, 1], np.zeros(m), axes, unit(directions + (turns @ moved[..., None])[..., 0]))
 
     def misses(x: Array) -> Array:
-        return ((rows.y - predicted(state(x))) / rows.sigma).ravel()
+        return ((rows.y - predicted(unknowns(x))) / rows.sigma).ravel()
 
     def solve() -> Array:
         found = least_squares(misses, np.zeros(4 * m + 2 * R), xtol=1e-10, ftol=1e-12)
-        held = held_frame(rows, state(found.x))
+        held = held_frame(rows, unknowns(found.x))
         return np.concatenate([held.log_scale, held.offset, held.axes.ravel()])
 
     return solve

@@ -16,10 +16,10 @@ block     axes of the unit's mounting bases; what axis orientation is reported i
 
 A two-axis-stand session has two runs: *direct*, and *flipped*, with the block turned 180° about the platform's
 Z axis, so that in platform axes the input axis e becomes e* = (−e₁, −e₂, e₃). Here the block is left alone and the
-reference vector is turned instead, F·n with F = diag(−1, −1, 1): the same products, one set of axes.
+applied vector is turned instead, F·n with F = diag(−1, −1, 1): the same products, one set of axes.
 
-Reference vectors, platform axes, β counted from 0
---------------------------------------------------
+Applied vectors, platform axes, β counted from 0
+------------------------------------------------
 specific force at rest   n(α, β) = g·(−cos α sin β, sin α, cos α cos β)
 Earth rate               ω(χ, β) = Ω·(−cos χ sin β, sin χ, cos χ cos β)
 Stand errors, constant over a session: θ_x, θ_y (levelling), δα. To first order θ_x + δα raises α, and θ_y is a
@@ -36,7 +36,7 @@ e  axis       unit vector of the input axis, block axes
 Array axes
 ----------
 S sessions of one schedule, R rows (readings in the order measured), m sensors, P parameters.
-Readings are (R, m); reference vectors (R, m, 3), because accelerometers and gyros of one block see different ones.
+Readings are (R, m); applied vectors (R, m, 3), because accelerometers and gyros of one block see different ones.
 A parameter vector holds five elements a sensor, sensor after sensor: scale, bias, quadratic, axis_1, axis_2; the
 last two are rotations of the axis along the two tangent vectors that the result states.
 """

@@ -1,4 +1,4 @@
-"""What the stand applies: gravity, Earth rate and the reference vector of every row, with its errors.
+"""What the stand applies: gravity, Earth rate and the applied vector of every row, with its errors.
 
 Sources: analytic alignment paper, equations (7)–(11), (31), corrected as the errata state; Helmert (1901) gravity.
 Frames and signs: see the package page.
@@ -11,10 +11,13 @@ import numpy as np
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Site, Stand, StandErrors
 
 EARTH_RATE = 7.292115e-5
-"""rad/s."""
+"""rad/s, against the stars; WGS 84 (NIMA TR8350.2)."""
+
+STANDARD_GRAVITY = 9.80665
+"""m/s² in one g, by definition (CGPM 1901): what data sheets and people count in, not the gravity of a site."""
 
 FLIP = np.array([-1.0, -1.0, 1.0])
-"""The block turned 180° about Z, as the signs of the reference vector that give the same products."""
+"""The block turned 180° about Z, as the signs of the applied vector that give the same products."""
 
 CONSTANT_ERRORS = ("theta_x", "theta_y", "alpha", "latitude", "meridian", "count_time")
 """Stand errors that last a whole session, in the order of `Geometry.constant`."""
@@ -37,22 +40,22 @@ class Geometry:
     """What a schedule applies to every sensor. R rows, m sensors, k constant stand errors, block axes."""
 
     n: Array
-    """(R, m, 3) reference vectors, m/s² (rad/s)."""
+    """(R, m, 3) applied vectors, m/s² (rad/s)."""
     norm: Array
-    """(m,) length of the reference vector."""
+    """(m,) length of the applied vector, m/s² (rad/s)."""
     constant: Array
-    """(k, R, m, 3) change of n per unit of each constant stand error."""
+    """(k, R, m, 3) change of n of each constant stand error: m/s² (rad/s) per rad, per s for the count time."""
     constant_sigma: Array
     """(k,) rad (s for the count time); errors of zero sigma are left out."""
     constant_names: tuple[str, ...]
     beta: Array
-    """(R, m, 3) change of n per rad of the row's own β error."""
+    """(R, m, 3) change of n per rad of the row's own β error, m/s² (rad/s) per rad."""
     beta_sigma: float
     """rad."""
 
 
 def stand_vector(elevation: float, beta: Array, errors: StandErrors | None = None) -> Array:
-    """Unit reference vector in platform axes, exact in the errors.
+    """Unit applied vector in platform axes, exact in the errors: (7)–(11).
 
     Parameters
     ----------
@@ -62,7 +65,7 @@ def stand_vector(elevation: float, beta: Array, errors: StandErrors | None = Non
 
     Returns
     -------
-    (R, 3) of length one.
+    (R, 3) of length one, dimensionless.
     """
     e = errors or StandErrors()
     raised = elevation + e.theta_x + e.alpha
@@ -73,7 +76,10 @@ def stand_vector(elevation: float, beta: Array, errors: StandErrors | None = Non
 
 
 def to_block(platform: Array, session: CalibrationSession) -> Array:
-    """(..., R, 3) platform vectors as the block meets them: flipped runs turned, then the mounting applied."""
+    """Platform vectors (R, 3), leading axes free, as the block meets them: the same in block axes; m/s², rad/s or none.
+
+    Rows of the flipped run are turned, then the mounting is applied: (10), (11).
+    """
     assert session.flipped is not None
     return np.where(session.flipped[:, None], platform * FLIP, platform) @ session.mounting.T
 
@@ -86,12 +92,12 @@ def elevation(stand: Stand, kind: str) -> float:
 
 
 def magnitude(session: CalibrationSession, kind: str) -> float:
-    """Length of the reference vector of a kind of sensor, m/s² or rad/s."""
+    """Length of the applied vector of a kind of sensor, m/s² or rad/s."""
     return gravity(session.site) if kind == ACCELEROMETER else EARTH_RATE
 
 
 def _constant_weights(session: CalibrationSession, kind: str) -> Array:
-    """(6, 3) how each constant error acts: as a raise of the head, as a tilt across it, as a stretch of the vector.
+    """(6, 3) how each constant error acts: as a raise of the head, a tilt across it (1 a rad), a stretch (1/s).
 
     Gyros by the paper's (31): the latitude raises; levelling and meridian tilt by their share of the Earth's rate.
     """
@@ -105,7 +111,7 @@ def _constant_weights(session: CalibrationSession, kind: str) -> Array:
 
 
 def _kind_geometry(session: CalibrationSession, kind: str) -> Array:
-    """(8, R, 3) for one kind of sensor: n, dn/d(each constant error), dn/dβ."""
+    """(8, R, 3) for one kind of sensor: n, dn/d(each constant error), dn/dβ; m/s² (rad/s), per rad or s."""
     stand, beta = session.stand, session.beta
     assert stand is not None
     assert beta is not None
@@ -123,7 +129,7 @@ def _kind_geometry(session: CalibrationSession, kind: str) -> Array:
 
 
 def stand_geometry(session: CalibrationSession) -> Geometry:
-    """The reference vectors of a two-axis-stand session and how the stand's errors move them."""
+    """The applied vectors of a two-axis-stand session and how the stand's errors move them."""
     assert session.stand is not None
     kinds = [s.kind for s in session.sensors]
     different = list(dict.fromkeys(kinds))

@@ -24,7 +24,8 @@ from estimator.results import Calibration, SensorCalibration
 from estimator.session import GYROSCOPE, Array, CalibrationSession
 
 FLATTEST = 1e-6
-"""Smallest singular value of the axes, relative to the largest, that still gives all three components."""
+"""Smallest singular value of the axes, relative to the largest, that still gives all three components: beyond, a
+reading's last digit would be the whole of one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,9 +40,11 @@ class SensorCorrection:
     count_time: float | None
     """T, s; None unless the readings are pulse counts."""
     scale: float
+    """Reading units per m/s² (rad/s)."""
     bias: float
+    """m/s² (rad/s)."""
     quadratic: float
-    """0 where the session does not observe it."""
+    """s²/m (s/rad); 0 where the session does not observe it."""
     quadratic_known: bool
     axis: Array
     """(3,) unit vector, block axes."""
@@ -49,11 +52,14 @@ class SensorCorrection:
     """(3, 2) of the axis, for its covariance."""
 
     def input(self, readings: Array) -> Array:
-        """y of readings, m/s² (rad/s); any shape."""
+        """y of readings (R,), or of any shape, reading units: the same shape, m/s² (rad/s)."""
         return (readings - self.offset) / ((self.count_time or 1.0) * self.scale) - self.bias
 
     def component(self, readings: Array) -> Array:
-        """a of readings: the component along the input axis, m/s² (rad/s); NaN beyond the turn of the parabola."""
+        """a, the component along the input axis, m/s² (rad/s), of readings (R,), or of any shape, reading units.
+
+        NaN beyond the turn of the parabola.
+        """
         y = self.input(readings)
         with np.errstate(invalid="ignore"):
             return 2.0 * y / (1.0 + np.sqrt(1.0 + 4.0 * self.quadratic * y))
@@ -66,20 +72,20 @@ class BlockCorrection:
     kind: str
     sensors: tuple[SensorCorrection, ...]
     matrix: Array
-    """(3, m) M."""
+    """(3, m) M, dimensionless."""
     covariance: Array
     """(5 m, 5 m) of scale, bias, quadratic, axis_1, axis_2, sensor after sensor, SI; 0 for what is taken as known."""
 
     def components(self, readings: Array) -> Array:
-        """(..., m) a of readings (..., m)."""
+        """a of readings (R, m), leading axes free, reading units: the same shape, m/s² (rad/s)."""
         return np.stack([s.component(readings[..., i]) for i, s in enumerate(self.sensors)], axis=-1)
 
     def vector(self, readings: Array) -> Array:
-        """(..., 3) specific force or angular rate, block axes, of readings (..., m)."""
+        """Specific force or angular rate (R, 3), m/s² (rad/s), block axes, of readings (R, m), leading axes free."""
         return self.components(readings) @ self.matrix.T
 
     def vector_covariance(self, readings: Array) -> Array:
-        """(3, 3) of the vector of one set of readings (m,), from the calibration alone."""
+        """(3, 3), (m/s²)² or (rad/s)², of the vector of one set of readings (m,), from the calibration alone."""
         a, f = self.components(readings), self.vector(readings)
         columns = []
         for i, sensor in enumerate(self.sensors):
@@ -131,6 +137,7 @@ def _unseen(sensor: SensorCalibration) -> str:
 
 
 def _spans(sensors: Sequence[SensorCorrection]) -> bool:
+    """Whether the axes reach all three directions."""
     if len(sensors) < 3:
         return False
     size = np.linalg.svd(np.stack([s.axis for s in sensors]), compute_uv=False)
@@ -158,5 +165,6 @@ def _sensor(session: CalibrationSession, found: SensorCalibration) -> SensorCorr
 
 
 def _covariance(calibration: Calibration, sensors: Sequence[SensorCorrection]) -> Array:
+    """(5 m, 5 m) of the sensors' parameters, SI; 0 for what is taken as known."""
     places = [calibration.names.index(f"{s.name}.{element}") for s in sensors for element in ELEMENTS]
     return np.nan_to_num(calibration.covariance[np.ix_(places, places)], nan=0.0)

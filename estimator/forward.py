@@ -14,35 +14,35 @@ from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
 
 def projected(axis: Array, vectors: Array) -> Array:
-    """a = e·n: axis (..., m, 3) and vectors (R, m, 3) give (..., R, m)."""
+    """a = e·n: axis (..., m, 3) and vectors (R, m, 3), m/s² (rad/s), give (..., R, m) of the same unit."""
     return _by_sensor(axis[..., None], vectors)[..., 0].swapaxes(-1, -2)
 
 
 def _by_sensor(directions: Array, vectors: Array) -> Array:
-    """Vectors (R, m, 3) along the columns of directions (..., m, 3, d): (..., m, R, d)."""
+    """Vectors (R, m, 3) along the columns of directions (..., m, 3, d): (..., m, R, d), in the vectors' unit."""
     return vectors.swapaxes(0, 1) @ directions
 
 
 def input_of(p: SensorParameters, n: Array) -> Array:
-    """What the sensor integrates, a + b + c·a², at the input: (..., R, m) for n (R, m, 3)."""
+    """What the sensor integrates, a + b + c·a², at the input: (..., R, m) for n (R, m, 3), m/s² (rad/s) each."""
     a = projected(p.axis, n)
     return a + p.bias[..., None, :] + p.quadratic[..., None, :] * a * a
 
 
 def response(p: SensorParameters, n: Array) -> Array:
-    """Readings without noise, K·(a + b + c·a²): (..., R, m) for n (R, m, 3)."""
+    """Readings without noise, K·(a + b + c·a²): (..., R, m) reading units for n (R, m, 3), m/s² (rad/s)."""
     return p.scale[..., None, :] * input_of(p, n)
 
 
 def slope(p: SensorParameters, n: Array) -> Array:
-    """How the input answers to a change of a, 1 + 2·c·a: (..., R, m)."""
+    """How the input answers to a change of a, 1 + 2·c·a: (..., R, m) dimensionless for n (R, m, 3), m/s² (rad/s)."""
     return 1.0 + 2.0 * p.quadratic[..., None, :] * projected(p.axis, n)
 
 
 def jacobian(p: SensorParameters, n: Array, norm: Array) -> Array:
     """Derivative of reading/K by the dimensionless elements of `estimator.parameters`, K of the divisor held.
 
-    n (R, m, 3) of lengths ``norm`` (m,); the result is (..., R, m, 5).
+    n (R, m, 3) of lengths ``norm`` (m,), m/s² (rad/s); the result is (..., R, m, 5) in the same unit.
     """
     along = _by_sensor(np.concatenate([p.axis[..., None], tangents(p.axis)], axis=-1), n)
     a, c, size = along[..., 0], p.quadratic[..., None], norm[:, None]
@@ -55,7 +55,7 @@ def jacobian(p: SensorParameters, n: Array, norm: Array) -> Array:
 
 
 def measured(session: CalibrationSession) -> tuple[Array, Array]:
-    """Readings and their standard errors as the model gives them: (R, m) each.
+    """Readings and their standard errors as the model gives them: (R, m) each, reading units (pulses per s).
 
     The stated nominal offset is taken off; pulse counts become pulses per second, with the quantisation of the count
     (one pulse, uniform) in the standard error.

@@ -12,12 +12,17 @@ from estimator.arrays import tangents, unit
 from estimator.session import ACCELEROMETER, Array, Sensor
 
 ELEMENTS = ("scale", "bias", "quadratic", "axis_1", "axis_2")
+"""Of one sensor, in the order of every parameter vector."""
 
 PLAUSIBLE = 0.1
-"""One sigma of what a dimensionless element could be at all: 10 % of scale, 0.1 g, 0.1/g, 0.1 rad."""
+"""One sigma of what a dimensionless element could be at all: 10 % of scale, 0.1 g, 0.1/g, 0.1 rad.
+
+A choice: several times wider than the tolerance of any instrument, so that it decides nothing that readings tell; yet
+finite, so that what they do not tell stays where it was stated instead of making the equations singular."""
 
 LIMIT = 0.3 * PLAUSIBLE
-"""An element counts as observed when its dimensionless one sigma is below this share of what it could be at all."""
+"""Dimensionless one sigma below which an element counts as observed: the rows then give ten times the
+information that the plausible range alone would."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,22 +30,22 @@ class SensorParameters:
     """K, b, c, e of m sensors; leading axes (sessions) are free. Units: see the package page."""
 
     scale: Array
-    """(..., m)"""
+    """(..., m) reading units per m/s² (rad/s)."""
     bias: Array
-    """(..., m)"""
+    """(..., m) m/s² (rad/s)."""
     quadratic: Array
-    """(..., m)"""
+    """(..., m) s²/m (s/rad)."""
     axis: Array
-    """(..., m, 3)"""
+    """(..., m, 3) unit vectors, block axes."""
 
     def at(self, sessions: Array | int) -> "SensorParameters":
-        """Those of one session, or of several, by their place on the first axis."""
+        """Those of one session, or of several, by their place (number, or (k,) of them) on the first axis."""
         return SensorParameters(
             self.scale[sessions], self.bias[sessions], self.quadratic[sessions], self.axis[sessions]
         )
 
     def stepped(self, step: Array, norm: Array) -> "SensorParameters":
-        """Moved by a dimensionless step (..., m, 5); ``norm`` (m,) is the reference vector's length."""
+        """Moved by a dimensionless step (..., m, 5); ``norm`` (m,) is the applied vector's length, m/s² (rad/s)."""
         turned = self.axis + (tangents(self.axis) @ step[..., 3:, None])[..., 0]
         return SensorParameters(
             scale=self.scale * np.exp(step[..., 0]),
@@ -50,7 +55,7 @@ class SensorParameters:
         )
 
     def si_factors(self, norm: Array) -> Array:
-        """(..., 5 m) factors from dimensionless elements to SI."""
+        """(..., 5 m) factors from dimensionless elements to SI; ``norm`` (m,) as in `stepped`, m/s² (rad/s)."""
         one = np.ones_like(self.scale)
         factors = np.stack([self.scale, one * norm, one / norm, one, one], axis=-1)
         return factors.reshape(*self.scale.shape[:-1], -1)

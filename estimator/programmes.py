@@ -12,7 +12,7 @@ def calibrate(session: CalibrationSession, *, quadratic: bool | None = None) -> 
 
     Parameters
     ----------
-    session : of any programme. Calibrations give every sensor's parameters; an alignment or a rate table gives zeros
+    session : of any programme. Calibrations give every sensor's parameters; an alignment or a rate table gives biases
         and mounting errors of the block's axes; raw logs are averaged first.
     quadratic : whether arbitrary orientations estimate the second-order term; None lets the orientations decide.
 

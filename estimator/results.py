@@ -11,12 +11,15 @@ import numpy as np
 from estimator.session import Array
 
 ARCSEC = np.pi / 180 / 3600
+"""rad."""
 NOMINAL_AXES = "nominal-axes"
 """The gauge of a calibration whose frame the nominal axes hold."""
+PARAMETERS = ("scale", "bias", "quadratic", "axis")
+"""Of a sensor, as people judge them: the axis with both its turns."""
 
 
 def json_numbers(array: Array) -> Any:
-    """Nested lists of an array; what is not finite becomes null."""
+    """Nested lists of an array (R, m), or of any shape, in its unit, SI or none; what is not finite becomes null."""
     boxed = np.asarray(array, dtype=object)
     boxed[~np.isfinite(np.asarray(array, dtype=float))] = None
     return boxed.tolist()
@@ -143,7 +146,7 @@ class Residuals:
     value: Array
     """(R, m), m/s² (rad/s)."""
     sigma: Array
-    """(R, m) one sigma of each residual at the input: the reading's own noise and the row's share of the β error."""
+    """(R, m) one sigma of each residual, m/s² (rad/s): the reading's own noise and the row's share of the β error."""
     beta: Array | None
     """(R,) rad, or None without a stand."""
     flipped: Any

@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[Any]
+"""Of any number type; shapes and units stand where an array is declared."""
 
-ACCELEROMETER = "accelerometer"
-GYROSCOPE = "gyroscope"
+ACCELEROMETER, GYROSCOPE = "accelerometer", "gyroscope"
+"""Kinds of sensor, and of block, as session files name them."""
 
 TWO_AXIS_STAND = "two-axis-stand"
 ARBITRARY_ORIENTATIONS = "arbitrary-orientations"
@@ -19,8 +20,10 @@ IN_SERVICE = "in-service"
 CALIBRATIONS = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS)
 """Programmes that calibrate every sensor of a block."""
 PROGRAMMES = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, ROTATION_ALIGNMENT, RATE_TABLE, IN_SERVICE)
+"""All, as session files name them."""
 AS_FOUND, AS_LEFT = "as-found", "as-left"
 STAGES = (AS_FOUND, AS_LEFT)
+"""Before and after a unit was worked on."""
 
 
 def comparable(programme: str) -> tuple[str, ...]:
@@ -40,7 +43,7 @@ class Sensor:
     """Reading unit per m/s² or rad/s; for a pulse gyro (session.count_time set) pulses per rad."""
     reading_unit: str
     bias_repeatability: float = 0.0
-    """One sigma of the zero from position to position, m/s² or rad/s."""
+    """One sigma of the bias from position to position, m/s² or rad/s."""
     nominal_offset: float | None = None
     """Reading that stands for zero, reading units; taken off before the model, so the bias is counted from it.
     None when not stated: then the bias holds the whole offset."""

@@ -22,7 +22,7 @@ from estimator.session import (
 
 
 def cone(m: int, half_angle: float, axis: tuple[float, float, float] = (0.0, 1.0, 0.0)) -> Array:
-    """(m, 3) input axes evenly spaced on a cone about ``axis``; half angle in rad."""
+    """(m, 3) input axes, unit vectors, evenly spaced on a cone about ``axis``; half angle in rad."""
     centre = unit(np.array(axis, dtype=float))
     side = tangents(centre)
     turn = 2 * np.pi * np.arange(m) / m
@@ -44,7 +44,8 @@ def stand_schedule(
 ) -> CalibrationSession:
     """A two-axis-stand session still to be measured: equal β steps in each run, readings zero.
 
-    ``runs`` lists the runs in order, True for flipped; ``period`` is the time between rows, s.
+    ``runs`` lists the runs in order, True for flipped; ``period`` is the time between rows, s; ``mounting`` (3, 3) is
+    the rotation platform → block, none unless given; ``count_time`` in s for pulse gyros.
     """
     beta = np.tile(2 * np.pi * np.arange(positions) / positions, len(runs))
     empty = np.zeros((len(beta), len(sensors)))
@@ -92,7 +93,7 @@ def draw_stand(session: CalibrationSession, rng: np.random.Generator) -> StandDr
 
 
 def true_vectors(session: CalibrationSession, draw: StandDraw) -> Array:
-    """(R, m, 3) what the stand really applied, exact in its errors, block axes."""
+    """(R, m, 3) what the stand really applied, exact in its errors, m/s² (rad/s), block axes."""
     assert session.stand is not None
     assert session.beta is not None
     phi, e = session.site.latitude or 0.0, draw.constant
@@ -148,9 +149,10 @@ def simulate(
 
 
 def counted(clean: Array, schedule: CalibrationSession, lasted: float, error: Array) -> Array:
-    """(R, m) readings from noiseless ones and their errors: pulse gyros in whole pulses, the rest as they are.
+    """(R, m) readings from noiseless ones and their errors (R, m): pulse gyros in whole pulses, the rest as they are.
 
-    ``lasted`` is by how much the count time exceeds the stated one, s.
+    All in reading units, ``clean`` of a pulse gyro in pulses per s. ``lasted`` is by how much the count time exceeds
+    the stated one, s.
     """
     if schedule.count_time is None:
         return clean + error
@@ -159,7 +161,7 @@ def counted(clean: Array, schedule: CalibrationSession, lasted: float, error: Ar
 
 
 def orientation_vectors(schedule: CalibrationSession, rng: np.random.Generator) -> Array:
-    """(R, m, 3) what still orientations apply: specific force, and to gyros the Earth's rate at a random heading."""
+    """(R, m, 3) what still orientations apply, m/s² (rad/s): gravity, to gyros the Earth's rate at a random heading."""
     assert schedule.directions is not None
     up, phi = schedule.directions, schedule.site.latitude or 0.0
     heading = rng.uniform(0, 2 * np.pi, len(up))
@@ -177,7 +179,7 @@ def orientation_schedule(
     direction_sigma: float | None = None,
     unit_name: str = "simulated",
 ) -> CalibrationSession:
-    """Still orientations to be measured: directions (R, 3) of the specific force, block axes.
+    """Still orientations to be measured: directions (R, 3) of the specific force, any length, block axes.
 
     The directions serve the simulation; the simulated session states them only with a ``direction_sigma`` (rad).
     """
@@ -205,6 +207,9 @@ def scattered(
     quadratic: float = 1e-5,
     axis: float = 1e-3,
 ) -> SensorParameters:
-    """True parameters scattered about the nominal ones; one sigmas dimensionless (relative, g, 1/g, rad); norm (m,)."""
+    """True parameters scattered about the nominal ones; one sigmas dimensionless (relative, g, 1/g, rad).
+
+    norm : (m,) length of the applied vector, m/s² (rad/s).
+    """
     step = rng.standard_normal((len(sensors), 5)) * np.array([scale, bias, quadratic, axis, axis])
     return nominal(sensors).stepped(step, norm)

@@ -15,52 +15,56 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.errors import Problem, ScheduleError
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
 Indices = NDArray[np.intp]
 
 WINDOW = 1.0
-"""s over which the variance is taken."""
+"""s over which the variance is taken: long beside the samples, short beside a rest of some seconds."""
 
 BLOCKS = 4
 """Blocks a window: the resolution of the ends of an interval, and what is trimmed from each."""
 
 SHORTEST = 1.0
-"""s of standing still, after trimming, that make a position."""
+"""s of standing still, after trimming, that make a position: as long as the window."""
 
 FLOOR = 0.05
-"""Part of all windows that is taken to be still; its upper end is the noise floor of a channel."""
+"""Part of all windows that is taken to be still; its upper end is the noise floor of a channel. A choice: small enough
+for logs that hardly rest, large enough that the floor is not the luckiest window's."""
 
 THRESHOLDS = (1.5, 2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0, 40.0, 70.0)
-"""Variances, in noise floors averaged over the channels, below which a window may count as still."""
+"""Variances, in noise floors averaged over the channels, below which a window may count as still. Steps of about a
+half, from just above the scatter of a variance of some hundred samples to where slow turns pass."""
 
 FEWEST = 4
-"""Positions below which a threshold is not considered."""
+"""Positions below which a threshold is not considered: a sphere needs four points."""
 
 TRIM = 0.05
-"""Part cut off each end of a labelled position."""
+"""Part cut off each end of a labelled position: people label a little early and late."""
 
 POOLED = 20
-"""Degrees of freedom that the scatter of block means must have."""
+"""Degrees of freedom that the scatter of block means must have: they tell a sigma to 16 %."""
 
 MOST_BLOCKS = 1.0
-"""s; longest block whose mean is taken for independent of the next."""
+"""s; longest block, which makes its mean independent of the next for noise that is correlated over less."""
 
 RESTLESS = 3.0
-"""Scatter of an interval's block means, in usual ones, from which the interval has a standard error of its own."""
+"""Scatter of an interval's block means, in usual ones, from which the interval has a standard error of its own: beyond
+chance for the few blocks of an interval averaged over the channels."""
 
-
-STANDARD_GRAVITY = 9.8
-"""m/s²; near enough to say what moves."""
 
 MOTION = 0.02
-"""g; change of a reading from quarter to quarter of a stretch from which the block moves."""
+"""g; change of a reading from quarter to quarter of a stretch from which the block moves: a turn of a degree, which no
+table that rests makes and no warm-up imitates."""
 
 PIECES = 4
+"""Quarters in which a stretch is looked at for a slow turn: they show one that comes back to where it began."""
 
 DISTINCT = 30.0
-"""Standard errors of a quarter's mean by the noise from sample to sample, which that change must exceed as well."""
+"""Standard errors of a quarter's mean by the noise from sample to sample, which that change must exceed as well: far
+more than white noise gives, because slow noise is not counted in them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,22 +85,22 @@ class Intervals:
         return self.stop - self.start
 
     def at(self, chosen: NDArray[np.bool_]) -> "Intervals":
-        """Some of the stretches."""
+        """Those of the stretches that are ``chosen`` (n,)."""
         return Intervals(self.start[chosen], self.stop[chosen])
 
     def sums(self, values: Array) -> Array:
-        """(n, ...) sums of values (R, ...) over each interval."""
+        """(n, ...) sums of values (R, m), or of any shape (R, ...) and unit, over each interval."""
         edges = np.stack([self.start, self.stop], axis=1).ravel()
         padded = np.concatenate([values, np.zeros_like(values[:1])])
         return np.asarray(np.add.reduceat(padded, edges, axis=0)[::2])
 
     def means(self, values: Array) -> Array:
-        """(n, ...) means of values (R, ...) over each interval."""
+        """(n, ...) means of values (R, m), or of any shape (R, ...) and unit, over each interval."""
         sums = self.sums(values)
         return sums / self.samples.reshape(-1, *[1] * (sums.ndim - 1))
 
     def cut(self, length: int) -> "tuple[Intervals, Indices]":
-        """Each interval cut into whole blocks of ``length`` samples, and the interval that each block is of."""
+        """Each interval cut into whole blocks of ``length`` samples, and the interval (B,) of each block."""
         count = self.samples // length
         owner = np.repeat(np.arange(len(self)), count)
         first = np.concatenate([[0], np.cumsum(count)[:-1]])
@@ -128,7 +132,7 @@ def average(session: CalibrationSession, residual: Callable[[CalibrationSession]
 
 
 def labelled(position: NDArray[np.int64]) -> Intervals:
-    """Stretches of one label ≥ 0, trimmed at both ends."""
+    """Stretches of one label ≥ 0 among labels (R,), trimmed at both ends; ScheduleError where there is none."""
     change = np.flatnonzero(np.diff(position)) + 1
     start = np.concatenate([[0], change])
     stop = np.concatenate([change, [len(position)]])
@@ -189,7 +193,7 @@ class Quietness:
 
 
 def quietness(readings: Array, rate: float) -> Quietness:
-    """Variance of every window of readings (R, m) sampled at ``rate`` Hz, in noise floors."""
+    """Variance of every window of readings (R, m), any unit, sampled at ``rate`` Hz, in noise floors."""
     block = max(round(WINDOW * rate / BLOCKS), 2)
     count = len(readings) // block
     if count < BLOCKS:
@@ -206,7 +210,10 @@ def quietness(readings: Array, rate: float) -> Quietness:
 
 
 def noise_floor(variance: Array, channel: Array) -> float:
-    """Variance of a channel at rest: that of its stillest windows, and not below its quantisation."""
+    """Variance of a channel at rest, its unit squared: that of its stillest windows, and not below its quantisation.
+
+    variance : (W,) of its windows; channel : (R,) readings, reading units.
+    """
     steps = np.abs(np.diff(channel))
     steps = steps[steps > 0]
     if not len(steps):
@@ -231,7 +238,7 @@ def still(quiet: Quietness, threshold: float, rate: float) -> Intervals:
 
 
 def chosen(session: CalibrationSession, residual: Callable[[CalibrationSession], float]) -> CalibrationSession:
-    """The averaged session under the threshold that calibrates best."""
+    """The averaged session under the threshold that calibrates best; ScheduleError where none finds enough rests."""
     assert session.sample_rate is not None
     watched = [s.kind == ACCELEROMETER for s in session.sensors]
     readings = session.readings[:, watched] if any(watched) else session.readings
@@ -278,7 +285,7 @@ def averaged(session: CalibrationSession, found: Intervals) -> CalibrationSessio
 
 
 def mean_errors(readings: Array, found: Intervals, rate: float) -> Array:
-    """(n, m) standard errors of the means, from the scatter of block means pooled over the intervals.
+    """(n, m) standard errors of the means of readings (R, m), in their unit, from the scatter of pooled block means.
 
     Blocks grow to `MOST_BLOCKS` seconds as long as `POOLED` degrees of freedom are left; NaN where every interval is a
     single sample. An interval whose scatter stands out keeps its own instead of spoiling the others'.
@@ -300,7 +307,10 @@ def mean_errors(readings: Array, found: Intervals, rate: float) -> Array:
 
 
 def within(means: Array, owner: Indices, n: int) -> tuple[Array, Indices]:
-    """Squared scatter (n, m) of block means (B, m) about the mean of their interval, and its freedom (n,)."""
+    """Squared scatter (n, m) of block means (B, m) about the mean of their interval, and its degrees of freedom (n,).
+
+    owner : (B,) number of the interval of each block. Scatter in the means' unit squared.
+    """
     count = np.bincount(owner, minlength=n)
     total = np.zeros((n, means.shape[1]))
     np.add.at(total, owner, means)

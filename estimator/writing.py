@@ -5,10 +5,9 @@ from typing import Any
 
 import numpy as np
 
+from estimator.reading.keys import FORMAT, SIGMA
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor, Stand, StandErrors
 
-FORMAT = "imu-session/1"
-ANGLE_ERRORS = ("theta_x", "theta_y", "alpha", "beta", "latitude", "meridian", "wobble")
 ANGLE_DECIMALS = 10
 """Degrees and arcsec are written to 1e-10: 30.0, not 29.999999999999996."""
 
@@ -69,7 +68,7 @@ def _stand(stand: Stand) -> dict[str, Any]:
 
 def _sigma(sigma: StandErrors) -> dict[str, float]:
     """The angles of known sigma, arcsec."""
-    stated = {name: getattr(sigma, name) or 0.0 for name in ANGLE_ERRORS}
+    stated = {name: getattr(sigma, name) or 0.0 for name in SIGMA}
     values = {name: round(3600 * float(np.degrees(angle)), ANGLE_DECIMALS) for name, angle in stated.items()}
     return {name: value for name, value in values.items() if value}
 
@@ -113,6 +112,6 @@ def _table(session: CalibrationSession) -> dict[str, Any]:
 
 
 def _column(values: Array) -> list[float | None]:
-    """A column in which what is not known is null."""
+    """A column (R,), any unit, in which what is not known is null."""
     listed: Iterable[float] = values.tolist()
     return [value if np.isfinite(value) else None for value in listed]

@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 from math import floor, isfinite, log10, pi
 
+from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.causes import find
 from estimator.session import GYROSCOPE
 
-STANDARD_GRAVITY = 9.80665
-"""m/s² in one g, as people count in g; not the local gravity."""
 DEGREE = pi / 180
 THIN = "\u202f"
 HARD = "\u00a0"

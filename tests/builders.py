@@ -75,7 +75,7 @@ def stand_vectors(norm: float, elevation_deg: float, beta_deg: Array, flipped: A
 
 
 def response(sensor: TrueSensor, vectors: Array) -> Array:
-    """(R,) readings without noise of one sensor for reference vectors (R, 3) in block axes."""
+    """(R,) readings without noise of one sensor for applied vectors (R, 3) in block axes."""
     a = vectors @ np.asarray(sensor.axis)
     return sensor.scale * (a + sensor.bias + sensor.quadratic * a**2)
 

@@ -10,7 +10,7 @@ from estimator.session import Array
 
 
 def applied(c: Conditions, rng: np.random.Generator, lift: Array, across: Array) -> Array:
-    """(trials, N, 3) reference vectors of one run, platform axes, under the stand's errors (trials,)."""
+    """(trials, N, 3) applied vectors of one run, platform axes, under the stand's errors (trials,)."""
     beta = 2 * np.pi * np.arange(c.positions) / c.positions
     beta = beta + rng.normal(0, c.stand.beta, (len(lift), c.positions))
     y, z = np.sin(c.alpha + lift)[:, None], np.cos(c.alpha + lift)[:, None]

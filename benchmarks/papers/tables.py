@@ -19,7 +19,7 @@ from estimator.simulate import simulate, stand_schedule
 TRIALS = 400
 """Sessions of six sensors a row."""
 SMALLEST = 1e-6
-"""Least noise that the fit tries, as a part of the reference vector."""
+"""Least noise that the fit tries, as a part of the applied vector."""
 Formula = Callable[[Array, Conditions], Accuracy]
 
 

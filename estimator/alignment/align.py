@@ -35,16 +35,17 @@ from estimator.alignment.positions import (
 )
 from estimator.alignment.results import AlignmentResult, Course
 from estimator.alignment.sins import EPS, NABLA, PHI, STATES, UNITS, Model
-from estimator.alignment.strapdown import Strapdown, strapdown
+from estimator.alignment.strapdown import Motion, Strapdown, strapdown
 from estimator.applied_vector import gravity
 from estimator.errors import Problem, ScheduleError
 from estimator.results import Fit
 from estimator.session import ACCELEROMETER, GYROSCOPE, ROTATION_ALIGNMENT, Array, CalibrationSession
 
 STEP = 1.0
-"""s; the filter's step, as nearly as whole rows allow."""
+"""s; the filter's step, as nearly as whole rows allow: short beside every turn and the Schuler period, long enough that
+a session is a thousand steps or so."""
 UNLIKELY = 1e-3
-"""Probability of a larger χ² below which the covariance is enlarged."""
+"""Probability of a larger χ² below which the covariance is enlarged: true noise is mistrusted once in a thousand."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,16 +53,12 @@ class Record:
     """A turntable session, reduced to three axes and checked, from the first stop on. R rows."""
 
     session: CalibrationSession
-    row: float
-    """Time of a row, s."""
+    motion: Motion
+    """As the sensors say, before any bias is taken off."""
     per_step: int
     """Rows of a filter step."""
     angle: Array
     """(R,) of the table, rad."""
-    rates: Array
-    """(R, 3) rad/s."""
-    forces: Array
-    """(R, 3) m/s²."""
     stops: list[Stop]
     noise: Noise
 
@@ -83,7 +80,7 @@ def align(
         noisy for a heading.
     """
     record = prepared(session, mounting)
-    start = coarse(record.stops, record.rates, record.forces, record.noise.gyro, record.row)
+    start = coarse(record.stops, record.motion, record.noise.gyro)
     computed = _computed(record, start)
     setting = _setting(record)
     measured = Measured(computed.velocity, _turned(record, computed))
@@ -110,11 +107,9 @@ def prepared(session: CalibrationSession, mounting: tuple[float, float] = (0.0, 
     noise = _noise(found, gyros, accelerometers, row, per_step)
     return Record(
         session=session,
-        row=row,
+        motion=Motion(rates[begin:], accelerometers.values[begin:], row),
         per_step=per_step,
         angle=session.turn_angle[begin:],
-        rates=rates[begin:],
-        forces=accelerometers.values[begin:],
         stops=[Stop(stop.first - begin, stop.last - begin, stop.angle) for stop in found],
         noise=noise,
     )
@@ -124,6 +119,7 @@ def _noise(found: list[Stop], gyros: Triad, accelerometers: Triad, row: float, p
     """As the file states it for single rows, else from the readings at the stops."""
 
     def means(values: Array) -> list[Array]:
+        """Of each stop the means (k, 3) over filter steps of values (R, 3), m/s² or rad/s."""
         parts = [values[stop.first : stop.last] for stop in found]
         return [part[: len(part) // per_step * per_step].reshape(-1, per_step, 3).mean(axis=1) for part in parts]
 
@@ -140,14 +136,15 @@ def _noise(found: list[Stop], gyros: Triad, accelerometers: Triad, row: float, p
 
 
 def _computed(record: Record, start: Coarse) -> Strapdown:
-    """The strapdown, with the coarse zeros taken off."""
+    """The strapdown, with the coarse biases taken off."""
     latitude = record.session.site.latitude
     assert latitude is not None
-    stop_of_row = np.full(len(record.rates), -1)
+    motion = record.motion
+    stop_of_row = np.full(len(motion.rates), -1)
     for number, stop in enumerate(record.stops):
         stop_of_row[stop.first : stop.last] = number
-    rates, forces = record.rates - start.gyro_bias, record.forces - start.accelerometer_bias
-    return strapdown(start.attitude, rates, forces, record.row, latitude, stop_of_row, record.per_step)
+    left = Motion(motion.rates - start.gyro_bias, motion.forces - start.accelerometer_bias, motion.row)
+    return strapdown(start.attitude, left, latitude, stop_of_row, record.per_step)
 
 
 def _setting(record: Record) -> Setting:
@@ -165,7 +162,7 @@ def _setting(record: Record) -> Setting:
 
 
 def _turned(record: Record, computed: Strapdown) -> Array:
-    """(K, 3) φ since the first stop as the turntable shows it: its direction never changes."""
+    """(K, 3) φ since the first stop as the turntable shows it, rad: its direction never changes."""
     steps = len(computed.attitude)
     angle = record.angle[record.per_step - 1 :: record.per_step][:steps]
     table = computed.attitude @ Rotation.from_rotvec(-angle[:, None] * [0.0, 0.0, 1.0]).as_matrix()
@@ -207,7 +204,7 @@ def _result(record: Record, start: Coarse, computed: Strapdown, filtered: Filter
 
 
 def _totals(estimates: Array, start: Coarse) -> Array:
-    """The estimates with the coarse zeros that were taken off before the filter."""
+    """The estimates (K, n), SI, with the coarse biases that were taken off before the filter."""
     whole = estimates.copy()
     whole[:, EPS] += start.gyro_bias
     whole[:, NABLA] += start.accelerometer_bias[:2]
@@ -221,7 +218,7 @@ def _fit(record: Record, filtered: Filtered) -> Fit:
     dof = filtered.measured - n
     p_value = float(chi2_distribution.sf(filtered.chi2, dof))
     factor = max(1.0, filtered.chi2 / dof) if p_value < UNLIKELY else 1.0
-    step = record.row * record.per_step
+    step = record.motion.row * record.per_step
     return Fit(
         chi2=filtered.chi2,
         dof=dof,

@@ -16,10 +16,12 @@ from estimator.results import Calibration, Estimate, Residuals, SensorCalibratio
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array
 
 NOTHING = Estimate(None, None)
+"""Of a parameter that the programme does not speak of."""
 MOST_ROWS = 120
-"""Rows of innovations that are kept as residuals."""
+"""Rows of innovations that are kept as residuals: enough for a chart, few enough to store."""
 SETTLED = 10.0
-"""Innovations of a larger sigma, in usual ones, come before the filter has settled and are left out."""
+"""Innovations of a larger sigma, in usual ones, come before the filter has settled and are left out: they
+say what the prior was, not how the sensors behaved."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +41,9 @@ AXES = (
     Axis("gyro y", GYROSCOPE, {"bias": "eps_y", "misalignment": "E_yz"}),
     Axis("gyro z", GYROSCOPE, {"scale": "kappa_z", "bias": "eps_z"}),
 )
+"""What takes the place of sensors; a rate table has the gyros alone."""
 UNITS = {(ACCELEROMETER, "bias"): "m/s²", (GYROSCOPE, "bias"): "rad/s", (GYROSCOPE, "misalignment"): "rad"}
+"""Of a parameter of an axis; a scale, 1 + κ, has none."""
 
 
 def alignment_calibration(result: AlignmentResult) -> Calibration:
@@ -119,6 +123,7 @@ def _innovations(result: AlignmentResult) -> tuple[Array, Array, Array]:
     rows = len(settled) // chunk
 
     def means(column: Array) -> Array:
+        """Means over chunks of a column (K,) or (K, 2): m/s², its square, or s."""
         return column[: rows * chunk].reshape(rows, chunk, *column.shape[1:]).mean(axis=1)
 
     return means(value), np.sqrt(means(sigma**2) / chunk), means(course.time[settled])

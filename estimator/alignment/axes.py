@@ -13,9 +13,9 @@ from estimator.errors import Problem, ScheduleError
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
 LEAST_SHARE = 1e-4
-"""Part of the largest variance that a sensor is given at least."""
+"""Part of the largest variance that a sensor is given at least: no channel counts for ten thousand others."""
 TINY = 1e-12
-"""m/s² or rad/s."""
+"""m/s² or rad/s; keeps the covariance of readings without noise invertible."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,15 +27,16 @@ class Triad:
     row_covariance: Array | None
     """(3, 3) covariance of a row's white noise as the file states it; None when it does not."""
     sensors: int
+    """How many were reduced."""
 
 
 def reduction(axes: Array, covariance: Array) -> tuple[Array, Array]:
-    """(3, m) matrix that turns readings into block axes, and the covariance (3, 3) of the outcome.
+    """(3, m) dimensionless matrix that turns inputs into block axes, and the covariance (3, 3) of the outcome.
 
     Parameters
     ----------
     axes : (m, 3) unit vectors.
-    covariance : (m, m) of the readings, positive definite.
+    covariance : (m, m) of the inputs, positive definite, (m/s²)² or (rad/s)², and so is the outcome's.
     """
     weighted = np.linalg.solve(covariance, axes)
     outcome = np.linalg.inv(axes.T @ weighted)
@@ -63,7 +64,7 @@ def triad(session: CalibrationSession, kind: str, interval: float) -> Triad:
 
 
 def scatter(values: Array) -> Array:
-    """(m,) variance of white noise from third differences of (R, m), which no smooth motion reaches.
+    """(m,) variance of white noise from third differences of values (R, m), m/s² or rad/s, free of smooth motion.
 
     Never zero, and none so small beside the others that one channel would count for all.
     """

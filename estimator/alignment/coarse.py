@@ -1,4 +1,4 @@
-"""Coarse alignment from the means of all stops: attitude at the start, and what the sensors' zeros roughly are.
+"""Coarse alignment from the means of all stops: attitude at the start, and what the sensors' biases roughly are.
 
 In the table's axes a mean is the same at every stop but for the block's zero, which turns with the table: for the
 horizontal rates and specific forces w_k at table angle θ_k, w_k = R(θ_k)ᵀ·h + b, four unknowns, two equations a stop.
@@ -10,12 +10,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.alignment.positions import Stop
+from estimator.alignment.strapdown import Motion
 from estimator.arrays import unit
 from estimator.errors import Problem, ScheduleError
 from estimator.session import Array
 
 MOST_HEADING = np.radians(10.0)
-"""rad, one sigma of the coarse heading that the filter's linear model can start from."""
+"""rad, one sigma of the coarse heading that the filter's linear model can start from: the filter's own prior of φ_U.
+Beyond it sin φ is no longer φ to a per cent."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,34 +25,33 @@ class Coarse:
     """Where the filter starts."""
 
     attitude: Array
-    """(3, 3) C̃ at the first row."""
+    """(3, 3) C̃ at the first row, block → east-north-up, dimensionless."""
     gyro_bias: Array
     """(3,) rad/s, the third 0."""
     accelerometer_bias: Array
     """(3,) m/s², the third 0."""
 
 
-def coarse(found: list[Stop], rates: Array, forces: Array, gyro_noise: Array, row: float) -> Coarse:
+def coarse(found: list[Stop], motion: Motion, gyro_noise: Array) -> Coarse:
     """The start of the fine alignment.
 
     Parameters
     ----------
     found : the stops, two different angles at least.
-    rates, forces : (R, 3), rad/s and m/s².
+    motion : as the sensors say.
     gyro_noise : (3, 3) density, (rad/s)²/Hz.
-    row : time of a row, s.
 
     Raises
     ------
     ScheduleError : the gyros do not tell the Earth's rotation from their noise.
     """
     angles = np.array([stop.angle for stop in found])
-    rate = np.array([rates[stop.first : stop.last].mean(axis=0) for stop in found])
-    force = np.array([forces[stop.first : stop.last].mean(axis=0) for stop in found])
+    rate = np.array([motion.rates[stop.first : stop.last].mean(axis=0) for stop in found])
+    force = np.array([motion.forces[stop.first : stop.last].mean(axis=0) for stop in found])
     design = turning_design(angles)
     north, gyro_bias, inverse = _solved(design, rate)
     _, accelerometer_bias, _ = _solved(design, force)
-    shortest = min(stop.last - stop.first for stop in found) * row
+    shortest = min(stop.last - stop.first for stop in found) * motion.row
     _require_heading(north, inverse, gyro_noise, shortest)
     up = unit(force[0] - accelerometer_bias)
     east = unit(np.cross(rate[0] - gyro_bias, up))
@@ -58,7 +59,7 @@ def coarse(found: list[Stop], rates: Array, forces: Array, gyro_noise: Array, ro
 
 
 def turning_design(angles: Array) -> Array:
-    """(2 n, 4) matrix of (h_x, h_y, b_x, b_y) for the horizontal components at n table angles."""
+    """(2 n, 4) matrix, dimensionless, of (h_x, h_y, b_x, b_y) for the horizontal components at angles (n,), rad."""
     cos, sin, zero, one = np.cos(angles), np.sin(angles), 0 * angles, 0 * angles + 1
     x = np.stack([cos, sin, one, zero], axis=1)
     y = np.stack([-sin, cos, zero, one], axis=1)
@@ -66,13 +67,17 @@ def turning_design(angles: Array) -> Array:
 
 
 def _solved(design: Array, means: Array) -> tuple[Array, Array, Array]:
-    """(h (2,), the zeros (3,), (DᵀD)⁻¹) from the means (n, 3) of the stops."""
+    """h (2,), the biases (3,) and (DᵀD)⁻¹ (4, 4) from the design (2 n, 4) and stops' means (n, 3), m/s² or rad/s."""
     inverse = np.linalg.inv(design.T @ design)
     h_x, h_y, b_x, b_y = inverse @ design.T @ means[:, :2].ravel()
     return np.array([h_x, h_y]), np.array([b_x, b_y, 0.0]), inverse
 
 
 def _require_heading(north: Array, inverse: Array, density: Array, shortest: float) -> None:
+    """ScheduleError where h, ``north`` (2,) rad/s, is no better known than `MOST_HEADING` of itself.
+
+    inverse : (4, 4) dimensionless; density : (3, 3), (rad/s)²/Hz; shortest : s of the shortest stop.
+    """
     spread = float(np.sqrt(np.trace(density[:2, :2]) / 2 / shortest * inverse[0, 0]))
     size = float(np.hypot(*north))
     if spread > MOST_HEADING * size:

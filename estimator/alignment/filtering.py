@@ -4,13 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.alignment.kalman import State, correct, predict
+from estimator.alignment.kalman import KalmanState, correct, predict
 from estimator.alignment.noise import TINY, Noise
 from estimator.alignment.sins import ALL, PHI, STOP, TAU, Model, Path, V, dynamics, process_noise, transition
 from estimator.results import ARCSEC
 from estimator.session import Array
 
 DEGREE = np.pi / 180
+"""rad."""
 PRIOR = np.array(
     [TINY] * 2 + [0.2 * DEGREE] * 2 + [10 * DEGREE] + [10 * DEGREE / 3600] * 3 + [0.1] * 2
     + [0.2 * DEGREE] * 2 + [1e-2] + [10 * DEGREE] * 3 + [0.0] * 3
@@ -21,11 +22,14 @@ USEFUL = np.array(
     [1e-2] * 2 + [60 * ARCSEC] * 2 + [1 * DEGREE] + [1 * DEGREE / 3600] * 3 + [3e-3] * 2
     + [60 * ARCSEC] * 2 + [1e-3] + [60 * ARCSEC] * 3
 )  # fmt: skip
-"""(16,) sigma of every state, SI, from which a session counts as not telling it: 60″, 1°, 1 °/h, 0.3 mg, 60″, 0.1 %."""
+"""(16,) sigma of every state, SI, from which a session counts as not telling it: 60″, 1°, 1 °/h, 0.3 mg, 60″, 0.1 %.
+What is known no better is of no use for a health check of such sensors."""
 TABLE_SIGMA = 1.0 * ARCSEC
-"""rad, where the session states none: wobble of the turn axis and error of the table's angle from stop to stop."""
+"""rad, where the session states none: wobble of the turn axis and error of the table's angle from stop to stop. What
+good turntables reach; E between stops is known no better than that (docs/methods/alignment.md)."""
 REST_SIGMA = 0.1 * ARCSEC
-"""rad by which a table that stands still may sway about each axis."""
+"""rad by which a table that stands still may sway about each axis: below what is asked of E, and not zero, so that the
+end of a stop does not repeat its beginning exactly."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,10 +60,14 @@ class Filtered:
     """The filter's estimates. K steps, n states."""
 
     estimates: Array
+    """(K, n) SI."""
     sigmas: Array
+    """(K, n) SI, one sigma."""
     innovations: Array
+    """(K, 2) of the velocity, m/s."""
     innovation_sigmas: Array
-    last: State
+    """(K, 2) m/s."""
+    last: KalmanState
     chi2: float
     """Sum over all innovations."""
     measured: int
@@ -77,7 +85,7 @@ def run(path: Path, setting: Setting, measured: Measured, model: Model) -> Filte
     H, R = velocity_measurement(n, setting)
     H_table, R_table = table_measurement()
     shown = path.begins | path.ends
-    state = State(np.zeros(n), np.diag(PRIOR[:n] ** 2))
+    state = KalmanState(np.zeros(n), np.diag(PRIOR[:n] ** 2))
     estimates, sigmas = np.empty((2, len(Phi), n))
     innovations, innovation_sigmas = np.empty((2, len(Phi), 2))
     chi2, count = 0.0, 0
@@ -93,21 +101,21 @@ def run(path: Path, setting: Setting, measured: Measured, model: Model) -> Filte
 
 
 def velocity_measurement(n: int, setting: Setting) -> tuple[Array, Array]:
-    """H (2, n) and R (2, 2) of the computed horizontal velocity."""
+    """H (2, n), dimensionless, and R (2, 2), (m/s)², of the computed horizontal velocity."""
     H = np.zeros((2, n))
     H[:, V] = np.eye(2)
     return H, max(setting.noise.velocity, TINY) ** 2 * np.eye(2)
 
 
 def table_measurement() -> tuple[Array, Array]:
-    """H (3, 19) and R (3, 3) of the turntable's direction at a stop, y = φ + τ + ς."""
+    """H (3, 19), dimensionless, and R (3, 3), rad², of the turntable's direction at a stop, y = φ + τ + ς."""
     H = np.zeros((3, ALL))
     H[:, PHI], H[:, TAU], H[:, STOP] = np.eye(3), np.eye(3), np.eye(3)
     return H, REST_SIGMA**2 * np.eye(3)
 
 
 def drawn_anew(path: Path, Phi: Array, Q: Array, setting: Setting) -> tuple[Array, Array]:
-    """Φ and Q (K, 19, 19) under which ς is drawn anew where a stop begins."""
+    """Φ and Q (K, 19, 19), SI, under which ς (rad) is drawn anew where a stop begins."""
     Phi, Q = Phi.copy(), Q.copy()
     Phi[path.begins, STOP, STOP] = 0.0
     Q[path.begins, STOP, STOP] = np.diag([setting.wobble, setting.wobble, setting.table]) ** 2
@@ -115,6 +123,6 @@ def drawn_anew(path: Path, Phi: Array, Q: Array, setting: Setting) -> tuple[Arra
 
 
 def relative(P: Array) -> Array:
-    """A covariance (n, n) in units of what is of use: a state is observable below 1. ς is left out."""
+    """A covariance (n, n), SI, over what is of use, dimensionless: a state is observable below 1. ς is left out."""
     useful = USEFUL[: len(P)]
     return P[: len(useful), : len(useful)] / np.outer(useful, useful)

@@ -8,19 +8,23 @@ from estimator.session import Array
 
 
 @dataclass(frozen=True, eq=False)
-class State:
-    """An estimate (n,) and its covariance (n, n)."""
+class KalmanState:
+    """What a filter knows of n states, each in its own unit."""
 
     x: Array
+    """(n,) estimate."""
     P: Array
+    """(n, n) its covariance."""
 
 
 @dataclass(frozen=True, eq=False)
 class Innovation:
-    """What a measurement said beyond what was expected, (k,), and the covariance that this should have, (k, k)."""
+    """What a measurement of k components, each in its own unit, said beyond what was expected."""
 
     value: Array
+    """(k,) ν."""
     covariance: Array
+    """(k, k) S, that ν should have."""
 
     @property
     def chi2(self) -> float:
@@ -28,16 +32,19 @@ class Innovation:
         return float(self.value @ np.linalg.solve(self.covariance, self.value))
 
 
-def predict(state: State, Phi: Array, Q: Array) -> State:
-    """One step ahead: x = Φx, P = ΦPΦᵀ + Q."""
-    return State(Phi @ state.x, Phi @ state.P @ Phi.T + Q)
+def predict(state: KalmanState, Phi: Array, Q: Array) -> KalmanState:
+    """One step ahead: x = Φx, P = ΦPΦᵀ + Q; Phi and Q (n, n), each row and column per the unit of its state."""
+    return KalmanState(Phi @ state.x, Phi @ state.P @ Phi.T + Q)
 
 
-def correct(state: State, z: Array, H: Array, R: Array) -> tuple[State, Innovation]:
-    """A measurement z = Hx + noise of covariance R: the corrected state and the innovation."""
+def correct(state: KalmanState, z: Array, H: Array, R: Array) -> tuple[KalmanState, Innovation]:
+    """A measurement z = Hx + noise of covariance R: the corrected state and the innovation.
+
+    z : (k,), of any units, per which H (k, n) and R (k, k) are.
+    """
     S = H @ state.P @ H.T + R
     K = np.linalg.solve(S, H @ state.P).T
     innovation = Innovation(z - H @ state.x, S)
     rest = np.eye(len(state.x)) - K @ H
     P = rest @ state.P @ rest.T + K @ R @ K.T
-    return State(state.x + K @ innovation.value, 0.5 * (P + P.T)), innovation
+    return KalmanState(state.x + K @ innovation.value, 0.5 * (P + P.T)), innovation

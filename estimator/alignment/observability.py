@@ -34,7 +34,7 @@ from estimator.alignment.filtering import (
     table_measurement,
     velocity_measurement,
 )
-from estimator.alignment.simulate import Programme, Truth, table_angle, true_attitude, true_inputs
+from estimator.alignment.simulate import Programme, Truth, table_angle, true_attitude, true_motion
 from estimator.alignment.sins import ALL, NABLA, PHI, STATES, STOP, Model, Path, dynamics, transition
 from estimator.alignment.strapdown import strapdown
 from estimator.session import Array
@@ -51,7 +51,7 @@ class Expected:
     sigmas: Array
     """(n,) one sigma at the end, SI."""
     prior: Array
-    """(n,) one sigma before."""
+    """(n,) one sigma before, SI."""
     observable: tuple[bool, ...]
     rank: int
     """Number of directions, of n, that are told well enough to be of use."""
@@ -65,11 +65,11 @@ def planned_path(programme: Programme, latitude: float, g: float, heading: float
     """The path of a level table run by a programme; g in m/s², angles in rad."""
     stops = np.zeros((len(programme.angles), 2))
     attitude = true_attitude(programme, Truth(heading=heading), stops)
-    rates, forces = true_inputs(attitude, programme.row, latitude, g)
+    motion = true_motion(attitude, programme.row, latitude, g)
     _, course = table_angle(programme)
     stop_of_row = np.where(course[1:] % 1 == 0, course[1:], -1).astype(int)
     per_step = max(round(1.0 / programme.row), 1)
-    return strapdown(attitude[0], rates, forces, programme.row, latitude, stop_of_row, per_step).path
+    return strapdown(attitude[0], motion, latitude, stop_of_row, per_step).path
 
 
 def expected(path: Path, setting: Setting, model: Model) -> Expected:
@@ -88,7 +88,7 @@ def expected(path: Path, setting: Setting, model: Model) -> Expected:
 
 
 def gramian(path: Path, setting: Setting, model: Model) -> Array:
-    """(n, n) of the states but ς at the start, in units of `USEFUL`; no prior and no gyro noise.
+    """(n, n) of the states but ς at the start, dimensionless, in units of `USEFUL`; no prior and no gyro noise.
 
     Every step's velocity counts with the scatter that white accelerometer noise gives it.
     """
@@ -110,7 +110,7 @@ def gramian(path: Path, setting: Setting, model: Model) -> Array:
 
 
 def hidden(attitude: Array, E_xz: float, E_yz: float, g: float) -> Array:
-    """The state (13,) at attitude C (3, 3) that velocity does not see while the block turns about the vertical.
+    """The state (13,), SI, at attitude C (3, 3) that velocity does not see while the block turns about the vertical.
 
     Parameters
     ----------

@@ -9,24 +9,28 @@ from estimator.errors import Problem, ScheduleError
 from estimator.session import Array, CalibrationSession
 
 UNEVEN = 0.01
-"""Part of the interval by which the rows' times may stray from equal steps."""
+"""Part of the interval by which the rows' times may stray from equal steps: clocks stray less, a lost row more."""
 STILL = np.radians(0.01)
-"""rad that the table may move within half a second and still stand."""
+"""rad that the table may move within twice `HALF` and still stand: above an encoder's last digit, slower than any table
+is turned."""
 HALF = 0.5
 """s; half the time over which that is judged."""
 SHORTEST = 10.0
-"""s that make a stop."""
+"""s that make a stop: ten steps of the filter, which noise and the coarse alignment need."""
 FEWEST_ROWS = 10
-"""Rows that make a stop."""
+"""Rows that make a stop: fewer have no scatter to take the noise from."""
 APART = np.radians(20.0)
-"""rad between stops that count as different positions."""
+"""rad between stops that count as different positions: closer ones hardly tell biases from the level and north."""
 DISAGREEMENT = (np.radians(1.0), 0.02)
-"""How far the gyros may disagree with the table over a turn: rad, and part of the turn."""
+"""How far the gyros may disagree with the table over a turn, rad, and part of the turn: beyond bias and scale of any
+gyro that can align; a wrong sign or unit is far more."""
 MOVING = np.radians(0.1)
-"""rad/s of the block, averaged over a second, from which it does not stand still."""
+"""rad/s of the block, averaged over a second, from which it does not stand still: 24 times the Earth's rate."""
 STEEPEST = np.radians(3.0)
 """rad of the turn axis from the vertical; beyond, ∇_z leaks into what is taken for ∇_x and ∇_y."""
 GRAVITY_MISMATCH = 0.05
+"""Part of gravity by which the specific force at rest may differ from it: beyond scale and bias of any accelerometer
+that can align; a wrong nominal scale is more."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +96,7 @@ def require_positions(found: list[Stop]) -> None:
 
 
 def require_rest(found: list[Stop], rates: Array, row: float) -> None:
-    """ScheduleError where the gyros turn although the table stands; rates (R, 3) rad/s."""
+    """ScheduleError where the gyros turn although the table stands; rates (R, 3) rad/s, ``row`` s."""
     block = max(round(1.0 / row), 1)
     problems = []
     for stop in found:
@@ -109,7 +113,7 @@ def require_rest(found: list[Stop], rates: Array, row: float) -> None:
 
 
 def require_turns(found: list[Stop], angle: Array, rate_z: Array, row: float) -> None:
-    """ScheduleError where the azimuth gyro did not turn as the table did; rate_z (R,) rad/s."""
+    """ScheduleError where the azimuth gyro did not turn as the table did; angle (R,) rad, rate_z (R,) rad/s, row s."""
     problems = []
     for before, after in pairwise(found):
         first, last = (before.first + before.last) // 2, (after.first + after.last) // 2
@@ -127,7 +131,7 @@ def require_turns(found: list[Stop], angle: Array, rate_z: Array, row: float) ->
 
 
 def require_level(force: Array, g: float) -> None:
-    """ScheduleError unless the mean specific force (3,) at rest is gravity, along the turn axis."""
+    """ScheduleError unless the mean specific force (3,) at rest, m/s², is gravity, along the turn axis."""
     size = float(np.linalg.norm(force))
     if abs(size - g) > GRAVITY_MISMATCH * g:
         message = f"at rest the accelerometers read {size:.4g} m/s² where gravity is {g:.4g}"

@@ -5,10 +5,10 @@ turn at table rate w is, for the axes x, y, z of the reduced block,
 
     x: ε_x + E_xz·w        y: ε_y + E_yz·w        z: ε_z + Ω sin L + (1 + κ)·w
 
-E and κ follow from turns of different rates, at best of both directions; their difference is free of every zero. Each
+E and κ follow from turns of different rates, at best of both directions; their difference is free of every bias. Each
 whole turn is one row of the regression. Its covariance is that of the stated standard errors, else the turns' scatter
-gives it, widened by ν/(ν − 2) as Student's t is. The table's own rate is taken for
-exact: κ is the scale error against the table. ε_z needs the latitude and an upright axis.
+gives it, widened by ν/(ν − 2) as Student's t is. The table's own rate is taken for exact: κ is the scale error against
+the table. ε_z needs the latitude and an upright axis.
 """
 
 from dataclasses import dataclass
@@ -27,15 +27,18 @@ from estimator.session import GYROSCOPE, RATE_TABLE, Array, CalibrationSession
 
 NAMES = ("E_xz", "E_yz", "kappa_z", "eps_x", "eps_y", "eps_z")
 UNITS = ("rad", "rad", "1", "rad/s", "rad/s", "rad/s")
+"""Of what a rate table tells, in the order of its covariance."""
 FEWEST_TURNS = 6
 """Whole turns in all; fewer leave no scatter to take the uncertainty from."""
 WHOLE = 1e-6
-"""Part of a row by which a whole turn may end early."""
+"""Rows by which a whole turn may end early: the rounding of stated rates, not a missing part of a turn."""
 TURN = 2 * np.pi
+"""rad."""
 DISAGREEMENT = 0.05
-"""Part of the table's rate by which the azimuth gyro may differ from it."""
+"""Part of the table's rate by which the azimuth gyro may differ from it: beyond any scale error; a wrong sign or unit
+is far more."""
 UNLIKELY = 1e-3
-"""Probability of a larger χ² below which the covariance is enlarged."""
+"""Probability of a larger χ² below which the covariance is enlarged: true noise is mistrusted once in a thousand."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +56,7 @@ class Turns:
 
 
 def rate_table(session: CalibrationSession) -> RateTableResult:
-    """E_xz, E_yz, the azimuth gyro's scale error and the gyros' zeros.
+    """E_xz, E_yz, the azimuth gyro's scale error and the gyros' biases.
 
     Parameters
     ----------
@@ -104,7 +107,7 @@ def whole_turns(session: CalibrationSession, rates: Array, row: float) -> Turns:
 
 
 def _at(total: Array, place: Array) -> Array:
-    """The running sum (R + 1, 3) at fractions of rows (T,)."""
+    """The running sum (R + 1, 3), rad/s, at fractions of rows (T,)."""
     order = np.arange(len(total))
     return np.stack([np.interp(place, order, column) for column in total.T], axis=1)
 
@@ -164,7 +167,11 @@ def _result(session: CalibrationSession, turns: Turns, gyros: Triad) -> RateTabl
 
 
 def _noise(gyros: Triad, scatter: Array, dof: int, rms: float, leverage: float) -> tuple[Array, Fit]:
-    """Covariance (3, 3) of a row, and how the turns scatter about the model."""
+    """Covariance (3, 3) of a row, (rad/s)², and how the turns scatter about the model.
+
+    scatter : (3, 3) of the turns' residuals over one row, (rad/s)²; rms : of the residuals, rad/s; leverage : sigma of
+    E_xz for a row of sigma 1.
+    """
     stated = gyros.row_covariance
     covariance = (scatter if stated is None else stated) + TINY**2 * np.eye(3)
     axes = 3 if stated is not None else 1

@@ -16,9 +16,9 @@ class Course:
     time: Array
     """(K,) s since the first stop began, at the end of each step."""
     estimates: Array
-    """(K, n)"""
+    """(K, n) SI."""
     sigmas: Array
-    """(K, n) one sigma."""
+    """(K, n) one sigma, SI."""
     attitude: Array
     """(K, 3, 3) computed attitude C̃, block → east-north-up; the truth is about (I + φ×)·C̃."""
     innovations: Array
@@ -38,9 +38,9 @@ class AlignmentResult:
     names: tuple[str, ...]
     units: tuple[str, ...]
     estimate: Array
-    """(n,) at the end; ε and ∇ of the block's axes are total zeros, with what coarse alignment took off."""
+    """(n,) at the end, SI; ε and ∇ of the block's axes are total biases, with what coarse alignment took off."""
     covariance: Array
-    """(n, n)"""
+    """(n, n) SI."""
     observable: dict[str, bool]
     """Of φ, ε, ∇, E, κ: whether the session tells it well enough to be of use."""
     attitude: Array
@@ -83,16 +83,16 @@ class AlignmentResult:
 
 @dataclass(frozen=True, eq=False)
 class RateTableResult:
-    """Mounting errors, azimuth scale and zeros of a block's gyros from whole turns both ways."""
+    """Mounting errors, azimuth scale and biases of a block's gyros from whole turns both ways."""
 
     unit: str
     names: tuple[str, ...]
     """E_xz, E_yz, kappa_z, eps_x, eps_y, eps_z."""
     units: tuple[str, ...]
     estimate: Array
-    """(6,); NaN for what is not known."""
+    """(6,) in `units`; NaN for what is not known."""
     covariance: Array
-    """(6, 6); NaN rows and columns for what is not known."""
+    """(6, 6) in `units`; NaN rows and columns for what is not known."""
     turn_rates: Array
     """(T,) rate of the table in every whole turn, rad/s."""
     turn_times: Array

@@ -6,7 +6,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from estimator.alignment.sins import earth_rate
-from estimator.applied_vector import gravity
+from estimator.alignment.strapdown import Motion
+from estimator.applied_vector import STANDARD_GRAVITY, gravity
 from estimator.results import ARCSEC
 from estimator.session import (
     ACCELEROMETER,
@@ -41,7 +42,9 @@ class Truth:
     """What is wrong with the block and how it stands; SI."""
 
     gyro_bias: Array = field(default_factory=lambda: np.zeros(3))
+    """(3,) rad/s."""
     accelerometer_bias: Array = field(default_factory=lambda: np.zeros(3))
+    """(3,) m/s²."""
     mounting: tuple[float, float] = (0.0, 0.0)
     """E_xz, E_yz, rad."""
     kappa: float = 0.0
@@ -56,8 +59,8 @@ class Truth:
 class Imperfections:
     """Noise of the sensors and the table."""
 
-    accelerometer: float = 5e-6 * 9.80665
-    """Density of white noise, m/s²/√Hz."""
+    accelerometer: float = 5e-6 * STANDARD_GRAVITY
+    """Density of white noise, m/s²/√Hz (5 µg/√Hz unless given)."""
     gyro: float = 0.001 * ARCSEC * 60
     """Density of white noise, rad/s/√Hz (0.001 °/√h unless given)."""
     sway: float = 0.0
@@ -69,7 +72,7 @@ class Imperfections:
 
 
 def triads(axes: Array | None = None) -> tuple[Sensor, ...]:
-    """Accelerometers A1… and gyros G1… along axes (m, 3); x, y, z unless given. Readings in SI."""
+    """Accelerometers A1… and gyros G1… along axes (m, 3), unit vectors; x, y, z unless given. Readings in SI."""
     directions = np.eye(3) if axes is None else axes
     made = [
         Sensor(f"{letter}{i + 1}", kind, axis, 1.0, unit)
@@ -80,7 +83,7 @@ def triads(axes: Array | None = None) -> tuple[Sensor, ...]:
 
 
 def table_angle(programme: Programme) -> tuple[Array, Array]:
-    """(R + 1,) angle of the table at the ends of rows, from time 0 on, and how far each is on its way between stops."""
+    """(R + 1,) angle of the table, rad, at the ends of rows, from time 0 on, and places (R + 1,) between the stops."""
     angle, course = [], []
     for number, target in enumerate(programme.angles):
         if number:
@@ -96,7 +99,7 @@ def table_angle(programme: Programme) -> tuple[Array, Array]:
 
 
 def true_attitude(programme: Programme, truth: Truth, leaning: Array) -> Array:
-    """(R + 1, 3, 3) C at the ends of rows; leaning (stops, 2) tilts the turn axis at every stop, rad."""
+    """(R + 1, 3, 3) C at the ends of rows, dimensionless; leaning (stops, 2) tilts the turn axis at every stop, rad."""
     angle, course = table_angle(programme)
     lean = np.stack([np.interp(course, np.arange(len(leaning)), column) for column in leaning.T], axis=1)
     level = Rotation.from_rotvec([*truth.tilt, 0.0]) * Rotation.from_rotvec([0.0, 0.0, truth.heading])
@@ -105,14 +108,17 @@ def true_attitude(programme: Programme, truth: Truth, leaning: Array) -> Array:
     return np.asarray((level * wobble * turn).as_matrix())
 
 
-def true_inputs(attitude: Array, row: float, latitude: float, g: float) -> tuple[Array, Array]:
-    """Mean rate and specific force (R, 3) of every row, block axes, for attitudes (R + 1, 3, 3) at its ends."""
+def true_motion(attitude: Array, row: float, latitude: float, g: float) -> Motion:
+    """What the block goes through in rows of ``row`` s.
+
+    attitude : (R + 1, 3, 3) C at the ends of the rows, dimensionless; latitude in rad, g in m/s².
+    """
     time = row * np.arange(len(attitude))
     inertial = Rotation.from_rotvec(time[:, None] * earth_rate(latitude)) * Rotation.from_matrix(attitude)
     steps = (inertial[:-1].inv() * inertial[1:]).as_rotvec()
     half_earth = Rotation.from_rotvec(0.5 * row * earth_rate(latitude))
     middle = half_earth * Rotation.from_matrix(attitude[1:]) * Rotation.from_rotvec(-0.5 * steps)
-    return np.asarray(steps / row), np.asarray(middle.inv().apply([0.0, 0.0, g]))
+    return Motion(np.asarray(steps / row), np.asarray(middle.inv().apply([0.0, 0.0, g])), row)
 
 
 def simulate_alignment(
@@ -125,7 +131,7 @@ def simulate_alignment(
     imperfections: Imperfections | None = None,
     unit: str = "simulated",
 ) -> tuple[CalibrationSession, Array]:
-    """A rotation-alignment session, and the true attitude (R, 3, 3) at the end of every row.
+    """A rotation-alignment session, and the true attitude C (R, 3, 3), dimensionless, at the end of every row.
 
     Errors of ``truth`` are those of the block's axes; the noise is every sensor's own.
     """
@@ -133,10 +139,10 @@ def simulate_alignment(
     assert site.latitude is not None
     leaning = noise.wobble * rng.standard_normal((len(programme.angles), 2))
     attitude = true_attitude(programme, truth, leaning)
-    rates, forces = true_inputs(attitude, programme.row, site.latitude, gravity(site))
-    rows = len(rates)
+    motion = true_motion(attitude, programme.row, site.latitude, gravity(site))
+    rows = len(motion.rates)
     velocity = noise.sway * np.vstack([np.zeros(3), rng.standard_normal((rows, 3))])
-    swayed = forces + np.einsum("rji,rj->ri", attitude[1:], np.diff(velocity, axis=0) / programme.row)
+    swayed = motion.forces + np.einsum("rji,rj->ri", attitude[1:], np.diff(velocity, axis=0) / programme.row)
     angle, course = table_angle(programme)
     misread = np.interp(course, np.arange(len(leaning)), noise.table * rng.standard_normal(len(leaning)))
     session = CalibrationSession(
@@ -144,9 +150,7 @@ def simulate_alignment(
         block=GYROSCOPE,
         programme=ROTATION_ALIGNMENT,
         sensors=sensors,
-        readings=_readings(
-            sensors, with_errors(rates, truth), swayed + truth.accelerometer_bias, programme.row, noise, rng
-        ),
+        readings=_readings(sensors, with_errors(replace(motion, forces=swayed), truth), noise, rng),
         standard_errors=np.full((rows, len(sensors)), np.nan),
         site=site,
         stand=Stand("turntable", sigma=StandErrors(beta=noise.table, wobble=noise.wobble or None)),
@@ -156,24 +160,19 @@ def simulate_alignment(
     return session, attitude[1:]
 
 
-def with_errors(rates: Array, truth: Truth) -> Array:
-    """(R, 3) what the gyros' axes read: ω + ε + (E_xz, E_yz, κ)·ω_z."""
-    return rates + truth.gyro_bias + rates[:, 2:] * np.array([*truth.mounting, truth.kappa])
+def with_errors(motion: Motion, truth: Truth) -> Motion:
+    """What the block's axes read without noise: f + ∇, and ω + ε + (E_xz, E_yz, κ)·ω_z."""
+    rates = motion.rates + truth.gyro_bias + motion.rates[:, 2:] * np.array([*truth.mounting, truth.kappa])
+    return replace(motion, rates=rates, forces=motion.forces + truth.accelerometer_bias)
 
 
-def _readings(
-    sensors: tuple[Sensor, ...],
-    rates: Array,
-    forces: Array,
-    row: float,
-    noise: Imperfections,
-    rng: np.random.Generator,
-) -> Array:
-    """(R, m) what the sensors read along their axes."""
+def _readings(sensors: tuple[Sensor, ...], motion: Motion, noise: Imperfections, rng: np.random.Generator) -> Array:
+    """(R, m) what the sensors read along their axes, reading units."""
     columns = []
     for sensor in sensors:
-        inputs, density = (forces, noise.accelerometer) if sensor.kind == ACCELEROMETER else (rates, noise.gyro)
-        own = inputs @ sensor.nominal_axis + density / np.sqrt(row) * rng.standard_normal(len(inputs))
+        accelerometer = sensor.kind == ACCELEROMETER
+        inputs, density = (motion.forces, noise.accelerometer) if accelerometer else (motion.rates, noise.gyro)
+        own = inputs @ sensor.nominal_axis + density / np.sqrt(motion.row) * rng.standard_normal(len(inputs))
         columns.append(sensor.nominal_scale * own + (sensor.nominal_offset or 0.0))
     return np.column_stack(columns)
 
@@ -195,14 +194,14 @@ def simulate_rate_table(
     angle = np.concatenate([[0.0], np.cumsum(rate * row)])
     level = Rotation.from_rotvec([*truth.tilt, 0.0]) * Rotation.from_rotvec([0.0, 0.0, truth.heading])
     attitude = (level * Rotation.from_rotvec(angle[:, None] * [0.0, 0.0, 1.0])).as_matrix()
-    rates, forces = true_inputs(attitude, row, site.latitude, gravity(site))
+    motion = true_motion(attitude, row, site.latitude, gravity(site))
     gyros = tuple(replace(sensor) for sensor in sensors if sensor.kind == GYROSCOPE)
     return CalibrationSession(
         unit=unit,
         block=GYROSCOPE,
         programme=RATE_TABLE,
         sensors=gyros,
-        readings=_readings(gyros, with_errors(rates, truth), forces, row, imperfections or Imperfections(), rng),
+        readings=_readings(gyros, with_errors(motion, truth), imperfections or Imperfections(), rng),
         standard_errors=np.full((len(rate), len(gyros)), np.nan),
         site=site,
         stand=Stand("rate table"),

@@ -33,10 +33,13 @@ STATES = (
     "v_E", "v_N", "phi_E", "phi_N", "phi_U", "eps_x", "eps_y", "eps_z", "nabla_x", "nabla_y",
     "E_xz", "E_yz", "kappa_z", "tau_E", "tau_N", "tau_U", "stop_E", "stop_N", "stop_U",
 )  # fmt: skip
+"""Of every model the first ones."""
 UNITS = ("m/s",) * 2 + ("rad",) * 3 + ("rad/s",) * 3 + ("m/s²",) * 2 + ("rad", "rad", "1") + ("rad",) * 6
+"""Of `STATES`."""
 V, PHI, EPS, NABLA, MOUNTING = slice(0, 2), slice(2, 5), slice(5, 8), slice(8, 10), slice(10, 13)
 TAU, STOP = slice(13, 16), slice(16, 19)
 ALL = len(STATES)
+"""Places of the states, and their number."""
 
 
 class Model(StrEnum):
@@ -62,7 +65,7 @@ class Path:
     step: float
     """s."""
     mean: Array
-    """(K, 3, 3) mean of C over each step."""
+    """(K, 3, 3) mean of C over each step, dimensionless."""
     turning: Array
     """(K, 3, 3) mean of C·ω_z over each step, rad/s."""
     stop: Array
@@ -70,12 +73,12 @@ class Path:
 
     @property
     def begins(self) -> Array:
-        """(K,) whether a stop begins with this step."""
+        """(K,) bool, no unit: whether a stop begins with this step."""
         return (self.stop >= 0) & (np.concatenate([[-1], self.stop[:-1]]) != self.stop)
 
     @property
     def ends(self) -> Array:
-        """(K,) whether a stop ends with this step."""
+        """(K,) bool, no unit: whether a stop ends with this step."""
         return (self.stop >= 0) & (np.append(self.stop[1:], -1) != self.stop)
 
 
@@ -85,7 +88,7 @@ def earth_rate(latitude: float) -> Array:
 
 
 def cross(v: Array) -> Array:
-    """(..., 3, 3) matrix of the cross product with v (..., 3)."""
+    """(3, 3) matrix of the cross product with v (3,), in its unit, rad/s or none; leading axes free."""
     zero = np.zeros_like(v[..., 0])
     x, y, z = v[..., 0], v[..., 1], v[..., 2]
     rows = [[zero, -z, y], [z, zero, -x], [-y, x, zero]]
@@ -93,7 +96,7 @@ def cross(v: Array) -> Array:
 
 
 def dynamics(path: Path, latitude: float, g: float) -> Array:
-    """F (K, 19, 19) of ẋ = F·x, the mean over each step; SI."""
+    """F (K, 19, 19) of ẋ = F·x, equation (1) with the states added, the mean over each step; SI."""
     F = np.zeros((len(path.mean), ALL, ALL))
     omega = earth_rate(latitude)
     F[:, 0, 1], F[:, 1, 0] = 2 * omega[2], -2 * omega[2]
@@ -106,13 +109,16 @@ def dynamics(path: Path, latitude: float, g: float) -> Array:
 
 
 def transition(F: Array, step: float) -> Array:
-    """Φ = exp(F·step) (K, n, n); equal matrices are exponentiated once."""
+    """Φ = exp(F·step) (K, n, n) of F (K, n, n), SI, and step in s; equal matrices are exponentiated once."""
     different, which = np.unique(F.reshape(len(F), -1), axis=0, return_inverse=True)
     return expm(different.reshape(-1, *F.shape[1:]) * step)[which.ravel()]
 
 
 def process_noise(path: Path, Phi: Array, accelerometer: Array, gyro: Array) -> Array:
-    """Q (K, 19, 19) of white noise with densities (3, 3), (m/s²)²/Hz and (rad/s)²/Hz; trapezoidal in time."""
+    """Q (K, 19, 19), SI, of white noise of densities (3, 3), (m/s²)²/Hz and (rad/s)²/Hz, by the trapezium in time.
+
+    Phi : (K, 19, 19), SI.
+    """
     density = np.zeros_like(Phi)
     C = path.mean
     density[:, V, V] = (C @ accelerometer @ C.swapaxes(1, 2))[:, :2, :2]

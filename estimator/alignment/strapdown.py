@@ -14,18 +14,30 @@ from estimator.session import Array
 
 
 @dataclass(frozen=True, eq=False)
+class Motion:
+    """What a block goes through, or what its sensors say of it: means over rows of one length. R rows, block axes."""
+
+    rates: Array
+    """(R, 3) rad/s."""
+    forces: Array
+    """(R, 3) specific force, m/s²."""
+    row: float
+    """Time of a row, s."""
+
+
+@dataclass(frozen=True, eq=False)
 class Strapdown:
     """What a strapdown system computes. K steps."""
 
     path: Path
     attitude: Array
-    """(K, 3, 3) C̃ at the end of each step."""
+    """(K, 3, 3) C̃ at the end of each step, dimensionless."""
     velocity: Array
     """(K, 2) east and north at the end of each step, m/s."""
 
 
 def attitudes(start: Array, rates: Array, row: float, latitude: float, per_step: int) -> Array:
-    """(K, B, 3, 3) C̃ at the end of every row, in K steps of B rows.
+    """(K, B, 3, 3) C̃, dimensionless, at the end of every row, in K steps of B rows.
 
     Parameters
     ----------
@@ -48,23 +60,20 @@ def attitudes(start: Array, rates: Array, row: float, latitude: float, per_step:
     return np.asarray(earth.reshape(turned.shape).swapaxes(2, 3) @ turned)
 
 
-def strapdown(
-    start: Array, rates: Array, forces: Array, row: float, latitude: float, stop_of_row: Array, per_step: int
-) -> Strapdown:
+def strapdown(start: Array, motion: Motion, latitude: float, stop_of_row: Array, per_step: int) -> Strapdown:
     """Attitude and velocity from the first row on.
 
     Parameters
     ----------
-    start : (3, 3) C̃ at the beginning.
-    rates, forces : (R, 3) means over each row, rad/s and m/s²; rows beyond the last whole step are left out.
-    row : time of a row, s.
+    start : (3, 3) C̃ at the beginning, dimensionless.
+    motion : as measured; rows beyond the last whole step are left out.
     latitude : rad.
     stop_of_row : (R,) number of the stop that a row belongs to, −1 while the table turns.
     per_step : rows of a step.
     """
-    steps = len(rates) // per_step
+    row, steps = motion.row, len(motion.rates) // per_step
     rows = steps * per_step
-    rates, forces = rates[:rows], forces[:rows]
+    rates, forces = motion.rates[:rows], motion.forces[:rows]
     ends = attitudes(start, rates, row, latitude, per_step)
     back = Rotation.from_rotvec(-0.5 * row * rates).as_matrix().reshape(ends.shape)
     middle = Rotation.from_rotvec(0.5 * row * earth_rate(latitude)).as_matrix() @ ends @ back
@@ -80,7 +89,10 @@ def strapdown(
 
 
 def velocities(increments: Array, step: float, latitude: float) -> Array:
-    """(K, 2) horizontal velocity from its increments (K, 3) by the specific force, the Earth's rotation included."""
+    """(K, 2) horizontal velocity, m/s, from its increments (K, 3), m/s, by specific force, with the Earth's rotation.
+
+    step in s, latitude in rad.
+    """
     turn = 2j * earth_rate(latitude)[2] * step
     time = np.arange(1, len(increments) + 1)
     gained = (increments[:, 0] + 1j * increments[:, 1]) * np.exp(turn * (time - 0.5))

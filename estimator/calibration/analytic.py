@@ -24,16 +24,19 @@ from estimator.parameters import SensorParameters
 from estimator.session import Array, CalibrationSession
 
 VANISHES = 1e-6
-"""Root mean square below which a column of the design has no trace in the schedule (n1·n3 on four faces)."""
+"""Root mean square, of functions of size 1, below which a column has no trace in the schedule (n1·n3 on four faces):
+beyond the rounding of stated angles, below any turn of a head."""
 
 DEPENDENT = 1e-8
-"""Relative singular value below which the schedule does not determine all columns."""
+"""Relative singular value below which the schedule does not determine all columns: half the digits of a double are
+lost there."""
 
 CONSTANT = 1e-6
-"""Part of a reading that must change over the rows for the sensor to answer to anything."""
+"""Part of a reading that must change over the rows for the sensor to answer to anything: gravity and the Earth's rate
+change one that is alive by far more, even on a large offset."""
 
 NO_TRACE = 1e-12
-"""Squared trace of the second-order term in the coefficients, relative, below which there is none."""
+"""Squared trace of the second-order term in the coefficients, relative, below which there is none: 1e-6, squared."""
 
 SECOND_ORDER = [1, 3, 6, 7]
 """Places of q12, p4, q23, q24 among the eight coefficients."""
@@ -50,7 +53,10 @@ class Coefficients:
 
 
 def design(beta: Array, flipped: Array) -> Array:
-    """(R, 8) functions of β that (18) and (20) are linear in; the flipped run takes U2 with the other sign."""
+    """(R, 8) functions of β, dimensionless, that (18) and (20) are linear in; a flipped run has U2 of the other sign.
+
+    beta : (R,) rad; flipped : (R,) bool.
+    """
     one, x, z = np.ones_like(beta), -np.sin(beta), np.cos(beta)
     run = np.where(flipped, -1.0, 1.0)
     return np.stack([one, x, z, x * x - z * z, run, run * x, run * z, run * x * z], axis=-1)
@@ -59,7 +65,7 @@ def design(beta: Array, flipped: Array) -> Array:
 def coefficients(y: Array, beta: Array, flipped: Array) -> Coefficients | None:
     """Least squares for (18) and (20) together; None where the rows do not determine them.
 
-    y (..., R, m) readings; beta, flipped (R,).
+    y : (..., R, m) readings, reading units; beta : (R,) rad; flipped : (R,) bool.
     """
     columns = design(beta, flipped)
     live = np.sqrt((columns**2).mean(axis=0)) > VANISHES
@@ -78,13 +84,14 @@ def solve(q: Coefficients, size: Array, angle: Array) -> SensorParameters:
 
     Parameters
     ----------
-    q : (..., 8, m).
-    size : (m,) g, or the Earth rate.
-    angle : (m,) α, or χ.
+    q : (..., 8, m) reading units.
+    size : (m,) g in m/s², or the Earth rate in rad/s.
+    angle : (m,) α, or χ, rad.
 
     Returns
     -------
-    (..., m); where the second-order term leaves no trace (e = (0, ±1, 0)) c is zero, where a reading is constant K is.
+    (..., m) in platform axes; where the second-order term leaves no trace (e = (0, ±1, 0)) c is zero, where a reading
+    is constant K is.
     """
     lift, reach = np.sin(angle), np.cos(angle)
     p0, q12, q13, p4, q21, q22, q23, q24 = (q.value[..., k, :] for k in range(8))
@@ -104,7 +111,7 @@ def solve(q: Coefficients, size: Array, angle: Array) -> SensorParameters:
 
 
 def answers(y: Array) -> Array:
-    """(..., m) whether the readings (..., R, m) of a sensor change at all."""
+    """Whether the readings (R, m) of each sensor change at all: (m,) bool; leading axes free, any unit."""
     return np.ptp(y, axis=-2) > CONSTANT * np.abs(y).max(axis=-2)
 
 
@@ -115,10 +122,10 @@ def closed_form(
 
     Parameters
     ----------
-    y : (..., R, m) readings with the offset taken off.
+    y : (..., R, m) readings with the offset taken off, reading units.
     session : gives the schedule, stand and mounting.
     nominal : (m,) what a sensor with a constant reading is put at.
-    size : (m,) length of the reference vectors.
+    size : (m,) length of the applied vectors, m/s² (rad/s).
 
     Returns
     -------
@@ -142,7 +149,8 @@ def closed_form(
 
 
 TO_BIAS = 1e3
-"""How much rather what the rows cannot tell from a bias is put to the bias than to scale and axis."""
+"""Weight of the bias' column, by which what the rows cannot tell from a bias is attributed to it rather than to scale
+and axis: a bias may be many g (counts without a stated offset), scale and axis stay within per cent of nominal."""
 
 
 def linear_start(y: Array, n: Array, size: Array, nominal: SensorParameters) -> SensorParameters:
@@ -150,8 +158,8 @@ def linear_start(y: Array, n: Array, size: Array, nominal: SensorParameters) -> 
 
     Parameters
     ----------
-    y : (..., R, m) readings with the offset taken off.
-    n : (R, m, 3) reference vectors of lengths ``size`` (m,).
+    y : (..., R, m) readings with the offset taken off, reading units.
+    n : (R, m, 3) applied vectors of lengths ``size`` (m,), m/s² (rad/s).
 
     Returns
     -------

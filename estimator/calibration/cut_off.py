@@ -10,16 +10,18 @@ from estimator.errors import Problem, ScheduleError
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
 SHARE = 0.2
-"""Part of the rows at one and the same extreme reading from which a channel is looked at, …"""
+"""Part of the rows at one and the same extreme reading from which a channel is looked at: fewer are the diagnosis' to
+name (it leaves them out), and do not spoil the applied vectors of the others …"""
 
 FEWEST = 4
-"""… and their least number."""
+"""… and their least number: two or three equal readings happen by quantisation."""
 
 CHANGED = 1.0
-"""m/s²; range of what the other sensors say of its input in those rows, from which it was cut off."""
+"""m/s²; range of what the other sensors say of its input in those rows, from which it was cut off: a tenth of g, far
+beyond what nominal axes and scales are off by."""
 
 SHOWN = 6
-"""Rows that are named."""
+"""Rows that a message names: enough to find the place, short enough to read."""
 
 
 def require_whole_range(session: CalibrationSession) -> None:
@@ -42,7 +44,7 @@ def require_whole_range(session: CalibrationSession) -> None:
 
 
 def expected(session: CalibrationSession, i: int) -> Array | None:
-    """(R,) input of sensor i by the others' nominal axes, up to a constant; None where they do not tell it."""
+    """(R,) input of sensor i by the others' nominal axes, m/s², up to a constant; None where they do not tell it."""
     others = [k for k, s in enumerate(session.sensors) if k != i and s.kind == ACCELEROMETER]
     if session.sensors[i].kind != ACCELEROMETER or len(others) < 3:
         return None
@@ -54,7 +56,7 @@ def expected(session: CalibrationSession, i: int) -> Array | None:
 
 
 def cut_off(end: float, rows: Array, change: float) -> str:
-    """What happened, and what to do."""
+    """What happened in ``rows`` (k,), numbers from 0, and what to do; ``end`` in reading units, ``change`` in m/s²."""
     named = ", ".join(str(row + 1) for row in rows[:SHOWN]) + (", …" if len(rows) > SHOWN else "")
     return (
         f"reads exactly {end:g} in {len(rows)} rows ({named}) while the other sensors show its input change by "

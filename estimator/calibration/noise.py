@@ -4,8 +4,8 @@ Theory
 ------
 Restricted likelihood: with P the inverse noise covariance after the model is fitted, the variance v of a sensor's
 readings satisfies v²·y'PAPy = v·tr(PA), A the identity on its readings (Patterson & Thompson 1971, Biometrika 58,
-545). Both sides are of the readings in units of v: the energy E left of them and its degrees of freedom f. What the
-stand's errors do to all sensors at once is weighed off by their covariance; where they are larger than the noise, a
+545). Both sides are of the readings in units of v: the energy E of their residuals and its degrees of freedom f. What
+the stand's errors do to all sensors at once is weighed off by their covariance; where they are larger than the noise, a
 moment estimate is the small difference of two large numbers.
 
 Sensors of one kind in one block are alike: their variances are taken as drawn about a common value v₀ with `ALIKE`
@@ -22,24 +22,27 @@ from estimator.parameters import SensorParameters
 from estimator.session import Array
 
 SUSPICIOUS = 1e-3
-"""Below this p-value the stated noise cannot explain the residuals, and the covariance is enlarged."""
+"""Below this p-value the stated noise cannot explain the residuals, and the covariance is enlarged: true noise is
+mistrusted once in a thousand sessions."""
 
 ALIKE = 6.0
 """Degrees of freedom with which a sensor's noise is known from the others of its kind: sigmas differ by a third."""
 
-GAINSAID = 0.01
-"""p-value of a sensor's own scatter below which it is noisier than the others of its kind."""
+CONTRADICTED = 0.01
+"""p-value of a sensor's own scatter below which it is noisier than the others of its kind: in a block of six
+alike, one is taken for noisier in 6 % of the sessions, and then merely keeps its own estimate."""
 
 LEAST = 1.0
-"""Degrees of freedom that a noise of its own is divided by at least."""
+"""Degrees of freedom that a noise of its own is divided by at least: fewer tell no variance."""
 
 STEADY = 0.01
-"""Relative change of every variance at which the estimate stands."""
+"""Relative change of every variance at which the estimate stands: far below the scatter of any estimated variance."""
 
 MOST_STEPS = 30
+"""Well-posed sessions settle in fewer than ten; this ends the others."""
 
 TOGETHER = 256
-"""Sessions worked on at a time."""
+"""Sessions worked on at a time: bounds the memory of the columns, (S, R, m, P)."""
 
 
 def with_estimated(variance: Array, y: Array, p: SensorParameters, geometry: Geometry) -> Array:
@@ -47,8 +50,10 @@ def with_estimated(variance: Array, y: Array, p: SensorParameters, geometry: Geo
 
     Parameters
     ----------
-    variance : (S, R, m) at the input; NaN where it is not stated, infinite for readings that take no part.
-    y : (S, R, m); p : (S, m), close to the solution.
+    variance : (S, R, m) at the input, (m/s²)² or (rad/s)²; NaN where it is not stated, infinite for readings that take
+        no part.
+    y : (S, R, m) readings, offset taken off, reading units.
+    p : (S, m), close to the solution.
 
     Returns
     -------
@@ -64,7 +69,7 @@ def _estimated(variance: Array, y: Array, p: SensorParameters, geometry: Geometr
     residual = linearise(y, p, geometry, np.ones(y.shape))[1]
     value = np.maximum((residual**2).mean(axis=1), floor)
     for _ in range(MOST_STEPS):
-        energy, freedom = left_over(np.where(unstated, value[:, None, :], variance), y, p, geometry, unstated)
+        energy, freedom = residual_energy(np.where(unstated, value[:, None, :], variance), y, p, geometry, unstated)
         expected = typical(value, sensors, geometry.norm)
         energy, freedom = with_the_others(energy, freedom, expected)
         new = np.maximum(energy / np.maximum(freedom, LEAST), floor)
@@ -75,12 +80,13 @@ def _estimated(variance: Array, y: Array, p: SensorParameters, geometry: Geometr
     return np.where(unstated, value[:, None, :], variance)
 
 
-def left_over(
+def residual_energy(
     variance: Array, y: Array, p: SensorParameters, geometry: Geometry, counted: Array
 ) -> tuple[Array, Array]:
-    """Energy E, as a variance, and degrees of freedom f of what each sensor's counted readings leave: (S, m) each.
+    """Energy E of the residuals of each sensor's counted readings, and its degrees of freedom f: (S, m) each.
 
-    ``variance`` and ``counted`` (bool): (S, R, m).
+    ``variance`` (S, R, m) at the input, (m/s²)² or (rad/s)², and so is E; ``y`` (S, R, m) reading units; ``counted``
+    (S, R, m) bool.
     """
     S, R, m = y.shape
     weight = 1.0 / variance
@@ -94,13 +100,14 @@ def left_over(
     swing = weight * beta * geometry.beta_sigma
     shared = 1.0 + (swing * beta * geometry.beta_sigma).sum(axis=-1, keepdims=True)
 
-    def weighed(values: Array) -> Array:
+    def weighted(values: Array) -> Array:
+        """P of the rows, per the noise's variance, times values (S, R, m, k) of any unit."""
         common = (swing[..., None] * values).sum(axis=2, keepdims=True) / shared[..., None]
         return weight[..., None] * values - swing[..., None] * common
 
     left = residual[..., None] - columns @ (inverse @ normal.rhs[..., None])[:, None]
-    pulled = weighed(left)[..., 0]
-    leaning = weighed(columns)
+    pulled = weighted(left)[..., 0]
+    leaning = weighted(columns)
     kept = weight - swing**2 / shared - ((leaning @ inverse[:, None]) * leaning).sum(axis=-1)
     own = np.where(counted, variance, 0.0)
     return ((own * pulled) ** 2).sum(axis=1), (own * kept).sum(axis=1)
@@ -109,7 +116,8 @@ def left_over(
 def typical(value: Array, sensors: Array, norm: Array) -> Array:
     """(S, m) the variance to expect of each sensor: the median, in logarithms, of those of its kind.
 
-    value (S, m) of the ``sensors`` (S, m) bool that state none; NaN for the others.
+    value (S, m), (m/s²)² or (rad/s)², of the ``sensors`` (S, m) bool that state none; NaN for the others. ``norm`` (m,)
+    is the length of the applied vector, m/s² (rad/s), by which the kinds are told apart.
     """
     asked = np.where(sensors, np.log(value), np.nan)
     found = np.full(value.shape, np.nan)
@@ -121,15 +129,16 @@ def typical(value: Array, sensors: Array, norm: Array) -> Array:
 
 
 def with_the_others(energy: Array, freedom: Array, expected: Array) -> tuple[Array, Array]:
-    """Energy and degrees of freedom (...) of sensors' own scatter, and of what the others let expect of them.
+    """Energy and degrees of freedom, each (S, m) or any shape, of sensors' own scatter with what the others add.
 
-    Nothing is borrowed where the own scatter gainsays it, nor where ``expected`` is NaN.
+    energy, expected : variances of one unit, (m/s²)², (rad/s)² or relative. Nothing is borrowed where the own scatter
+    contradicts it, nor where ``expected`` is NaN.
     """
-    usual = special.fdtri(np.maximum(freedom, 1.0), ALIKE, 1 - GAINSAID)
+    usual = special.fdtri(np.maximum(freedom, 1.0), ALIKE, 1 - CONTRADICTED)
     borrows = energy < usual * expected * np.maximum(freedom, 1.0)
     return energy + np.where(borrows, ALIKE * expected, 0.0), freedom + np.where(borrows, ALIKE, 0.0)
 
 
 def p_value(chi2: Array, dof: Array) -> Array:
-    """Probability of a χ² at least this large, element by element; 1 where nothing is left over to judge by."""
+    """The probability of a χ² (S,) at least this large; 1 where no degrees of freedom (S,) are left to judge by."""
     return np.where(dof > 0, special.chdtrc(np.maximum(dof, 1), np.maximum(chi2, 0.0)), 1.0)

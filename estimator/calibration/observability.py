@@ -11,10 +11,10 @@ from estimator.results import KnownCombination
 from estimator.session import Array
 
 ROUNDING = 1e-14
-"""Eigenvalues of the information below this part of the largest are rounding, not knowledge."""
+"""Eigenvalues of the information below this part of the largest are rounding of doubles, not knowledge."""
 
 DEPENDENT = 1e-4
-"""Relative singular value below which a combination of readings tells nothing."""
+"""Relative singular value below which a combination of readings tells nothing: its sigma is 10⁴ of the best one's."""
 
 LINEAR = ("zero_reading", "sensitivity_x", "sensitivity_y", "sensitivity_z", "quadratic_reading")
 """K·b, K·e (block axes) and K·c: what a reading is linear in."""
@@ -25,16 +25,16 @@ class Spectrum:
     """Each sensor's own information, stand perfect, by its principal directions; leading axes are free."""
 
     values: Array
-    """(..., m, 5) rising."""
+    """(..., m, 5) rising, dimensionless."""
     vectors: Array
-    """(..., m, 5, 5), columns."""
+    """(..., m, 5, 5), columns, dimensionless."""
 
     @property
     def observed(self) -> Array:
-        """(..., m, 5) bool; the axis needs both of its elements, and the scale needs the axis.
+        """(m, 5) bool, leading axes free; the axis needs both elements, and the scale needs the axis.
 
-        An axis off by δ out of the plane that the rows reach changes the scale by δ²/2, which the information at the
-        solution does not show.
+        An axis off by δ rad out of the plane that the rows reach changes the scale by δ²/2, which the information at
+        the solution does not show.
         """
         variance = (self.vectors**2 / (self.values + PLAUSIBLE**-2)[..., None, :]).sum(axis=-1)
         seen = variance < LIMIT**2
@@ -44,12 +44,12 @@ class Spectrum:
 
     @property
     def rank(self) -> Array:
-        """(...) number of parameter directions that the readings determine."""
+        """The number of parameter directions that the readings determine: (S,), or whatever the leading axes are."""
         return (self.values > LIMIT**-2).sum(axis=(-1, -2))
 
     @property
     def weakest(self) -> tuple[Array, Array, Array]:
-        """(...) sensor and element that lead the least known direction, and its one sigma in plausible ranges."""
+        """Sensor (S,) and element (S,) that lead the least known direction, and its sigma (S,), relative."""
         sensor = self.values[..., 0].argmin(axis=-1)
         least = np.take_along_axis(self.values[..., 0], sensor[..., None], axis=-1)[..., 0]
         lead = np.take_along_axis(np.abs(self.vectors[..., 0]).argmax(axis=-1), sensor[..., None], axis=-1)[..., 0]
@@ -57,7 +57,7 @@ class Spectrum:
 
 
 def spectrum(information: Array) -> Spectrum:
-    """Principal directions of (..., m, 5, 5)."""
+    """Principal directions of the information (m, 5, 5), leading axes free, of dimensionless elements."""
     values, vectors = np.linalg.eigh(information)
     return Spectrum(np.where(values < ROUNDING * values[..., -1:], 0.0, values), vectors)
 
@@ -69,7 +69,7 @@ def known_bias_quadratic(information: Array, bias: float, quadratic: float, norm
     ----------
     information : (5, 5) of the sensor, dimensionless.
     bias, quadratic : SI, at the solution.
-    norm : length of the reference vector.
+    norm : length of the applied vector, m/s² (rad/s).
     """
     values, vectors = np.linalg.eigh(information[1:3, 1:3])
     if values[1] < LIMIT**-2:
@@ -89,8 +89,8 @@ def known_linear(
 
     Parameters
     ----------
-    y : (R,) readings, offset taken off.
-    variance : (R,) of the independent noise at the input.
+    y : (R,) readings, offset taken off, reading units.
+    variance : (R,) of the independent noise at the input, (m/s²)² or (rad/s)².
     p : (m,) parameters at the solution: scale for the noise, axis for the column of the quadratic term.
     """
     K, norm, n = p.scale[sensor], geometry.norm[sensor], geometry.n[:, sensor]

@@ -29,15 +29,18 @@ RIDGE = PLAUSIBLE**-2
 """Information of the plausible range: keeps what a session does not observe where it started."""
 
 FINEST = 1e-8
-"""Least one sigma of a reading, as part of the reference vector: no reading is believed beyond it."""
+"""Least one sigma of a reading, as part of the applied vector: no reading is believed beyond it. 0.01 µg is below any
+instrument, and keeps readings without noise from straining the arithmetic."""
 
 LONGEST = np.array([1.0, np.inf, 1.0, 1.0, 1.0])
 """Longest step of each element, so that senseless readings lead nowhere rather than to infinity; biases may be many g
 (raw counts without a stated offset), and follow from the others."""
 
 MAX_ITERATIONS = 20
+"""One or two are usual; what has not converged by then is reported so."""
 CONVERGED = 1e-8
-"""Squared length of the step still to come, in standard errors and per parameter, that ends the iteration."""
+"""Squared length of the step still to come, in standard errors and per parameter, that ends the iteration: 1e-4 of a
+sigma changes no figure that anyone is shown."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,17 +52,17 @@ class Fitted:
     covariance: Array
     """(S, P, P) total, dimensionless elements."""
     repeatability: Array
-    """(S, P, P) without the stand's constant errors."""
+    """(S, P, P) without the stand's constant errors, dimensionless elements."""
     information: Array
     """(S, m, 5, 5) each sensor's own information, stand perfect: what observability is judged on."""
     residual: Array
-    """(S, R, m) at the input."""
+    """(S, R, m) at the input, m/s² (rad/s)."""
     variance: Array
-    """(S, R, m) of the independent noise at the input; infinite for readings that take no part."""
+    """(S, R, m) of the independent noise at the input, (m/s²)² or (rad/s)²; infinite for readings that take no part."""
     chi2: Array
     """(S,)"""
     constant: Array
-    """(S, k) estimated constant stand errors."""
+    """(S, k) estimated constant stand errors, rad (s for the count time)."""
     iterations: Array
     """(S,)"""
     converged: Array
@@ -76,7 +79,7 @@ class Normal:
     """One linearisation: bordered normal matrix of (θ, s) and the weighted right-hand side."""
 
     matrix: Array
-    """(S, P + k, P + k)"""
+    """(S, P + k, P + k), dimensionless elements, stand errors in rad (s)."""
     rhs: Array
     """(S, P + k)"""
     weighted_square: Array
@@ -90,11 +93,12 @@ def assemble(design: Array, weight: Array, beta: Array, beta_sigma: float, prior
 
     Parameters
     ----------
-    design : (S, R, m, 5 + k + 1): the Jacobian, the constant errors' columns, the residual.
-    weight : (S, R, m) inverse variance of the independent noise.
-    beta : (S, R, m) effect of the row's β error.
+    design : (S, R, m, 5 + k + 1) at the input: the Jacobian, the constant errors' columns per rad (s), the residual in
+        m/s² (rad/s).
+    weight : (S, R, m) inverse variance of the independent noise, 1/(m/s²)² or 1/(rad/s)².
+    beta : (S, R, m) effect of the row's β error, m/s² (rad/s) per rad.
     beta_sigma : rad.
-    prior : (k,) inverse variance of the constant errors.
+    prior : (k,) inverse variance of the constant errors, 1/rad² (1/s²).
     """
     S, R, m, width = design.shape
     P, tail = 5 * m, width - 5
@@ -121,7 +125,10 @@ def assemble(design: Array, weight: Array, beta: Array, beta_sigma: float, prior
 
 
 def linearise(y: Array, p: SensorParameters, geometry: Geometry, weight: Array) -> tuple[Normal, Array]:
-    """Normal equations at p and the residual there (S, R, m)."""
+    """Normal equations at p (S, m) and the residual there (S, R, m), m/s² (rad/s).
+
+    y : (S, R, m) readings, offset taken off, reading units; weight : (S, R, m) as in `assemble`, 1/(m/s²)².
+    """
     residual = y / p.scale[:, None, :] - input_of(p, geometry.n)
     design, beta = designed(p, geometry, residual)
     return assemble(design, weight, beta, geometry.beta_sigma, geometry.constant_sigma**-2.0), residual
@@ -129,7 +136,7 @@ def linearise(y: Array, p: SensorParameters, geometry: Geometry, weight: Array) 
 
 def designed(p: SensorParameters, geometry: Geometry, *more: Array) -> tuple[Array, Array]:
     """Columns (S, R, m, 5 + k + …) of each sensor's own parameters, the constant errors and ``more`` (S, R, m) ones,
-    and (S, R, m) the answer to the row's error of β."""
+    and the answer (S, R, m) to the row's error of β; at the input, m/s² (rad/s) per element, rad or s."""
     k = len(geometry.constant)
     steep = slope(p, geometry.n)
     S, R, m = steep.shape
@@ -143,12 +150,17 @@ def designed(p: SensorParameters, geometry: Geometry, *more: Array) -> tuple[Arr
 
 
 def input_variance(p: SensorParameters, standard_errors: Array, repeatability: Array) -> Array:
-    """(S, R, m) variance of the independent noise at the input: (se/K)² + bias repeatability²."""
+    """(S, R, m) variance of the independent noise at the input, (m/s²)² or (rad/s)²: (se/K)² + bias repeatability².
+
+    standard_errors : (S, R, m) se, reading units; repeatability : (m,) m/s² (rad/s).
+    """
     return (standard_errors / p.scale[:, None, :]) ** 2 + repeatability**2
 
 
 def eliminated(normal: Normal, P: int, sigma: Array) -> tuple[Array, Array, Array]:
     """Total covariance and repeatability (S, P, P) and the step (S, P + k), with the constant errors eliminated.
+
+    Elements are dimensionless; the constant errors' sigma (k,) is in rad (s).
 
     With A the sensors' block, B the border and F = A⁻¹B, the readings tell D = G'WG − B'F of the constant errors s
     beyond their prior Π (less what the ridge pretends). Then cov = A⁻¹ + F·(Π + D)⁻¹·F', of which
@@ -192,7 +204,7 @@ def held(normal: Normal) -> Normal:
 
 
 def gauss_newton(y: Array, variance: Array, geometry: Geometry, p: SensorParameters, iteration: int) -> Fitted:
-    """One step from p, the ``iteration``-th; arrays as in `fit`.
+    """One step from p (S, m), the ``iteration``-th; y and variance (S, R, m) as in `fit`.
 
     A session has converged when the step still to come, which a step of relative size δ leaves to the order of δ times
     itself, is negligible in standard errors. The covariance is that of the linearisation that gave the step.
@@ -226,8 +238,9 @@ def fit(y: Array, variance: Array, geometry: Geometry, start: SensorParameters) 
 
     Parameters
     ----------
-    y : (S, R, m) readings, offset taken off (`forward.measured`).
-    variance : (S, R, m) of the independent noise at the input; infinite for readings that take no part.
+    y : (S, R, m) readings, offset taken off, reading units (`forward.measured`).
+    variance : (S, R, m) of the independent noise at the input, (m/s²)² or (rad/s)²; infinite for readings that take no
+        part.
     geometry : of the schedule.
     start : (S, m) starting values; the closed form where there is one.
     """
@@ -243,7 +256,7 @@ def fit(y: Array, variance: Array, geometry: Geometry, start: SensorParameters) 
 
 
 def replaced(found: Any, at: Array, again: Any) -> Any:
-    """The same result with the sessions ``at`` of every array taken from another one."""
+    """The same result with the sessions ``at`` (k,) of every array (S, …), SI or dimensionless, from another (k, …)."""
     if isinstance(found, np.ndarray):
         found = found.copy()
         found[at] = again

@@ -50,7 +50,10 @@ def solved(sessions: Sequence[CalibrationSession], start: SensorParameters | Non
 
 
 def starting_point(y: Array, session: CalibrationSession, geometry: Geometry) -> SensorParameters:
-    """The closed form, or where the rows do not determine it a linear fit about the nominal values: (S, m)."""
+    """The closed form, or where the rows do not determine it a linear fit about the nominal values: (S, m).
+
+    y : (S, R, m) readings, offset taken off, reading units.
+    """
     base = nominal(session.sensors)
     found = closed_form(y, session, base, geometry.norm)
     return linear_start(y, geometry.n, geometry.norm, base) if found is None else found
@@ -59,8 +62,10 @@ def starting_point(y: Array, session: CalibrationSession, geometry: Geometry) ->
 def noise_variance(
     y: Array, errors: Array, start: SensorParameters, session: CalibrationSession, geometry: Geometry
 ) -> tuple[Array, Array]:
-    """Independent noise at the input (S, R, m), estimated where not stated, and whether (S,) all of it is stated.
+    """Variance of the independent noise at the input (S, R, m), (m/s²)² or (rad/s)², and whether (S,) all is stated.
 
+    y, errors : (S, R, m) readings, offset taken off, and their standard errors, reading units. Where none is stated the
+    variance is estimated.
     A sensor whose reading is constant answers to nothing: its noise is infinite, so that it takes no part.
     """
     variance = input_variance(start, errors, np.array([s.bias_repeatability for s in session.sensors]))
@@ -74,6 +79,7 @@ def noise_variance(
 def judged(solution: Fitted, stated: Array) -> tuple[Spectrum, Array, Array]:
     """What is observable, the p-value (S,), and the factor (S,) by which stated row noise must grow to be believed.
 
+    stated : (S,) bool, whether all noise is; the others are numbers without unit.
     Where the stated noise cannot explain the residuals, all that is drawn anew at every row is enlarged by χ² per
     degree of freedom; the estimate stays, and so do the stand's constant errors.
     """

@@ -14,12 +14,11 @@ from estimator.calibration.observability import Spectrum, known_bias_quadratic, 
 from estimator.calibration.refine import Fitted
 from estimator.forward import projected, slope
 from estimator.parameters import ELEMENTS, names, units
-from estimator.results import Calibration, Estimate, Fit, KnownCombination, Residuals, SensorCalibration
+from estimator.results import PARAMETERS, Calibration, Estimate, Fit, KnownCombination, Residuals, SensorCalibration
 from estimator.session import Array, CalibrationSession
 
 METHOD = "two-axis-stand/maximum-likelihood"
-
-OBSERVABLE = ("scale", "bias", "quadratic", "axis")
+"""As results name it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +26,7 @@ class Solved:
     """S sessions of one schedule, solved and judged. R rows, m sensors."""
 
     y: Array
-    """(S, R, m) readings, offset taken off."""
+    """(S, R, m) readings, offset taken off, reading units."""
     geometry: Geometry
     fitted: Fitted
     spectrum: Spectrum
@@ -52,9 +51,9 @@ class Tables:
     steady: Array
     """(S, m, 5) repeatability."""
     tangents: Array
-    """(S, m, 3, 2)"""
+    """(S, m, 3, 2) along which the axes turn, dimensionless."""
     residual_sigma: Array
-    """(S, R, m)"""
+    """(S, R, m) m/s² (rad/s)."""
     seen: Array
     """(S, m, 5) bool."""
 
@@ -130,7 +129,7 @@ def sensor_results(k: int, session: CalibrationSession, solved: Solved, table: T
                 axis=p.axis[k, i] if seen[i][3] else None,
                 axis_tangents=table.tangents[k, i],
                 axis_covariance=table.covariance[k, angles, angles],
-                observable=dict(zip(OBSERVABLE, seen[i][:4], strict=True)),
+                observable=dict(zip(PARAMETERS, seen[i][:4], strict=True)),
                 known=() if all(seen[i]) else known(k, i, solved, seen[i]),
             )
         )
@@ -139,7 +138,7 @@ def sensor_results(k: int, session: CalibrationSession, solved: Solved, table: T
 
 def known(k: int, i: int, solved: Solved, seen: list[bool]) -> tuple[KnownCombination, ...]:
     """The combinations that stand in for what is not observable of sensor i in session k."""
-    blind = {element for element, s in zip(OBSERVABLE, seen, strict=False) if not s}
+    blind = {element for element, s in zip(PARAMETERS, seen, strict=False) if not s}
     if blind == {"quadratic"}:
         return ()
     p, factor = solved.fitted.parameters, float(solved.factor[k])

@@ -6,6 +6,8 @@ own information about (ln K, b/g, c·g, two turns of the axis), which depends on
 does not depend on N.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from estimator.applied_vector import stand_geometry
@@ -14,7 +16,7 @@ from estimator.parameters import nominal
 from estimator.session import CalibrationSession, StandErrors
 
 ROUNDING = 1e-14
-"""Ratio of eigenvalues below which the smaller one is zero."""
+"""Ratio of eigenvalues below which the smaller one is zero: rounding of doubles."""
 
 
 def optimal_elevation(sigma: StandErrors, positions: int) -> float:
@@ -26,6 +28,16 @@ def optimal_elevation(sigma: StandErrors, positions: int) -> float:
     lifted, across = sigma.theta_x**2 + sigma.alpha**2, sigma.theta_y**2
     above, below = lifted + sigma.beta**2 / positions, 2 * lifted + across
     return float(np.arctan((above / below) ** 0.25)) if below > 0 else np.pi / 4
+
+
+def gyro_errors(sigma: StandErrors, latitude: float) -> StandErrors:
+    """(31): the stand's errors, one sigma, as they act on gyros, so that the accelerometers' formulas hold for χ.
+
+    The latitude's error (rad) adds to δα as a raise of the head; θ_y is replaced by the gyros' tilt across the head,
+    which levelling and meridian share by the components of the Earth's rate at ``latitude`` (rad).
+    """
+    across = np.hypot(sigma.theta_y * np.sin(latitude), sigma.meridian * np.cos(latitude))
+    return replace(sigma, alpha=float(np.hypot(sigma.alpha, sigma.latitude)), theta_y=float(across))
 
 
 def conditioning(schedule: CalibrationSession) -> float:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from estimator.applied_vector import elevation, stand_geometry
+from estimator.applied_vector import stand_geometry
 from estimator.calibration.stand import solved
 from estimator.calibration.stand_report import tables
 from estimator.forward import response
@@ -12,9 +12,6 @@ from estimator.parameters import nominal
 from estimator.planning.elevation import conditioning
 from estimator.planning.results import Request, Sweep
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Stand
-
-SMALLEST = np.radians(1.0)
-"""rad; the elevation stays this far from level and upright, where the closed form has no answer."""
 
 
 def head_kind(like: CalibrationSession) -> str:
@@ -35,7 +32,7 @@ def raised_to(like: CalibrationSession, angle: float) -> Stand:
 
 
 def input_noise(session: CalibrationSession) -> Array:
-    """(m,) one sigma of a reading at the input, bias repeatability included: as stated, else from the residuals."""
+    """(m,) one sigma of a reading at the input, m/s² (rad/s), with bias repeatability: stated, or from residuals."""
     return np.sqrt(np.median(solved([session]).fitted.variance[0], axis=0))
 
 
@@ -47,7 +44,8 @@ def planned(
     Parameters
     ----------
     like : gives sensors, stand, site, mounting and count time.
-    sigma : (m,) one sigma of a reading at the input, bias repeatability included.
+    angle : elevation of the head, rad.
+    sigma : (m,) one sigma of a reading at the input, m/s² (rad/s), bias repeatability included.
     """
     runs = request.runs
     beta = np.tile(2 * np.pi * np.arange(positions) / positions, len(runs))
@@ -67,7 +65,10 @@ def planned(
 
 
 def read_perfectly(schedule: CalibrationSession, sigma: Array) -> CalibrationSession:
-    """The schedule with the readings of nominal sensors, unrounded, and the noise as standard errors."""
+    """The schedule with the readings of nominal sensors, unrounded, and the noise as standard errors.
+
+    sigma : (m,) as in `planned`, m/s² (rad/s).
+    """
     sensors, p = schedule.sensors, nominal(schedule.sensors)
     pulses = np.array([schedule.count_time is not None and s.kind != ACCELEROMETER for s in sensors])
     period = np.where(pulses, schedule.count_time or 1.0, 1.0)
@@ -78,33 +79,34 @@ def read_perfectly(schedule: CalibrationSession, sigma: Array) -> CalibrationSes
 
 
 def expected_sigmas(session: CalibrationSession) -> tuple[Array, Array]:
-    """(m, 4) total and repeatability, one sigma of relative scale, bias, quadratic, axis; NaN where not observed."""
+    """(m, 4) total and repeatability, one sigma of relative scale, bias, quadratic, axis, SI; NaN if not observed."""
     table = tables(solved([session]))
     scale = np.array([s.nominal_scale for s in session.sensors])
 
     def four(own: Array) -> Array:
+        """(m, 4) of the five elements (m, 5), SI, with relative scale and both turns as one."""
         return np.stack([own[:, 0] / scale, own[:, 1], own[:, 2], np.hypot(own[:, 3], own[:, 4])], axis=-1)
 
     return four(table.sigma[0]), four(table.steady[0])
 
 
 def worst(sigmas: Array) -> Array:
-    """(4,) of the worst sensor; NaN where one of them does not observe it."""
+    """(4,) of the worst sensor, of sigmas (m, 4), SI; NaN where one of them does not observe it."""
     return np.asarray(sigmas.max(axis=0))
 
 
 def over_positions(like: CalibrationSession, angle: float, numbers: Array, request: Request, sigma: Array) -> Sweep:
-    """Expected sigmas over N at one elevation."""
+    """Expected sigmas over N, ``numbers`` (k,), at one elevation, rad; sigma (m,) as in `planned`, m/s² (rad/s)."""
     return swept([planned(like, angle, int(N), request, sigma) for N in numbers], numbers)
 
 
 def over_elevation(like: CalibrationSession, angles: Array, positions: int, request: Request, sigma: Array) -> Sweep:
-    """Expected sigmas over the elevation at one N."""
+    """Expected sigmas over the elevation, ``angles`` (k,), rad, at one N; sigma (m,) as in `planned`, m/s² (rad/s)."""
     return swept([planned(like, float(a), positions, request, sigma) for a in angles], angles)
 
 
 def swept(sessions: list[CalibrationSession], at: Array) -> Sweep:
-    """The sweep of planned sessions."""
+    """The sweep of k planned sessions; ``at`` (k,) elevations in rad, or numbers of positions."""
     pairs = [expected_sigmas(s) for s in sessions]
     return Sweep(
         at=at,
@@ -112,9 +114,3 @@ def swept(sessions: list[CalibrationSession], at: Array) -> Sweep:
         repeatability=np.stack([worst(steady) for _, steady in pairs]),
         conditioning=np.array([conditioning(s) for s in sessions]),
     )
-
-
-def stated_elevation(like: CalibrationSession) -> float:
-    """The elevation that the session's stand states, rad."""
-    assert like.stand is not None
-    return elevation(like.stand, head_kind(like))

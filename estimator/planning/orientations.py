@@ -24,7 +24,8 @@ from estimator.results import json_numbers
 from estimator.session import ACCELEROMETER, Array, Sensor
 
 LEADS = 0.35
-"""Share of an open direction that an element must have to be named as part of it."""
+"""Part of the leading element's share of an open direction that another must have to be named beside it: a third, so
+that two or three are named and not a dozen."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +33,7 @@ class OrientationRank:
     """What R orientations tell of m accelerometers."""
 
     directions: Array
-    """(R, 3)"""
+    """(R, 3) of the specific force, unit vectors, block axes."""
     rank: int
     parameters: int
     weakest: tuple[str, float]
@@ -44,7 +45,7 @@ class OrientationRank:
     sigma: Array
     """(5 m,) expected one sigma, dimensionless; NaN where not observed or not in the model."""
     add: Array
-    """(k, 3) directions that complete the set; none when it is complete."""
+    """(k, 3) unit vectors that complete the set; none when it is complete."""
 
     @property
     def full(self) -> bool:
@@ -90,8 +91,8 @@ def rank_of_orientations(
     ScheduleError : fewer than three accelerometers, or no orientation.
     """
     felt, directions = usable(sensors, directions)
-    rows, state = planned_rows(axes_of(felt), directions, noise, direction_sigma)
-    told = information(rows, state, quadratic)
+    rows, unknowns = planned_rows(axes_of(felt), directions, noise, direction_sigma)
+    told = information(rows, unknowns, quadratic)
     free = np.linalg.norm(told.basis, axis=1) > 0
     seen = observed(told.covariance, told.unseen, free)
     labels = names(felt)
@@ -108,7 +109,7 @@ def rank_of_orientations(
 
 
 def usable(sensors: tuple[Sensor, ...], directions: Array) -> tuple[tuple[Sensor, ...], Array]:
-    """The accelerometers, and the directions as (R, 3) unit vectors; ScheduleError where there is nothing to plan."""
+    """The accelerometers, and directions (R, 3) scaled to one, dimensionless; ScheduleError if none can be planned."""
     felt = tuple(s for s in sensors if s.kind == ACCELEROMETER)
     if len(felt) < 3:
         raise ScheduleError([Problem("sensors", "orientations are planned for three or more accelerometers")])
@@ -120,14 +121,17 @@ def usable(sensors: tuple[Sensor, ...], directions: Array) -> tuple[tuple[Sensor
 
 
 def axes_of(sensors: tuple[Sensor, ...]) -> Array:
-    """(m, 3) nominal axes."""
+    """(m, 3) nominal axes, unit vectors, block axes."""
     return np.stack([s.nominal_axis for s in sensors])
 
 
 def proposed_orientations(
     sensors: tuple[Sensor, ...], count: int = LEAST, *, noise: float = 1e-5, quadratic: bool = False
 ) -> Array:
-    """(count or more, 3) directions chosen from scratch: the first is up, the rest tell most; of full rank."""
+    """(count, 3) unit vectors or more, chosen from scratch: the first is up, the rest tell most; of full rank.
+
+    noise : one sigma of a reading, g. ScheduleError for fewer than three accelerometers.
+    """
     felt, first = usable(sensors, np.array([[0.0, 0.0, 1.0]]))
     return np.concatenate(
         [first, completion(axes_of(felt), first, noise=noise, quadratic=quadratic, at_least=count - 1)]
@@ -135,7 +139,7 @@ def proposed_orientations(
 
 
 def in_words(vector: Array, labels: tuple[str, ...]) -> str:
-    """``A1.scale + A2.scale − A3.axis_1``: the elements that lead an open direction."""
+    """``A1.scale + A2.scale − A3.axis_1``: the elements that lead an open direction (P,), dimensionless."""
     size = vector / np.abs(vector).max()
     parts = [(size[k], labels[k]) for k in np.argsort(-np.abs(size)) if abs(size[k]) >= LEADS]
     sign = np.sign(parts[0][0])

@@ -22,11 +22,15 @@ from estimator.parameters import PLAUSIBLE, nominal
 from estimator.session import Array, CalibrationSession
 
 GRID = 180
-"""Candidates a run: steps of 2°."""
+"""Candidates a run: steps of 2°, over which the information hardly changes."""
+
+GOLDEN = 0.618034
+"""Fraction of the golden ratio: its multiples scatter evenly, whatever their number."""
 
 PASSES = 30
+"""Over all rows; a handful is usual, and this ends what would go in circles by rounding."""
 SLIGHT = 1e-6
-"""Gain in ln|M| below which an exchange is not worth it."""
+"""Gain in ln|M| below which an exchange is not worth it: a millionth of the confidence volume."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +56,10 @@ class OptimalPositions:
 
 
 def whitened(schedule: CalibrationSession, beta: Array, flipped: Array, sigma: Array) -> Array:
-    """(R, m, 5) Jacobians of rows (β, run) over the noise ``sigma`` (m,) at the input and the row's β error."""
+    """(R, m, 5) Jacobians over the noise, in standard errors per dimensionless element.
+
+    beta : (R,) rad; flipped : (R,) bool; sigma : (m,) noise at the input, m/s² (rad/s), joined by the row's β error.
+    """
     rows = replace(schedule, beta=beta, flipped=flipped)
     geometry, p = stand_geometry(rows), nominal(schedule.sensors)
     swing = slope(p, geometry.n) * projected(p.axis, geometry.beta) * geometry.beta_sigma
@@ -60,13 +67,13 @@ def whitened(schedule: CalibrationSession, beta: Array, flipped: Array, sigma: A
 
 
 def log_information(chosen: Array) -> float:
-    """Σ_i ln|M_i| of rows (R, m, 5), what is not seen held at its plausible range."""
+    """Σ_i ln|M_i| of whitened rows (R, m, 5), standard errors, what is not seen held at its plausible range."""
     M = np.einsum("rmi,rmj->mij", chosen, chosen) + PLAUSIBLE**-2 * np.eye(5)
     return float(np.linalg.slogdet(M)[1].sum())
 
 
 def exchanged(rows: NDArray[np.intp], candidates: Array) -> NDArray[np.intp]:
-    """Rows (R,), indices of candidates (C, m, 5), after exchanges that raise the information."""
+    """Rows (R,), numbers of candidates (C, m, 5), standard errors, after exchanges that raise the information."""
     rows = rows.copy()
     M = np.einsum("rmi,rmj->mij", candidates[rows], candidates[rows]) + PLAUSIBLE**-2 * np.eye(5)
     for _ in range(PASSES):
@@ -87,7 +94,9 @@ def exchanged(rows: NDArray[np.intp], candidates: Array) -> NDArray[np.intp]:
 
 
 def optimal_positions(schedule: CalibrationSession, sigma: Array) -> OptimalPositions:
-    """Positions of the same number as the schedule's that tell most; ``sigma`` (m,) noise of a reading at the input.
+    """Positions of the same number as the schedule's that tell most.
+
+    ``sigma`` (m,) is the noise of a reading at the input, m/s² (rad/s).
 
     Two starts: the schedule's own rows, and rows scattered by the golden ratio. Where neither ends above the
     schedule, the schedule itself is the answer.
@@ -100,7 +109,7 @@ def optimal_positions(schedule: CalibrationSession, sigma: Array) -> OptimalPosi
     flipped = np.concatenate([schedule.flipped, np.repeat(runs, GRID)])
     candidates = whitened(schedule, beta, flipped, sigma)
     own = np.arange(len(schedule.beta))
-    scattered = len(own) + np.floor((0.618034 * np.arange(1, len(own) + 1) % 1.0) * len(runs) * GRID).astype(np.intp)
+    scattered = len(own) + np.floor((GOLDEN * np.arange(1, len(own) + 1) % 1.0) * len(runs) * GRID).astype(np.intp)
     found = max(
         (exchanged(start, candidates) for start in (own, scattered)), key=lambda r: log_information(candidates[r])
     )

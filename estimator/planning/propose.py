@@ -17,7 +17,7 @@ from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.results import Limit
 from estimator.diagnosis.selection.search_state import begin
 from estimator.errors import Problem, ScheduleError
-from estimator.planning.elevation import conditioning, optimal_elevation
+from estimator.planning.elevation import conditioning, gyro_errors, optimal_elevation
 from estimator.planning.expected import (
     expected_sigmas,
     head_kind,
@@ -27,25 +27,26 @@ from estimator.planning.expected import (
     planned,
 )
 from estimator.planning.positions import optimal_positions
-from estimator.planning.results import PARAMETERS, Judged, Plan, Request
-from estimator.published.printed import Conditions, gyro_conditions
+from estimator.planning.results import Judged, Plan, Request
+from estimator.results import PARAMETERS
 from estimator.session import ACCELEROMETER, TWO_AXIS_STAND, Array, CalibrationSession
 
 ELEVATIONS = np.radians(np.arange(15.0, 75.1, 2.5))
-"""What the search and the chart look at, rad."""
+"""What the search and the chart look at, rad. Beyond, one of the two parts of the vector hardly changes."""
 
 FEWEST = 6
 """Below five equal steps the second harmonic has no trace; one more leaves something to judge the fit by."""
 
 CUSTOMARY = 24
-"""N where no tolerance asks for a number."""
+"""N where no tolerance asks for a number: the middle one of the paper's tables (12, 24, 36)."""
 
 MOST_READINGS = 1728
 """Readings (12 sensors, 72 positions, both runs) beyond which the signatures of all causes at all places, which grow as
 their square, would fill the memory; up to here they take less than 400 MB."""
 
 NEARLY = 1.1
-"""Where no number reaches the tolerances: the fewest positions within this of what the most would give."""
+"""Where no number reaches the tolerances: the fewest positions within this of what the most would give. A tenth of
+uncertainty is not worth twice the time on the stand."""
 
 
 def plan(like: CalibrationSession, request: Request | None = None, *, sigma: Array | None = None) -> Plan:
@@ -55,7 +56,8 @@ def plan(like: CalibrationSession, request: Request | None = None, *, sigma: Arr
     ----------
     like : a measured session or a schedule: sensors, stand, site, mounting, noise.
     request : see `Request`.
-    sigma : (m,) one sigma of a reading at the input, bias repeatability included; None: as ``like`` states or shows.
+    sigma : (m,) one sigma of a reading at the input, m/s² (rad/s), bias repeatability included; None: as ``like``
+        states or shows.
 
     Raises
     ------
@@ -87,7 +89,7 @@ def plan(like: CalibrationSession, request: Request | None = None, *, sigma: Arr
 
 
 def tolerances(session: CalibrationSession, request: Request) -> Array:
-    """(m, 4) infinite where not judged."""
+    """(m, 4) SI, relative for scale; infinite where not judged."""
     gyro = request.gyro_wanted or request.wanted
     mixed = len({s.kind for s in session.sensors}) > 1
     return np.stack([(gyro if mixed and s.kind != ACCELEROMETER else request.wanted).row() for s in session.sensors])
@@ -104,7 +106,7 @@ def tightness(session: CalibrationSession, request: Request) -> float:
 
 
 def best_elevation(like: CalibrationSession, request: Request, sigma: Array) -> float:
-    """The elevation of least `tightness`, to about 0.1°, rad."""
+    """The elevation of least `tightness`, to about 0.1°, rad; sigma (m,) as in `plan`, m/s² (rad/s)."""
     N = request.positions or CUSTOMARY
 
     def figure(angle: float) -> float:
@@ -114,7 +116,10 @@ def best_elevation(like: CalibrationSession, request: Request, sigma: Array) -> 
 
 
 def least(figure: Callable[[float], float], grid: Array) -> float:
-    """Where a figure is least: the best of a grid, then between its neighbours; the middle where all is infinite."""
+    """Where a figure is least, in the grid's unit: the best of ``grid`` (k,), then between its neighbours.
+
+    The middle where all is infinite.
+    """
     values = np.array([figure(float(a)) for a in grid])
     if not np.isfinite(values).any():
         return float(np.median(grid))
@@ -125,7 +130,10 @@ def least(figure: Callable[[float], float], grid: Array) -> float:
 
 
 def fewest_positions(like: CalibrationSession, angle: float, request: Request, sigma: Array) -> int:
-    """The least N that reaches the share of every tolerance; see `NEARLY` where none does."""
+    """The least N that reaches the share of every tolerance; see `NEARLY` where none does.
+
+    angle : rad; sigma : (m,) as in `plan`, m/s² (rad/s).
+    """
     if not np.isfinite(tolerances(like, request)).any():
         return CUSTOMARY
 
@@ -145,8 +153,7 @@ def by_formula(session: CalibrationSession, N: int) -> float:
     assert session.stand is not None
     errors = session.stand.sigma
     if head_kind(session) != ACCELEROMETER:
-        bare = Conditions(alpha=0.0, positions=N, magnitude=1.0, noise=0.0, bias_variation=0.0, stand=errors)
-        errors = gyro_conditions(bare, session.site.latitude or 0.0).stand
+        errors = gyro_errors(errors, session.site.latitude or 0.0)
     return optimal_elevation(errors, N)
 
 

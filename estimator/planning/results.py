@@ -7,10 +7,8 @@ import numpy as np
 
 from estimator.diagnosis.results import Limit
 from estimator.planning.positions import OptimalPositions
-from estimator.results import Calibration, json_numbers
+from estimator.results import PARAMETERS, Calibration, json_numbers
 from estimator.session import Array, CalibrationSession
-
-PARAMETERS = ("scale", "bias", "quadratic", "axis")
 
 
 @dataclass(frozen=True)
@@ -27,7 +25,7 @@ class Wanted:
     """rad."""
 
     def row(self) -> Array:
-        """(4,) in the order of `PARAMETERS`; infinite where not judged."""
+        """(4,) in the order of `PARAMETERS`, SI, relative for scale; infinite where not judged."""
         values = [getattr(self, name) for name in PARAMETERS]
         return np.array([np.inf if v is None else v for v in values], dtype=float)
 
@@ -90,7 +88,7 @@ class Sweep:
     total: Array
     """(k, 4) one sigma by `PARAMETERS`; NaN where not observed."""
     repeatability: Array
-    """(k, 4)"""
+    """(k, 4) the same from session to session on one stand."""
     conditioning: Array
     """(k,) ρ."""
 

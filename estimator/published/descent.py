@@ -16,15 +16,18 @@ from estimator.published.triples import Triples
 from estimator.session import Array
 
 FIRST_STEP = 0.01
-"""Dimensionless: 1 % of scale, 0.01 g, 0.01 rad."""
+"""Dimensionless: 1 % of scale, 0.01 g, 0.01 rad, the size of the errors that are looked for."""
 
 GROW = 2.0
+"""Of a parameter's step where it lowered the functional; see above."""
 SHRINK = 0.5
+"""Of a parameter's step where neither side did; see above."""
 
 STILL = 1e-12
 """Steps below this are rounding."""
 
 MOST_ITERATIONS = 20_000
+"""Ten times what the worst set of orientations takes (docs/methods/optimisation.md)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +35,7 @@ class Search:
     """Where a search on the triples functional ended, and how it went there."""
 
     x: Array
-    """(P,) δk, b/g, α, β of `Triples`."""
+    """(P,) δk, b/g, α, β of `Triples`; relative, rad."""
     parameters: SensorParameters
     functional: float
     """(m/s²)²"""
@@ -42,7 +45,7 @@ class Search:
     """Of the functional."""
     converged: bool
     path: Array
-    """(iterations, P) where each iteration ended; only the last for Levenberg–Marquardt."""
+    """(iterations, P) where each iteration ended, as `x`; only the last for Levenberg–Marquardt."""
 
 
 def descend(
@@ -60,7 +63,7 @@ def descend(
 
     Parameters
     ----------
-    start : (P,); the nominal values, all zero, unless given.
+    start : (P,) dimensionless; the nominal values, all zero, unless given.
     below : functional, (m/s²)², at which to stop.
     finest : step at which to stop, when every parameter's is down to it; rounding unless given.
     most : iterations.
@@ -92,7 +95,7 @@ def descend(
 
 
 def levenberg_marquardt(problem: Triples, start: Array | None = None) -> Search:
-    """The same functional by MINPACK's Levenberg–Marquardt with the exact Jacobian."""
+    """The same functional by MINPACK's Levenberg–Marquardt with the exact Jacobian; start (P,) dimensionless."""
     x = np.zeros(len(problem.free)) if start is None else start
     found = least_squares(problem.misses, x, jac=problem.jacobian, method="lm", xtol=1e-14, ftol=1e-14, gtol=1e-14)
     return Search(

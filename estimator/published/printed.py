@@ -21,6 +21,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from estimator.planning.elevation import gyro_errors
 from estimator.session import Array, StandErrors
 
 
@@ -33,7 +34,7 @@ class Conditions:
     positions: int
     """N of each run."""
     magnitude: float
-    """Length of the reference vector, g or the Earth's rate."""
+    """Length of the applied vector, g or the Earth's rate."""
     noise: float
     """Of one reading."""
     bias_variation: float
@@ -48,22 +49,23 @@ class Conditions:
 
 @dataclass(frozen=True, eq=False)
 class Accuracy:
-    """Variances, one a sensor: relative scale, bias (input units squared), axis (total, rad²)."""
+    """Variances, one a sensor."""
 
     scale: Array
+    """(...,) relative."""
     bias: Array
+    """(...,) (m/s²)² or (rad/s)²."""
     axis: Array
+    """(...,) of both turns together, rad²."""
 
 
 def gyro_conditions(c: Conditions, latitude: float) -> Conditions:
-    """(31), for gyros: the latitude's error raises, levelling and meridian share in the tilt."""
-    across = np.hypot(c.stand.theta_y * np.sin(latitude), c.stand.meridian * np.cos(latitude))
-    raised = float(np.hypot(c.stand.alpha, c.stand.latitude))
-    return replace(c, stand=replace(c.stand, alpha=raised, theta_y=float(across)))
+    """The conditions with the stand's errors as they act on gyros, (31); latitude in rad."""
+    return replace(c, stand=gyro_errors(c.stand, latitude))
 
 
 def printed(axes: Array, c: Conditions) -> Accuracy:
-    """(28)–(30) to the letter, (29) over K². ``axes`` (..., 3), platform axes."""
+    """(28)–(30) to the letter, (29) over K²; axes (m, 3), leading axes free, unit vectors, platform axes."""
     r1, r2, r3 = (axes[..., k] ** 2 for k in range(3))
     tan, cos, sin = np.tan(c.alpha) ** 2, np.cos(c.alpha) ** 2, np.sin(c.alpha) ** 2
     lifted, beta, N = c.raise_variance, c.stand.beta**2, c.positions
@@ -83,7 +85,7 @@ def printed(axes: Array, c: Conditions) -> Accuracy:
 
 
 def checked(axes: Array, c: Conditions) -> Accuracy:
-    """The propagation at the head of this file. ``axes`` (..., 3), platform axes."""
+    """The propagation at the head of this file; axes (m, 3), leading axes free, unit vectors, platform axes."""
     r2 = axes[..., 1] ** 2
     tan, cos, sin = np.tan(c.alpha), np.cos(c.alpha) ** 2, np.sin(c.alpha) ** 2
     lifted, beta, N, g = c.raise_variance, c.stand.beta**2, c.positions, c.magnitude

@@ -31,7 +31,7 @@ from estimator.parameters import SensorParameters
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
 FLATTEST = 0.05
-"""|det E| below which a triple is left out."""
+"""|det E| below which a triple is left out: its inverse would make twentyfold noise of every reading's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,44 +43,44 @@ class Triples:
     g: float
     """m/s²"""
     nominal_scale: Array
-    """(m,)"""
+    """(m,) reading units per m/s²."""
     nominal_axes: Array
-    """(m, 3)"""
+    """(m, 3) unit vectors."""
     frames: Array
-    """(m, 3, 2) the directions along which α and β turn each axis."""
+    """(m, 3, 2) unit vectors along which α and β turn each axis."""
     members: NDArray[np.intp]
     """(T, 3) sensors of each triple."""
     free: NDArray[np.intp]
     """(P,) places of the parameters among the 4 m of (δk, b/g, α, β), sensor after sensor."""
 
     def spread(self, x: Array) -> Array:
-        """(m, 4) all elements, the fixed ones zero, from (P,)."""
+        """(m, 4) all elements, the fixed ones zero, from x (P,); dimensionless (relative, g, rad)."""
         full = np.zeros(4 * len(self.nominal_scale))
         full[self.free] = x
         return full.reshape(-1, 4)
 
     def axes(self, full: Array) -> Array:
-        """(m, 3)"""
+        """(m, 3) unit vectors, from all elements (m, 4), dimensionless."""
         return unit(self.nominal_axes + (self.frames @ full[:, 2:, None])[..., 0])
 
     def forces(self, x: Array) -> tuple[Array, Array]:
-        """Specific force of every orientation and triple (R, T, 3), and the inverse axes (T, 3, 3)."""
+        """n of every orientation and triple (R, T, 3), m/s², and the inverse axes (T, 3, 3), at x (P,); (1)–(3)."""
         full = self.spread(x)
         a = (1.0 + full[:, 0]) * self.u - self.g * full[:, 1]
         inverse = np.linalg.inv(self.axes(full)[self.members])
         return np.einsum("tij,rtj->rti", inverse, a[:, self.members]), inverse
 
     def misses(self, x: Array) -> Array:
-        """(R T,) |n| − g, m/s²."""
+        """(R T,) |n| − g, m/s², at x (P,)."""
         return (np.sqrt((self.forces(x)[0] ** 2).sum(axis=-1)) - self.g).ravel()
 
     def functional(self, x: Array) -> float:
-        """F, (m/s²)²."""
+        """F, (m/s²)², at x (P,); (5)."""
         f = self.misses(x)
         return float(f @ f)
 
     def jacobian(self, x: Array) -> Array:
-        """(R T, P) derivative of `misses`."""
+        """(R T, P) derivative of `misses`, m/s² per element, at x (P,)."""
         n, inverse = self.forces(x)
         R, T, m = len(self.u), len(self.members), len(self.nominal_scale)
         weight = np.einsum("rti,tij->rtj", n / np.linalg.norm(n, axis=-1, keepdims=True), inverse)
@@ -94,14 +94,14 @@ class Triples:
         return full.reshape(R * T, 4 * m)[:, self.free]
 
     def axis_derivative(self, full: Array) -> Array:
-        """(m, 3, 2) of each unit axis by its α and β."""
+        """(m, 3, 2) of each unit axis by its α and β, 1/rad, at all elements (m, 4)."""
         raw = self.nominal_axes + (self.frames @ full[:, 2:, None])[..., 0]
         length = np.linalg.norm(raw, axis=1)[:, None, None]
         e = raw[:, :, None] / length
         return (self.frames - e * (e * self.frames).sum(axis=1, keepdims=True)) / length
 
     def parameters(self, x: Array) -> SensorParameters:
-        """K, b and e in the terms of the package page; c zero."""
+        """K, b and e (m,) in the terms of the package page, SI, from x (P,); c zero."""
         full = self.spread(x)
         return SensorParameters(
             scale=self.nominal_scale / (1.0 + full[:, 0]),
@@ -135,7 +135,7 @@ def triples_of(session: CalibrationSession) -> Triples:
 
 
 def gauge(axes: Array) -> tuple[Array, int]:
-    """Turning directions (m, 3, 2) of every axis, and the sensor whose β is fixed beside both angles of the first.
+    """Turning directions (m, 3, 2), unit vectors, of axes (m, 3), and the sensor whose β is fixed beside the first's.
 
     β turns an axis about the first one, α towards or away from it; the first axis, which does not turn, takes any.
     """

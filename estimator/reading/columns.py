@@ -16,9 +16,12 @@ from estimator.reading.problems import Problems, shown
 from estimator.session import Array
 
 Column = Sequence[object] | Array
+"""Cells as written: numbers, texts, None; or all numbers as an array."""
 Mask = NDArray[np.bool_]
 COMPONENT = Interval(-2, 2)
+"""Of a unit vector or a rotation, and a little beyond: what has the wrong length is told by its length."""
 LABEL = Interval(-1, 1e9)
+"""Of a position; −1 where a row belongs to none."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +45,7 @@ class Columns:
             self.problems.add(name, "the column is missing; the table needs it, with one value per row")
 
     def numbers(self, name: str, within: Interval, *, holes: bool = False) -> Array:
-        """(R,) numbers; NaN where a cell is empty, which is a fault unless ``holes`` are allowed."""
+        """(R,) numbers in the column's unit; NaN where a cell is empty, a fault unless ``holes`` are allowed."""
         cells = self.values[name]
         array = as_floats(cells)
         if array is None:
@@ -93,7 +96,7 @@ class _Bad:
 
 
 def vector(fields: Fields, key: str, advice: str) -> Array:
-    """(3,) vector under a key; NaN stands in for a bad one."""
+    """(3,) dimensionless vector under a key; NaN stands in for a bad one."""
     value = fields.values.get(key)
     stand_in = np.full(3, np.nan)
     if value is None:
@@ -111,7 +114,7 @@ def vector(fields: Fields, key: str, advice: str) -> Array:
 
 
 def as_floats(cells: Column) -> Array | None:
-    """(R,) the cells as floats, NaN for empty ones; None when any cell is not a number."""
+    """(R,) the cells as floats, in the column's unit, NaN for empty ones; None when any cell is not a number."""
     if isinstance(cells, np.ndarray):
         return cells.astype(np.float64) if cells.dtype.kind in "fiu" else None
     kinds = set(map(type, cells))

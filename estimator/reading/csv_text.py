@@ -16,7 +16,9 @@ from estimator.reading.problems import Problems, shown
 from estimator.reading.shape import MOST_COLUMNS, MOST_ROWS
 
 SEPARATORS = ",;\t"
+"""Of cells; the one that the header has most of."""
 ADVICE = "put the session's JSON without its table before the header, each line starting with #"
+"""To whoever gives a table without metadata."""
 
 
 def parse_csv(text: str, problems: Problems, sidecar: str | None = None) -> dict[str, object]:

@@ -10,10 +10,15 @@ import numpy as np
 from estimator.reading.problems import Problems, shown
 
 UNSTORABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff]")
+"""Control characters and lone surrogates, which databases and XML refuse."""
 LARGEST = 1e300
+"""Beyond, arithmetic overflows, and an integer may not become a float."""
 NUMBERS = (int, float, np.integer, np.floating)
+"""What counts as a number, bool apart."""
 LONGEST_NAME = 200
+"""Characters: a name stands in headings, file names and indices."""
 LONGEST_NOTE = 100_000
+"""Characters: fifty pages, which is no note any more."""
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,8 @@ from itertools import islice
 
 from estimator.reading.fields import Fields
 
+FORMAT = "imu-session/1"
+"""What ``format`` must say; docs/session-file.md describes it."""
 TOP = (
     "format", "unit", "unit_type", "block", "programme", "started_at", "operator", "notes", "stage", "site", "stand",
     "mounting", "sensors", "table", "count_time_s", "sample_rate_hz", "direction_sigma_deg",
@@ -26,17 +28,25 @@ DIRECTIONS = ("direction_x", "direction_y", "direction_z")
 COLUMNS = (
     "run", "beta_deg", "time_s", "temperature_c", "turn_angle_deg", "turn_rate_deg_s", "position", *DIRECTIONS,
 )  # fmt: skip
+"""The keys of every object of a session file, and the columns beside the sensors' own: docs/session-file.md."""
 
 HOME = dict.fromkeys(SITE, "site") | dict.fromkeys(STAND[1:], "stand") | {"nominal_axis": "sensors[]"}
 HOME |= dict.fromkeys((key for key in TOP if "_" in key), "the top level")
+"""Where a key belongs that could stand nowhere else by intent."""
 UNITS = (
     "deg", "degrees", "rad", "mrad", "urad", "arcsec", "arcmin", "s", "sec", "ms", "us", "ns", "min", "h", "hours",
     "c", "k", "f", "celsius", "kelvin", "m", "km", "cm", "mm", "ft", "m_s2", "g", "mg", "ug", "gal", "mgal",
     "hz", "khz", "rad_s", "deg_s", "deg_h", "dps",
 )  # fmt: skip
+"""What people end a key with when they give the value in a unit of their own."""
 UNIT_ENDING = re.compile(r"_(deg|m|s|c|hz|m_s2|rad_s|arcsec)$")
+"""The units that known keys end with."""
 UNKNOWN_LOOKED_AT = 200
+"""Unknown keys of one object that are compared with known ones: bounds the work on a hostile file."""
 LONGEST_KEY = 40
+"""Characters; a longer key is no slip of a known one, and comparing it takes long."""
+ALIKE = 0.8
+"""Likeness (difflib's ratio) from which a key is taken for a slip: one letter of five may differ."""
 
 
 def check_keys(fields: Fields, known: tuple[str, ...]) -> None:
@@ -56,7 +66,7 @@ def meant_key(key: str, known: Iterable[str]) -> str | None:
     in_other_unit = [name for name in known if _same_but_unit(plain, name)]
     if in_other_unit:
         return f"give the value as {' or '.join(in_other_unit)}, in that unit"
-    close = get_close_matches(plain, list(known), n=1, cutoff=0.8)
+    close = get_close_matches(plain, list(known), n=1, cutoff=ALIKE)
     return f"did you mean {close[0]}? Otherwise give it a name of its own" if close else None
 
 

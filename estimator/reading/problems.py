@@ -8,7 +8,9 @@ from estimator.errors import FormatError, Problem, ScheduleError
 ROWS_SHOWN = 20
 """Faulty rows of one column that are named one by one; the others are counted."""
 PROBLEMS_SHOWN = 500
+"""Faults that are named in all; nobody mends more before trying again."""
 LONGEST_TEXT = 60
+"""Characters of a value that a message quotes."""
 
 
 class Problems:

@@ -14,9 +14,10 @@ from estimator.session import (
 )
 
 FEWEST_POSITIONS = 2
-
+"""A single one tells nothing of any programme; whether more are enough is a result."""
 
 NEEDED_KINDS = {ROTATION_ALIGNMENT: (ACCELEROMETER, GYROSCOPE), RATE_TABLE: (GYROSCOPE,)}
+"""Sensors that a programme on a turntable works with."""
 
 
 def check_schedule(programme: str, table: Table, kinds: set[str], *, raw: bool, problems: Problems) -> None:

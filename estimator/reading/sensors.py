@@ -9,19 +9,26 @@ from estimator.reading.problems import Problems, shown
 from estimator.session import ACCELEROMETER, GYROSCOPE, TWO_AXIS_STAND, Array, Sensor
 
 KINDS = (ACCELEROMETER, GYROSCOPE)
+"""Of sensors and blocks."""
 FEWEST = 3
+"""Of a kind: fewer cannot measure a vector."""
 MOST = 1000
+"""The joint covariance has 25 elements for every two sensors; no block comes near."""
 LENGTH_TOLERANCE = 1e-3
+"""Of an axis written with three digits; the axis is then scaled to one."""
 FLATTEST = 0.01
 """Smallest ratio of the axes' singular values; below it they lie in one plane, to half a degree."""
 SCALE = Interval(0, 1e18, above=True)
 OFFSET = Interval(-1e18, 1e18)
+"""Any unit that readings may have; the bounds keep squares and products finite."""
 REPEATABILITY = {
     ACCELEROMETER: ("bias_repeatability_m_s2", Interval(0, 100, "m/s²")),
     GYROSCOPE: ("bias_repeatability_rad_s", Interval(0, 100, "rad/s")),
 }
+"""Key and bounds by kind: ten g and 16 turns a second are beyond any sensor that is calibrated."""
 PULSES = frozenset({"pulse", "pulses"})
 COUNTS = frozenset({"count", "counts"})
+"""Reading units, in lower case, that ask gyros for a count time: pulses always, counts on a stand."""
 
 
 def read_sensors(document: Fields, block: str) -> tuple[Sensor, ...]:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from estimator.reading.fields import Fields, Interval
-from estimator.reading.keys import TOP, check_keys
+from estimator.reading.keys import FORMAT, TOP, check_keys
 from estimator.reading.problems import Problems, shown
 from estimator.reading.schedule import check_schedule
 from estimator.reading.sensors import KINDS, check_pulses, read_sensors
@@ -13,9 +13,9 @@ from estimator.reading.source import display_name, load
 from estimator.reading.table import read_table
 from estimator.session import PROGRAMMES, STAGES, CalibrationSession
 
-FORMAT = "imu-session/1"
 SAMPLE_RATE = Interval(0, 1e9, "Hz", above=True)
 COUNT_TIME = Interval(0, 1e6, "s", above=True)
+"""Beyond, the unit is mistaken."""
 
 
 def read_session(source: str | Path | Mapping[str, object] | bytes, *, name: str | None = None) -> CalibrationSession:

@@ -23,22 +23,29 @@ from estimator.session import (
 )
 
 ARCSEC = math.pi / 648_000
+"""rad."""
 LATITUDE = Interval(-90, 90, "degrees")
 HEIGHT = Interval(-500, 9000, "m")
+"""On the Earth's surface: the Dead Sea to Everest."""
 GRAVITY = Interval(9.7, 9.9, "m/s²")
+"""On the Earth's surface: 9.764 to 9.834, and room for whoever rounds."""
 ELEVATION = Interval(-90, 90, "degrees")
 FLATTEST = 0.01
 """Degrees by which the head's axis must stay clear of 0° and 90°, where bias and scale become inseparable."""
 ANGLE_SIGMA = Interval(0, 36_000, "arcsec")
 TIME_SIGMA = Interval(0, 1000, "s")
+"""Ten degrees, a quarter of an hour: a stand that is worse is none, and the unit is mistaken."""
 ROTATION_TOLERANCE = 1e-6
+"""Of the products of rows that should be 0 or 1: a mounting written with seven digits, known to 0.2″."""
 YEARS = Interval(1950, 2200)
+"""Strapdown systems are younger; later is a slip."""
 NEEDS_GRAVITY = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, ROTATION_ALIGNMENT)
 NEEDS_LATITUDE = (TWO_AXIS_STAND, ROTATION_ALIGNMENT)
+"""Programmes whose accelerometers need gravity, and whose gyros the latitude."""
 
 
 def read_site(document: Fields, programme: str, kinds: set[str]) -> Site:
-    """The site; records what the sensors' reference vectors need and it lacks."""
+    """The site; records what the applied vectors need and it lacks."""
     site = document.child("site") or Fields({}, "site", document.problems)
     check_keys(site, SITE)
     latitude = site.optional_number("latitude_deg", LATITUDE)
@@ -72,7 +79,7 @@ def read_stand(document: Fields, programme: str, kinds: set[str]) -> Stand | Non
 
 
 def read_mounting(document: Fields) -> Array:
-    """(3, 3) rotation platform → block; identity when not given."""
+    """(3, 3) dimensionless rotation platform → block; identity when not given."""
     value = document.values.get("mounting")
     if value is None:
         return np.eye(3)

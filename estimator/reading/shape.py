@@ -13,8 +13,11 @@ from estimator.reading.keys import COLUMNS, UNKNOWN_LOOKED_AT, meant_key
 from estimator.reading.problems import Problems, shown
 
 MOST_ROWS = 10**7
+"""About what a file of the largest size holds (`source.LARGEST_FILE`)."""
 MOST_COLUMNS = 10**4
+"""The readings and standard errors of `sensors.MOST` sensors, and others five times as many."""
 SENSOR_LIKE = re.compile(r"(a|g|w|acc|accel|gyr|gyro)?[ _]?([xyz]|\d{1,3})", re.IGNORECASE)
+"""Names that people give to sensors: a1, gx, acc_3."""
 
 
 def read_columns(document: Fields) -> Columns | None:

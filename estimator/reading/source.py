@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from estimator.reading.csv_text import ADVICE, parse_csv
+from estimator.reading.csv_text import ADVICE, SEPARATORS, parse_csv
 from estimator.reading.json_text import parse_json
 from estimator.reading.problems import Problems
 
@@ -49,7 +49,7 @@ def _parse(text: str, problems: Problems, sidecar: str | None) -> dict[str, obje
     if start == "#" or sidecar is not None:
         return parse_csv(text, problems, sidecar)
     first_line = text.lstrip().partition("\n")[0]
-    if any(separator in first_line for separator in ",;\t"):
+    if any(separator in first_line for separator in SEPARATORS):
         raise problems.fail("file", f"is a CSV table without metadata; {ADVICE}")
     raise problems.fail("file", "is neither JSON (starting with a brace) nor CSV with metadata (starting with #)")
 

@@ -13,6 +13,7 @@ from estimator.reading.shape import check_unknown, read_columns
 from estimator.session import RATE_TABLE, ROTATION_ALIGNMENT, TWO_AXIS_STAND, Array, Sensor
 
 RUNS = ("direct", "flipped")
+"""What the column ``run`` may say."""
 READING = Interval(-1e20, 1e20)
 STANDARD_ERROR = Interval(0, 1e20, above=True)
 BETA = Interval(-360_000, 360_000, "degrees")
@@ -21,8 +22,11 @@ TURN_RATE = Interval(-36_000, 36_000, "deg/s")
 TIME = Interval(-1e12, 1e12, "s")
 TEMPERATURE = Interval(-100, 200, "°C")
 DIRECTION = Interval(-1e6, 1e6)
+"""Bounds that good cells of any instrument keep; beyond, the unit or the column is mistaken."""
 SHORTEST_DIRECTION = 1e-3
+"""Length, in whatever unit the components are written: shorter is a zero that was rounded."""
 DIRECTION_SIGMA = Interval(0, 180, "degrees", above=True)
+"""More than half a turn states nothing."""
 
 
 @dataclass(frozen=True)

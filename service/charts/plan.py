@@ -6,7 +6,7 @@ import altair as alt
 import numpy as np
 
 from estimator.planning import Plan, Sweep
-from estimator.planning.results import PARAMETERS
+from estimator.results import PARAMETERS
 from service.charts import DATA_FORM, ChartSet, Panel, specification
 from service.measures import MEASURES, Measure
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from estimator.applied_vector import EARTH_RATE, gravity
+from estimator.applied_vector import EARTH_RATE, STANDARD_GRAVITY, gravity
 from estimator.results import ARCSEC
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array, CalibrationSession, Sensor, Site, Stand, StandErrors
 from estimator.simulate import cone, stand_schedule
@@ -19,7 +19,7 @@ GYRO_SCALE = 1 / (0.6 * ARCSEC)
 COUNT_TIME = 100.0
 """s."""
 MICRO_G = 9.80665e-6
-BIAS_REPEATABILITY = {ACCELEROMETER: 2e-5 / 3 * 9.80665, GYROSCOPE: 0.04 / 3 * np.pi / 180 / 3600}
+BIAS_REPEATABILITY = {ACCELEROMETER: 2e-5 / 3 * STANDARD_GRAVITY, GYROSCOPE: 0.04 / 3 * np.pi / 180 / 3600}
 """One sigma of the zero from position to position: 2e-5 g and 0.04 °/h are three."""
 STAND_SIGMA = StandErrors(
     theta_x=ARCSEC / 3, theta_y=ARCSEC / 3, alpha=ARCSEC, beta=ARCSEC,
@@ -65,5 +65,5 @@ def sigma_of(kind: str) -> StandErrors:
 
 
 def norms(kind: str, sensors: int) -> Array:
-    """(m,) length of the reference vector, m/s² or rad/s."""
+    """(m,) length of the applied vector, m/s² or rad/s."""
     return np.full(sensors, gravity(SITE) if kind == ACCELEROMETER else EARTH_RATE)

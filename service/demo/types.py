@@ -2,10 +2,10 @@
 
 from math import pi
 
+from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.results import ARCSEC
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.demo.blocks import sensors_of
-from service.measures import STANDARD_GRAVITY
 from service.records.unit import Tolerances, UnitType
 
 SENSORS = 6

@@ -8,9 +8,9 @@ session of a type does not observe on any sensor is not judged either, until an 
 from dataclasses import replace
 from math import pi
 
+from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.results import ARCSEC, Calibration
 from estimator.session import ACCELEROMETER, GYROSCOPE, CalibrationSession
-from service.measures import STANDARD_GRAVITY
 from service.records.session import PARAMETERS
 from service.records.unit import Tolerances, UnitType
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from estimator.planning import Judged, Plan, proposed_orientations, rank_of_orientations
 from estimator.planning.expected import head_kind
-from estimator.planning.results import PARAMETERS
+from estimator.results import PARAMETERS
 from estimator.session import ACCELEROMETER
 from service.charts import ChartSet
 from service.charts.plan import NAMES, plan_charts

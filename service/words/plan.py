@@ -1,11 +1,12 @@
 """A plan in words and people's units: verdicts, detection limits, time."""
 
+from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.causes import CATALOGUE
 from estimator.diagnosis.results import Limit
 from estimator.planning import Judged, Plan
-from estimator.planning.results import PARAMETERS
+from estimator.results import PARAMETERS
 from estimator.session import ACCELEROMETER, GYROSCOPE
-from service.measures import DEGREE, MEASURES, STANDARD_GRAVITY, THIN, Measure, in_measure, number
+from service.measures import DEGREE, MEASURES, THIN, Measure, in_measure, number
 
 VERDICTS = {
     "enough": "enough: U leaves the tolerance the share that was asked for",

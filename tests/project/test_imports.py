@@ -25,13 +25,14 @@ ESTIMATOR_LAYERS = (
     {"errors"},
     {"session"},
     {"arrays"},
-    {"applied_vector", "parameters", "reading", "static"},
-    {"results"},
+    {"applied_vector", "parameters", "reading"},
+    {"results", "static"},
     {"forward", "writing"},
     {"causes"},
     {"simulate", "calibration", "alignment", "parity"},
-    {"correction", "diagnosis", "health", "programmes", "published"},
+    {"correction", "diagnosis", "health", "programmes"},
     {"planning"},
+    {"published"},
 )
 HOMES = {
     "sqlalchemy": ("service.storage", "migrations"),
@@ -79,6 +80,17 @@ def test_the_service_s_imports_run_one_way() -> None:
 
 def test_the_estimator_s_imports_run_one_way() -> None:
     assert upward("estimator", ESTIMATOR_LAYERS) == []
+
+
+def test_the_product_needs_nothing_that_only_the_papers_need() -> None:
+    papers = "estimator.published"
+    found = [
+        f"{module.name} imports {name}"
+        for module in ALL
+        for name in module.imports
+        if name.startswith(papers) and not module.name.startswith(papers)
+    ]
+    assert found == []
 
 
 def test_the_estimator_is_pure() -> None:

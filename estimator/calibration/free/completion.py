@@ -10,38 +10,42 @@ import numpy as np
 from scipy.linalg import qr
 
 from estimator.calibration.free.information import movable, unseen_below
-from estimator.calibration.free.model import Rows, State, linearise
+from estimator.calibration.free.model import Rows, Unknowns, linearise
 from estimator.parameters import PLAUSIBLE
 from estimator.session import Array
 
 GRID = 120
-"""Directions to choose from."""
+"""Directions to choose from: 18° apart. A neighbour of the best one tells nearly as much; more would only cost
+time."""
 
 LEAST = 9
 """Generic orientations that identify everything but the quadratic terms."""
 
 ASKED = 12
-"""Sensors of a block that are asked at most."""
+"""Sensors of a block that are asked at most, to bound the work, which grows with their cube: see the head."""
 
 NOISE = 1e-5
-"""g; of a reading where none is stated."""
+"""g; of a reading where none is stated: 10 µg, a good instrument's. The rank does not depend on it."""
 
 
 def planned_rows(
     axes: Array, directions: Array, noise: float = NOISE, direction_sigma: float | None = None
-) -> tuple[Rows, State]:
-    """Orientations (R, 3) still to be measured by sensors along axes (m, 3), at the nominal parameters."""
+) -> tuple[Rows, Unknowns]:
+    """Orientations (R, 3) still to be measured by sensors along axes (m, 3), both unit vectors, nominal parameters.
+
+    noise : one sigma of a reading, g; direction_sigma : rad, None where directions will not be stated.
+    """
     R = len(directions)
     prior = np.full(R, 0.0 if direction_sigma is None else direction_sigma**-2.0)
     stated = directions if direction_sigma is not None else np.zeros((R, 3))
     zero = np.zeros(len(axes))
     rows = Rows(directions @ axes.T, np.full((R, len(axes)), noise), stated, prior, axes)
-    return rows, State(zero, zero, zero, axes, directions)
+    return rows, Unknowns(zero, zero, zero, axes, directions)
 
 
-def shares(rows: Rows, state: State) -> Array:
-    """(R, 5 m, 5 m) what each orientation adds to the information."""
-    linear = linearise(rows, state)
+def shares(rows: Rows, unknowns: Unknowns) -> Array:
+    """(R, 5 m, 5 m) what each orientation adds to the information, dimensionless elements."""
+    linear = linearise(rows, unknowns)
     R, m = rows.y.shape
     full = np.zeros((R, m, 5, m, 5))
     each = np.arange(m)
@@ -50,7 +54,7 @@ def shares(rows: Rows, state: State) -> Array:
 
 
 def grid(count: int = GRID) -> Array:
-    """(count, 3) directions evenly spread over the sphere (golden spiral)."""
+    """(count, 3) unit vectors, dimensionless, evenly spread over the sphere (golden spiral)."""
     k = np.arange(count) + 0.5
     height, turn = 1 - 2 * k / count, np.pi * (1 + 5**0.5) * k
     side = np.sqrt(1 - height**2)
@@ -58,7 +62,7 @@ def grid(count: int = GRID) -> Array:
 
 
 def asked(axes: Array) -> Array:
-    """(≤ ASKED, 3) axes that stand for a block: three that span space best, and the first of the others."""
+    """At most `ASKED` of the axes (m, 3), unit vectors, for the whole block: three that span space best, and others."""
     if len(axes) <= ASKED:
         return axes
     best = qr(axes.T, pivoting=True, mode="r")[1][:3]
@@ -75,12 +79,22 @@ def completion(
     direction_sigma: float | None = None,
     at_least: int = 0,
 ) -> Array:
-    """(k, 3) directions that bring a set to full rank, fewest first; none where it has it, or cannot get it."""
+    """(k, 3) unit vectors, block axes, that bring a set to full rank; none where it has it, or cannot get it.
+
+    Parameters
+    ----------
+    axes : (m, 3) nominal input axes, unit vectors.
+    directions : (R, 3) of the specific force in the set's orientations, unit vectors.
+    noise : one sigma of a reading, g.
+    quadratic : whether the second-order terms are estimated too.
+    direction_sigma : one sigma of the directions, rad, where they are stated.
+    at_least : orientations to add even where fewer complete the set.
+    """
     known = asked(axes)
-    rows, state = planned_rows(known, directions, noise, direction_sigma)
+    rows, unknowns = planned_rows(known, directions, noise, direction_sigma)
     candidates = grid()
-    basis = movable(rows.nominal_axes, state.axes, rows.held, quadratic)
-    own = basis.T @ shares(rows, state).sum(axis=0) @ basis
+    basis = movable(rows.nominal_axes, unknowns.axes, rows.held, quadratic)
+    own = basis.T @ shares(rows, unknowns).sum(axis=0) @ basis
     offered = basis.T @ shares(*planned_rows(known, candidates, noise, direction_sigma)) @ basis
     ridge = PLAUSIBLE**-2 * np.eye(basis.shape[1])
     chosen: list[int] = []

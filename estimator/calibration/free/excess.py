@@ -17,12 +17,17 @@ from estimator.calibration.free.solve import Solution, search
 from estimator.session import Array
 
 UNLIKELY = 1e-3
-"""p-value below which the stated noise does not explain the residuals."""
+"""p-value below which the stated noise does not explain the residuals: true noise is mistrusted once in a thousand
+sessions."""
 
 SETTLED = 1e-3
-"""Relative accuracy of the added sigma."""
+"""Relative accuracy of the added sigma: far below what residuals tell of a sigma."""
 
 ROUNDS = 12
+"""Rounds of search and noise; a handful is usual, and the last is taken where they do not settle."""
+
+NARROWEST = 12.0
+"""ln of the ratio of the largest to the smallest sigma that is looked for: six orders, beyond any reading's noise."""
 
 
 def p_value(chi2: float, dof: int) -> float | None:
@@ -38,8 +43,8 @@ def explained(solution: Solution) -> Solution:
     stated, found, last = solution.rows.sigma, solution, np.inf
     for _ in range(ROUNDS):
         added = added_noise(found, stated, solution.dof)
-        sigma = np.hypot(stated, added * np.exp(found.state.log_scale))
-        found = search(solution.rows.weighted(sigma), found.state, solution.quadratic)
+        sigma = np.hypot(stated, added * np.exp(found.unknowns.log_scale))
+        found = search(solution.rows.weighted(sigma), found.unknowns, solution.quadratic)
         if abs(added - last) < SETTLED * added or not found.converged:
             break
         last = added
@@ -47,17 +52,20 @@ def explained(solution: Solution) -> Solution:
 
 
 def added_noise(found: Solution, stated: Array, dof: int) -> float:
-    """Sigma at the input, in g, that brings χ² of the residuals as they are to its degrees of freedom."""
-    gain = np.exp(found.state.log_scale)
-    squares = (found.rows.y - predicted(found.state)) ** 2
-    turned = found.rows.prior[:, None] * (found.rows.directions - found.state.directions) ** 2
+    """Sigma at the input, in g, that brings χ² of the residuals as they are to its degrees of freedom.
+
+    stated : (R, m) one sigma of the readings, relative to nominal scale times g.
+    """
+    gain = np.exp(found.unknowns.log_scale)
+    squares = (found.rows.y - predicted(found.unknowns)) ** 2
+    turned = found.rows.prior[:, None] * (found.rows.directions - found.unknowns.directions) ** 2
 
     def surplus(log_sigma: float) -> float:
         variance = stated**2 + (np.exp(log_sigma) * gain) ** 2
         return float((squares / variance).sum() + turned.sum()) / dof - 1.0
 
     high = 0.5 * float(np.log((squares / gain**2).sum() / dof)) + 1.0
-    low = high - 12.0
+    low = high - NARROWEST
     if surplus(low) <= 0 or surplus(high) >= 0:
         return float(np.exp(low if surplus(low) <= 0 else high))
     return float(np.exp(brentq(surplus, low, high, xtol=SETTLED)))

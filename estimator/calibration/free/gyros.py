@@ -21,13 +21,13 @@ class GyroBiases:
     """Biases of k gyros over R rows, at the input, rad/s."""
 
     bias: Array
-    """(k,)"""
+    """(k,) rad/s."""
     sigma: Array
-    """(k,) Earth rate included."""
+    """(k,) rad/s, Earth rate included."""
     residual: Array
-    """(R, k)"""
+    """(R, k) rad/s."""
     noise: Array
-    """(R, k) one sigma of the independent noise of each reading."""
+    """(R, k) one sigma of the independent noise of each reading, rad/s."""
     stated: bool
     """Whether the noise was stated."""
 
@@ -38,6 +38,7 @@ class GyroBiases:
 
     @property
     def dof(self) -> int:
+        """Readings, less one bias a gyro."""
         return self.residual.size - len(self.bias)
 
 

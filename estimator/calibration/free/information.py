@@ -10,12 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.arrays import tangents
-from estimator.calibration.free.model import Linear, Rows, State, linearise
+from estimator.calibration.free.model import Linear, Rows, Unknowns, linearise
 from estimator.parameters import PLAUSIBLE
 from estimator.session import Array
 
 ROUNDING = 1e-12
-"""Eigenvalues of the information below this part of the largest are rounding, not knowledge."""
+"""Eigenvalues of the information below this part of the largest are rounding, not knowledge: a hundred times that of
+`calibration.observability`, because eliminating the orientations takes a difference of large numbers."""
 
 NEXT, LAST = [1, 2, 0], [2, 0, 1]
 """Of x, y, z in turn: a × b is a[NEXT]·b[LAST] − a[LAST]·b[NEXT]."""
@@ -35,30 +36,36 @@ class Information:
     unseen: Array
     """(P, F − rank) eigenvectors that it does not."""
     variances: Array
-    """(rank,) of the seen ones."""
+    """(rank,) of the seen ones, dimensionless."""
     weakest: tuple[int, float]
     """Element that leads the least known direction, and that direction's one sigma."""
 
     @property
     def rank(self) -> int:
+        """Directions that the set determines."""
         return self.seen.shape[1]
 
     @property
     def parameters(self) -> int:
+        """Directions in which the parameters may move."""
         return self.basis.shape[1]
 
     @property
     def full(self) -> bool:
+        """Whether the set determines everything that may move."""
         return self.rank == self.parameters
 
     @property
     def covariance(self) -> Array:
-        """(P, P) of the seen part: elements that an unseen direction moves have more than this."""
+        """(P, P) dimensionless, of the seen part: elements that an unseen direction moves have more than this."""
         return (self.seen * self.variances) @ self.seen.T
 
 
 def movable(nominal_axes: Array, axes: Array, held: bool, quadratic: bool) -> Array:
-    """(5 m, F) orthonormal basis of what the search may move: no fixed elements, no net turn of the axes."""
+    """(5 m, F) orthonormal basis, dimensionless, of what may move: no fixed elements, no net turn of the axes.
+
+    nominal_axes, axes : (m, 3) unit vectors; held : whether stated directions hold the frame.
+    """
     m = len(axes)
     free = np.ones((m, 5), dtype=bool)
     free[:, QUADRATIC] = quadratic
@@ -74,18 +81,18 @@ def movable(nominal_axes: Array, axes: Array, held: bool, quadratic: bool) -> Ar
 
 
 def unseen_below(values: Array) -> float:
-    """Eigenvalue of the information at or below which a direction counts as not determined."""
+    """Eigenvalue at or below which a direction counts as not determined; values (F,) rising, dimensionless."""
     return max(PLAUSIBLE**-2, ROUNDING * float(values[-1]))
 
 
-def information(rows: Rows, state: State, quadratic: bool, linear: Linear | None = None) -> Information:
-    """What orientations ``state.directions`` tell of sensors like ``state`` under the noise of ``rows``.
+def information(rows: Rows, unknowns: Unknowns, quadratic: bool, linear: Linear | None = None) -> Information:
+    """What orientations ``unknowns.directions`` tell of sensors like its own under the noise of ``rows``.
 
     Only `rows.sigma`, `rows.prior` and `rows.nominal_axes` are used: the readings play no part. ``linear`` is the
-    linearisation at the state, where it is at hand.
+    linearisation there, where it is at hand.
     """
-    basis = movable(rows.nominal_axes, state.axes, rows.held, quadratic)
-    schur = (linear or linearise(rows, state)).schur
+    basis = movable(rows.nominal_axes, unknowns.axes, rows.held, quadratic)
+    schur = (linear or linearise(rows, unknowns)).schur
     values, vectors = np.linalg.eigh(basis.T @ schur @ basis)
     vectors = basis @ vectors
     known = values > unseen_below(values)

@@ -28,9 +28,21 @@ class Knowledge:
     known: tuple[tuple[KnownCombination, ...], ...]
     """(m,)"""
     residual: Array
-    """(R, m) at the input."""
+    """(R, m) at the input, m/s² (rad/s)."""
     noise: Array
-    """(R, m) one sigma at the input."""
+    """(R, m) one sigma at the input, m/s² (rad/s)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Told:
+    """What the orientations tell of the elements ln K, b/g, c·g and the axis' turns of m sensors. P = 5 m."""
+
+    covariance: Array
+    """(P, P) dimensionless, of the part that is seen."""
+    unseen: Array
+    """(P, k) directions that nothing tells of, dimensionless."""
+    observable: Array
+    """(P,) bool."""
 
 
 def of_accelerometers(solution: Solution, sigma: Array, scale: Array, g: float) -> Knowledge:
@@ -39,25 +51,29 @@ def of_accelerometers(solution: Solution, sigma: Array, scale: Array, g: float) 
     Parameters
     ----------
     sigma : (R, m) stated or estimated noise, dimensionless.
-    scale : (m,) nominal scales, which the search worked in.
+    scale : (m,) nominal scales, which the search worked in, reading units per m/s².
     g : m/s².
     """
-    state, rows, m = solution.state, solution.rows, len(scale)
-    gain = np.exp(state.log_scale)
-    parameters = SensorParameters(scale * gain, g * state.offset / gain, state.quadratic / g, state.axes)
-    T = to_bias(state.offset, gain)
+    unknowns, rows, m = solution.unknowns, solution.rows, len(scale)
+    gain = np.exp(unknowns.log_scale)
+    parameters = SensorParameters(scale * gain, g * unknowns.offset / gain, unknowns.quadratic / g, unknowns.axes)
+    T = to_bias(unknowns.offset, gain)
     covariance = T @ solution.knowledge.covariance @ T.T
     unseen = T @ solution.knowledge.unseen
     observable = observed(covariance, unseen, np.linalg.norm(solution.knowledge.basis, axis=1) > 0)
     factors = parameters.si_factors(np.full(m, g))
-    known = tuple(combinations(i, parameters, covariance, unseen, observable, factors) for i in range(m))
+    told = Told(covariance, unseen, observable)
+    known = tuple(combinations(i, parameters, told, factors) for i in range(m))
     covariance = np.where(np.outer(observable, observable), covariance * np.outer(factors, factors), np.nan)
-    residual = (rows.y - predicted(state)) * (g / gain)
+    residual = (rows.y - predicted(unknowns)) * (g / gain)
     return Knowledge(parameters, covariance, observable.reshape(m, 5), known, residual, sigma * (g / gain))
 
 
 def to_bias(offset: Array, gain: Array) -> Array:
-    """(5 m, 5 m) from the search's elements to ln K, b/g, c·g and the axis' turns: b/g = o·exp(−λ)."""
+    """(5 m, 5 m) from the search's elements to ln K, b/g, c·g and the axis' turns: b/g = o·exp(−λ).
+
+    offset, gain : (m,) o and exp(λ), dimensionless.
+    """
     T = np.eye(5 * len(offset))
     bias = 5 * np.arange(len(offset)) + 1
     T[bias, bias] = 1 / gain
@@ -68,6 +84,7 @@ def to_bias(offset: Array, gain: Array) -> Array:
 def observed(covariance: Array, unseen: Array, free: Array) -> Array:
     """(P,) bool: free, and no unseen direction of plausible size moves it by more than its own sigma.
 
+    covariance : (P, P); unseen : (P, k) directions; both dimensionless. free : (P,) bool, whether it may move.
     An axis is observed with both its turns or not at all.
     """
     moved = PLAUSIBLE * np.linalg.norm(unseen, axis=1)
@@ -76,33 +93,31 @@ def observed(covariance: Array, unseen: Array, free: Array) -> Array:
     return found.ravel()
 
 
-def combinations(
-    i: int, p: SensorParameters, covariance: Array, unseen: Array, observable: Array, factors: Array
-) -> tuple[KnownCombination, ...]:
+def combinations(i: int, p: SensorParameters, told: Told, factors: Array) -> tuple[KnownCombination, ...]:
     """What is known of sensor i's lost scale, bias and quadratic: the combinations that unseen directions leave alone.
 
-    Dimensionless covariance (P, P) and unseen directions (P, k); ``factors`` (P,) take elements to SI.
+    ``factors`` (P,) take the dimensionless elements to SI.
     """
     own = slice(5 * i, 5 * i + 3)
-    lost = 5 * i + np.flatnonzero(~observable[own] & (np.linalg.norm(unseen[own], axis=1) > 0))
+    lost = 5 * i + np.flatnonzero(~told.observable[own] & (np.linalg.norm(told.unseen[own], axis=1) > 0))
     if len(lost) < 2:
         return ()
     values = np.array([p.scale[i], p.bias[i], p.quadratic[i]])[lost % 5]
     found = []
-    for a in null_space(unseen[lost].T).T:
+    for a in null_space(told.unseen[lost].T).T:
         coefficients = a / factors[lost]
         found.append(
             KnownCombination(
                 coefficients={ELEMENTS[k % 5]: float(c) for k, c in zip(lost, coefficients, strict=True)},
                 value=float(coefficients @ values),
-                sigma=float(np.sqrt(a @ covariance[np.ix_(lost, lost)] @ a)),
+                sigma=float(np.sqrt(a @ told.covariance[np.ix_(lost, lost)] @ a)),
             )
         )
     return tuple(found)
 
 
 def of_gyros(gyros: GyroBiases, scale: Array, axes: Array) -> Knowledge:
-    """Biases, and nothing else, of k gyros."""
+    """Biases, and nothing else, of k gyros: scale (k,), reading units per rad/s, and axes (k, 3) stay nominal."""
     k = len(gyros.bias)
     covariance = np.full((k, 5, k, 5), np.nan)
     covariance[:, 1, :, 1] = np.diag(gyros.sigma**2)
@@ -114,7 +129,10 @@ def of_gyros(gyros: GyroBiases, scale: Array, axes: Array) -> Knowledge:
 
 
 def of_nothing(readings: Array, scale: Array, axes: Array) -> Knowledge:
-    """Sensors that answer to nothing: readings (R, k) of constant value, which is all that is known of them."""
+    """Sensors that answer to nothing: readings (R, k) of constant value, which is all that is known of them.
+
+    readings in reading units; nominal scale (k,) per m/s² (rad/s); nominal axes (k, 3), unit vectors.
+    """
     R, k = readings.shape
     zero = np.zeros(k)
     return Knowledge(
@@ -139,6 +157,7 @@ def merged(parts: list[tuple[Indices, Knowledge]]) -> Knowledge:
     known = [c for _, k in parts for c in k.known]
 
     def joined(name: str) -> Array:
+        """One of the parameters (m,) or (m, 3), in its SI unit, in the session's order."""
         return np.concatenate([getattr(k.parameters, name) for _, k in parts])[order]
 
     return Knowledge(

@@ -27,7 +27,8 @@ from estimator.arrays import tangents, unit
 from estimator.session import Array
 
 LEAST_TURN = 1e-13
-"""Part of an orientation's information that is added to it, so that sensors that agree on one plane leave no hole."""
+"""Part of an orientation's information that is added to it, so that sensors that agree on one plane leave no hole: some
+hundred roundings, far below what any reading tells."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,9 +38,9 @@ class Rows:
     y: Array
     """(R, m) readings over nominal scale times g, nominal offset taken off."""
     sigma: Array
-    """(R, m) one sigma of y."""
+    """(R, m) one sigma of y, dimensionless."""
     directions: Array
-    """(R, 3) stated directions; zeros where not stated."""
+    """(R, 3) stated directions, unit vectors; zeros where not stated."""
     prior: Array
     """(R,) inverse variance of the stated directions, rad⁻²; 0 where not stated."""
     nominal_axes: Array
@@ -51,13 +52,13 @@ class Rows:
         return bool(np.any(self.prior > 0))
 
     def weighted(self, sigma: Array) -> "Rows":
-        """The same readings under another noise, (R, m) or anything that broadcasts to it."""
+        """The same readings under another noise, dimensionless: (R, m) or anything that broadcasts to it."""
         return replace(self, sigma=np.broadcast_to(sigma, self.y.shape))
 
 
 @dataclass(frozen=True, eq=False)
-class State:
-    """Where the search stands: parameters of m sensors and R orientations."""
+class Unknowns:
+    """What the search looks for, at one point of its way: parameters of m sensors and R orientations; dimensionless."""
 
     log_scale: Array
     """(m,) λ"""
@@ -66,24 +67,24 @@ class State:
     quadratic: Array
     """(m,) γ"""
     axes: Array
-    """(m, 3)"""
+    """(m, 3) unit vectors, block axes."""
     directions: Array
-    """(R, 3)"""
+    """(R, 3) of the specific force, unit vectors, block axes."""
 
     @cached_property
     def axis_tangents(self) -> Array:
-        """(m, 3, 2) along which the axes turn."""
+        """(m, 3, 2) along which the axes turn, dimensionless."""
         return tangents(self.axes)
 
     @cached_property
     def direction_tangents(self) -> Array:
-        """(R, 3, 2) along which the orientations turn."""
+        """(R, 3, 2) along which the orientations turn, dimensionless."""
         return tangents(self.directions)
 
-    def stepped(self, parameters: Array, turns: Array) -> "State":
-        """Moved by (5 m,) parameters and (R, 2) turns of the orientations."""
+    def stepped(self, parameters: Array, turns: Array) -> "Unknowns":
+        """Moved by parameters (5 m,), dimensionless, and turns (R, 2) of the orientations, rad."""
         step = parameters.reshape(-1, 5)
-        return State(
+        return Unknowns(
             log_scale=self.log_scale + step[:, 0],
             offset=self.offset + step[:, 1],
             quadratic=self.quadratic + step[:, 2],
@@ -91,21 +92,21 @@ class State:
             directions=unit(self.directions + (self.direction_tangents @ turns[..., None])[..., 0]),
         )
 
-    def turned(self, rotation: Array) -> "State":
-        """The block's frame turned: v → rotation·v for every axis and every orientation."""
+    def turned(self, rotation: Array) -> "Unknowns":
+        """The block's frame turned by a rotation (3, 3), dimensionless: every axis and every orientation."""
         return replace(self, axes=self.axes @ rotation.T, directions=self.directions @ rotation.T)
 
 
-def predicted(state: State) -> Array:
-    """(R, m) what the sensors should read."""
-    s = state.directions @ state.axes.T
-    return np.exp(state.log_scale) * (s + state.quadratic * s * s) + state.offset
+def predicted(unknowns: Unknowns) -> Array:
+    """(R, m) what the sensors should read, relative to nominal scale times g."""
+    s = unknowns.directions @ unknowns.axes.T
+    return np.exp(unknowns.log_scale) * (s + unknowns.quadratic * s * s) + unknowns.offset
 
 
-def cost(rows: Rows, state: State) -> float:
+def cost(rows: Rows, unknowns: Unknowns) -> float:
     """χ²: squared residuals of the readings and of the stated directions, in their sigmas."""
-    readings = np.sum(((rows.y - predicted(state)) / rows.sigma) ** 2)
-    return float(readings + np.sum(rows.prior[:, None] * (rows.directions - state.directions) ** 2))
+    readings = np.sum(((rows.y - predicted(unknowns)) / rows.sigma) ** 2)
+    return float(readings + np.sum(rows.prior[:, None] * (rows.directions - unknowns.directions) ** 2))
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +114,7 @@ class Linear:
     """One linearisation, in units of the readings' sigmas."""
 
     residual: Array
-    """(R, m)"""
+    """(R, m) in sigmas."""
     own: Array
     """(R, m, 5) derivative of each reading by its own sensor's parameters."""
     shared: Array
@@ -143,27 +144,27 @@ class Linear:
         return (self.inverse @ left[..., None])[..., 0]
 
 
-def jacobian(state: State) -> tuple[Array, Array]:
-    """Derivatives of `predicted`: (R, m, 5) by each sensor's parameters, (R, m, 2) by the orientation's turns."""
-    s = state.directions @ state.axes.T
-    gain = np.exp(state.log_scale)
-    slope = gain * (1.0 + 2.0 * state.quadratic * s)
+def jacobian(unknowns: Unknowns) -> tuple[Array, Array]:
+    """Derivatives of `predicted`, relative: (R, m, 5) by each sensor's parameters, (R, m, 2) per rad of its turns."""
+    s = unknowns.directions @ unknowns.axes.T
+    gain = np.exp(unknowns.log_scale)
+    slope = gain * (1.0 + 2.0 * unknowns.quadratic * s)
     own = np.empty((*s.shape, 5))
-    own[..., 0] = gain * (s + state.quadratic * s * s)
+    own[..., 0] = gain * (s + unknowns.quadratic * s * s)
     own[..., 1] = 1.0
     own[..., 2] = gain * s * s
-    own[..., 3:] = slope[..., None] * np.einsum("rk,mka->rma", state.directions, state.axis_tangents)
-    shared = slope[..., None] * np.einsum("mk,rka->rma", state.axes, state.direction_tangents)
+    own[..., 3:] = slope[..., None] * np.einsum("rk,mka->rma", unknowns.directions, unknowns.axis_tangents)
+    shared = slope[..., None] * np.einsum("mk,rka->rma", unknowns.axes, unknowns.direction_tangents)
     return own, shared
 
 
-def linearise(rows: Rows, state: State) -> Linear:
-    """Jacobian, normal equations and Schur complement at a state."""
+def linearise(rows: Rows, unknowns: Unknowns) -> Linear:
+    """Jacobian, normal equations and Schur complement at one point; shapes and units: see `Linear`."""
     R, m = rows.y.shape
-    own, shared = jacobian(state)
+    own, shared = jacobian(unknowns)
     own, shared = own / rows.sigma[..., None], shared / rows.sigma[..., None]
-    residual = (rows.y - predicted(state)) / rows.sigma
-    missed = np.einsum("rk,rka->ra", rows.directions - state.directions, state.direction_tangents)
+    residual = (rows.y - predicted(unknowns)) / rows.sigma
+    missed = np.einsum("rk,rka->ra", rows.directions - unknowns.directions, unknowns.direction_tangents)
     D = np.swapaxes(shared, 1, 2) @ shared + rows.prior[:, None, None] * np.eye(2)
     D += (LEAST_TURN * np.trace(D, axis1=1, axis2=2) + np.finfo(float).tiny ** 0.5)[:, None, None] * np.eye(2)
     inverse = np.linalg.inv(D)

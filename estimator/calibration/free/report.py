@@ -9,10 +9,11 @@ from estimator.calibration.free.gyros import GyroBiases
 from estimator.calibration.free.knowledge import Knowledge
 from estimator.calibration.free.solve import Solution
 from estimator.parameters import names, units
-from estimator.results import Calibration, Estimate, Fit, Residuals, SensorCalibration
+from estimator.results import PARAMETERS, Calibration, Estimate, Fit, Residuals, SensorCalibration
 from estimator.session import Array, CalibrationSession
 
 METHOD = "arbitrary-orientations/maximum-likelihood"
+"""As results name it."""
 
 
 def fit_of_accelerometers(
@@ -45,7 +46,7 @@ def fit_of_accelerometers(
 
 def to_add(solution: Solution) -> tuple[tuple[float, float, float], ...]:
     """Directions of up that complete what the orientations leave open."""
-    rows, up = solution.rows, solution.state.directions
+    rows, up = solution.rows, solution.unknowns.directions
     sigma = None if not rows.held else float(rows.prior.max() ** -0.5)
     found = completion(rows.nominal_axes, up, quadratic=solution.quadratic, direction_sigma=sigma)
     return tuple((float(x), float(y), float(z)) for x, y, z in found)
@@ -72,7 +73,7 @@ def fit_of_gyros(gyros: GyroBiases, element_names: tuple[str, ...]) -> Fit:
 def sensor_result(
     i: int, known: Knowledge, sigma: Array, turns: Array, session: CalibrationSession
 ) -> SensorCalibration:
-    """What the session says of sensor i; ``sigma`` (m, 5), ``turns`` (m, 3, 2) the axes' tangents."""
+    """What the session says of sensor i; ``sigma`` (m, 5), SI; ``turns`` (m, 3, 2), the axes' tangents, no unit."""
     p, sensor, own = known.parameters, session.sensors[i], slice(5 * i + 3, 5 * i + 5)
     seen = [bool(s) for s in known.observable[i]]
     values = (p.scale[i], p.bias[i], p.quadratic[i])
@@ -89,7 +90,7 @@ def sensor_result(
         axis=p.axis[i] if seen[3] else None,
         axis_tangents=turns[i],
         axis_covariance=known.covariance[own, own],
-        observable=dict(zip(("scale", "bias", "quadratic", "axis"), seen, strict=False)),
+        observable=dict(zip(PARAMETERS, seen, strict=False)),
         known=known.known[i],
     )
 

@@ -14,13 +14,15 @@ FEWEST = 4
 """Orientations below which nothing at all can be estimated: a sphere needs four points."""
 
 LEAST_TURN = 0.05
-"""g; rows whose readings vary less than this show one orientation."""
+"""g; rows whose readings vary less than this show one orientation: 3°, more than a block rocks where it lies."""
 
 LEAST_ANSWER = 1e-3
-"""Part of the liveliest accelerometer's variation below which another one does not answer at all."""
+"""Part of the liveliest accelerometer's variation below which another one does not answer at all: noise may vary a dead
+one so much, while a live one shows a good part of it in any set of turns."""
 
 FLATTEST = 0.05
-"""Ratio of the nominal axes' singular values below which they lie in one plane."""
+"""Ratio of the nominal axes' singular values below which they lie in one plane, to 3°: the errors of readings
+would reach a vector twentyfold."""
 
 GENERIC = 9
 """Unlabelled orientations that determine scale, bias and axes of any block: an ellipsoid has nine parameters."""

@@ -11,10 +11,11 @@ import numpy as np
 
 from estimator.arrays import nearest_turn
 from estimator.calibration.free.information import Information, information, movable, unseen_below
-from estimator.calibration.free.model import Linear, Rows, State, cost, linearise
+from estimator.calibration.free.model import Linear, Rows, Unknowns, cost, linearise
 from estimator.session import Array
 
 MAX_ITERATIONS = 200
+"""Of one search; three are usual, and one that has not ended by then says so."""
 MOST_ITERATIONS = 600
 """Of all searches while the noise settles."""
 
@@ -25,16 +26,21 @@ STILL = 1e-13
 """Dimensionless steps below this are rounding."""
 
 LEAST_DAMPING = 1e-12
+"""Relative to the largest information: less is rounding, and damping must be able to grow back in a few steps."""
+
+FIRST_DAMPING = 1e-4
+"""The same, at the start, which is good to a few per cent: nearly a Gauss–Newton step."""
 
 LONGEST = 0.5
-"""Dimensionless; no element moves further in one step."""
+"""Dimensionless; no element moves further in one step; a turn along a tangent means little beyond."""
 
 NOISE_ROUNDS = 25
+"""Rounds of search and noise; the last is taken where they do not settle."""
 NOISE_SETTLED = 1e-4
 """Relative change of the noise between rounds below which it has settled."""
 
 ENOUGH_REDUNDANCY = 10.0
-"""Redundancy that a sensor's readings need to have a noise variance of their own."""
+"""Redundancy that a sensor's readings need to have a noise variance of their own: it tells a sigma to a quarter."""
 
 LEAST_NOISE = 1e-12
 """Dimensionless; readings are not better than rounding."""
@@ -46,7 +52,7 @@ class Solution:
 
     rows: Rows
     """With the noise that was used."""
-    state: State
+    unknowns: Unknowns
     quadratic: bool
     """Whether the quadratic term was estimated."""
     chi2: float
@@ -62,40 +68,40 @@ class Solution:
         return R * m + stated - 2 * R - self.knowledge.rank
 
 
-def held_frame(rows: Rows, state: State) -> State:
-    """The state with its frame turned so that the axes show no net turn against the nominal ones."""
+def held_frame(rows: Rows, unknowns: Unknowns) -> Unknowns:
+    """The unknowns with the frame turned so that the axes show no net turn against the nominal ones."""
     if rows.held:
-        return state
-    return state.turned(nearest_turn(state.axes, rows.nominal_axes))
+        return unknowns
+    return unknowns.turned(nearest_turn(unknowns.axes, rows.nominal_axes))
 
 
-def search(rows: Rows, state: State, quadratic: bool) -> Solution:
+def search(rows: Rows, unknowns: Unknowns, quadratic: bool) -> Solution:
     """Least χ² from a start. Not reaching it is a result (`converged` False)."""
-    state = held_frame(rows, state)
-    damping, chi2 = 1e-4, cost(rows, state)
-    linear, iterations, converged = linearise(rows, state), 0, False
-    basis = movable(rows.nominal_axes, state.axes, rows.held, quadratic)
+    unknowns = held_frame(rows, unknowns)
+    damping, chi2 = FIRST_DAMPING, cost(rows, unknowns)
+    linear, iterations, converged = linearise(rows, unknowns), 0, False
+    basis = movable(rows.nominal_axes, unknowns.axes, rows.held, quadratic)
     while not converged and iterations < MAX_ITERATIONS:
         iterations += 1
         step, turns, fall = proposal(linear, basis, damping)
-        trial = held_frame(rows, state.stepped(step, turns))
+        trial = held_frame(rows, unknowns.stepped(step, turns))
         found = cost(rows, trial)
         small = max(np.abs(step).max(), np.abs(turns).max()) < STILL
         converged = bool(small or fall < CONVERGED * max(1.0, chi2 * CONVERGED))
         if found < chi2:
-            state, chi2, damping = trial, found, max(damping / 10, LEAST_DAMPING)
-            linear = linearise(rows, state)
-            basis = movable(rows.nominal_axes, state.axes, rows.held, quadratic)
+            unknowns, chi2, damping = trial, found, max(damping / 10, LEAST_DAMPING)
+            linear = linearise(rows, unknowns)
+            basis = movable(rows.nominal_axes, unknowns.axes, rows.held, quadratic)
         else:
             damping *= 10
-    knowledge = information(rows, state, quadratic, linear)
-    return Solution(rows, state, quadratic, chi2, knowledge, iterations, converged)
+    knowledge = information(rows, unknowns, quadratic, linear)
+    return Solution(rows, unknowns, quadratic, chi2, knowledge, iterations, converged)
 
 
 def proposal(linear: Linear, basis: Array, damping: float) -> tuple[Array, Array, float]:
-    """Damped step of the parameters (5 m,), of the orientations (R, 2), and the fall of χ² that it promises.
+    """Damped step of the parameters (5 m,), turns of the orientations (R, 2), rad, and the fall of χ² they promise.
 
-    Directions that the set does not determine stay where they are.
+    ``basis`` (5 m, F), dimensionless as in `movable`. Directions that the set does not determine stay where they are.
     """
     values, vectors = np.linalg.eigh(basis.T @ linear.schur @ basis)
     right = vectors.T @ (basis.T @ linear.reduced)
@@ -110,9 +116,9 @@ def proposal(linear: Linear, basis: Array, damping: float) -> tuple[Array, Array
     return step, turns, float(right @ inside + direct)
 
 
-def redundancy(rows: Rows, state: State, knowledge: Information) -> Array:
-    """(R, m) part of each reading's variance that the fit leaves in its residual: 1 − leverage."""
-    linear = linearise(rows, state)
+def redundancy(rows: Rows, unknowns: Unknowns, knowledge: Information) -> Array:
+    """(R, m) part of each reading's variance that the fit leaves in its residual: 1 − leverage, dimensionless."""
+    linear = linearise(rows, unknowns)
     m = rows.y.shape[1]
     through = (linear.shared[:, :, None, :] @ linear.inverse[:, None])[:, :, 0, :]
     direct = (through * linear.shared).sum(axis=-1)
@@ -123,25 +129,25 @@ def redundancy(rows: Rows, state: State, knowledge: Information) -> Array:
 
 
 def noise_variance(solution: Solution) -> Array:
-    """(m,) factors by which the variances used must be multiplied to agree with the residuals."""
+    """(m,) factors, dimensionless, by which the variances used must be multiplied to agree with the residuals."""
     rows = solution.rows
-    left = redundancy(rows, solution.state, solution.knowledge).sum(axis=0)
-    squares = (linearise(rows, solution.state).residual ** 2).sum(axis=0)
+    left = redundancy(rows, solution.unknowns, solution.knowledge).sum(axis=0)
+    squares = (linearise(rows, solution.unknowns).residual ** 2).sum(axis=0)
     common = squares.sum() / max(left.sum(), 1.0)
     if left.min() < ENOUGH_REDUNDANCY:
         return np.full(len(left), common)
     return squares / left
 
 
-def search_with_noise(rows: Rows, state: State, quadratic: bool) -> Solution:
+def search_with_noise(rows: Rows, unknowns: Unknowns, quadratic: bool) -> Solution:
     """The search with the noise estimated on the way; ``rows.sigma`` gives the relative weights to begin with."""
-    solution = search(rows, state, quadratic)
+    solution = search(rows, unknowns, quadratic)
     iterations = solution.iterations
     for _ in range(NOISE_ROUNDS):
         factor = np.sqrt(noise_variance(solution))
         sigma = np.maximum(solution.rows.sigma * factor, LEAST_NOISE)
         change = np.abs(sigma / solution.rows.sigma - 1.0).max()
-        solution = search(rows.weighted(sigma), solution.state, quadratic)
+        solution = search(rows.weighted(sigma), solution.unknowns, quadratic)
         iterations += solution.iterations
         if change < NOISE_SETTLED or iterations > MOST_ITERATIONS:
             break

@@ -10,42 +10,44 @@ Source: the ellipsoid fit is the classical multi-position calibration.
 import numpy as np
 
 from estimator.arrays import unit
-from estimator.calibration.free.model import Rows, State, cost
+from estimator.calibration.free.model import Rows, Unknowns, cost
 from estimator.session import Array
 
 PLAIN = 0.02
-"""Singular values below this part of the largest carry noise rather than shape."""
+"""Singular values below this part of the largest carry noise rather than shape. A choice: below the nonlinearity and
+misalignment of a real block, above the noise of a poor one."""
 
 SLIGHT = (0.05, 0.005, 0.0005)
 """The same for the quadric, tried in turn: below it the sphere's shape is kept. Few orientations need a small one
 when they are precise and a large one when they are plain."""
 
 LEAST_GAIN = 1e-6
-"""Of nominal; a sensor that answers less is dead."""
+"""Of nominal; a sensor that answers less is dead, and its scale's logarithm must stay finite."""
 
 TINY = float(np.finfo(float).tiny)
+"""Keeps a division by nothing finite."""
 
 FLAT = 1e-3
-"""Ratio of the quadric's eigenvalues below which it is no ellipsoid."""
+"""Ratio of the quadric's eigenvalues below which it is no ellipsoid: semi-axes of 1 : 30."""
 
 
-def start(rows: Rows) -> State:
+def start(rows: Rows) -> Unknowns:
     """Parameters and orientations from linear estimates; of several the one that fits best."""
     found = [with_directions(rows)] if rows.held else from_shape(rows)
-    return min((oriented(rows, *linear) for linear in found), key=lambda state: cost(rows, state))
+    return min((oriented(rows, *linear) for linear in found), key=lambda unknowns: cost(rows, unknowns))
 
 
-def oriented(rows: Rows, sensitivity: Array, offset: Array) -> State:
-    """State with sensitivity (m, 3), offset (m,) and the orientations that fit them best."""
+def oriented(rows: Rows, sensitivity: Array, offset: Array) -> Unknowns:
+    """Unknowns with sensitivity (m, 3) and offset (m,), in nominal scale times g, and the best orientations."""
     gain = np.maximum(np.linalg.norm(sensitivity, axis=1), LEAST_GAIN)
     directions = unit((rows.y - offset) @ np.linalg.pinv(sensitivity).T)
     if rows.held:
         directions = np.where(rows.prior[:, None] > 0, rows.directions, directions)
-    return State(np.log(gain), offset, np.zeros_like(gain), sensitivity / gain[:, None], directions)
+    return Unknowns(np.log(gain), offset, np.zeros_like(gain), sensitivity / gain[:, None], directions)
 
 
 def with_directions(rows: Rows) -> tuple[Array, Array]:
-    """Sensitivity (m, 3) and offset (m,) by least squares on the stated directions, about the nominal values."""
+    """Sensitivity (m, 3) and offset (m,), relative, by least squares on the stated directions, about nominal values."""
     stated = rows.prior > 0
     design = np.column_stack([rows.directions[stated], np.ones(int(stated.sum()))])
     expected = rows.directions[stated] @ rows.nominal_axes.T
@@ -54,7 +56,7 @@ def with_directions(rows: Rows) -> tuple[Array, Array]:
 
 
 def from_shape(rows: Rows) -> list[tuple[Array, Array]]:
-    """Sensitivity (m, 3) and offset (m,) from the ellipsoids that the readings may lie on, one for each of `SLIGHT`."""
+    """Sensitivity (m, 3) and offset (m,), relative, from the ellipsoids the readings may lie on, one a `SLIGHT`."""
     centre = rows.y.mean(axis=0)
     basis = subspace(rows.y - centre, rows.nominal_axes)
     inward = np.linalg.pinv(rows.nominal_axes) @ basis
@@ -69,7 +71,7 @@ def from_shape(rows: Rows) -> list[tuple[Array, Array]]:
 
 
 def subspace(centred: Array, nominal_axes: Array) -> Array:
-    """(m, 3) orthonormal basis of the readings' variation; of the nominal axes where it is plain."""
+    """(m, 3) orthonormal basis, no unit, of how readings (R, m) vary; of nominal axes (m, 3) where that is plain."""
     _, spread, Vt = np.linalg.svd(centred, full_matrices=False)
     if len(spread) >= 3 and spread[2] > PLAIN * spread[0]:
         return Vt[:3].T
@@ -77,8 +79,9 @@ def subspace(centred: Array, nominal_axes: Array) -> Array:
 
 
 def ellipsoids(points: Array) -> list[tuple[Array, Array]]:
-    """Centre (3,) and shape L (3, 3) of points ≈ centre + L·d, d unit vectors, L symmetric; one for each of `SLIGHT`.
+    """Centre (3,) and shape L (3, 3) of points (R, 3) ≈ centre + L·d, d unit vectors, L symmetric; one a `SLIGHT`.
 
+    All relative to nominal scale times g.
     First the best sphere; then, in its units, vᵀ(I + Q)v + q·v = 1 with the least Q and q.
     """
     design = np.column_stack([2 * points, np.ones(len(points))])
@@ -97,7 +100,10 @@ def ellipsoids(points: Array) -> list[tuple[Array, Array]]:
 
 
 def ellipsoid(middle: Array, radius: float, found: Array) -> tuple[Array, Array]:
-    """Centre and shape of the quadric (9,) about a sphere; the sphere where it is no ellipsoid."""
+    """Centre (3,) and shape (3, 3) of the quadric ``found`` (9,) about a sphere; the sphere where it is no ellipsoid.
+
+    middle (3,) and radius, like the result, relative to nominal scale times g; the quadric in units of the sphere.
+    """
     Q = np.eye(3) + found[[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3)
     values, vectors = np.linalg.eigh(Q)
     if values[0] < FLAT * values[-1]:

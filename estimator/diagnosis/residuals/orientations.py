@@ -42,7 +42,7 @@ def fitted_state(session: CalibrationSession) -> OrientationState:
         g = gravity(session.site)
         prepared, stated = accelerometer_rows(session, ~is_gyro, g)
         solution = solve(prepared, stated, None)
-        state, gain = solution.state, np.exp(solution.state.log_scale)
+        state, gain = solution.unknowns, np.exp(solution.unknowns.log_scale)
         bias[~is_gyro] = state.offset * g / gain
         quadratic[~is_gyro] = state.quadratic / g
         axis[~is_gyro] = state.axes

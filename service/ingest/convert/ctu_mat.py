@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 from scipy.io import loadmat
 
+from estimator.applied_vector import STANDARD_GRAVITY
 from service.ingest.convert.contract import Converter, Document
-from service.ingest.convert.documents import STANDARD_GRAVITY, columns, session, triad
+from service.ingest.convert.documents import columns, session, triad
 from service.ingest.convert.files import expect_count, read_bytes, refuse
 from service.ingest.mat import DAMAGED, of_version_5
 

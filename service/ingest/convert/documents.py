@@ -9,9 +9,6 @@ from service.ingest.convert.contract import Document
 
 Columns = NDArray[np.float64]
 
-STANDARD_GRAVITY = 9.80665
-"""m/s²; what "one g" means in a data sheet."""
-
 PER_DEGREE = 180 / np.pi
 """Readings per degree → readings per radian."""
 

@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.errors import FormatError, Problem
 from service.ingest.convert.contract import Converter, Document
-from service.ingest.convert.documents import PER_DEGREE, STANDARD_GRAVITY, columns, session, triad
+from service.ingest.convert.documents import PER_DEGREE, columns, session, triad
 from service.ingest.convert.files import read_bytes, refuse
 
 LEADING = 4

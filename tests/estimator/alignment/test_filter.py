@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from estimator.alignment.kalman import State, correct, predict
+from estimator.alignment.kalman import KalmanState, correct, predict
 from estimator.alignment.noise import at_rest
 from estimator.alignment.observability import planned_path
-from estimator.alignment.simulate import Imperfections, Programme, Truth, true_attitude, true_inputs
+from estimator.alignment.simulate import Imperfections, Programme, Truth, true_attitude, true_motion
 from estimator.alignment.sins import Model, dynamics, earth_rate, transition
 from estimator.results import ARCSEC
 from estimator.session import Array, Site
@@ -49,10 +49,10 @@ def test_errors_are_as_large_as_their_covariance_says(name: str) -> None:
 def test_a_block_at_rest_reads_gravity_and_the_earth_s_rotation() -> None:
     """In any heading and at any length of row: C turns with the Earth, so the mean over a row is that at any time."""
     attitude = true_attitude(Programme(angles=(0.3,), dwell=20.0, row=5.0), Truth(), np.zeros((1, 2)))
-    rates, forces = true_inputs(attitude, 5.0, LATITUDE, G)
+    motion = true_motion(attitude, 5.0, LATITUDE, G)
     east_north_up = attitude[0].T @ earth_rate(LATITUDE)
-    assert forces == pytest.approx(np.tile([0.0, 0.0, G], (4, 1)), abs=1e-12)
-    assert rates == pytest.approx(np.tile(east_north_up, (4, 1)), abs=1e-15)
+    assert motion.forces == pytest.approx(np.tile([0.0, 0.0, G], (4, 1)), abs=1e-12)
+    assert motion.rates == pytest.approx(np.tile(east_north_up, (4, 1)), abs=1e-15)
 
 
 def test_innovations_are_as_large_as_expected() -> None:
@@ -72,7 +72,7 @@ def test_the_transition_is_that_of_the_differential_equation() -> None:
 
 def test_a_correction_keeps_the_covariance_symmetric_and_positive() -> None:
     rng = np.random.default_rng(1)
-    state = State(np.zeros(3), np.diag([1e6, 1.0, 1e-12]))
+    state = KalmanState(np.zeros(3), np.diag([1e6, 1.0, 1e-12]))
     for _ in range(200):
         H = rng.standard_normal((1, 3))
         state, _ = correct(predict(state, np.eye(3), 1e-15 * np.eye(3)), np.zeros(1), H, np.array([[1e-10]]))

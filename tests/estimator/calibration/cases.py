@@ -53,7 +53,7 @@ class Case:
 
     @property
     def norm(self) -> Array:
-        """(m,) length of the reference vector."""
+        """(m,) length of the applied vector."""
         return np.array([GRAVITY if s.kind == ACCELEROMETER else EARTH_RATE for s in self.schedule.sensors])
 
     @cached_property

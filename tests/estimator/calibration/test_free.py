@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from estimator.calibration.free import calibrate_free
-from estimator.calibration.free.model import Rows, State, jacobian, linearise, predicted
+from estimator.calibration.free.model import Rows, Unknowns, jacobian, linearise, predicted
 from tests.estimator.calibration.free_sessions import errors, session, sphere, truth
 
 
@@ -55,27 +55,27 @@ def test_ninety_five_per_cent_intervals_hold(trials):
 def test_jacobian_is_the_numerical_derivative():
     rng = np.random.default_rng(0)
     true = truth(4, quadratic=1e-2)
-    state = State(
+    at = Unknowns(
         0.1 * rng.standard_normal(4), rng.standard_normal(4), 0.1 * rng.standard_normal(4), true.axes, sphere(5, rng)
     )
-    own, shared = jacobian(state)
+    own, shared = jacobian(at)
     for i in range(20):
         step = 1e-6 * np.eye(20)[i]
-        slope = predicted(state.stepped(step, np.zeros((5, 2)))) - predicted(state.stepped(-step, np.zeros((5, 2))))
+        slope = predicted(at.stepped(step, np.zeros((5, 2)))) - predicted(at.stepped(-step, np.zeros((5, 2))))
         np.testing.assert_allclose(slope[:, i // 5] / 2e-6, own[:, i // 5, i % 5], atol=1e-8)
     for k in range(2):
         step = np.zeros((5, 2))
         step[:, k] = 1e-6
-        slope = predicted(state.stepped(np.zeros(20), step)) - predicted(state.stepped(np.zeros(20), -step))
+        slope = predicted(at.stepped(np.zeros(20), step)) - predicted(at.stepped(np.zeros(20), -step))
         np.testing.assert_allclose(slope / 2e-6, shared[..., k], atol=1e-8)
 
 
 def test_eliminating_the_orientations_equals_inverting_the_whole():
     rng = np.random.default_rng(1)
     true, d = truth(4), sphere(6, rng)
-    state = State(np.zeros(4), np.zeros(4), np.zeros(4), true.axes, d)
-    rows = Rows(predicted(state), np.full((6, 4), 0.01), d, np.full(6, 1e3), true.nominal)
-    own, shared = jacobian(state)
+    at = Unknowns(np.zeros(4), np.zeros(4), np.zeros(4), true.axes, d)
+    rows = Rows(predicted(at), np.full((6, 4), 0.01), d, np.full(6, 1e3), true.nominal)
+    own, shared = jacobian(at)
     whole = np.zeros((24, 20 + 12))
     for j in range(6):
         for i in range(4):
@@ -83,7 +83,7 @@ def test_eliminating_the_orientations_equals_inverting_the_whole():
             whole[4 * j + i, 20 + 2 * j : 22 + 2 * j] = shared[j, i]
     normal = whole.T @ whole / 0.01**2 + np.diag(np.r_[np.zeros(20), np.full(12, 1e3)])
     schur = normal[:20, :20] - normal[:20, 20:] @ np.linalg.inv(normal[20:, 20:]) @ normal[20:, :20]
-    np.testing.assert_allclose(linearise(rows, state).schur, schur, atol=1e-9 * np.abs(schur).max())
+    np.testing.assert_allclose(linearise(rows, at).schur, schur, atol=1e-9 * np.abs(schur).max())
 
 
 def test_the_order_of_the_rows_does_not_matter():

@@ -8,7 +8,7 @@ import pytest
 
 from estimator.calibration.free import calibrate_free
 from estimator.calibration.free.information import information
-from estimator.calibration.free.model import Rows, State
+from estimator.calibration.free.model import Rows, Unknowns
 from estimator.errors import ScheduleError
 from tests.estimator.calibration.free_sessions import errors, session, sphere, truth
 
@@ -16,9 +16,9 @@ from tests.estimator.calibration.free_sessions import errors, session, sphere, t
 def known(m, directions, quadratic=False):
     """Information of a set of orientations before it is flown."""
     axes, R = truth(m).axes, len(directions)
-    state = State(np.zeros(m), np.zeros(m), np.zeros(m), axes, directions)
+    unknowns = Unknowns(np.zeros(m), np.zeros(m), np.zeros(m), axes, directions)
     empty = np.zeros((R, 3))
-    return information(Rows(np.zeros((R, m)), np.full((R, m), 1e-6), empty, np.zeros(R), axes), state, quadratic)
+    return information(Rows(np.zeros((R, m)), np.full((R, m), 1e-6), empty, np.zeros(R), axes), unknowns, quadratic)
 
 
 def two_planes(count):

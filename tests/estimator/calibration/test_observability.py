@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 
 from estimator import calibrate, calibrate_many
+from estimator.arrays import unit
+from estimator.calibration.stand import solved
 from estimator.parameters import SensorParameters, nominal
 from estimator.results import KnownCombination
 from estimator.session import Array, CalibrationSession
 from estimator.simulate import scattered, simulate
-from tests.builders import GRAVITY
-from tests.estimator.calibration.cases import accelerometers, block
+from tests.builders import EARTH_RATE, GRAVITY
+from tests.estimator.calibration.cases import accelerometers, block, gyros
 
 NOISE = 3e-6
 LIFT = GRAVITY * np.sin(np.radians(40.0))
@@ -54,6 +56,20 @@ def test_the_other_sensors_are_not_touched() -> None:
     result = calibrate(simulate(schedule, truth, np.random.default_rng(0), noise=NOISE))
     assert all(all(s.observable.values()) for s in result.sensors[1:])
     assert np.isnan(np.diagonal(result.covariance)).sum() == 2
+
+
+@pytest.mark.parametrize("seed", [2, 4, 5])
+def test_what_the_rows_hardly_tell_stays_where_it_began(seed: int) -> None:
+    """One run of gyros whose noise is 0.2 % of the Earth's rate: of the one near the head two directions stay open."""
+    axes = unit(np.array([[-0.2, 0.98, 0.0], [-0.9, -0.3, 0.3], [-0.2, -0.1, -1.0]]))
+    sensors = [replace(s, nominal_axis=a) for s, a in zip(gyros(3, scale=1e4, unit="V"), axes, strict=True)]
+    schedule = replace(block(tuple(sensors), 14, runs=(False,)), mounting=np.eye(3))
+    rng = np.random.default_rng(seed)
+    measured = simulate(schedule, nominal(tuple(sensors)), rng, noise=2e-3 * EARTH_RATE * 1e4)
+    found = solved([measured]).fitted
+    assert found.converged[0]
+    assert abs(found.parameters.quadratic[0, 0] * EARTH_RATE) < 1e-3
+    assert abs(found.parameters.scale[0, 0] / 1e4 - 1) < 1e-3
 
 
 def single_run(count: int) -> tuple[SensorParameters, list[tuple[tuple[KnownCombination, ...], ...]]]:

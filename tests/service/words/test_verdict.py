@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from service.measures import STANDARD_GRAVITY, in_words
+from estimator.applied_vector import STANDARD_GRAVITY
+from service.measures import in_words
 from service.records.decision import Decision, Verdict
 from service.words.verdict import margin_of, reason, worst_record
 
