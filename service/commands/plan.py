@@ -41,6 +41,7 @@ def plan_session(
             metavar="SESSION", help="Session whose block, stand and noise to plan with.", show_default=False
         ),
     ] = None,
+    *,
     kind: Annotated[str, typer.Option(help="Without SESSION: accelerometer or gyroscope.")] = "accelerometer",
     sensors: Annotated[int, typer.Option("--sensors", "-m", help="Without SESSION: sensors on a cone.")] = 6,
     alpha: Annotated[

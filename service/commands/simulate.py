@@ -63,6 +63,7 @@ def safe_name(unit: str) -> str:
 
 
 def simulate_files(
+    *,
     out: Annotated[Path, typer.Option(help="Folder to write the session files to.")] = Path(),
     unit: Annotated[str, typer.Option(help="Serial number of the unit.")] = "SIM-001",
     sensors: Annotated[int, typer.Option("--sensors", "-m", min=3, max=48, help="Accelerometers on the cone.")] = 6,

@@ -2,11 +2,11 @@
 
 from datetime import UTC, datetime, timedelta
 
-from service.background.watch import flag_overdue
+from service.background.flag_overdue import flag_overdue
 from service.flows.receive import upload
 from service.records.flag import FlagState, Matter
 from service.storage import Storage
-from service.views.flag_list import flag_list
+from service.storage.queries.flags import FlagQuery
 from service.views.outlook import unit_outlook
 from tests.service.sessions import session_bytes
 
@@ -15,7 +15,7 @@ NOW = datetime(2026, 3, 2, tzinfo=UTC)
 
 def states(storage: Storage) -> list[tuple[Matter, FlagState]]:
     with storage.database.reading() as store:
-        return [(flag.matter, flag.state) for flag in flag_list(store, unit="BA-017")]
+        return [(flag.matter, flag.state) for flag in store.flags.page(FlagQuery("BA-017"))]
 
 
 def test_it_is_raised_once_when_the_day_has_passed_and_resolved_by_a_calibration(storage: Storage) -> None:
