@@ -16,7 +16,7 @@ from service.flows.flagging.verdict import flag_verdict
 from service.flows.keep import keep
 from service.flows.refresh_outlook import refresh_outlook
 from service.flows.refuse import refuse
-from service.ingest.checked import check, plain_filename
+from service.ingest.checked import Checked, check, plain_filename
 from service.judging.calibrate import Calibrated, basis_of, calibrate
 from service.judging.judge import judge_in_epoch
 from service.judging.model_in_force import model_for
@@ -101,7 +101,7 @@ def upload(
     if known is not None:
         return _receipt(known, created=False)
     try:
-        calibrated = _calibrated(storage, received)
+        calibrated = _calibrated(storage, check(content, received.filename, now))
     except SessionError as fault:
         raise refuse(storage, received, fault.problems) from fault
     storage.files.keep(content)
@@ -109,9 +109,8 @@ def upload(
         return _store(store, received, calibrated, coverage_factor)
 
 
-def _calibrated(storage: Storage, received: Received) -> Calibrated:
-    """Checked, and calibrated with no transaction open; SessionError where the file cannot be used."""
-    checked = check(received.content, received.filename, received.at)
+def _calibrated(storage: Storage, checked: Checked) -> Calibrated:
+    """Under the model in force, with no transaction open; SessionError where the session does not tell enough."""
     with storage.database.reading() as store:
         basis = basis_of(store, checked, model_for(store, checked))
     return calibrate(checked, basis)
