@@ -16,8 +16,11 @@ from service.views.fleet_report import fleet_report
 
 router = APIRouter(prefix="/fleet", tags=["fleet"])
 PDF = "application/pdf"
+"""Media type."""
 XLSX = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
+"""Media type (ISO/IEC 29500)."""
 BYTES = {"schema": {"type": "string", "format": "binary"}}
+"""How OpenAPI describes a file."""
 
 
 @router.get("", responses=errors())

@@ -23,6 +23,7 @@ from service.flows.set_stage import set_stage
 
 router = APIRouter(prefix="/sessions", tags=["sessions"])
 ANY_BYTES = {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}}
+"""How OpenAPI describes a file."""
 
 
 @router.post(

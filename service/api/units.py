@@ -28,6 +28,7 @@ from service.views.unit_report import unit_report
 
 router = APIRouter(prefix="/units", tags=["units"])
 TABLE = {"type": "string", "format": "binary"}
+"""How OpenAPI describes a table."""
 HISTORY_FORMATS = {"text/csv": {"schema": TABLE}, "application/vnd.apache.parquet": {"schema": TABLE}}
 
 

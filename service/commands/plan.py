@@ -31,7 +31,9 @@ from service.words.plan import (
 )
 
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
+"""In the order of the table."""
 MOST_ORIENTATIONS = 200
+"""That can be asked for: nobody turns a block by hand more often."""
 
 
 def plan_session(

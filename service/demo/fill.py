@@ -19,9 +19,11 @@ from service.storage import Storage
 UPLOADED_AFTER = timedelta(hours=3)
 """From the session to its upload; the demonstration has its own clock, so that it is always the same."""
 WHO = "demonstration"
+"""Signs every upload of the demonstration."""
 Done = Intervention | Handled | Remark
 """What people do between sessions."""
 FILES = sum(member.files for member in CAST)
+"""Sessions of the whole fleet."""
 
 
 def is_wanted(storage: Storage) -> bool:

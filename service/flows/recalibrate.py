@@ -23,6 +23,7 @@ from service.storage.store import Store
 WITHOUT_MODEL = (ROTATION_ALIGNMENT, RATE_TABLE)
 """Programmes that no accepted cause changes."""
 RECOMPUTED, UNCHANGED, LEFT = "recomputed", "unchanged", "left"
+"""What can become of a session."""
 
 
 @dataclass(frozen=True)

@@ -25,6 +25,7 @@ ACCELEROMETER_DEFAULTS = Tolerances(
 GYROSCOPE_DEFAULTS = Tolerances(scale=1e-3, bias=0.05 * pi / 180 / 3600, quadratic=None, axis=120 * ARCSEC)
 """1000 ppm, 0.05 °/h, not judged, 120″."""
 DEFAULTS = {ACCELEROMETER: ACCELEROMETER_DEFAULTS, GYROSCOPE: GYROSCOPE_DEFAULTS}
+"""By kind of sensor."""
 
 
 def type_of(new: Checked, calibration: Calibration) -> UnitType:

@@ -1,4 +1,4 @@
-"""Flow: everything that a certificate of a session states, read from what is stored."""
+"""Everything that a certificate of a session states, read from what is stored."""
 
 from dataclasses import dataclass
 from datetime import timedelta
@@ -27,6 +27,7 @@ MOST_POINTS = 10_000
 MOST_EARLIER = 50
 """Earlier sessions among which the one is looked for that shows the unit as found."""
 JUST_AFTER = timedelta(microseconds=1)
+"""The finest step of a stored time."""
 
 
 @dataclass(frozen=True)

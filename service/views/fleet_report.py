@@ -1,4 +1,4 @@
-"""Flow: the whole fleet for a report, worst units first."""
+"""The whole fleet for a report, worst units first."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -11,6 +11,7 @@ from service.storage.store import Store
 from service.views.outlook import outlooks_of_fleet
 
 MOST_UNITS = 10_000
+"""More than a report is read of; it bounds what one answer holds in memory."""
 
 
 @dataclass(frozen=True)

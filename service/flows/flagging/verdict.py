@@ -12,7 +12,9 @@ from service.words.names import day_of
 from service.words.verdict import reason
 
 FAILS = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
+"""Verdicts that raise a flag."""
 PASSES = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
+"""Verdicts that speak for resolving one."""
 WITHIN = "The session of {day} finds every parameter of {sensor} within its tolerance."
 NEW_REFERENCE = "The session of {day}, after a service, is the new reference."
 
