@@ -9,10 +9,10 @@ from fastapi import FastAPI
 from fastapi.concurrency import run_in_threadpool
 
 from service import api, pages
-from service.background.deliver import deliver_until
+from service.background.deliver_messages import deliver_until
 from service.background.diagnose_pending import diagnose_pending
-from service.background.watch import watch_fleet
-from service.dependencies import Service
+from service.background.watch_fleet import watch_fleet
+from service.dependencies import Application
 from service.settings import VERSION, Settings
 from service.storage import Database, Files, Storage
 
@@ -20,6 +20,7 @@ DESCRIPTION = (
     "Health of redundant inertial measurement units: calibration sessions in, parameters with uncertainties, "
     "verdicts and histories out. Numbers are SI; every error is application/problem+json."
 )
+"""Heads the description of the API."""
 LAST_WORK = 5.0
 """Seconds that a stopping service waits for the diagnosis or the message at hand; the next start takes them up."""
 
@@ -31,43 +32,45 @@ def utc_now() -> datetime:
 
 def create_app(settings: Settings, clock: Callable[[], datetime] = utc_now) -> FastAPI:
     """The service on the database and the folder that the settings name; the schema must be up to date."""
-    service = Service(settings, Storage(Database(settings.database), Files(settings.files)), clock)
+    application = Application(settings, Storage(Database(settings.database), Files(settings.files)), clock)
     app = FastAPI(
         title="imu-health",
         version=VERSION,
         description=DESCRIPTION,
         docs_url=None,
         redoc_url=None,
-        lifespan=_at_work(service),
+        lifespan=_at_work(application),
     )
-    app.state.service = service
-    api.mount(app, service.metrics)
+    app.state.application = application
+    api.mount(app, application.metrics)
     pages.mount(app)
     return app
 
 
-def _at_work(service: Service) -> Callable[[FastAPI], AbstractAsyncContextManager[None]]:
+def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncContextManager[None]]:
     """From start to stop: work is done beside the requests, and the database is closed at the end."""
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         stop = Event()
-        threads = [Thread(target=work, args=(*own, stop), name=name, daemon=True) for name, work, own in _work(service)]
+        threads = [
+            Thread(target=work, args=(*own, stop), name=name, daemon=True) for name, work, own in _work(application)
+        ]
         for thread in threads:
             thread.start()
         yield
         stop.set()
         for thread in threads:
             await run_in_threadpool(thread.join, LAST_WORK)
-        service.storage.database.close()
+        application.storage.database.close()
 
     return lifespan
 
 
-def _work(service: Service) -> Iterator[tuple[str, Callable[..., None], tuple[object, ...]]]:
+def _work(application: Application) -> Iterator[tuple[str, Callable[..., None], tuple[object, ...]]]:
     """What is done beside the requests: its name, what does it, and what that needs."""
-    storage, clock, hosts = service.storage, service.clock, service.settings.webhook_hosts
-    yield "pending diagnoses", diagnose_pending, (storage, clock, service.diagnosing)
+    storage, clock, hosts = application.storage, application.clock, application.settings.webhook_hosts
+    yield "pending diagnoses", diagnose_pending, (storage, clock, application.diagnosing)
     yield "fleet", watch_fleet, (storage, clock)
     if hosts:
         yield "outbox", deliver_until, (storage, hosts, clock)

@@ -1,6 +1,5 @@
 """What routes of the API and of the pages ask for by type."""
 
-import logging
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -10,20 +9,22 @@ from fastapi import BackgroundTasks, Depends, Request
 from starlette.types import Message
 
 from service.background.diagnose_pending import diagnose_quietly
-from service.errors import ServiceError, TooLargeError
+from service.errors import TooLargeError
 from service.flows.diagnose import InProgress, diagnose_now_or_later
+from service.flows.receive import Reception
 from service.metrics import Metrics
 from service.records.diagnosis import StoredDiagnosis
 from service.settings import Settings
 from service.storage import Storage
 from service.storage.store import Store
 
-log = logging.getLogger("imu_health")
+ENVELOPE = 64 * 1024
+"""Bytes that a form may add to its files: for each of 200 a boundary and headers of some 300."""
 
 
 @dataclass(frozen=True)
-class Service:
-    """What `create_app` joins and every request can reach, as ``app.state.service``."""
+class Application:
+    """What `create_app` joins and every request can reach, as ``app.state.application``."""
 
     settings: Settings
     storage: Storage
@@ -36,65 +37,66 @@ class Service:
 class Diagnoser:
     """Diagnoses within the request where that is quick, and after the answer where it is not."""
 
-    service: Service
+    application: Application
     after_the_answer: BackgroundTasks
 
-    def of(self, id: str, *, wait: bool = True) -> StoredDiagnosis | None:
+    def of(self, id: str) -> StoredDiagnosis | None:
         """The diagnosis of a session; None while it is being made."""
-        service = self.service
-        return diagnose_now_or_later(service.storage, id, service.clock(), self._later, wait=wait)
+        application = self.application
+        return diagnose_now_or_later(application.storage, id, application.clock(), self.later)
 
-    def after_upload(self, id: str, *, wait: bool = True) -> None:
-        """The same for a session that was just stored: whatever hinders it leaves the diagnosis pending."""
-        try:
-            self.of(id, wait=wait)
-        except ServiceError as fault:
-            log.warning("the diagnosis of session %s is pending: %s", id, fault)
-
-    def _later(self, id: str) -> None:
-        service = self.service
-        self.after_the_answer.add_task(diagnose_quietly, service.storage, id, service.clock(), service.diagnosing)
+    def later(self, id: str) -> None:
+        """Diagnoses a session after the answer."""
+        own = self.application
+        self.after_the_answer.add_task(diagnose_quietly, own.storage, id, own.clock(), own.diagnosing)
 
 
-def _service(request: Request) -> Service:
-    service: Service = request.app.state.service
-    return service
+def _application(request: Request) -> Application:
+    application: Application = request.app.state.application
+    return application
 
 
 def _settings(request: Request) -> Settings:
-    return _service(request).settings
+    return _application(request).settings
 
 
 def _storage(request: Request) -> Storage:
-    return _service(request).storage
+    return _application(request).storage
 
 
 def _metrics(request: Request) -> Metrics:
-    return _service(request).metrics
+    return _application(request).metrics
 
 
 def _now(request: Request) -> datetime:
-    return _service(request).clock()
+    return _application(request).clock()
 
 
 def _reading(request: Request) -> Iterator[Store]:
-    with _service(request).storage.database.reading() as store:
+    with _application(request).storage.database.reading() as store:
         yield store
 
 
 def _diagnoser(request: Request, after_the_answer: BackgroundTasks) -> Diagnoser:
-    return Diagnoser(_service(request), after_the_answer)
+    return Diagnoser(_application(request), after_the_answer)
 
 
-def limited(request: Request, most: int, envelope: int) -> Request:
-    """The same request, but a body that grows beyond ``most`` and its envelope is stopped, whatever it announced."""
+def _reception(request: Request, after_the_answer: BackgroundTasks) -> Reception:
+    own = _application(request)
+    later = Diagnoser(own, after_the_answer).later
+    return Reception(own.storage, own.settings.coverage_factor, own.metrics, later)
+
+
+def limited(request: Request, most: int, *, is_form: bool) -> Request:
+    """The same request, but a body that grows beyond ``most`` bytes is stopped, whatever it announced."""
+    longest = most + (ENVELOPE if is_form else 0)
     seen = 0
 
     async def counted() -> Message:
         nonlocal seen
         message = await request.receive()
         seen += len(message.get("body", b""))
-        if seen > most + envelope:
+        if seen > longest:
             raise TooLargeError(
                 f"An upload may hold {most:,} bytes at a time; this one is larger. Average or split it."
             )
@@ -111,6 +113,8 @@ MetricsOf = Annotated[Metrics, Depends(_metrics)]
 """The figures of the service."""
 DiagnoserOf = Annotated[Diagnoser, Depends(_diagnoser)]
 """What makes diagnoses."""
+ReceptionOf = Annotated[Reception, Depends(_reception)]
+"""What takes in uploads."""
 Now = Annotated[datetime, Depends(_now)]
 """The time of the request, UTC."""
 Reading = Annotated[Store, Depends(_reading, scope="function")]

@@ -25,6 +25,7 @@ from service.api.problems import add_problem_handlers
 from service.metrics import Metrics
 
 PREFIX = "/api/v1"
+"""The version of the contract is part of every address."""
 
 
 def mount(app: FastAPI, metrics: Metrics) -> None:

@@ -17,7 +17,9 @@ from service.views.correction import correction_document
 
 router = APIRouter(prefix="/sessions", tags=["handing on"])
 PDF, XML = "application/pdf", "application/xml"
+"""Media types of the two forms."""
 BYTES = {"schema": {"type": "string", "format": "binary"}}
+"""How OpenAPI describes a file."""
 
 
 @router.get(

@@ -16,9 +16,11 @@ from service.records.model import NewModel
 
 router = APIRouter(prefix="/sessions", tags=["diagnosis"])
 RETRY_AFTER = "2"
+"""Seconds: what the diagnosis of a larger session takes."""
 PENDING: dict[int | str, dict[str, Any]] = {
     202: {"model": PendingDiagnosis, "description": "Still being made; ask again after Retry-After seconds."}
 }
+"""How OpenAPI describes the answer while a diagnosis is being made."""
 
 
 @router.get("/{id}/diagnosis", responses={**PENDING, **errors(404, 422)}, response_model=DiagnosisDocument)

@@ -15,7 +15,7 @@ from service.api.schemas.fields import Serial
 from service.api.schemas.problem import errors
 from service.api.schemas.sessions import DecisionSchema, SessionSchema
 from service.dependencies import Now, Reading, SettingsOf, StorageOf
-from service.flows.annotate import add_note
+from service.flows.add_note import add_note
 from service.flows.record_service import record_service
 from service.records.event import NewService
 from service.views.found_and_left import found_and_left
@@ -42,7 +42,8 @@ def read_notes(serial: Serial, store: Reading) -> NoteList:
 @router.post("/{serial:path}/notes", status_code=201, responses=errors(400, 404, 422))
 def write_note(serial: Serial, new: NewNote, storage: StorageOf, now: Now) -> NoteSchema:
     """Keep a remark on the unit's history. It can be withdrawn, never changed."""
-    return NoteSchema.model_validate(add_note(storage, serial, new.at or now, new.text, new.by, now))
+    note = add_note(storage, serial, new.text, at=new.at or now, who=new.by, now=now)
+    return NoteSchema.model_validate(note)
 
 
 @router.get("/{serial:path}/found-and-left", responses=errors(404, 422))

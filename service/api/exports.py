@@ -12,6 +12,7 @@ from service.records.history import HistoryPoint
 from service.records.unit import UnitSummary
 
 TIME = pl.Datetime("us", "UTC")
+"""Microseconds, as both databases keep them."""
 HISTORY_COLUMNS = {
     "session": pl.String(), "at": TIME, "sensor": pl.String(), "kind": pl.String(), "parameter": pl.String(),
     "value": pl.Float64(), "u": pl.Float64(), "lower": pl.Float64(), "upper": pl.Float64(),
@@ -29,6 +30,7 @@ FLEET_COLUMNS = {
 FORMULA = r"^[=+\-@\t\r]"
 """How a cell begins that a spreadsheet would work out instead of showing."""
 NO_AXIS = (None, None, None)
+"""Of a parameter that is a number."""
 
 
 def history_table(points: Sequence[HistoryPoint]) -> pl.DataFrame:

@@ -4,14 +4,14 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from service.api.schemas.fields import Limit, Number, Page, Text, next_page
+from service.api.schemas.fields import Number, Text, WindowOf
 from service.api.schemas.flags import Handling
 from service.api.schemas.models import ModelPage, ModelSchema
 from service.api.schemas.problem import errors
 from service.dependencies import Now, Reading, StorageOf
 from service.flows.withdraw_model import withdraw_model
 from service.records.model import Scope
-from service.views.model_revisions import model_revisions
+from service.storage.queries.models import ModelQuery
 
 router = APIRouter(prefix="/models", tags=["models"])
 
@@ -25,12 +25,11 @@ def withdraw_cause(id: Number, handling: Handling, storage: StorageOf, now: Now)
 @router.get("", responses=errors(422))
 def list_models(
     store: Reading,
+    window: WindowOf,
     scope: Annotated[Scope | None, Query(description="Only models of units, of unit types or of stands.")] = None,
     subject: Annotated[Text | None, Query(description="Only of this unit, unit type or stand.")] = None,
-    page: Page = 1,
-    limit: Limit = 100,
 ) -> ModelPage:
     """Accepted causes, newest first."""
-    found = model_revisions(store, scope=scope, subject=subject, page=page, limit=limit)
+    found = store.models.page(ModelQuery(scope, subject, window.offset, window.limit))
     listed = [ModelSchema.model_validate(revision) for revision in found]
-    return ModelPage(models=listed, page=page, limit=limit, next_page=next_page(page, limit, len(listed)))
+    return ModelPage(models=listed, page=window.page, limit=window.limit, next_page=window.next_after(len(listed)))

@@ -7,7 +7,7 @@ from service.api.schemas.fields import Number
 from service.api.schemas.flags import Handling
 from service.api.schemas.problem import errors
 from service.dependencies import Now, StorageOf
-from service.flows.annotate import withdraw_note
+from service.flows.withdraw_note import withdraw_note
 
 router = APIRouter(prefix="/notes", tags=["units"])
 

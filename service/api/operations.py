@@ -10,23 +10,23 @@ from service.dependencies import MetricsOf, StorageOf
 router = APIRouter(tags=["operations"])
 
 
-class State(BaseModel):
+class ServiceState(BaseModel):
     """The state of the service."""
 
     status: str = Field(description="`ok` when it is alive, `ready` when it can answer.")
 
 
 @router.get("/healthz")
-def health() -> State:
+def health() -> ServiceState:
     """Liveness: the process answers."""
-    return State(status="ok")
+    return ServiceState(status="ok")
 
 
 @router.get("/readyz", responses=errors())
-def readiness(storage: StorageOf) -> State:
+def readiness(storage: StorageOf) -> ServiceState:
     """Readiness: the database answers and its schema is the one this version needs."""
     storage.database.require_ready()
-    return State(status="ready")
+    return ServiceState(status="ready")
 
 
 @router.get("/metrics", responses={200: {"content": {"text/plain": {}}}}, response_class=Response)

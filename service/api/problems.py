@@ -14,8 +14,11 @@ from estimator.errors import Problem
 from service.errors import AwayError, RefusedError, ServiceError
 
 MEDIA_TYPE = "application/problem+json"
+"""RFC 9457."""
 UNEXPECTED = "Something went wrong that should not have. It was logged; nothing was stored half."
+"""Says nothing of the cause, which may hold what others must not read; the log has it."""
 BODY_PARTS = ("body", "query", "path", "header")
+"""What FastAPI puts before the name of a field."""
 log = logging.getLogger("imu_health")
 
 

@@ -1,6 +1,5 @@
 """What came with an upload: the bytes unchanged, however they were sent, and never more than the limit."""
 
-from dataclasses import dataclass
 from typing import Annotated, Any
 
 from fastapi import Depends, Request
@@ -10,39 +9,31 @@ from estimator.errors import Problem
 from service.api.schemas.sessions import SessionFile
 from service.dependencies import SettingsOf, limited
 from service.errors import RefusedError
+from service.records.received import SentFile
 
-ENVELOPE = 64 * 1024
-"""Bytes that a multipart envelope may add to the file."""
 NO_FILE = "The form holds no file. Send the session as the body, or as the form's part `file`."
 
 
-@dataclass(frozen=True)
-class ReceivedFile:
-    """An uploaded file."""
-
-    content: bytes
-    filename: str
-
-
-async def _received(request: Request, settings: SettingsOf) -> ReceivedFile:
+async def _received(request: Request, settings: SettingsOf) -> SentFile:
     """The file, from the body or from the part `file` of a form."""
     content_type = request.headers.get("content-type", "").lower()
     is_form = content_type.startswith("multipart/form-data")
-    body = limited(request, settings.max_upload_bytes, ENVELOPE if is_form else 0)
+    body = limited(request, settings.max_upload_bytes, is_form=is_form)
     if is_form:
         return await _from_form(body)
-    return ReceivedFile(await body.body(), "upload.csv" if "csv" in content_type else "upload.json")
+    return SentFile("upload.csv" if "csv" in content_type else "upload.json", await body.body())
 
 
-async def _from_form(request: Request) -> ReceivedFile:
+async def _from_form(request: Request) -> SentFile:
     async with request.form(max_files=1, max_fields=10) as form:
         file = form.get("file")
         if not isinstance(file, UploadFile):
             raise RefusedError(NO_FILE, (Problem("file", "is missing from the form"),))
-        return ReceivedFile(await file.read(), file.filename or "upload")
+        return SentFile(file.filename or "upload", await file.read())
 
 
-Received = Annotated[ReceivedFile, Depends(_received)]
+FileOf = Annotated[SentFile, Depends(_received)]
+"""The uploaded file."""
 
 REQUEST_BODY: dict[str, Any] = {
     "requestBody": {

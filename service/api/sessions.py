@@ -4,9 +4,9 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 
-from service.api.received import REQUEST_BODY, Received
+from service.api.received import REQUEST_BODY, FileOf
 from service.api.schemas.events import NewStage
-from service.api.schemas.fields import Limit, Page, Revision, SessionId, Text, next_page
+from service.api.schemas.fields import Revision, SessionId, Text, WindowOf
 from service.api.schemas.problem import errors
 from service.api.schemas.sessions import (
     CalibrationDocument,
@@ -17,14 +17,13 @@ from service.api.schemas.sessions import (
     SessionReportSchema,
     SessionSchema,
 )
-from service.dependencies import DiagnoserOf, MetricsOf, Now, Reading, SettingsOf, StorageOf
-from service.flows.receive import upload
+from service.dependencies import Now, Reading, ReceptionOf, StorageOf
+from service.flows.receive import receive
 from service.flows.set_stage import set_stage
-from service.views.session_decisions import session_decisions
-from service.views.session_list import session_list
 
 router = APIRouter(prefix="/sessions", tags=["sessions"])
 ANY_BYTES = {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}}
+"""How OpenAPI describes a file."""
 
 
 @router.post(
@@ -34,19 +33,10 @@ ANY_BYTES = {"application/octet-stream": {"schema": {"type": "string", "format":
     openapi_extra=REQUEST_BODY,
 )
 def upload_session(
-    request: Request,
-    response: Response,
-    received: Received,
-    storage: StorageOf,
-    settings: SettingsOf,
-    now: Now,
-    diagnoser: DiagnoserOf,
-    metrics: MetricsOf,
+    request: Request, response: Response, file: FileOf, reception: ReceptionOf, now: Now
 ) -> ReceiptSchema:
     """Upload a session file: it is checked, calibrated, judged, stored, diagnosed. The same bytes are stored once."""
-    receipt = upload(storage, received.content, received.filename, now, coverage_factor=settings.coverage_factor)
-    diagnoser.after_upload(receipt.id)
-    metrics.count_upload(receipt)
+    receipt = receive(reception, file, now)
     url = str(request.url_for("read_session", id=receipt.id))
     response.status_code = 201 if receipt.created else 200
     response.headers["Location"] = url
@@ -56,22 +46,21 @@ def upload_session(
 @router.get("", responses=errors(422))
 def list_sessions(
     store: Reading,
+    window: WindowOf,
     unit: Annotated[Text | None, Query(description="Only sessions of this serial number.")] = None,
-    page: Page = 1,
-    limit: Limit = 100,
 ) -> SessionPage:
     """Sessions, newest measurement first."""
-    found = session_list(store, unit=unit, page=page, limit=limit)
+    found = store.sessions.page(unit, window.offset, window.limit)
     listed = [SessionSchema.model_validate(session) for session in found]
-    return SessionPage(sessions=listed, page=page, limit=limit, next_page=next_page(page, limit, len(listed)))
+    return SessionPage(sessions=listed, page=window.page, limit=window.limit, next_page=window.next_after(len(listed)))
 
 
 @router.get("/{id}", responses=errors(404, 422))
 def read_session(id: SessionId, store: Reading) -> SessionReportSchema:
     """One session with the decision on every parameter."""
-    session, decisions, motions = session_decisions(store, id)
-    judged = [DecisionSchema.model_validate(decision) for decision in decisions]
-    together = [CommonMotionSchema.model_validate(motion) for motion in motions]
+    session = store.sessions.get(id)
+    judged = [DecisionSchema.model_validate(decision) for decision in store.sessions.decisions(id)]
+    together = [CommonMotionSchema.model_validate(motion) for motion in store.sessions.motions(id)]
     return SessionReportSchema(**vars(session), decisions=judged, common_motion=together)
 
 

@@ -4,28 +4,29 @@ from dataclasses import fields
 
 from fastapi import APIRouter
 
-from service.api.schemas.fields import Limit, Page, TypeName, next_page
+from service.api.schemas.fields import TypeName, WindowOf
 from service.api.schemas.problem import errors
 from service.api.schemas.units import NewTolerances, TolerancesSchema, UnitTypePage, UnitTypeSchema
 from service.dependencies import Now, Reading, StorageOf
 from service.flows.set_tolerances import set_tolerances
 from service.records.unit import Tolerances
-from service.views.unit_types import unit_type, unit_types
 
 router = APIRouter(prefix="/unit-types", tags=["unit types"])
 
 
 @router.get("", responses=errors(422))
-def list_unit_types(store: Reading, page: Page = 1, limit: Limit = 100) -> UnitTypePage:
+def list_unit_types(store: Reading, window: WindowOf) -> UnitTypePage:
     """Unit types, by name."""
-    listed = [UnitTypeSchema.model_validate(found) for found in unit_types(store, page=page, limit=limit)]
-    return UnitTypePage(unit_types=listed, page=page, limit=limit, next_page=next_page(page, limit, len(listed)))
+    listed = [UnitTypeSchema.model_validate(found) for found in store.unit_types.page(window.offset, window.limit)]
+    return UnitTypePage(
+        unit_types=listed, page=window.page, limit=window.limit, next_page=window.next_after(len(listed))
+    )
 
 
 @router.get("/{name:path}", responses=errors(404, 422))
 def read_unit_type(name: TypeName, store: Reading) -> UnitTypeSchema:
     """One unit type with the tolerances that hold now."""
-    return UnitTypeSchema.model_validate(unit_type(store, name))
+    return UnitTypeSchema.model_validate(store.unit_types.get(name))
 
 
 @router.put("/{name:path}", responses=errors(400, 404, 422))

@@ -1,29 +1,18 @@
 """Units: their condition, history and known breaks."""
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 
 from service.api.exports import as_csv, as_parquet, history_table
 from service.api.flags import WantedState, flag_page
-from service.api.schemas.fields import (
-    Limit,
-    Moment,
-    Page,
-    Revision,
-    Serial,
-    Text,
-    WantedText,
-    WantedVerdict,
-    next_page,
-)
+from service.api.schemas.fields import Moment, Serial, WantedText, WantedVerdict, WindowOf
 from service.api.schemas.flags import FlagPage
+from service.api.schemas.history import HistoryAsked, HistoryPage, HistoryPointSchema
 from service.api.schemas.models import RecalibratedSchema
 from service.api.schemas.outlook import OutlookSchema
 from service.api.schemas.problem import errors
 from service.api.schemas.units import (
-    HistoryPage,
-    HistoryPointSchema,
     NewLot,
     UnitPage,
     UnitReportSchema,
@@ -33,25 +22,22 @@ from service.dependencies import Now, Reading, SettingsOf, StorageOf
 from service.flows.recalibrate import recalibrate
 from service.flows.set_lot import set_lot
 from service.records.outlook import RiskPoint
-from service.views.fleet import fleet_overview
-from service.views.history import unit_history
+from service.storage.queries.fleet import FleetQuery
 from service.views.outlook import outlook_of
 from service.views.unit_report import unit_report
 
 router = APIRouter(prefix="/units", tags=["units"])
 TABLE = {"type": "string", "format": "binary"}
+"""How OpenAPI describes a table."""
 HISTORY_FORMATS = {"text/csv": {"schema": TABLE}, "application/vnd.apache.parquet": {"schema": TABLE}}
-Parameter = Literal["scale", "bias", "quadratic", "axis", "misalignment"]
 
 
 @router.get("", responses=errors(422))
-def list_units(
-    store: Reading, verdict: WantedVerdict = None, text: WantedText = None, page: Page = 1, limit: Limit = 100
-) -> UnitPage:
+def list_units(store: Reading, window: WindowOf, verdict: WantedVerdict = None, text: WantedText = None) -> UnitPage:
     """Units, worst first."""
-    found = fleet_overview(store, verdict=verdict, text=text, page=page, limit=limit)
+    found = store.fleet.units(FleetQuery(verdict, text, window.offset, window.limit))
     listed = [UnitSummarySchema.model_validate(unit) for unit in found]
-    return UnitPage(units=listed, page=page, limit=limit, next_page=next_page(page, limit, len(listed)))
+    return UnitPage(units=listed, page=window.page, limit=window.limit, next_page=window.next_after(len(listed)))
 
 
 @router.get(
@@ -59,52 +45,28 @@ def list_units(
     responses={200: {"content": HISTORY_FORMATS}, **errors(404, 422)},
     response_model=HistoryPage,
 )
-def read_history(
-    request: Request,
-    serial: Serial,
-    store: Reading,
-    parameter: Annotated[Parameter | None, Query(description="Only this parameter.")] = None,
-    sensor: Annotated[Text | None, Query(description="Only this sensor.")] = None,
-    since: Annotated[Moment | None, Query(description="Measured at or after this time.")] = None,
-    until: Annotated[Moment | None, Query(description="Measured before this time.")] = None,
-    format: Annotated[Literal["json", "csv", "parquet"], Query(description="Form of the answer.")] = "json",
-    revision: Revision = None,
-    page: Page = 1,
-    limit: Annotated[int, Query(ge=1, le=50_000, description="How many points on a page.")] = 10_000,
-) -> Response:
+def read_history(request: Request, serial: Serial, store: Reading, asked: Annotated[HistoryAsked, Query()]) -> Response:
     """The parameters through time, oldest first: value, uncertainty, band, tolerance and verdict of every point.
 
     A table (CSV, Parquet) that is not the last has a `Link` header to the next.
     """
-    found = unit_history(
-        store,
-        serial,
-        parameter=parameter,
-        sensor=sensor,
-        since=since,
-        until=until,
-        revision=revision,
-        page=page,
-        limit=limit,
-    )
-    following = next_page(page, limit, len(found))
-    if format == "json":
+    found = store.history.points(store.units.key(serial), asked.query)
+    following = asked.window.next_after(len(found))
+    if asked.format == "json":
         points = [HistoryPointSchema.model_validate(point) for point in found]
-        answer = HistoryPage(unit=serial, points=points, page=page, limit=limit, next_page=following)
+        answer = HistoryPage(unit=serial, points=points, page=asked.page, limit=asked.limit, next_page=following)
         return Response(answer.model_dump_json(), media_type="application/json")
-    write = as_csv if format == "csv" else as_parquet
-    table = write(history_table(found), f"{serial}-history.{format}")
+    write = as_csv if asked.format == "csv" else as_parquet
+    table = write(history_table(found), f"{serial}-history.{asked.format}")
     if following is not None:
         table.headers["Link"] = f'<{request.url.include_query_params(page=following)}>; rel="next"'
     return table
 
 
 @router.get("/{serial:path}/flags", responses=errors(404, 422))
-def read_flags(
-    serial: Serial, store: Reading, state: WantedState = None, page: Page = 1, limit: Limit = 100
-) -> FlagPage:
+def read_flags(serial: Serial, store: Reading, window: WindowOf, state: WantedState = None) -> FlagPage:
     """The unit's flags with their lives, open ones first."""
-    return flag_page(store, serial, state, page, limit)
+    return flag_page(store, serial, state, window)
 
 
 @router.get("/{serial:path}/outlook", responses=errors(404, 422))

@@ -8,7 +8,8 @@ from service.api.schemas.fields import Limit, Name, Number
 from service.api.schemas.problem import errors
 from service.api.schemas.webhooks import DeliveryList, DeliverySchema, NewWebhook, WebhookList, WebhookSchema
 from service.dependencies import Now, Reading, SettingsOf, StorageOf
-from service.flows.webhooks import add_webhook, remove_webhook
+from service.flows.register_webhook import register_webhook as register
+from service.flows.remove_webhook import remove_webhook
 
 router = APIRouter(prefix="/webhooks", tags=["webhooks"])
 
@@ -22,7 +23,7 @@ def list_webhooks(store: Reading) -> WebhookList:
 @router.post("", status_code=201, responses=errors(400, 422))
 def register_webhook(new: NewWebhook, storage: StorageOf, settings: SettingsOf, now: Now) -> WebhookSchema:
     """Tell an address of flags and verdicts from now on. Its host must be among those that the operator allows."""
-    webhook = add_webhook(storage, settings.webhook_hosts, new.url, new.secret, new.by, now)
+    webhook = register(storage, settings.webhook_hosts, new.url, new.secret, who=new.by, now=now)
     return WebhookSchema.model_validate(webhook)
 
 

@@ -14,9 +14,10 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from estimator.errors import Problem, SessionError
 from service.errors import RefusedError
 
-DONE = 0
 FAILED = 1
+"""Exit code where what was asked for could not be done."""
 UNUSABLE = 2
+"""Exit code where a file or an argument cannot be used; typer's own is the same."""
 
 T = TypeVar("T")
 
@@ -27,6 +28,7 @@ Out = Annotated[Path | None, typer.Option(help="File to write.", show_default="s
 WIDE = 160
 """Columns of a table that goes to a file or another program."""
 DEFAULT_SERVER = "http://127.0.0.1:8000"
+"""Where `imu-health serve` listens unless it is told otherwise."""
 
 
 def screen() -> Console:

@@ -11,6 +11,7 @@ from service.commands.console import UNUSABLE, say
 from service.ingest.convert import FORMATS, convert
 
 FORMAT_HELP = "\n\n".join(f"* `{f.name}`: {f.description} Files: {f.files}" for f in FORMATS)
+"""The list of formats in the help."""
 
 
 def convert_files(

@@ -19,6 +19,7 @@ def record(
     kind: Annotated[str, typer.Argument(help="adjustment, repair, sensor-swap, reference or service.")],
     by: By,
     at: At = None,
+    *,
     sensor: Annotated[str, typer.Option(help="The sensor that it concerns.", show_default="the whole unit")] = "",
     note: Annotated[str, typer.Option(help="What exactly.")] = "",
     server: Server = DEFAULT_SERVER,

@@ -11,6 +11,7 @@ from service.commands.console import DEFAULT_SERVER, AsJson, Server, print_json,
 from service.records.flag import FlagState
 
 COLOURS = {FlagState.RAISED: "red", FlagState.ACKNOWLEDGED: "yellow", FlagState.RESOLVED: "green"}
+"""Red asks for somebody."""
 flags = typer.Typer(
     name="flags",
     add_completion=False,

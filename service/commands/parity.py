@@ -19,6 +19,7 @@ from service.measures import in_words
 from service.words.in_service import found_in_words
 
 PARAMETERS = ("bias", "scale", "axis")
+"""What a recording in service shows, the most frequent change first."""
 
 File = Annotated[Path, typer.Argument(metavar="FILE", help="The recording.", show_default=False)]
 Reference = Annotated[Path, typer.Option(help="Session file of the calibration to compare with.", show_default=False)]

@@ -31,7 +31,9 @@ from service.words.plan import (
 )
 
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
+"""In the order of the table."""
 MOST_ORIENTATIONS = 200
+"""That can be asked for: nobody turns a block by hand more often."""
 
 
 def plan_session(
@@ -41,6 +43,7 @@ def plan_session(
             metavar="SESSION", help="Session whose block, stand and noise to plan with.", show_default=False
         ),
     ] = None,
+    *,
     kind: Annotated[str, typer.Option(help="Without SESSION: accelerometer or gyroscope.")] = "accelerometer",
     sensors: Annotated[int, typer.Option("--sensors", "-m", help="Without SESSION: sensors on a cone.")] = 6,
     alpha: Annotated[

@@ -9,9 +9,10 @@ from service.commands.console import AsJson, print_json, progress, screen
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.flows.recalibrate import Recalibrated, recalibrate
 from service.storage import Database, Files, Storage
-from service.views.fleet import fleet_overview
+from service.storage.queries.fleet import FleetQuery
 
 PAGE = 1000
+"""Serial numbers that one query brings."""
 Units = Annotated[
     list[str] | None, typer.Argument(metavar="[UNIT]…", help="Serial numbers; all units if none is given.")
 ]
@@ -37,7 +38,7 @@ def _all_units(storage: Storage) -> list[str]:
     """Every serial number."""
     found: list[str] = []
     with storage.database.reading() as store:
-        while len(page := fleet_overview(store, page=len(found) // PAGE + 1, limit=PAGE)) == PAGE:
+        while len(page := store.fleet.units(FleetQuery(offset=len(found), limit=PAGE))) == PAGE:
             found += [unit.serial for unit in page]
     return found + [unit.serial for unit in page]
 

@@ -30,13 +30,19 @@ from service.demo.changes import ELEMENT, MICRO, Change, step_of
 from service.demo.other_programmes import alignment, rate_table, recording, turntable_truth
 
 FIRST_SESSION = datetime(2026, 1, 12, 9, 0, tzinfo=UTC)
+"""Fixed, so that the same seed gives the same files."""
 INTERVAL = timedelta(days=60)
+"""From one session to the next: two months, as the help says."""
 FLIGHT_AFTER = timedelta(days=30)
 """From a calibration to the recording in service that follows it."""
 SIMULATED = (TWO_AXIS_STAND, IN_SERVICE, ROTATION_ALIGNMENT, RATE_TABLE)
+"""Programmes that can be simulated."""
 ON_TURNTABLE = (ROTATION_ALIGNMENT, RATE_TABLE)
+"""Programmes of a turntable, which has no two-axis stand's geometry."""
 STAND_ERRORS = ("theta_x", "theta_y", "alpha")
+"""That stay the same over a session and are told with the truth."""
 DRIFT = re.compile(r"A(?P<sensor>\d+)\.(?P<parameter>\w+)=(?P<amount>[-+]?\d+(\.\d*)?)")
+"""SENSOR.PARAMETER=AMOUNT."""
 
 
 @dataclass(frozen=True)
@@ -63,6 +69,7 @@ def safe_name(unit: str) -> str:
 
 
 def simulate_files(
+    *,
     out: Annotated[Path, typer.Option(help="Folder to write the session files to.")] = Path(),
     unit: Annotated[str, typer.Option(help="Serial number of the unit.")] = "SIM-001",
     sensors: Annotated[int, typer.Option("--sensors", "-m", min=3, max=48, help="Accelerometers on the cone.")] = 6,

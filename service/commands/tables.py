@@ -14,8 +14,11 @@ from service.measures import deviation_measure, in_measure, measured, number
 from service.words.advice import what_to_add
 
 UNSEEN = "not observable"
+"""Stands for a value that the session does not show."""
 UNLIKELY = 0.001
+"""p-value of a fit below which it is shown as bad."""
 DOUBTFUL = 0.05
+"""p-value of a fit below which it is shown as doubtful."""
 
 
 def calibration_view(session: CalibrationSession, calibration: Calibration) -> RenderableType:

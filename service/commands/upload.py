@@ -17,6 +17,7 @@ COLOURS = {
     Verdict.CONDITIONAL_FAIL: "dark_orange",
     Verdict.FAIL: "red",
 }
+"""Of the verdicts, as on the pages."""
 
 
 def upload_files(files: Files, server: Server = DEFAULT_SERVER, as_json: AsJson = False) -> None:

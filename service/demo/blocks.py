@@ -12,6 +12,7 @@ from estimator.simulate import cone, stand_schedule
 CONE_HALF_ANGLE = float(np.arccos(1 / np.sqrt(3)))
 """54.7°: three of the axes are orthogonal."""
 SITE = Site(latitude=float(np.radians(55.81)), height=160.0)
+"""55.81° north, 160 m: as in the example of the documentation."""
 ACCELEROMETER_SCALE = 0.12
 """V per m/s²."""
 GYRO_SCALE = 1 / (0.6 * ARCSEC)
@@ -19,6 +20,7 @@ GYRO_SCALE = 1 / (0.6 * ARCSEC)
 COUNT_TIME = 100.0
 """s."""
 MICRO_G = 9.80665e-6
+"""m/s², at standard gravity."""
 BIAS_REPEATABILITY = {ACCELEROMETER: 2e-5 / 3 * STANDARD_GRAVITY, GYROSCOPE: 0.04 / 3 * np.pi / 180 / 3600}
 """One sigma of the zero from position to position: 2e-5 g and 0.04 °/h are three."""
 STAND_SIGMA = StandErrors(

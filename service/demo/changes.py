@@ -11,6 +11,7 @@ from estimator.session import ACCELEROMETER, Array
 ELEMENT = {"scale": 0, "bias": 1, "quadratic": 2, "axis": 3}
 """Place in the step of five; an axis turns along its first tangent."""
 MICRO = 1e-6
+"""ppm, µg and µg/g² in parts of one."""
 DEGREE_PER_HOUR = np.pi / 180 / 3600 / EARTH_RATE
 """One °/h as a fraction of the Earth's rate."""
 

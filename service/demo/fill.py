@@ -7,7 +7,7 @@ from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.demo.cast import CAST, START, Handled, Intervention, Member, Remark
 from service.demo.history import files_of
 from service.demo.types import unit_type
-from service.flows.annotate import add_note
+from service.flows.add_note import add_note
 from service.flows.diagnose import diagnose
 from service.flows.handle_flag import acknowledge_flag, resolve_flag
 from service.flows.receive import upload
@@ -15,20 +15,21 @@ from service.flows.record_service import record_service
 from service.records.event import NewService
 from service.records.flag import FlagState, Matter
 from service.storage import Storage
-from service.views.fleet_condition import fleet_condition
 
 UPLOADED_AFTER = timedelta(hours=3)
 """From the session to its upload; the demonstration has its own clock, so that it is always the same."""
 WHO = "demonstration"
+"""Signs every upload of the demonstration."""
 Done = Intervention | Handled | Remark
 """What people do between sessions."""
 FILES = sum(member.files for member in CAST)
+"""Sessions of the whole fleet."""
 
 
 def is_wanted(storage: Storage) -> bool:
     """Whether the database is empty, or holds nothing but a demonstration whose filling was interrupted."""
     with storage.database.reading() as store:
-        found = fleet_condition(store)
+        found = store.fleet.condition()
     return found.units == found.simulated < len(CAST)
 
 
@@ -65,7 +66,7 @@ def _do(storage: Storage, serial: str, done: Done) -> None:
         case Handled():
             _handle(storage, serial, done)
         case Remark():
-            add_note(storage, serial, done.at, done.text, done.who, done.at)
+            add_note(storage, serial, done.text, at=done.at, who=done.who, now=done.at)
 
 
 def _handle(storage: Storage, serial: str, done: Handled) -> None:

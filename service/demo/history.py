@@ -22,10 +22,14 @@ from service.demo.types import SENSORS, TYPE_NAME
 from service.words.names import YEAR
 
 SEED = 20261112
+"""Fixed, so that the demonstration is always the same."""
 STANDS = ("ODG-1", "ODG-2", "ODG-3")
+"""Invented, as the operators are."""
 OPERATORS = ("A. Lindqvist", "K. Ito", "M. Okafor", "R. Duarte")
 POSITIONS = (12, 24)
+"""A run: a short session and a full one."""
 ELEVATION_DEG = 40.0
+"""Of the head, degrees; `imu-health simulate` takes the same."""
 NOISE = {ACCELEROMETER: 3e-6, GYROSCOPE: 0.3}
 """One sigma of an averaged reading: V; pulses."""
 WANDER = {
@@ -37,10 +41,13 @@ TURNED_STAND, TURNED_AT = "ODG-3", START + 2.2 * YEAR
 TURN = np.array([4.0, -7.0, 11.0]) * ARCSEC
 """By which the seat of that stand has turned every block since then: nobody noticed."""
 FLOWN_AFTER = timedelta(days=8, hours=3)
+"""From a calibration to the recording in service."""
 TURNTABLE_TYPE = "RT-3"
+"""Of the unit that is aligned on a turntable."""
 AROUND_SERVICE = timedelta(days=4)
 """From a session as found to the service, and from there to the session as left."""
 NOTES = "Simulated session of the demonstration fleet."
+"""In every file, so that none passes for a measurement."""
 
 
 @dataclass(frozen=True)

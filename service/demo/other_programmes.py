@@ -19,14 +19,19 @@ from estimator.session import Array, CalibrationSession, Sensor
 from service.demo.blocks import MICRO_G, SITE
 
 STOPS = Programme(dwell=200.0, row=1.0)
+"""Seconds: 200 at rest a stop, one a row."""
 TURNTABLE = Imperfections(wobble=0.3 * ARCSEC, table=0.3 * ARCSEC)
+"""A good one: 0.3″."""
 TURNS = ((0.5, 80.0), (-0.5, 80.0))
 """Six whole turns each way: rad/s and s."""
 MOUNTING = (4 * ARCSEC, 8 * ARCSEC)
 """E_xz, E_yz of the published simulation."""
 DEGREE_PER_HOUR = np.pi / 180 / 3600
+"""rad/s."""
 FLIGHT_SECONDS, FLIGHT_RATE = 240.0, 10.0
+"""Four minutes; readings a second."""
 FLIGHT = Weather(noise=5 * MICRO_G, vibration=0.2)
+"""Noise of a reading, m/s², and vibration."""
 
 
 def turntable_truth(zeros: Array, drifts: Array, rng: np.random.Generator) -> Truth:

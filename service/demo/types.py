@@ -9,7 +9,9 @@ from service.demo.blocks import sensors_of
 from service.records.unit import Tolerances, UnitType
 
 SENSORS = 6
+"""On every cone, as in the published block."""
 TYPE_NAME = {ACCELEROMETER: "RA-6", GYROSCOPE: "RG-6"}
+"""By kind of sensor."""
 TOLERANCES = {
     ACCELEROMETER: Tolerances(
         scale=100e-6, bias=50e-6 * STANDARD_GRAVITY, quadratic=40e-6 / STANDARD_GRAVITY, axis=20 * ARCSEC

@@ -12,6 +12,7 @@ from service.records.session import StoredSession
 from service.storage import Storage
 
 EVIDENCE = ("p_value", "strength", "amplitude", "sigma", "units", "nonlinear", "alternatives", "sentence")
+"""What a revision keeps of the finding that it rests on."""
 
 
 def accept_model(storage: Storage, diagnosis: StoredDiagnosis, new: NewModel, now: datetime) -> ModelRevision:

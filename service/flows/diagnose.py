@@ -19,6 +19,7 @@ from service.errors import NotFoundError
 from service.flows.flagging.diagnosis import flag_diagnosis
 from service.ingest import read_upload
 from service.judging.judge import judge
+from service.judging.reference import reference_of
 from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState, StoredDiagnosis
 from service.records.session import StoredSession
@@ -181,10 +182,9 @@ def _verdict_after(storage: Storage, task: Task, session: CalibrationSession, fo
         return None
     with storage.database.reading() as store:
         unit = store.units.key(session.unit)
-        since, until = store.services.around(unit, task.session.started_at)
-        reference = store.sessions.reference(unit, session.block, since, until)
-        if reference is None or reference == task.session.id:
+        reference = reference_of(store, unit, session.block, session.programme, task.session.started_at).session
+        if reference is None:
             return None
         unit_type, known = store.unit_types.of_unit(session.unit), store.calibrations.get(reference)
         factor = store.sessions.decisions(task.session.id)[0].coverage_factor
-    return judge(session, found.calibration, known, unit_type, factor).verdict
+    return judge(found.calibration, known, unit_type, factor).verdict

@@ -7,6 +7,7 @@ from service.records.flag import Flag, FlagState, NoticeKind
 from service.storage import Storage
 
 DONE = {FlagState.ACKNOWLEDGED: NoticeKind.ACKNOWLEDGED, FlagState.RESOLVED: NoticeKind.RESOLVED}
+"""What the flag's life keeps of each."""
 POSSIBLE = {
     FlagState.ACKNOWLEDGED: (FlagState.RAISED,),
     FlagState.RESOLVED: (FlagState.RAISED, FlagState.ACKNOWLEDGED),
@@ -16,15 +17,15 @@ POSSIBLE = {
 
 def acknowledge_flag(storage: Storage, id: int, who: str, why: str, now: datetime) -> Flag:
     """Somebody has seen the flag and looks after it; ConflictError where that was said before."""
-    return _bring(storage, id, FlagState.ACKNOWLEDGED, who, why, now)
+    return _bring(storage, id, FlagState.ACKNOWLEDGED, who=who, why=why, now=now)
 
 
 def resolve_flag(storage: Storage, id: int, who: str, why: str, now: datetime) -> Flag:
     """The matter is settled; ConflictError where it was before. Shown again by a later session it is a new flag."""
-    return _bring(storage, id, FlagState.RESOLVED, who, why, now)
+    return _bring(storage, id, FlagState.RESOLVED, who=who, why=why, now=now)
 
 
-def _bring(storage: Storage, id: int, state: FlagState, who: str, why: str, now: datetime) -> Flag:
+def _bring(storage: Storage, id: int, state: FlagState, *, who: str, why: str, now: datetime) -> Flag:
     with storage.database.writing() as store:
         unit = store.units.hold(store.flags.unit_of(id))
         flag = store.flags.get(id)

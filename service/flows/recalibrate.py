@@ -5,16 +5,16 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from estimator.errors import SessionError
-from estimator.results import Calibration
-from estimator.session import IN_SERVICE, RATE_TABLE, ROTATION_ALIGNMENT, CalibrationSession, comparable
+from estimator.session import RATE_TABLE, ROTATION_ALIGNMENT
+from service.flows.flagging.settle import Occasion
 from service.flows.flagging.verdict import flag_verdict
+from service.flows.keep import keep
 from service.flows.refresh_outlook import refresh_outlook
 from service.ingest import read_upload
-from service.judging.in_service import Compared, compared, judge_recording, reference_in_force
-from service.judging.judge import judge
-from service.judging.model_in_force import calibrated, model_of
-from service.judging.parameter_values import parameter_values
-from service.records.decision import Judged
+from service.ingest.checked import as_checked
+from service.judging.calibrate import Calibrated, basis_of, calibrate
+from service.judging.judge import judge_in_epoch
+from service.judging.model_in_force import model_of
 from service.records.model import Model
 from service.records.session import StoredSession
 from service.storage import Storage
@@ -23,6 +23,7 @@ from service.storage.store import Store
 WITHOUT_MODEL = (ROTATION_ALIGNMENT, RATE_TABLE)
 """Programmes that no accepted cause changes."""
 RECOMPUTED, UNCHANGED, LEFT = "recomputed", "unchanged", "left"
+"""What can become of a session."""
 
 
 @dataclass(frozen=True)
@@ -38,18 +39,6 @@ class Recalibrated:
     """Sessions that cannot be calibrated under it; they keep what they have."""
     revision: int
     """The latest revision that any of them rests on."""
-
-
-@dataclass(frozen=True)
-class Recomputed:
-    """A stored session with its calibration under another model."""
-
-    stored: StoredSession
-    session: CalibrationSession
-    model: Model
-    calibration: Calibration
-    recording: Compared | None
-    """A recording in service beside its unit's reference as it is now; None for every other programme."""
 
 
 def recalibrate(
@@ -77,7 +66,8 @@ def _settle_flags(store: Store, serial: str, now: datetime) -> None:
     unit = store.units.hold(serial)
     was = store.fleet.refresh(unit)
     latest = was.last_session
-    flag_verdict(store, unit, store.sessions.get(latest), store.sessions.decisions(latest), was, now)
+    occasion = Occasion(unit, latest, now)
+    flag_verdict(store, occasion, store.sessions.get(latest), store.sessions.decisions(latest), was)
 
 
 def _recalibrate(
@@ -93,50 +83,29 @@ def _recalibrate(
     except SessionError:
         return LEFT, stored.revision
     with storage.database.writing() as store:
-        _store(store, new, now, coverage_factor, who)
+        _put_in_force(store, stored, new, coverage_factor, who=who, now=now)
     return RECOMPUTED, model.revision
 
 
-def _recomputed(storage: Storage, stored: StoredSession, model: Model) -> Recomputed:
+def _recomputed(storage: Storage, stored: StoredSession, model: Model) -> Calibrated:
     """The stored bytes read and computed again; a recording is compared with the reference that was computed again."""
     session = read_upload(storage.files.read(stored.sha256), stored.filename)
-    if session.programme != IN_SERVICE:
-        return Recomputed(stored, session, model, calibrated(session, model), None)
+    checked = as_checked(session, stored.started_at)
     with storage.database.reading() as store:
-        reference = reference_in_force(store, session, stored.started_at)
-    recording = compared(session, reference)
-    return Recomputed(stored, session, model, recording.calibration, recording)
+        basis = basis_of(store, checked, model)
+    return calibrate(checked, basis)
 
 
-def _store(store: Store, new: Recomputed, now: datetime, coverage_factor: float, who: str) -> None:
+def _put_in_force(
+    store: Store, stored: StoredSession, new: Calibrated, coverage_factor: float, *, who: str, now: datetime
+) -> None:
     """Another calibration with its decisions beside the ones before, in force from now on."""
-    unit, id, revision = store.units.hold(new.stored.unit), new.stored.id, new.model.revision
+    unit, id, revision = store.units.hold(stored.unit), stored.id, new.model.revision
     current = store.sessions.get(id)
     if current.revision >= revision:
         return
-    judged = _judged(store, unit, new, coverage_factor)
-    store.calibrations.add(id, revision, judged, now)
+    judged = judge_in_epoch(store, unit, new, coverage_factor, is_reference=stored.is_reference)
     store.sessions.put_in_force(id, revision, judged)
-    store.history.add(unit, store.sessions.get(id), parameter_values(new.calibration))
-    store.sessions.add_decisions(id, judged.decisions, revision)
-    store.sessions.add_motions(id, judged.motions, revision)
+    keep(store, unit, store.sessions.get(id), judged, now)
     details = {"revision": revision, "verdict": judged.verdict.value, "before": current.verdict.value}
     store.log.audit(now, who, "recalibrate", id, details)
-
-
-def _judged(store: Store, unit: int, new: Recomputed, coverage_factor: float) -> Judged:
-    if new.recording is not None:
-        unit_type = store.unit_types.of_unit(new.session.unit)
-        return judge_recording(new.session, new.recording, unit_type, coverage_factor)
-    since, until = store.services.around(unit, new.stored.started_at)
-    alike = comparable(new.session.programme)
-    reference = store.sessions.reference(unit, new.session.block, since, until, alike)
-    own = reference is None or new.stored.is_reference
-    return judge(
-        new.session,
-        new.calibration,
-        None if own or reference is None else store.calibrations.get(reference),
-        store.unit_types.of_unit(new.session.unit),
-        coverage_factor,
-        after_service=since is not None,
-    )

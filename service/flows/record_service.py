@@ -5,7 +5,7 @@ from datetime import datetime
 from estimator.errors import Problem
 from service.errors import RefusedError
 from service.flows.refresh_outlook import refresh_outlook
-from service.ingest.storable import CLOCK_LEEWAY
+from service.ingest.checked import CLOCK_LEEWAY
 from service.records.event import NewService, Service
 from service.storage import Storage
 from service.storage.store import Store

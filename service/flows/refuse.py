@@ -1,26 +1,23 @@
 """Step: an upload that cannot be used leaves a record of why, and nothing else."""
 
 from collections.abc import Sequence
-from datetime import datetime
 
 from estimator.errors import Problem
 from service.errors import RefusedError
-from service.ingest.storable import plain_filename
+from service.records.received import Received
 from service.storage import Storage
-from service.storage.files import content_hash
 
 LONGEST_MESSAGE = 1000
+"""Characters of a problem that are kept and shown: a hostile file could put megabytes into one."""
 
 
-def refuse(
-    storage: Storage, content: bytes, filename: str, problems: Sequence[Problem], now: datetime, who: str
-) -> RefusedError:
+def refuse(storage: Storage, received: Received, problems: Sequence[Problem]) -> RefusedError:
     """Records the refusal and returns the error to raise, which holds every problem."""
-    digest, name = content_hash(content), plain_filename(filename)
+    name, digest = received.filename, received.sha256
     listed = tuple(Problem(_text(p.field), _text(p.message), p.row) for p in problems)
     with storage.database.writing() as store:
-        store.log.refusal(now, name, digest, len(content), listed)
-        store.log.audit(now, who, "refuse", digest, {"filename": name, "problems": len(listed)})
+        store.log.refusal(received.at, name, digest, len(received.content), listed)
+        store.log.audit(received.at, received.who, "refuse", digest, {"filename": name, "problems": len(listed)})
     count = "one problem" if len(listed) == 1 else f"{len(listed)} problems"
     return RefusedError(f"{name} cannot be used: {count}. Nothing was stored.", listed)
 

@@ -12,9 +12,13 @@ from service.ingest.limits import refusal
 from service.ingest.metadata import KEY, with_metadata
 
 MAGIC = b"\x89HDF\r\n\x1a\n"
+"""First bytes (HDF5 file format, III.A)."""
 CHILD = Path(__file__).with_name("hdf5_child.py")
+"""Run by its path, so that it imports nothing of the service."""
 MOST_CELLS = 5_000_000
+"""Fewer than of other formats: they pass through a pipe as JSON."""
 SECONDS = 30
+"""After which the child is stopped: a whole file is read in a few."""
 
 
 def read_hdf5(content: bytes, filename: str) -> dict[str, object]:

@@ -16,8 +16,11 @@ if sys.platform != "win32":
     import resource
 
 GROUP = "readings"
+"""That holds one dataset a column."""
 MOST_LABELS = 200_000
+"""Texts of one column: each is an object of its own in memory."""
 MEMORY = 4 * 1024**3
+"""Bytes of address space, of which a whole file takes a small part."""
 PLAIN = "must be a one-dimensional dataset of numbers or text inside the file"
 DAMAGED = (OSError, RuntimeError, ValueError, TypeError, LookupError, ArithmeticError, MemoryError)
 

@@ -12,6 +12,7 @@ TEXTS = (
 )  # fmt: skip
 """Keys whose value is text even where it looks like a number, as a serial number may."""
 DEEPEST = 4
+"""Steps of a key; no field of a session has more, and a hostile key could nest without end."""
 
 
 def last_step(key: str) -> str:

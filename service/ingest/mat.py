@@ -16,11 +16,17 @@ from service.ingest.limits import MOST_TEXT, check_cells, refusal
 from service.ingest.metadata import with_metadata
 
 MAGIC = b"MATLAB "
+"""First bytes of every MAT file."""
 VERSION = b"MATLAB 5.0 MAT-file"
+"""First bytes of one that is read: level 5, not the HDF5 of version 7.3."""
 VARIABLE = "imu_session"
+"""The structure that holds the session."""
 HEADER = 128
+"""Bytes before the first variable (MAT-File Format, level 5)."""
 COMPRESSED = 15
+"""Type of an element that holds another one deflated (miCOMPRESSED)."""
 NUMERIC = ("double", "single", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64")
+"""Classes whose values are numbers."""
 DAMAGED = (
     OSError,
     ValueError,

@@ -7,6 +7,7 @@ from estimator.reading.problems import Problems
 from service.ingest.limits import refusal
 
 KEY = "imu-session"
+"""Under which a table's file keeps the session's other fields."""
 
 
 def with_metadata(text: str, columns: Mapping[str, object], filename: str) -> dict[str, object]:

@@ -8,6 +8,7 @@ from service.ingest.limits import MOST_TEXT, check_cells, refusal
 from service.ingest.metadata import KEY, with_metadata
 
 MAGIC = b"PAR1"
+"""First bytes (Apache Parquet file format)."""
 
 
 def read_parquet(content: bytes, filename: str) -> dict[str, object]:

@@ -24,7 +24,9 @@ CHUNK = 50_000
 LONGEST_HEADER = 1024 * 1024
 """Bytes of # lines before the table of a CSV file."""
 SEPARATORS = ",;\t"
+"""Of columns; the one that the header has most of is taken."""
 UNREADABLE = (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError)
+"""What polars raises for damaged files."""
 
 
 @dataclass(frozen=True)

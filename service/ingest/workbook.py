@@ -13,6 +13,7 @@ from zipfile import BadZipFile, ZipFile
 from service.ingest.limits import MOST_TEXT, check_cells, refusal
 
 MOST_MEMBERS = 1000
+"""Parts of a workbook: an ordinary one has some twenty."""
 PARSED = (".xml", ".rels")
 PLACE = re.compile(rb"""[\s]r\s*=\s*["']\s*([A-Za-z]*)(\d+)""")
 SHARED = re.compile(rb"""[\s]t\s*=\s*["']s["']""")

@@ -12,10 +12,13 @@ from service.ingest.limits import refusal
 from service.ingest.workbook import checked_workbook
 
 MAGIC = b"PK\x03\x04"
+"""First bytes of a ZIP archive."""
 BOOLEANS = ("true", "false")
+"""How the library writes a cell that is true or false, which as a number would be 1 or 0."""
 DType = Literal["string", "float"]
 Cell = float | str | None
 SHEETS = ("session", "readings")
+"""That a session needs."""
 
 
 def read_xlsx(content: bytes, filename: str) -> dict[str, object]:

@@ -17,6 +17,24 @@ from service.words.names import PARAMETER_NAMES, YEAR, day_of, month_of
 FAN_AHEAD = np.linspace(0.0, 1.0, 6)
 """Years after the last session for which a trend's bounds are drawn."""
 FAN_LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
+"""Median, and the bounds that hold half and nine tenths, as `FanPoint` has them."""
+
+
+@dataclass(frozen=True)
+class Past:
+    """What is stored of a unit that its outlook rests on."""
+
+    serial: str
+    since: datetime | None
+    """Its last break; None where there was none."""
+    changes: Sequence[ChangeRow]
+    """Judged since the break."""
+    references: Sequence[ReferenceRow]
+    """Of the same time."""
+    last: datetime | None
+    """Its latest calibration; None before the first."""
+    longest_days: float
+    """From one calibration to the next, as the type allows."""
 
 
 @dataclass(frozen=True)
@@ -41,25 +59,14 @@ class Forecast:
     """None without a track."""
 
 
-def forecast(
-    serial: str,
-    changes: Sequence[ChangeRow],
-    references: Sequence[ReferenceRow],
-    last: datetime | None,
-    since: datetime | None,
-    longest_days: float,
-) -> Forecast:
-    """The outlook of a unit.
-
-    ``last`` is its latest calibration; ``since`` its last break, after which ``changes`` and ``references`` were
-    measured; ``longest_days`` the type's longest interval.
-    """
-    groups = _groups(changes, references)
+def forecast(past: Past) -> Forecast:
+    """The outlook of a unit."""
+    groups = _groups(past.changes, past.references)
     dated = [_track(rows, reference) for rows, reference in groups.values()]
     tracks, dates = tuple(track for track, _ in dated), tuple(at for _, at in dated)
     found = prognosis(tracks) if tracks else None
     told = () if found is None else _trends(tuple(groups), tracks, dates, found)
-    outlook = _unit(serial, told, found, max((at[-1] for at in dates), default=None), last, since, longest_days)
+    outlook = _unit(past, told, found, max((at[-1] for at in dates), default=None))
     return Forecast(outlook, tuple(groups), tracks, dates, found)
 
 
@@ -132,19 +139,14 @@ def _after(start: datetime, years: float) -> datetime | None:
 
 
 def _unit(
-    serial: str,
-    trends: tuple[ParameterTrend, ...],
-    found: Prognosis | None,
-    latest: datetime | None,
-    last: datetime | None,
-    since: datetime | None,
-    longest_days: float,
+    past: Past, trends: tuple[ParameterTrend, ...], found: Prognosis | None, latest: datetime | None
 ) -> UnitOutlook:
     """The unit as a whole: it comes back before its risk passes the level, and never after the longest interval."""
+    last, since = past.last, past.since
     if last is None or (since is not None and last < since):
         reason = "No calibration yet." if since is None else f"Serviced on {day_of(since)}: measure it again."
-        return UnitOutlook(serial, since, False, reason, None, None, None, None, None, ())
-    longest = last + timedelta(days=longest_days)
+        return UnitOutlook(past.serial, since, False, reason, None, None, None, None, None, ())
+    longest = last + timedelta(days=past.longest_days)
     first = min((t for t in trends if t.reach_90), key=lambda t: (t.reach_90, t.reach_50 or longest), default=None)
     risk, risky = tuple[RiskPoint, ...](), None
     if found is not None and latest is not None:
@@ -152,10 +154,10 @@ def _unit(
         risky = _after(latest, float(reach(found.risk[None], RISK_LEVEL)[0]))
     due = longest if risky is None else min(longest, max(risky, last))
     unit = UnitOutlook(
-        serial=serial,
+        serial=past.serial,
         due=due,
         overdue=False,
-        reason=_reason(trends, first, due, longest, last, longest_days),
+        reason=_reason(trends, first, last, past.longest_days, is_longest=due == longest),
         sensor=None if first is None else first.sensor,
         parameter=None if first is None else first.parameter,
         reach_50=None if first is None else first.reach_50,
@@ -170,11 +172,12 @@ def _unit(
 def _reason(
     trends: Sequence[ParameterTrend],
     first: ParameterTrend | None,
-    due: datetime,
-    longest: datetime,
     last: datetime,
     longest_days: float,
+    *,
+    is_longest: bool,
 ) -> str:
+    """Why then, in a sentence; ``first`` is the trend that reaches its tolerance first."""
     interval = f"calibrate every {longest_days:.0f} days at least"
     if not trends:
         return f"One session since the reference was set tells no trend; {interval}."
@@ -185,4 +188,4 @@ def _reason(
         return f"{name} may be out of its tolerance already."
     later = f" and as likely as not by {month_of(first.reach_50)}" if first.reach_50 else ""
     forecast = f"{name} reaches its tolerance with 10 % probability before {month_of(first.reach_90)}{later}"
-    return f"{forecast}; {interval}." if due == longest else f"{forecast}."
+    return f"{forecast}; {interval}." if is_longest else f"{forecast}."

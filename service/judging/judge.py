@@ -1,23 +1,41 @@
-"""Step: a calibrated session, judged against the unit's reference session."""
+"""Step: a calibrated session → a decision on every parameter, and on the session by the worst of them."""
 
-from dataclasses import asdict
+from collections.abc import Iterable
 
 from estimator.health import Judgement
 from estimator.health import judge as judge_parameters
 from estimator.health.common_motion import common_motion
+from estimator.health.parity import RULE as PARITY_RULE
+from estimator.health.parity import judge_parity
 from estimator.health.rule import RULE
 from estimator.results import Calibration
-from estimator.session import CalibrationSession
+from service.judging.calibrate import Calibrated, Comparison
+from service.judging.reference import reference_of
 from service.judging.tolerances import tolerances_of
-from service.records.decision import Decision, Judged, Verdict, Worst
+from service.records.decision import Decision, Judged, Verdict
 from service.records.unit import UnitType
-from service.words.verdict import first_in_words, reason, worst_of, worst_record
+from service.storage.store import Store
+from service.words.in_service import reason as recording_in_words
+from service.words.verdict import first_in_words, reason
 
-NONE_YET = Worst(None, None, None)
+
+def judge_in_epoch(
+    store: Store, unit: int, new: Calibrated, coverage_factor: float, *, is_reference: bool = False
+) -> Judged:
+    """A session judged against the reference of its epoch; it becomes, or remains, the reference where there is none.
+
+    A recording in service was compared with that reference before, and is judged by what the comparison shows.
+    """
+    session = new.checked.session
+    unit_type = store.unit_types.of_unit(session.unit)
+    if new.comparison is not None:
+        return _judge_recording(new.calibration, new.comparison, unit_type, coverage_factor)
+    found = reference_of(store, unit, session.block, session.programme, new.checked.measured_at)
+    known = None if is_reference or found.session is None else store.calibrations.get(found.session)
+    return judge(new.calibration, known, unit_type, coverage_factor, after_service=found.since is not None)
 
 
 def judge(
-    session: CalibrationSession,
     calibration: Calibration,
     reference: Calibration | None,
     unit_type: UnitType,
@@ -29,16 +47,13 @@ def judge(
     tolerances = tolerances_of(unit_type)
     splits = () if reference is None else common_motion(calibration, reference, tolerances)
     found = judge_parameters(calibration, reference, tolerances, coverage_factor=coverage_factor, splits=splits)
-    decisions = tuple(_decision(judgement, unit_type, coverage_factor) for judgement in found)
-    worst = worst_of(decisions)
+    decisions = _decisions(found, RULE, unit_type, coverage_factor)
+    first = reference is None
     return Judged(
-        source=session,
         calibration=calibration,
         decisions=decisions,
-        verdict=Verdict.UNDECIDABLE if worst is None else worst.verdict,
-        reason=reason(decisions) if reference else first_in_words(calibration, after_service=after_service),
-        worst=NONE_YET if reference is None else worst_record(decisions),
-        is_reference=reference is None,
+        reason=first_in_words(calibration, after_service=after_service) if first else reason(decisions),
+        is_reference=first,
         motions=tuple(split.motion for split in splits),
     )
 
@@ -49,15 +64,23 @@ def decisions_of(
     """Every parameter judged against any calibration of the unit."""
     splits, tolerances = common_motion(calibration, reference), tolerances_of(unit_type)
     found = judge_parameters(calibration, reference, tolerances, coverage_factor=coverage_factor, splits=splits)
-    return tuple(_decision(judgement, unit_type, coverage_factor) for judgement in found)
+    return _decisions(found, RULE, unit_type, coverage_factor)
 
 
-def _decision(judgement: Judgement, unit_type: UnitType, coverage_factor: float) -> Decision:
-    own = asdict(judgement)
-    own["verdict"] = Verdict(judgement.verdict)
-    return Decision(
-        **own,
-        coverage_factor=coverage_factor,
-        guard_band=judgement.expanded,
-        rule=f"{RULE} ({unit_type.name} rev {unit_type.revision})",
+def _judge_recording(moved: Calibration, found: Comparison, unit_type: UnitType, coverage_factor: float) -> Judged:
+    """Every parameter that parity sees, judged, and the recording by its worst."""
+    tolerances = tolerances_of(unit_type)
+    seen = judge_parity(found.result, found.reference, tolerances, coverage_factor=coverage_factor)
+    decisions = _decisions(seen, PARITY_RULE, unit_type, coverage_factor)
+    return Judged(moved, decisions, recording_in_words(found.result, decisions), is_reference=False)
+
+
+def _decisions(
+    judgements: Iterable[Judgement], rule: str, unit_type: UnitType, coverage_factor: float
+) -> tuple[Decision, ...]:
+    """Judgements with the rule and the revision of the tolerances that they rest on."""
+    basis = f"{rule} ({unit_type.name} rev {unit_type.revision})"
+    return tuple(
+        Decision(**(vars(own) | {"verdict": Verdict(own.verdict)}), coverage_factor=coverage_factor, rule=basis)
+        for own in judgements
     )

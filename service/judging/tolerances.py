@@ -10,7 +10,8 @@ from math import pi
 
 from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.results import ARCSEC, Calibration
-from estimator.session import ACCELEROMETER, GYROSCOPE, CalibrationSession
+from estimator.session import ACCELEROMETER, GYROSCOPE
+from service.ingest.checked import Checked
 from service.records.session import PARAMETERS
 from service.records.unit import Tolerances, UnitType
 
@@ -24,13 +25,15 @@ ACCELEROMETER_DEFAULTS = Tolerances(
 GYROSCOPE_DEFAULTS = Tolerances(scale=1e-3, bias=0.05 * pi / 180 / 3600, quadratic=None, axis=120 * ARCSEC)
 """1000 ppm, 0.05 °/h, not judged, 120″."""
 DEFAULTS = {ACCELEROMETER: ACCELEROMETER_DEFAULTS, GYROSCOPE: GYROSCOPE_DEFAULTS}
+"""By kind of sensor."""
 
 
-def type_of(session: CalibrationSession, calibration: Calibration) -> UnitType:
+def type_of(new: Checked, calibration: Calibration) -> UnitType:
     """The unit type of a first session: what it says of itself, with the default tolerances."""
+    session = new.session
     kinds = {sensor.kind for sensor in session.sensors}
     return UnitType(
-        name=type_name(session),
+        name=new.type_name,
         block=session.block,
         sensors=tuple(sensor.name for sensor in session.sensors),
         nominal_axes=tuple((float(x), float(y), float(z)) for x, y, z in (s.nominal_axis for s in session.sensors)),
@@ -39,11 +42,6 @@ def type_of(session: CalibrationSession, calibration: Calibration) -> UnitType:
         gyro_tolerances=_observed(GYROSCOPE, calibration) if len(kinds) > 1 else None,
         revision=1,
     )
-
-
-def type_name(session: CalibrationSession) -> str:
-    """What a unit's type is called after its first session."""
-    return session.unit_type or _described(session)
 
 
 def tolerances_of(unit_type: UnitType) -> dict[tuple[str, str], float]:
@@ -57,12 +55,6 @@ def tolerances_of(unit_type: UnitType) -> dict[tuple[str, str], float]:
     by_name = {(kind, name): getattr(given, name) for kind, given in stated.items() for name in PARAMETERS}
     by_name[GYROSCOPE, "misalignment"] = by_name[GYROSCOPE, "axis"]
     return {key: tolerance for key, tolerance in by_name.items() if tolerance is not None}
-
-
-def _described(session: CalibrationSession) -> str:
-    """``accelerometer × 6, V``."""
-    units = sorted({sensor.reading_unit for sensor in session.sensors})
-    return f"{session.block} × {len(session.sensors)}, {' and '.join(units)}"[:200]
 
 
 def _observed(kind: str, calibration: Calibration) -> Tolerances:

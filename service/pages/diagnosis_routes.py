@@ -32,6 +32,7 @@ def accept(
     id: Key,
     storage: StorageOf,
     now: Now,
+    *,
     cause: Annotated[str, Form(max_length=200, pattern=NO_NUL)],
     scope: Annotated[Scope, Form()],
     by: Annotated[str, Form(min_length=1, max_length=200, pattern=NO_NUL)],
@@ -48,6 +49,7 @@ def withdraw(
     revision: Annotated[int, Path(ge=1, le=2**31 - 1)],
     storage: StorageOf,
     now: Now,
+    *,
     by: Annotated[str, Form(min_length=1, max_length=200, pattern=NO_NUL)],
     why: Annotated[str, Form(min_length=1, max_length=2000, pattern=NO_NUL)],
 ) -> RedirectResponse:

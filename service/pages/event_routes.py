@@ -8,9 +8,10 @@ from fastapi import APIRouter, Form
 from fastapi.responses import RedirectResponse
 
 from service.dependencies import Now, StorageOf
-from service.flows.annotate import add_note, withdraw_note
+from service.flows.add_note import add_note
 from service.flows.record_service import record_service
 from service.flows.set_stage import set_stage
+from service.flows.withdraw_note import withdraw_note
 from service.pages.forms import NO_NUL, OWN_FORM, SEE_OTHER, By, Key, Number, Why
 from service.records.event import NewService
 
@@ -28,6 +29,7 @@ def add_service(
     by: By,
     storage: StorageOf,
     now: Now,
+    *,
     at: At = None,
     sensor: Annotated[str, Form(max_length=200, pattern=NO_NUL)] = "",
     note: Annotated[str, Form(max_length=2000, pattern=NO_NUL)] = "",
@@ -38,9 +40,9 @@ def add_service(
 
 
 @router.post("/units/{serial:path}/notes")
-def write_note(serial: Key, text: Why, by: By, storage: StorageOf, now: Now, at: At = None) -> RedirectResponse:
+def write_note(serial: Key, text: Why, by: By, storage: StorageOf, now: Now, *, at: At = None) -> RedirectResponse:
     """Keeps a remark."""
-    add_note(storage, serial, _utc(at, now), text, by, now)
+    add_note(storage, serial, text, at=_utc(at, now), who=by, now=now)
     return _unit(serial, "events")
 
 

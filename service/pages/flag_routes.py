@@ -10,17 +10,20 @@ from service.flows.handle_flag import acknowledge_flag, resolve_flag
 from service.pages.flags import flags_page
 from service.pages.forms import OWN_FORM, SEE_OTHER, By, Number, Why
 from service.pages.render import render
-from service.records.flag import Flag
-from service.views.flag_list import open_flags
+from service.records.flag import Flag, FlagState
+from service.storage.queries.flags import FlagQuery
 
 router = APIRouter(prefix="/flags", include_in_schema=False)
 MOST = 200
+"""Flags on the page: as many as anybody reads through; the API lists the rest."""
 
 
 @router.get("")
 def show_flags(request: Request, store: Reading) -> HTMLResponse:
     """Every open flag of the fleet, newest first."""
-    return render(request, "flags.html", flags_page(open_flags(store, MOST + 1), MOST))
+    found = store.flags.page(FlagQuery(limit=MOST + 1))
+    opened = tuple(flag for flag in found if flag.state is not FlagState.RESOLVED)
+    return render(request, "flags.html", flags_page(opened, MOST))
 
 
 @router.post("/{id}/acknowledge", dependencies=OWN_FORM)

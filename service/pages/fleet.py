@@ -11,6 +11,7 @@ from service.views.standouts import Standout
 from service.words.conditions import REFERENCE, UNDECIDED, Condition, condition_of
 
 PAGE_SIZE = 50
+"""Units on a page: two screens."""
 MOST_STANDOUTS = 6
 BAR_LIMIT = 150.0
 """The margin bar ends at one and a half tolerances, per cent."""
@@ -105,20 +106,20 @@ class FleetPage:
 def fleet_page(
     condition: FleetCondition,
     units: Sequence[UnitSummary],
-    more: bool,
     view: FleetView,
     now: datetime,
+    *,
     overdue: int = 0,
     unlike: Sequence[Standout] = (),
     stands: Sequence[StandCondition] = (),
 ) -> FleetPage:
-    """One page of units, worst first; ``more`` when there is a next one."""
+    """One page of units, worst first; one unit more than fit on it says that there is a next page."""
     return FleetPage(
         view=view,
         tiles=tuple(_tile(condition_of(v), n, view) for v, n in reversed(condition.verdicts.items())),
-        rows=tuple(_row(unit, now) for unit in units),
+        rows=tuple(_row(unit, now) for unit in units[:PAGE_SIZE]),
         total=condition.units,
-        more=more,
+        more=len(units) > PAGE_SIZE,
         simulated=condition.simulated,
         flags=flags_in_words(condition.flags),
         stands=tuple(stand for stand in stands if stand.has_shifted),

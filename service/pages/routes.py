@@ -1,26 +1,22 @@
-"""The addresses of the pages: each route asks the flows and renders a frozen context."""
+"""The addresses of the pages: each route reads or asks a flow, and renders a frozen context."""
 
-from datetime import datetime
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import HTMLResponse
 
-from service.dependencies import DiagnoserOf, MetricsOf, Now, Reading, SettingsOf, StorageOf
-from service.errors import RefusedError
-from service.flows.receive import upload
+from service.dependencies import Now, Reading, ReceptionOf, SettingsOf
+from service.flows.receive import receive_all
 from service.pages.fleet import PAGE_SIZE, FleetView, fleet_page
 from service.pages.forms import Key
-from service.pages.received import FormFile, FormFiles
+from service.pages.received import FormFiles
 from service.pages.render import render
 from service.pages.session import session_page
 from service.pages.unit import unit_page
-from service.pages.upload import Outcome, upload_page
+from service.pages.upload import outcomes_of, upload_page
 from service.records.decision import Verdict
-from service.settings import Settings
-from service.views.flag_list import flag_list
-from service.views.fleet import fleet_overview
-from service.views.fleet_condition import fleet_condition
+from service.storage.queries.flags import FlagQuery
+from service.storage.queries.fleet import FleetQuery
 from service.views.found_and_left import found_and_left
 from service.views.history import recent_history
 from service.views.outlook import own_outlook
@@ -33,8 +29,6 @@ HISTORY_LIMIT = 10_000
 """Points of one unit's history that a page draws, of its newest sessions: 400 of six sensors, 50 of 48."""
 FLAG_LIMIT = 50
 """Flags of a unit that its page lists: open ones, then the newest of those that are resolved."""
-FEW = 4
-"""Files whose diagnosis an upload waits for; those of more files are made after the answer."""
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 
@@ -44,6 +38,7 @@ def show_fleet(
     request: Request,
     store: Reading,
     now: Now,
+    *,
     q: Annotated[str, Query(max_length=200, pattern=r"^[^\x00]*$")] = "",
     condition: str = "",
     page: Annotated[int, Query(ge=1, le=1_000_000)] = 1,
@@ -51,10 +46,16 @@ def show_fleet(
     """The fleet, worst unit first."""
     verdict = Verdict(condition) if condition in set(Verdict) else None
     view = FleetView(q.strip(), verdict or "", page)
-    units = fleet_overview(store, verdict=verdict, text=view.text or None, page=page, limit=PAGE_SIZE)
-    after = fleet_overview(store, verdict=verdict, text=view.text or None, page=page * PAGE_SIZE + 1, limit=1)
-    late, unlike, stands = store.outlooks.overdue(now), fleet_standouts(store), stand_conditions(store)
-    shown = fleet_page(fleet_condition(store), units, bool(after), view, now, late, unlike, stands)
+    wanted = FleetQuery(verdict, view.text or None, (page - 1) * PAGE_SIZE, PAGE_SIZE + 1)
+    shown = fleet_page(
+        store.fleet.condition(),
+        store.fleet.units(wanted),
+        view,
+        now,
+        overdue=store.outlooks.overdue(now),
+        unlike=fleet_standouts(store),
+        stands=stand_conditions(store),
+    )
     return render(request, "fleet.html", shown)
 
 
@@ -68,10 +69,10 @@ def show_unit(request: Request, store: Reading, settings: SettingsOf, now: Now, 
         unit_page(
             report,
             recent_history(store, serial, HISTORY_LIMIT),
-            flag_list(store, unit=serial, limit=FLAG_LIMIT),
-            store.notes.of_unit(serial),
-            found_and_left(store, report.unit_type, report.sessions, report.services, settings.coverage_factor),
-            own_outlook(store, serial, now),
+            flags=store.flags.page(FlagQuery(serial, limit=FLAG_LIMIT)),
+            notes=store.notes.of_unit(serial),
+            pair=found_and_left(store, report.unit_type, report.sessions, report.services, settings.coverage_factor),
+            outlook=own_outlook(store, serial, now),
         ),
     )
 
@@ -91,26 +92,9 @@ def show_upload(request: Request, settings: SettingsOf) -> HTMLResponse:
 
 @router.post("/upload")
 def take_uploads(
-    request: Request,
-    files: FormFiles,
-    storage: StorageOf,
-    settings: SettingsOf,
-    now: Now,
-    metrics: MetricsOf,
-    diagnoser: DiagnoserOf,
+    request: Request, files: FormFiles, reception: ReceptionOf, settings: SettingsOf, now: Now
 ) -> HTMLResponse:
     """The form with the verdict on each file, or what is wrong with it; 422 when a file cannot be used."""
-    outcomes = [_outcome(file, storage, settings, now) for file in files]
-    for receipt in (o.receipt for o in outcomes if o.receipt is not None):
-        metrics.count_upload(receipt)
-        diagnoser.after_upload(receipt.id, wait=len(files) <= FEW)
+    outcomes = outcomes_of(files, receive_all(reception, files, now))
     page = upload_page(outcomes, settings.max_upload_bytes)
     return render(request, "upload.html", page, 422 if page.refused else 200)
-
-
-def _outcome(file: FormFile, storage: StorageOf, settings: Settings, now: datetime) -> Outcome:
-    try:
-        receipt = upload(storage, file.content, file.filename, now, coverage_factor=settings.coverage_factor)
-    except RefusedError as refusal:
-        return Outcome(file.filename, problems=refusal.problems)
-    return Outcome(file.filename, receipt)

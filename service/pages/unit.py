@@ -95,6 +95,7 @@ class UnitPage:
 def unit_page(
     report: UnitReport,
     history: Sequence[HistoryPoint],
+    *,
     flags: Sequence[Flag] = (),
     notes: Sequence[Note] = (),
     pair: FoundAndLeft | None = None,

@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from estimator.errors import Problem
+from service.errors import RefusedError
+from service.records.received import SentFile
 from service.records.session import Receipt
 from service.words.conditions import Condition, condition_of
 
@@ -35,6 +37,14 @@ class UploadPage:
     def refused(self) -> int:
         """How many files could not be used."""
         return sum(o.receipt is None for o in self.outcomes)
+
+
+def outcomes_of(files: Sequence[SentFile], found: Sequence[Receipt | RefusedError]) -> tuple[Outcome, ...]:
+    """Every file with what became of it."""
+    return tuple(
+        Outcome(file.filename, one) if isinstance(one, Receipt) else Outcome(file.filename, problems=one.problems)
+        for file, one in zip(files, found, strict=True)
+    )
 
 
 def upload_page(outcomes: Sequence[Outcome], max_bytes: int) -> UploadPage:

@@ -28,8 +28,11 @@ NOISE = {ACCELEROMETER: 2.5, GYROSCOPE: 0.002}
 VARIATION = {ACCELEROMETER: 6.7, GYROSCOPE: 0.0133}
 """µg, °/h: of the published block, one sigma."""
 SCALE = {ACCELEROMETER: 0.12, GYROSCOPE: 1 / (0.6 * ARCSEC)}
+"""V per m/s²; pulses per rad at 0.6″ a pulse: of the published block."""
 COUNT_TIME = 100.0
+"""s, over which the pulses of a reading are counted."""
 COUNT_TIME_SIGMA = 1e-5
+"""s, one sigma."""
 GYRO_STAND = (1.0, 5.0)
 """arcsec: errors of latitude and meridian."""
 

@@ -11,6 +11,7 @@ from service.records.session import PARAMETERS
 from service.records.unit import UnitType
 
 MOST_SENSORS = 48
+"""As many as `imu-health simulate` makes; larger blocks are not tried."""
 
 
 def why_not(unit_type: UnitType) -> tuple[Problem, ...]:

@@ -2,10 +2,11 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from math import inf
 
+from estimator.health import Judgement
 from estimator.health.common_motion import CommonMotion
 from estimator.results import Calibration
-from estimator.session import CalibrationSession
 
 
 class Verdict(StrEnum):
@@ -22,66 +23,58 @@ class Verdict(StrEnum):
         return list(Verdict).index(self)
 
 
-@dataclass(frozen=True)
-class Decision:
-    """One parameter of one sensor of one session, judged. Everything the decision rests on is here."""
+@dataclass(frozen=True, kw_only=True)
+class Decision(Judgement):
+    """The estimator's judgement of one parameter, with the rule it rests on: all that the store and the API keep."""
 
-    sensor: str
-    kind: str
-    parameter: str
-    value: float | None
-    """The measured parameter, SI; for the axis the angle from the reference axis, rad."""
-    reference: float | None
-    """SI; 0 for the axis; None while there is no reference."""
-    deviation: float | None
-    """From the reference: relative for scale, else SI; for the axis the angle freed of the upward pull of noise."""
-    uncertainty: float | None
-    """Standard uncertainty of the deviation (both sessions)."""
-    expanded: float | None
-    """U = k·u."""
-    coverage_factor: float
-    tolerance: float
-    guard_band: float | None
-    probability_out: float | None
-    """Probability that the true deviation is out of tolerance."""
     verdict: Verdict
+    coverage_factor: float
+    """k."""
     rule: str
     """Name, version and the revision of the tolerances, ``ILAC-G8-four-state/2 (hex-cone rev 2)``."""
-    critical: float | None = None
-    """Smallest deviation that counts as a change at all, at the 1 % level over all judged numbers of the session."""
-    change: tuple[float, ...] | None = None
-    """The deviation with its sign and direction: one number; two along the reference's tangents for the axis, rad."""
-    change_own: tuple[float, ...] | None = None
-    """Standard uncertainty that this session brings to each number of the change."""
-    change_origin: tuple[float, ...] | None = None
-    """The same of the reference session."""
-    common: float | None = None
-    """What all sensors did together, taken off first: angle of the turn for the axis, rad; relative for scale."""
-    common_sigma: float | None = None
-    common_p: float | None = None
-    """Chance of a common change as large when nothing moved together."""
+
+    @property
+    def guard_band(self) -> float | None:
+        """w = U."""
+        return self.expanded
+
+    @property
+    def margin(self) -> float | None:
+        """1 − (|d| + U)/T: 1 is spotless, 0 the edge of pass, negative beyond; None when not observed."""
+        if self.deviation is None or self.expanded is None:
+            return None
+        return 1 - (abs(self.deviation) + self.expanded) / self.tolerance
 
 
-@dataclass(frozen=True)
-class Worst:
-    """The parameter that a session's verdict hangs on; all None when nothing was judged."""
+def worst_of(decisions: tuple[Decision, ...]) -> Decision | None:
+    """The decision that a session's verdict hangs on: the worst verdict, and of those the least margin."""
+    return max(decisions, key=_badness, default=None)
 
-    sensor: str | None
-    parameter: str | None
-    margin: float | None
-    """1 − (|d| + U)/T."""
+
+def _badness(decision: Decision) -> tuple[int, float]:
+    margin = decision.margin
+    return decision.verdict.severity, -inf if margin is None else -margin
 
 
 @dataclass(frozen=True)
 class Judged:
     """A session on its way into the store."""
 
-    source: CalibrationSession
     calibration: Calibration
     decisions: tuple[Decision, ...]
-    verdict: Verdict
     reason: str
-    worst: Worst
     is_reference: bool
+    """Whether later sessions are judged against it."""
     motions: tuple[CommonMotion, ...] = ()
     """What all sensors did together since the reference."""
+
+    @property
+    def verdict(self) -> Verdict:
+        """That of the worst decision."""
+        worst = worst_of(self.decisions)
+        return Verdict.UNDECIDABLE if worst is None else worst.verdict
+
+    @property
+    def worst(self) -> Decision | None:
+        """What the verdict hangs on; None when nothing was judged, as of a reference."""
+        return None if self.is_reference else worst_of(self.decisions)

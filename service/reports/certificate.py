@@ -26,7 +26,6 @@ from service.words.fit import FitWords, fit_in_words
 from service.words.known import combination_in_words
 from service.words.motion import motions_in_words
 from service.words.names import day_of
-from service.words.verdict import margin_of
 
 MOST_HISTORIES = 6
 """Histories that are drawn, of the parameters closest to their tolerance."""
@@ -301,7 +300,7 @@ def _corrected(view: FindingView) -> str:
 def _histories(found: CertifiedSession) -> tuple[Drawing, ...]:
     """The parameters closest to their tolerance, through time."""
     closest = sorted(found.report.decisions, key=_rank)[:MOST_HISTORIES]
-    wanted = [(d.parameter, d.sensor) for d in closest if margin_of(d) is not None]
+    wanted = [(d.parameter, d.sensor) for d in closest if d.margin is not None]
     drawn: dict[tuple[str, str], Drawing] = {}
     for tracks in tracks_of(found.history, found.services):
         charts = history_charts(tracks, found.services)
@@ -314,7 +313,7 @@ def _histories(found: CertifiedSession) -> tuple[Drawing, ...]:
 
 
 def _rank(decision: Decision) -> float:
-    margin = margin_of(decision)
+    margin = decision.margin
     return float("inf") if margin is None else margin
 
 

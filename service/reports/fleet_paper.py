@@ -20,7 +20,6 @@ from service.storage.store import Store
 from service.views.fleet_report import FleetReport
 from service.words.conditions import REFERENCE, Condition, condition_of
 from service.words.names import day_of
-from service.words.verdict import margin_of
 
 MOST_RANKED = 100
 MOST_SECTIONS = 40
@@ -209,7 +208,7 @@ def _section(
 
 def _worst_first(decisions: list[Decision]) -> list[Decision]:
     wrong = [d for d in decisions if d.verdict is not Verdict.PASS]
-    return sorted(wrong, key=lambda d: (-d.verdict.severity, margin_of(d) or 0.0))
+    return sorted(wrong, key=lambda d: (-d.verdict.severity, d.margin or 0.0))
 
 
 def _history(points: list[HistoryPoint], services: tuple[Service, ...]) -> str:

@@ -12,7 +12,6 @@ from service.reports.sheets import Cell, Column, Kind, Workbook
 from service.storage.store import Store
 from service.views.fleet_report import FleetReport
 from service.words.conditions import condition_of
-from service.words.verdict import margin_of
 
 MOST_HISTORY_ROWS = 30_000
 """Rows of the sheet of histories; the newest sessions of every unit share them alike."""
@@ -81,7 +80,7 @@ def _parameter_row(serial: str, session: str, decision: Decision) -> tuple[Cell,
         serial, session, decision.sensor, decision.kind, decision.parameter, in_measure(decision.value, value),
         in_measure(decision.reference, value), value.label, in_measure(decision.deviation, deviation),
         in_measure(decision.expanded, deviation), decision.coverage_factor, in_measure(decision.tolerance, deviation),
-        deviation.label, decision.probability_out, margin_of(decision), condition_of(decision.verdict).formal,
+        deviation.label, decision.probability_out, decision.margin, condition_of(decision.verdict).formal,
         decision.rule,
     )  # fmt: skip
 

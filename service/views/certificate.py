@@ -1,12 +1,13 @@
-"""Flow: everything that a certificate of a session states, read from what is stored."""
+"""Everything that a certificate of a session states, read from what is stored."""
 
 from dataclasses import dataclass
 from datetime import timedelta
 
 from estimator.results import Calibration
-from estimator.session import AS_LEFT, CALIBRATIONS, IN_SERVICE, CalibrationSession, comparable
+from estimator.session import AS_LEFT, CalibrationSession
 from service.ingest import read_upload
 from service.judging.model_in_force import in_force
+from service.judging.reference import reference_of
 from service.measures import COVERAGE
 from service.records.diagnosis import StoredDiagnosis
 from service.records.event import Service
@@ -26,6 +27,7 @@ MOST_POINTS = 10_000
 MOST_EARLIER = 50
 """Earlier sessions among which the one is looked for that shows the unit as found."""
 JUST_AFTER = timedelta(microseconds=1)
+"""The finest step of a stored time."""
 
 
 @dataclass(frozen=True)
@@ -84,10 +86,8 @@ def _reference(store: Store, stored: StoredSession) -> ReferenceSession | None:
     if stored.is_reference:
         return None
     unit, block = store.units.key(stored.unit), store.unit_types.of_unit(stored.unit).block
-    since, until = store.services.around(unit, stored.started_at)
-    alike = CALIBRATIONS if stored.programme == IN_SERVICE else comparable(stored.programme)
-    found = store.sessions.reference(unit, block, since, until, alike)
-    if found is None or found == stored.id:
+    found = reference_of(store, unit, block, stored.programme, stored.started_at).session
+    if found is None:
         return None
     return ReferenceSession(store.sessions.get(found), store.calibrations.get(found))
 

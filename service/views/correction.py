@@ -1,4 +1,4 @@
-"""Flow: the correction that a session's calibration gives, for firmware: formula, numbers and a worked example."""
+"""The correction that a session's calibration gives, for firmware: formula, numbers and a worked example."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -23,11 +23,13 @@ FORMULA = (
     "a = 2 * y / (1 + sqrt(1 + 4 * quadratic * y)), the component along the sensor's axis",
     "vector = matrix * a, over the sensors in the order of the block, in block axes",
 )
+"""Of the sensor model solved for the input; step by step, as firmware computes it."""
 ALWAYS_LEFT = (
     "noise of the single reading",
     "temperature: the parameters are those at the session's temperature",
     "nonlinearity beyond the quadratic term, asymmetry, hysteresis, cross-coupling",
 )
+"""What no such correction can take out."""
 DIGITS = 9
 """Of the worked example's numbers in words."""
 

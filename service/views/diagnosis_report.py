@@ -1,4 +1,4 @@
-"""Flow: everything that a session's diagnosis page shows."""
+"""Everything that a session's diagnosis page shows."""
 
 from service.records.diagnosis import DiagnosisReport, DiagnosisState, StoredDiagnosis
 from service.storage.calibration_document import calibration_from_dict, residuals_from_dict

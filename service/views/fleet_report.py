@@ -1,4 +1,4 @@
-"""Flow: the whole fleet for a report, worst units first."""
+"""The whole fleet for a report, worst units first."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -6,12 +6,12 @@ from datetime import datetime
 from service.records.outlook import UnitOutlook
 from service.records.unit import FleetCondition, UnitSummary
 from service.settings import VERSION
+from service.storage.queries.fleet import FleetQuery
 from service.storage.store import Store
-from service.views.fleet import fleet_overview
-from service.views.fleet_condition import fleet_condition
 from service.views.outlook import outlooks_of_fleet
 
 MOST_UNITS = 10_000
+"""More than a report is read of; it bounds what one answer holds in memory."""
 
 
 @dataclass(frozen=True)
@@ -32,8 +32,8 @@ def fleet_report(store: Store, now: datetime) -> FleetReport:
     """The condition of every unit."""
     return FleetReport(
         at=now,
-        condition=fleet_condition(store),
-        units=fleet_overview(store, limit=MOST_UNITS),
+        condition=store.fleet.condition(),
+        units=store.fleet.units(FleetQuery(limit=MOST_UNITS)),
         outlooks=outlooks_of_fleet(store, now),
         software=VERSION,
     )

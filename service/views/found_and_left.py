@@ -1,10 +1,9 @@
-"""Flow: a unit as it was found and as it was left, both against the reference that held when it was found."""
+"""A unit as it was found and as it was left, both against the reference that held when it was found."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
-from estimator.results import Calibration
 from estimator.session import AS_FOUND, AS_LEFT, CALIBRATIONS
 from service.judging.judge import decisions_of
 from service.records.decision import Decision
@@ -44,29 +43,20 @@ def found_and_left(
     unit = store.units.key(found.unit)
     reference = store.sessions.reference(unit, unit_type.block, since, until)
     known = store.calibrations.in_force(s for s in (reference, found.id, None if left is None else left.id) if s)
-    return FoundAndLeft(
-        None if reference == found.id else reference,
-        found,
-        left,
-        _beside(known, reference, found, left, unit_type, coverage_factor),
-    )
+
+    def judged(session: StoredSession | None) -> tuple[Decision, ...]:
+        """By the tolerances that hold now."""
+        if session is None or reference is None:
+            return ()
+        return decisions_of(known[session.id], known[reference], unit_type, coverage_factor)
+
+    return FoundAndLeft(None if reference == found.id else reference, found, left, _beside(judged(found), judged(left)))
 
 
-def _beside(
-    known: dict[str, Calibration],
-    reference: str | None,
-    found: StoredSession,
-    left: StoredSession | None,
-    unit_type: UnitType,
-    coverage_factor: float,
-) -> tuple[tuple[Decision, Decision | None], ...]:
-    """Both judged by the tolerances that hold now."""
-    if reference is None:
-        return ()
-    before = decisions_of(known[found.id], known[reference], unit_type, coverage_factor)
-    after = decisions_of(known[left.id], known[reference], unit_type, coverage_factor) if left else ()
-    by_key = {(d.sensor, d.parameter): d for d in after}
-    return tuple((d, by_key.get((d.sensor, d.parameter))) for d in before)
+def _beside(found: Sequence[Decision], left: Sequence[Decision]) -> tuple[tuple[Decision, Decision | None], ...]:
+    """Every judged parameter as found, with the same as left."""
+    by_key = {(d.sensor, d.parameter): d for d in left}
+    return tuple((d, by_key.get((d.sensor, d.parameter))) for d in found)
 
 
 def _when(session: StoredSession) -> datetime:

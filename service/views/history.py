@@ -1,29 +1,10 @@
-"""Flows: the parameters of one unit through time."""
+"""The newest part of a unit's parameters through time."""
 
 from datetime import datetime
 
 from service.records.history import HistoryPoint
 from service.storage.queries.history import HistoryQuery
 from service.storage.store import Store
-
-
-def unit_history(
-    store: Store,
-    serial: str,
-    *,
-    parameter: str | None = None,
-    sensor: str | None = None,
-    since: datetime | None = None,
-    until: datetime | None = None,
-    revision: int | None = None,
-    page: int = 1,
-    limit: int = 10_000,
-) -> tuple[HistoryPoint, ...]:
-    """One page of a unit's history, oldest first: value, uncertainty, band, tolerance and verdict of every point."""
-    unit = store.units.key(serial)
-    return store.history.points(
-        unit, HistoryQuery(parameter, sensor, since, until, (page - 1) * limit, limit, revision)
-    )
 
 
 def recent_history(store: Store, serial: str, most: int, *, until: datetime | None = None) -> tuple[HistoryPoint, ...]:

@@ -18,14 +18,8 @@ FEWEST_UNITS = 3
 """Units of a type that make a population."""
 
 
-def unit_outlook(storage: Storage, serial: str, now: datetime) -> UnitOutlook:
-    """One unit's outlook as it is now."""
-    with storage.database.reading() as store:
-        return outlook_of(store, serial, now)
-
-
 def fleet_outlook(storage: Storage, now: datetime) -> tuple[UnitOutlook, ...]:
-    """Every unit's outlook as it is now, by serial number; without fans and risk, which `unit_outlook` has."""
+    """Every unit's outlook as it is now, by serial number; without fans and risk, which `outlook_of` has."""
     with storage.database.reading() as store:
         return outlooks_of_fleet(store, now)
 

@@ -1,4 +1,4 @@
-"""Flow: a session planned before it is measured, for a block on a cone or for units of a stored type."""
+"""A session planned before it is measured, for a block on a cone or for units of a stored type."""
 
 from estimator.planning import Plan
 from estimator.planning import plan as plan_session

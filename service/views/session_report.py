@@ -1,4 +1,4 @@
-"""Flow: everything that is known of one session."""
+"""Everything that is known of one session."""
 
 from service.records.session import SessionReport
 from service.storage.store import Store

@@ -1,4 +1,4 @@
-"""Flow: units and production lots whose drift stands out of their type, at one level for the whole fleet."""
+"""Units and production lots whose drift stands out of their type, at one level for the whole fleet."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Flow: the stands' own health, from what the units measured on them did together."""
+"""The stands' own health, from what the units measured on them did together."""
 
 from collections.abc import Sequence
 from datetime import datetime

@@ -1,4 +1,4 @@
-"""Flow: everything that is known of one unit, apart from its history."""
+"""Everything that is known of one unit, apart from its history."""
 
 from datetime import datetime
 
@@ -9,6 +9,7 @@ from service.storage.queries.services import epoch
 from service.storage.store import Store
 
 LATEST = 50
+"""Sessions in the list of a unit: some years of them."""
 
 
 def unit_report(store: Store, serial: str, now: datetime) -> UnitReport:

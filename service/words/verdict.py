@@ -2,7 +2,7 @@
 
 from estimator.results import Calibration
 from service.measures import in_words
-from service.records.decision import Decision, Verdict, Worst
+from service.records.decision import Decision, Verdict, worst_of
 from service.words.advice import left_open
 from service.words.names import PARAMETER_NAMES
 
@@ -17,37 +17,12 @@ def first_in_words(calibration: Calibration, *, after_service: bool) -> str:
     return " ".join(filter(None, (NEW_EPOCH if after_service else FIRST_SESSION, left_open(calibration))))
 
 
-def worst_of(decisions: tuple[Decision, ...]) -> Decision | None:
-    """The decision that the session's verdict hangs on: the worst verdict, and of those the least margin."""
-    return max(decisions, key=lambda d: (d.verdict.severity, -_margin_rank(d)), default=None)
-
-
-def margin_of(decision: Decision) -> float | None:
-    """1 − (|d| + U)/T: 1 is spotless, 0 the edge of pass, negative beyond; None when not observed."""
-    if decision.deviation is None or decision.expanded is None:
-        return None
-    return 1 - (abs(decision.deviation) + decision.expanded) / decision.tolerance
-
-
-def worst_record(decisions: tuple[Decision, ...]) -> Worst:
-    """The worst decision as the store keeps it beside the session."""
-    worst = worst_of(decisions)
-    if worst is None:
-        return Worst(None, None, None)
-    return Worst(worst.sensor, worst.parameter, margin_of(worst))
-
-
 def reason(decisions: tuple[Decision, ...]) -> str:
     """One sentence on the worst parameter, in people's units."""
     worst = worst_of(decisions)
     if worst is None:
         return NOTHING_JUDGED
     return _sentence(worst, decisions)
-
-
-def _margin_rank(decision: Decision) -> float:
-    margin = margin_of(decision)
-    return float("inf") if margin is None else margin
 
 
 def _sentence(worst: Decision, decisions: tuple[Decision, ...]) -> str:

@@ -1,10 +1,11 @@
 """Kinds of value that requests share."""
 
 import re
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Annotated
 
-from fastapi import Path, Query
+from fastapi import Depends, Path, Query
 from pydantic import AfterValidator, BeforeValidator, StringConstraints
 
 from service.records.decision import Verdict
@@ -64,6 +65,25 @@ WantedVerdict = Annotated[Verdict | None, Query(description="Only units whose la
 WantedText = Annotated[Text | None, Query(alias="q", description="Part of a serial number or of a unit type's name.")]
 
 
-def next_page(page: int, limit: int, found: int) -> int | None:
-    """The number of the next page; None after one that is not full."""
-    return page + 1 if found == limit else None
+@dataclass(frozen=True)
+class Window:
+    """Which part of a list is wanted."""
+
+    page: int
+    limit: int
+
+    @property
+    def offset(self) -> int:
+        """How many entries come before it."""
+        return (self.page - 1) * self.limit
+
+    def next_after(self, found: int) -> int | None:
+        """The number of the next page; None after one that is not full."""
+        return self.page + 1 if found == self.limit else None
+
+
+def _window(page: Page = 1, limit: Limit = 100) -> Window:
+    return Window(page, limit)
+
+
+WindowOf = Annotated[Window, Depends(_window)]

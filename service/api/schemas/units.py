@@ -1,4 +1,4 @@
-"""Units, unit types, tolerances, services, history, fleet."""
+"""Units, unit types, tolerances, services, fleet."""
 
 from datetime import datetime
 from typing import Annotated
@@ -128,37 +128,3 @@ class UnitReportSchema(BaseModel):
     )
     sessions: list[SessionSchema] = Field(description="The latest sessions, newest first.")
     services: list[ServiceSchema] = Field(description="All known breaks, oldest first.")
-
-
-class HistoryPointSchema(BaseModel):
-    """One parameter of one sensor at one session, ready for drawing a band."""
-
-    model_config = ConfigDict(from_attributes=True)
-
-    session: str = Field(description="Id of the session.")
-    at: datetime = Field(description="When it was measured, UTC.")
-    sensor: str = Field(description="Name of the sensor.")
-    kind: str = Field(description="`accelerometer` or `gyroscope`.")
-    parameter: str = Field(description="`scale`, `bias`, `quadratic`, `axis` or `misalignment`.")
-    value: float | None = Field(description="SI; for the axis the angle from the reference axis, rad.")
-    u: float | None = Field(description="Standard uncertainty of the value.")
-    lower: float | None = Field(description="Value minus expanded uncertainty.")
-    upper: float | None = Field(description="Value plus expanded uncertainty.")
-    reference: float | None = Field(description="The value that it is judged against.")
-    deviation: float | None = Field(description="From the reference, as it was judged: relative for scale, else SI.")
-    expanded: float | None = Field(description="U of the deviation, of both sessions.")
-    tolerance: float | None = Field(description="In the unit of the value; null where it is not judged.")
-    verdict: Verdict = Field(description="The state of this parameter at this session.")
-    is_reference: bool = Field(description="Whether the session is one that later ones are judged against.")
-    axis: tuple[float, float, float] | None = Field(description="For the axis: its components in block axes.")
-    revision: int = Field(description="Model revision that it was computed under; 0 is the baseline.")
-
-
-class HistoryPage(BaseModel):
-    """One page of a unit's history, oldest first."""
-
-    unit: str = Field(description="Serial number of the unit.")
-    points: list[HistoryPointSchema] = Field(description="One a session, sensor and parameter.")
-    page: int = Field(description="Which page this is, from 1.")
-    limit: int = Field(description="How many points fit on a page.")
-    next_page: int | None = Field(description="The next page; null after the last.")

@@ -5,7 +5,7 @@ from datetime import datetime
 from typing import Any
 
 from estimator.causes.catalogue import cause
-from service.flows.flagging.settle import Found, settle
+from service.flows.flagging.settle import Found, Occasion, settle
 from service.judging.model_in_force import in_force
 from service.records.diagnosis import StoredDiagnosis
 from service.records.flag import Concern, Flag, Matter
@@ -30,7 +30,7 @@ def flag_diagnosis(store: Store, made: StoredDiagnosis, at: datetime) -> None:
     concerns = tuple(_concerns(made.document, session, in_force(in_force(store.models.of_session(session.id)))))
     gone = GONE.format(day=day_of(session.started_at))
     clear = {flag.key: gone for flag in opened if _speaks_of(session, flag)}
-    settle(store, unit, opened, Found(concerns, clear), session.id, at)
+    settle(store, Occasion(unit, session.id, at), opened, Found(concerns, clear))
 
 
 def _speaks_of(session: StoredSession, flag: Flag) -> bool:

@@ -1,26 +1,26 @@
 """Step: what the decisions of a unit's latest session mean for its verdict and its flags."""
 
-from datetime import datetime
-
 from estimator.session import CALIBRATIONS
-from service.flows.flagging.settle import SERVICE, Found, settle
-from service.records.decision import Decision, Verdict
-from service.records.flag import Concern, Flag, FlagState, Matter, NoticeKind
+from service.flows.flagging.settle import SERVICE, Found, Occasion, resolve_as_done, settle
+from service.records.decision import Decision, Verdict, worst_of
+from service.records.flag import Concern, Flag, Matter, NoticeKind
 from service.records.session import StoredSession
 from service.storage.queries.fleet import Refreshed
 from service.storage.store import Store
 from service.words.conditions import condition_of
 from service.words.names import day_of
-from service.words.verdict import reason, worst_of
+from service.words.verdict import reason
 
 FAILS = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
+"""Verdicts that raise a flag."""
 PASSES = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
+"""Verdicts that speak for resolving one."""
 WITHIN = "The session of {day} finds every parameter of {sensor} within its tolerance."
 NEW_REFERENCE = "The session of {day}, after a service, is the new reference."
 
 
 def flag_verdict(
-    store: Store, unit: int, session: StoredSession, decisions: tuple[Decision, ...], was: Refreshed, at: datetime
+    store: Store, occasion: Occasion, session: StoredSession, decisions: tuple[Decision, ...], was: Refreshed
 ) -> None:
     """Tells of another verdict of the unit and settles its flags; an older session than its latest says nothing."""
     if was.last_session != session.id:
@@ -29,11 +29,11 @@ def flag_verdict(
         before = condition_of(was.before, is_reference=was.was_reference).word
         now = condition_of(session.verdict, is_reference=session.is_reference).word
         text = f"{before} → {now}. {session.reason}"
-        store.notices.add(unit, NoticeKind.VERDICT, at, SERVICE, text, session=session.id)
-    opened = store.flags.open_of(unit)
-    settle(store, unit, opened, found_by(session, decisions), session.id, at)
+        store.notices.add(occasion.unit, NoticeKind.VERDICT, occasion.at, SERVICE, text, session=session.id)
+    opened = store.flags.open_of(occasion.unit)
+    settle(store, occasion, opened, found_by(session, decisions))
     if session.programme in CALIBRATIONS:
-        _no_longer_overdue(store, unit, opened, session, at)
+        _no_longer_overdue(store, occasion, opened, session)
 
 
 def found_by(session: StoredSession, decisions: tuple[Decision, ...]) -> Found:
@@ -62,18 +62,11 @@ def _concern(sensor: str, failed: tuple[Decision, ...]) -> Concern:
     return Concern(Matter.TOLERANCE, sensor, severity, reason(failed) + more)
 
 
-def _no_longer_overdue(store: Store, unit: int, opened: tuple[Flag, ...], session: StoredSession, at: datetime) -> None:
+def _no_longer_overdue(store: Store, occasion: Occasion, opened: tuple[Flag, ...], session: StoredSession) -> None:
     """The one matter that resolves itself: the calibration that was due has been done, and the next is not yet due."""
     overdue = [flag for flag in opened if flag.matter is Matter.OVERDUE]
     outlook = store.outlooks.of_unit(session.unit) if overdue else None
-    if outlook is None or (outlook.due is not None and outlook.due < at):
+    if outlook is None or (outlook.due is not None and outlook.due < occasion.at):
         return
     for flag in overdue:
-        resolve_as_done(store, unit, flag, f"Calibrated on {day_of(session.started_at)}.", at, session.id)
-
-
-def resolve_as_done(store: Store, unit: int, flag: Flag, why: str, at: datetime, session: str | None) -> None:
-    """Resolves a flag by the service itself."""
-    store.flags.put(flag.id, at, state=FlagState.RESOLVED, proposal="")
-    store.notices.add(unit, NoticeKind.RESOLVED, at, SERVICE, why, flag=flag.id, session=session)
-    store.fleet.count_flags(unit)
+        resolve_as_done(store, occasion, flag, f"Calibrated on {day_of(session.started_at)}.")

@@ -14,6 +14,7 @@ from service.ingest.convert.mpu9150_five import MPU9150_FIVE
 __all__ = ["FORMATS", "Converter", "Document", "convert"]
 
 FORMATS: tuple[Converter, ...] = (IMU_TK, MPU9150_FIVE, KTH_MIMU, CTU_MAT, FERRARIS_CSV)
+"""Every converter; the command line lists them in this order."""
 
 
 def convert(format_name: str, paths: Sequence[Path]) -> list[tuple[str, Document]]:

@@ -12,6 +12,7 @@ from service.errors import NotFoundError
 from service.records.decision import Judged
 from service.storage.calibration_document import calibration_from_dict
 from service.storage.queries.base import Queries
+from service.storage.queries.sessions import worst_columns
 from service.storage.tables import CalibrationRow, SessionRow
 
 
@@ -30,9 +31,7 @@ class Calibrations(Queries):
                 computed_at=at,
                 verdict=judged.verdict,
                 reason=judged.reason,
-                worst_sensor=judged.worst.sensor,
-                worst_parameter=judged.worst.parameter,
-                margin=judged.worst.margin,
+                **worst_columns(judged.worst),
             )
         )
         self._session.flush()

@@ -9,7 +9,7 @@ from sqlalchemy import Select, and_, or_, select, update
 from estimator.health.common_motion import CommonMotion
 from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
-from service.records.decision import Decision, Judged, Verdict, Worst
+from service.records.decision import Decision, Judged, Verdict
 from service.records.diagnosis import DiagnosisState
 from service.records.session import StoredSession
 from service.storage.queries.base import Queries
@@ -59,11 +59,11 @@ class Sessions(Queries):
             query = query.where(SessionRow.started_at < until)
         return self._session.scalar(query.order_by(SessionRow.uploaded_at, SessionRow.id).limit(1))
 
-    def add(self, record: StoredSession, unit: int, stand: int | None, block: str, worst: Worst) -> None:
+    def add(self, record: StoredSession, unit: int, stand: int | None, block: str, worst: Decision | None) -> None:
         """Stores a session; its hash is unique."""
         values = asdict(record)
         del values["unit"], values["stand"]
-        self._session.add(SessionRow(unit_id=unit, stand_id=stand, block=block, **values, **_worst_columns(worst)))
+        self._session.add(SessionRow(unit_id=unit, stand_id=stand, block=block, **values, **worst_columns(worst)))
         self._session.flush()
 
     def set_stage(self, id: str, stage: str | None) -> None:
@@ -105,14 +105,16 @@ class Sessions(Queries):
 
     def put_in_force(self, id: str, revision: int, judged: Judged) -> None:
         """Makes a session speak for its calibration of a revision; the ones before stay where they are."""
-        summary = {"verdict": judged.verdict, "reason": judged.reason, **_worst_columns(judged.worst)}
+        summary = {"verdict": judged.verdict, "reason": judged.reason, **worst_columns(judged.worst)}
         self._session.execute(update(SessionRow).where(SessionRow.id == id).values(revision=revision, **summary))
         self._session.expire_all()
 
     def add_decisions(self, id: str, decisions: tuple[Decision, ...], revision: int) -> None:
         """Stores what was decided of a session's parameters under a model revision."""
         self._session.add_all(
-            DecisionRow(session_id=id, revision=revision, position=position, **asdict(decision))
+            DecisionRow(
+                session_id=id, revision=revision, position=position, guard_band=decision.guard_band, **asdict(decision)
+            )
             for position, decision in enumerate(decisions)
         )
         self._session.flush()
@@ -143,7 +145,10 @@ class Sessions(Queries):
         return tuple(decision_record(row) for row in rows)
 
 
-def _worst_columns(worst: Worst) -> dict[str, str | float | None]:
+def worst_columns(worst: Decision | None) -> dict[str, str | float | None]:
+    """The decision that a verdict hangs on, as the store keeps it beside the verdict."""
+    if worst is None:
+        return {"worst_sensor": None, "worst_parameter": None, "margin": None}
     return {"worst_sensor": worst.sensor, "worst_parameter": worst.parameter, "margin": worst.margin}
 
 

@@ -18,8 +18,8 @@ from service.reports.printable import printable_data
 from service.reports.typeset import TEMPLATES
 from service.settings import Settings
 from service.storage import Database, Files, Storage
+from service.storage.queries.fleet import FleetQuery
 from service.views.certificate import certified_session
-from service.views.fleet import fleet_overview
 from tests.databases import Databases
 from tests.end_to_end.browser.conftest import opened
 from tests.serving import serving
@@ -55,7 +55,7 @@ def demonstration(filled: Settings) -> Iterator[str]:
 def test_picture_of_the_first_page_of_a_certificate(filled: Settings) -> None:
     storage = Storage(Database(filled.database), Files(filled.files))
     with storage.database.reading() as store:
-        worst = fleet_overview(store, limit=1)[0].last_session
+        worst = store.fleet.units(FleetQuery(limit=1))[0].last_session
     assert worst is not None
     record = printable_data(certificate(certified_session(storage, diagnose(storage, worst, NOW))))
     storage.database.close()

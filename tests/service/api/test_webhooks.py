@@ -10,9 +10,10 @@ import httpx
 import pytest
 
 from service.app import create_app
-from service.background.deliver import CLAIM, MOST_ATTEMPTS, deliver_due
+from service.background.deliver_messages import CLAIM, MOST_ATTEMPTS, deliver_due
 from service.flows.receive import upload
-from service.flows.webhooks import add_webhook, fault_of, remove_webhook
+from service.flows.register_webhook import fault_of, register_webhook
+from service.flows.remove_webhook import remove_webhook
 from service.records.webhook import DeliveryState
 from service.settings import Settings
 from service.storage import Storage
@@ -113,7 +114,7 @@ class Outbox:
 
     def __init__(self, storage: Storage, hook: Receiver) -> None:
         self.storage, self.hook, self.now = storage, hook, NOW
-        self.id = add_webhook(storage, (hook.host,), hook.url, SECRET, "K. Ito", NOW).id
+        self.id = register_webhook(storage, (hook.host,), hook.url, SECRET, who="K. Ito", now=NOW).id
         for month, moved in ((1, 0.0), (2, 90.0)):
             upload(storage, session_bytes(seed=month, month=month, a3_moved=moved), "a.json", NOW)
 
@@ -188,7 +189,7 @@ def test_a_removed_webhook_is_told_no_more(outbox: Outbox) -> None:
 
 def test_a_receiver_that_is_away_keeps_no_upload_waiting(storage: Storage) -> None:
     nowhere = "http://127.0.0.1:9/hook"
-    add_webhook(storage, ("127.0.0.1:9",), nowhere, SECRET, "K. Ito", NOW)
+    register_webhook(storage, ("127.0.0.1:9",), nowhere, SECRET, who="K. Ito", now=NOW)
     for month, moved in ((1, 0.0), (2, 90.0)):
         assert upload(storage, session_bytes(seed=month, month=month, a3_moved=moved), "a.json", NOW).created
     with httpx.Client(trust_env=False) as http:

@@ -5,7 +5,6 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from service.views.outlook import outlooks_of_fleet
 
 from estimator.reading import read_session
 from service.demo.cast import CAST, END
@@ -14,8 +13,9 @@ from service.demo.history import files_of
 from service.flows.receive import upload
 from service.records.decision import Verdict
 from service.storage import Database, Files, Storage
-from service.views.flag_list import flag_list
-from service.views.fleet import fleet_overview
+from service.storage.queries.flags import FlagQuery
+from service.storage.queries.fleet import FleetQuery
+from service.views.outlook import outlooks_of_fleet
 from service.views.stands import stand_conditions
 from tests.databases import Databases
 
@@ -63,8 +63,8 @@ def test_dates_are_irregular_and_in_order_over_three_years() -> None:
 def test_the_fleet_shows_every_condition(empty: Storage) -> None:
     fill(empty, 2.0, ignore)
     with empty.database.reading() as store:
-        units = {unit.serial: unit for unit in fleet_overview(store)}
-        flags = [(flag.unit, flag.place, flag.state.value) for flag in flag_list(store)]
+        units = {unit.serial: unit for unit in store.fleet.units(FleetQuery())}
+        flags = [(flag.unit, flag.place, flag.state.value) for flag in store.flags.page(FlagQuery())]
         notes = [note.text for serial in units for note in store.notes.of_unit(serial)]
         stages = [session.stage for session in store.sessions.of_unit("BA-109") if session.stage]
         breaks = {serial: store.services.of_unit(serial) for serial in units}

@@ -40,6 +40,14 @@ def test_a_session_is_diagnosed_once(storage: Storage) -> None:
     assert diagnose(storage, id, NOW + timedelta(days=1)) == first
 
 
+def test_the_reference_itself_is_not_judged_again_and_a_later_session_is(storage: Storage) -> None:
+    reference, later = stored(storage), stored(storage, notes="the same again")
+    made = [diagnose(storage, id, NOW) for id in (reference, later)]
+    assert [diagnosis.state for diagnosis in made] == [DiagnosisState.NAMED] * 2
+    assert made[0].verdict_after is None
+    assert made[1].verdict_after is not None
+
+
 def test_a_session_that_does_not_exist_is_not_found(storage: Storage) -> None:
     with pytest.raises(NotFoundError):
         diagnose(storage, "none", NOW)

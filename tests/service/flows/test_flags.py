@@ -11,8 +11,7 @@ from service.flows.handle_flag import acknowledge_flag, resolve_flag
 from service.flows.receive import upload
 from service.records.flag import Flag, FlagState, Matter, NoticeKind
 from service.storage import Storage
-from service.views.flag_list import flag_list
-from service.views.fleet_condition import fleet_condition
+from service.storage.queries.flags import FlagQuery
 from tests.service.sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
@@ -26,7 +25,7 @@ def measured(storage: Storage, month: int, moved: float = 0.0, seed: int | None 
 
 def flags(storage: Storage) -> tuple[Flag, ...]:
     with storage.database.reading() as store:
-        return flag_list(store, unit="BA-017")
+        return store.flags.page(FlagQuery("BA-017"))
 
 
 def kinds(flag: Flag) -> list[str]:
@@ -124,7 +123,7 @@ def test_the_fleet_counts_open_flags(flagged: Storage) -> None:
         with flagged.database.reading() as store:
             unit = store.fleet.unit("BA-017")
             assert unit is not None
-            return fleet_condition(store).flags, unit.flags
+            return store.fleet.condition().flags, unit.flags
 
     assert counted() == (1, 1)
     acknowledge_flag(flagged, flags(flagged)[0].id, "K. Ito", "seen", NOW)

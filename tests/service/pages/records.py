@@ -6,6 +6,7 @@ from datetime import UTC, datetime, timedelta
 from estimator.calibration import calibrate
 from estimator.reading import read_session
 from estimator.results import Calibration
+from service.ingest.checked import as_checked
 from service.judging.judge import judge
 from service.judging.tolerances import type_of
 from service.records.decision import Verdict
@@ -23,7 +24,7 @@ def session_report(
     """The report of a session as the service would store it."""
     session = read_session(document or accelerometer_block())
     calibration = calibrate(session)
-    judged = judge(session, calibration, reference, type_of(session, calibration), 2.0)
+    judged = judge(calibration, reference, type_of(as_checked(session, NOON), calibration), 2.0)
     stored = StoredSession(
         id="5e55", unit=session.unit, sha256="5e55" * 16, filename="BA-017.json", size=12_345,
         programme=session.programme, stand="ODG-1", operator="K. Ito", notes="", started_at=NOON, uploaded_at=NOON,

@@ -9,16 +9,17 @@ CONDITION = FleetCondition(units=120, verdicts={v: 20 + 2 * v.severity for v in 
 
 
 def test_tiles_count_every_condition_worst_first() -> None:
-    tiles = fleet_page(CONDITION, (), False, FleetView(), NOON).tiles
+    tiles = fleet_page(CONDITION, (), FleetView(), NOON).tiles
     assert [(t.condition.word, t.count) for t in tiles] == [
         ("Unfit", 28), ("Probably unfit", 26), ("Undecided", 24), ("Probably fit", 22), ("Fit", 20),
     ]  # fmt: skip
 
 
 def test_units_are_numbered_through_the_pages() -> None:
-    units = [unit_summary(f"U{i}") for i in range(PAGE_SIZE)]
-    page = fleet_page(CONDITION, units, True, FleetView(page=2), NOON)
+    units = [unit_summary(f"U{i}") for i in range(PAGE_SIZE + 1)]
+    page = fleet_page(CONDITION, units, FleetView(page=2), NOON)
     assert (page.first, page.last) == (PAGE_SIZE + 1, 2 * PAGE_SIZE)
+    assert page.more
 
 
 def test_changing_the_filter_goes_back_to_the_first_page() -> None:
@@ -29,7 +30,7 @@ def test_changing_the_filter_goes_back_to_the_first_page() -> None:
 
 
 def test_chosen_tile_leads_back_to_all() -> None:
-    tiles = {t.condition.key: t for t in fleet_page(CONDITION, (), False, FleetView(condition="fail"), NOON).tiles}
+    tiles = {t.condition.key: t for t in fleet_page(CONDITION, (), FleetView(condition="fail"), NOON).tiles}
     assert tiles["fail"].chosen
     assert tiles["fail"].url == "/"
 
@@ -41,6 +42,6 @@ def test_margin_in_words_and_as_a_bar() -> None:
 
 
 def test_margin_of_an_undecided_unit_is_not_claimed() -> None:
-    rows = fleet_page(CONDITION, [unit_summary(verdict=Verdict.UNDECIDABLE)], False, FleetView(), NOON).rows
+    rows = fleet_page(CONDITION, [unit_summary(verdict=Verdict.UNDECIDABLE)], FleetView(), NOON).rows
     assert rows[0].margin is None
     assert rows[0].worst == "A3 bias"

@@ -127,7 +127,7 @@ def test_any_search_text_is_only_text(client: httpx.Client, q: str) -> None:
 @contextmanager
 def counted(app: FastAPI) -> Iterator[list[str]]:
     """The statements that an application sends to its database."""
-    engine = app.state.service.storage.database.engine
+    engine = app.state.application.storage.database.engine
     statements: list[str] = []
 
     def note(_c: object, _k: object, statement: str, *_: object) -> None:

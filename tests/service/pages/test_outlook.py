@@ -80,7 +80,7 @@ def test_a_chart_without_a_trend_draws_none() -> None:
 def test_the_fleet_page_marks_what_is_overdue() -> None:
     condition = FleetCondition(units=2, verdicts=dict.fromkeys(Verdict, 0), simulated=0)
     units = [replace(unit_summary("U1"), due=NOON - YEAR), replace(unit_summary("U2"), due=NOON + YEAR)]
-    page = fleet_page(condition, units, False, FleetView(), NOON, overdue=1)
+    page = fleet_page(condition, units, FleetView(), NOON, overdue=1)
     assert [row.overdue for row in page.rows] == [True, False]
     assert page.overdue == "1 unit overdue for calibration."
 

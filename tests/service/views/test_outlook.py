@@ -8,8 +8,9 @@ import pytest
 from service.flows.receive import upload
 from service.flows.record_service import record_service
 from service.records.event import NewService
+from service.records.outlook import UnitOutlook
 from service.storage import Storage
-from service.views.outlook import fleet_outlook, unit_outlook
+from service.views.outlook import fleet_outlook, outlook_of
 from tests.service.sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
@@ -22,9 +23,15 @@ def measure(storage: Storage, months: dict[int, float], unit: str = "BA-017", **
         upload(storage, content, "a.json", NOW)
 
 
+def outlook(storage: Storage, now: datetime) -> UnitOutlook:
+    """Of the unit, at a time."""
+    with storage.database.reading() as store:
+        return outlook_of(store, "BA-017", now)
+
+
 def test_a_drift_brings_the_unit_back_before_its_tolerance(storage: Storage) -> None:
     measure(storage, {1: 0.0, 3: 7.0, 5: 14.0, 7: 21.0, 9: 28.0})
-    found = unit_outlook(storage, "BA-017", NOW)
+    found = outlook(storage, NOW)
     trend = next(t for t in found.trends if (t.sensor, t.parameter) == ("A3", "bias"))
     assert trend.rate_per_year == pytest.approx(42 * 9.80665e-6, abs=3 * trend.rate_sigma)
     assert (found.sensor, found.parameter) == ("A3", "bias")
@@ -39,26 +46,26 @@ def test_a_drift_brings_the_unit_back_before_its_tolerance(storage: Storage) -> 
 
 def test_a_stable_unit_comes_back_after_the_longest_interval_at_the_latest(storage: Storage) -> None:
     measure(storage, {1: 0.0})
-    found = unit_outlook(storage, "BA-017", NOW)
+    found = outlook(storage, NOW)
     assert found.due == datetime(2027, 1, 1, 9, tzinfo=UTC)
     assert (found.overdue, found.trends, found.risk_at_due) == (False, (), None)
-    assert unit_outlook(storage, "BA-017", NOW + timedelta(days=60)).overdue
+    assert outlook(storage, NOW + timedelta(days=60)).overdue
 
 
 def test_a_service_ends_every_trend_until_the_unit_is_measured_again(storage: Storage) -> None:
     measure(storage, {1: 0.0, 3: 15.0, 5: 30.0, 7: 45.0})
     record_service(storage, "BA-017", NewService("repair", datetime(2026, 8, 1, tzinfo=UTC)), NOW)
-    waiting = unit_outlook(storage, "BA-017", NOW)
+    waiting = outlook(storage, NOW)
     assert (waiting.reason, waiting.overdue) == ("Serviced on 1 Aug 2026: measure it again.", True)
     assert waiting.trends == ()
     measure(storage, {9: 45.0, 10: 45.0, 11: 45.0})
-    after = unit_outlook(storage, "BA-017", NOW)
+    after = outlook(storage, NOW)
     assert all(abs(t.level) < 0.5 * t.tolerance for t in after.trends)
 
 
 def test_a_sudden_change_is_dated(storage: Storage) -> None:
     measure(storage, {1: 0.0, 2: 0.0, 3: 0.0, 4: 0.0, 5: 40.0, 6: 40.0, 7: 40.0, 8: 40.0})
-    found = unit_outlook(storage, "BA-017", NOW)
+    found = outlook(storage, NOW)
     stepped = {(t.sensor, t.parameter): [at.month for at in t.step_dates] for t in found.trends if t.step_dates}
     assert stepped == {("A3", "bias"): [5]}
 

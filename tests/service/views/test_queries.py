@@ -9,33 +9,30 @@ from sqlalchemy import event
 
 from service.flows.receive import upload
 from service.storage import Storage
+from service.storage.queries.flags import FlagQuery
+from service.storage.queries.fleet import FleetQuery
+from service.storage.queries.history import HistoryQuery
 from service.storage.store import Store
-from service.views.flag_list import flag_list
-from service.views.fleet import fleet_overview
-from service.views.fleet_condition import fleet_condition
-from service.views.history import unit_history
 from service.views.outlook import outlook_of, outlooks_of_fleet
-from service.views.session_list import session_list
 from service.views.session_report import session_report
 from service.views.stands import stand_conditions
 from service.views.unit_report import unit_report
-from service.views.unit_types import unit_types
 from tests.service.sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 Page = Callable[[Store], object]
 PAGES: dict[str, tuple[int, Page]] = {
-    "fleet": (1, fleet_overview),
-    "condition": (1, fleet_condition),
-    "history": (2, lambda store: unit_history(store, "BA-000")),
+    "fleet": (1, lambda store: store.fleet.units(FleetQuery())),
+    "condition": (1, lambda store: store.fleet.condition()),
+    "history": (2, lambda store: store.history.points(store.units.key("BA-000"), HistoryQuery())),
     "unit": (8, lambda store: unit_report(store, "BA-000", NOW)),
-    "sessions": (1, session_list),
-    "flags": (1, flag_list),
-    "flags of a unit": (2, lambda store: flag_list(store, unit="BA-000")),
+    "sessions": (1, lambda store: store.sessions.page(None, 0, 100)),
+    "flags": (1, lambda store: store.flags.page(FlagQuery())),
+    "flags of a unit": (1, lambda store: store.flags.page(FlagQuery("BA-000"))),
     "outlook": (2, lambda store: outlook_of(store, "BA-000", NOW)),
     "outlooks": (2, lambda store: outlooks_of_fleet(store, NOW)),
     "stands": (1, stand_conditions),
-    "types": (1, unit_types),
+    "types": (1, lambda store: store.unit_types.page(0, 100)),
 }
 
 

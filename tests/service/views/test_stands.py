@@ -7,12 +7,12 @@ import httpx
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from service.background.shifted_stands import flag_shifted_stands
+from service.background.flag_shifted_stands import flag_shifted_stands
 from service.flows.handle_flag import resolve_flag
 from service.flows.receive import upload
 from service.records.flag import Matter
 from service.storage import Storage
-from service.views.flag_list import flag_list
+from service.storage.queries.flags import FlagQuery
 from tests.builders import ARCSEC, TrueSensor, accelerometer_block, true_sensors
 
 TURN = Rotation.from_rotvec(np.array([5.0, -8.0, 12.0]) * ARCSEC)
@@ -62,13 +62,13 @@ def test_a_shifted_stand_raises_one_flag_on_the_units_that_it_measured_last(stor
 
     def flagged() -> list[tuple[str, str, str]]:
         with storage.database.reading() as store:
-            found = [flag for flag in flag_list(store) if flag.matter is Matter.SHIFTED]
+            found = [flag for flag in store.flags.page(FlagQuery()) if flag.matter is Matter.SHIFTED]
         return sorted((flag.unit, flag.place, flag.state.value) for flag in found)
 
     flag_shifted_stands(storage, now)
     assert flagged() == [(f"BA-{number}", "S2", "raised") for number in range(3)]
     with storage.database.reading() as store:
-        first = next(flag.id for flag in flag_list(store, unit="BA-0") if flag.matter is Matter.SHIFTED)
+        first = next(flag.id for flag in store.flags.page(FlagQuery("BA-0")) if flag.matter is Matter.SHIFTED)
     resolve_flag(storage, first, "K. Ito", "seat of S2 mended", now)
     flag_shifted_stands(storage, now)
     assert flagged()[0] == ("BA-0", "S2", "resolved")

@@ -6,14 +6,14 @@ import pytest
 
 from estimator.applied_vector import STANDARD_GRAVITY
 from service.measures import in_words
-from service.records.decision import Decision, Verdict
-from service.words.verdict import margin_of, reason, worst_record
+from service.records.decision import Decision, Verdict, worst_of
+from service.words.verdict import reason
 
 MICRO_G = 1e-6 * STANDARD_GRAVITY
 BIAS = Decision(
     sensor="A3", kind="accelerometer", parameter="bias", value=0.0, reference=0.0, deviation=62 * MICRO_G,
     uncertainty=4 * MICRO_G, expanded=8 * MICRO_G, coverage_factor=2.0, tolerance=50 * MICRO_G,
-    guard_band=8 * MICRO_G, probability_out=1.0, verdict=Verdict.FAIL, rule="r", critical=14 * MICRO_G,
+    probability_out=1.0, verdict=Verdict.FAIL, rule="r", critical=14 * MICRO_G,
 )  # fmt: skip
 
 
@@ -25,13 +25,13 @@ def test_the_worst_verdict_comes_first_and_then_the_least_margin() -> None:
     passing = replace(BIAS, sensor="A1", deviation=0.0, verdict=Verdict.PASS)
     better = replace(BIAS, sensor="A2", deviation=-60 * MICRO_G)
     assert reason((passing, better, BIAS)).startswith("A3")
-    assert worst_record((passing, better, BIAS)).sensor == "A3"
+    assert worst_of((passing, better, BIAS)) is BIAS
 
 
 def test_a_margin_is_one_when_spotless_and_negative_beyond() -> None:
-    assert margin_of(replace(BIAS, deviation=0.0, expanded=0.0)) == 1
-    assert margin_of(BIAS) == pytest.approx(1 - 70 / 50)
-    assert margin_of(replace(BIAS, deviation=None)) is None
+    assert replace(BIAS, deviation=0.0, expanded=0.0).margin == 1
+    assert BIAS.margin == pytest.approx(1 - 70 / 50)
+    assert replace(BIAS, deviation=None).margin is None
 
 
 def test_what_is_not_observed_names_every_sensor_and_says_what_to_do() -> None:

@@ -1,4 +1,4 @@
-"""Flows: addresses that are told of flags and verdicts; only hosts that the operator named may be called."""
+"""Flow: an address is told of flags and verdicts from now on; only hosts that the operator named may be called."""
 
 from datetime import datetime
 
@@ -10,9 +10,12 @@ from service.records.webhook import Webhook
 from service.storage import Storage
 
 SCHEMES = ("http", "https")
+"""That a message can be sent by."""
 
 
-def add_webhook(storage: Storage, hosts: tuple[str, ...], url: str, secret: str, who: str, now: datetime) -> Webhook:
+def register_webhook(
+    storage: Storage, hosts: tuple[str, ...], url: str, secret: str, *, who: str, now: datetime
+) -> Webhook:
     """Registers an address; RefusedError unless its host may be called."""
     fault = fault_of(url, hosts)
     if fault:
@@ -21,14 +24,6 @@ def add_webhook(storage: Storage, hosts: tuple[str, ...], url: str, secret: str,
         webhook = store.webhooks.add(url, secret, who, now)
         store.log.audit(now, who, "add webhook", str(webhook.id), {"url": url})
         return webhook
-
-
-def remove_webhook(storage: Storage, id: int, who: str, now: datetime) -> None:
-    """Tells an address no more."""
-    with storage.database.writing() as store:
-        url = store.webhooks.get(id).url
-        store.webhooks.remove(id, now)
-        store.log.audit(now, who, "remove webhook", str(id), {"url": url})
 
 
 def fault_of(url: str, hosts: tuple[str, ...]) -> str:

@@ -2,7 +2,7 @@
 
 from datetime import datetime
 
-from service.flows.flagging.settle import Found, settle
+from service.flows.flagging.settle import Found, Occasion, settle
 from service.records.flag import Concern, Matter
 from service.records.stand import StandCondition
 from service.storage import Storage
@@ -10,6 +10,7 @@ from service.storage.queries.flags import FlagQuery
 from service.views.stands import stand_conditions
 
 EVERY = 10_000
+"""Flags of one unit: more than any unit has."""
 
 
 def flag_shifted_stands(storage: Storage, now: datetime) -> None:
@@ -33,4 +34,4 @@ def _flag(storage: Storage, serial: str, condition: StandCondition, since: datet
         unit = store.units.hold(serial)
         known = store.flags.page(FlagQuery(unit=serial, limit=EVERY))
         if not any(flag.key == concern.key and flag.raised_at >= since for flag in known):
-            settle(store, unit, (), Found((concern,), {}), None, now)
+            settle(store, Occasion(unit, None, now), (), Found((concern,), {}))

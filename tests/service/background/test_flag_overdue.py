@@ -2,12 +2,12 @@
 
 from datetime import UTC, datetime, timedelta
 
-from service.background.watch import flag_overdue
+from service.background.flag_overdue import flag_overdue
 from service.flows.receive import upload
 from service.records.flag import FlagState, Matter
 from service.storage import Storage
-from service.views.flag_list import flag_list
-from service.views.outlook import unit_outlook
+from service.storage.queries.flags import FlagQuery
+from service.views.outlook import outlook_of
 from tests.service.sessions import session_bytes
 
 NOW = datetime(2026, 3, 2, tzinfo=UTC)
@@ -15,12 +15,17 @@ NOW = datetime(2026, 3, 2, tzinfo=UTC)
 
 def states(storage: Storage) -> list[tuple[Matter, FlagState]]:
     with storage.database.reading() as store:
-        return [(flag.matter, flag.state) for flag in flag_list(store, unit="BA-017")]
+        return [(flag.matter, flag.state) for flag in store.flags.page(FlagQuery("BA-017"))]
+
+
+def due_date(storage: Storage) -> datetime | None:
+    with storage.database.reading() as store:
+        return outlook_of(store, "BA-017", NOW).due
 
 
 def test_it_is_raised_once_when_the_day_has_passed_and_resolved_by_a_calibration(storage: Storage) -> None:
     upload(storage, session_bytes(), "a.json", NOW)
-    due = unit_outlook(storage, "BA-017", NOW).due
+    due = due_date(storage)
     assert due is not None
     flag_overdue(storage, due - timedelta(days=1))
     assert states(storage) == []
@@ -36,7 +41,7 @@ def test_it_is_raised_once_when_the_day_has_passed_and_resolved_by_a_calibration
 
 def test_a_unit_that_is_no_longer_due_is_flagged_no_more(storage: Storage) -> None:
     upload(storage, session_bytes(), "a.json", NOW)
-    due = unit_outlook(storage, "BA-017", NOW).due
+    due = due_date(storage)
     assert due is not None
     flag_overdue(storage, due + timedelta(days=1))
     flag_overdue(storage, due - timedelta(days=1))
@@ -45,7 +50,7 @@ def test_a_unit_that_is_no_longer_due_is_flagged_no_more(storage: Storage) -> No
 
 def test_a_calibration_that_finds_the_unit_out_of_tolerance_leaves_the_one_flag_open(storage: Storage) -> None:
     upload(storage, session_bytes(), "a.json", NOW)
-    due = unit_outlook(storage, "BA-017", NOW).due
+    due = due_date(storage)
     assert due is not None
     flag_overdue(storage, due + timedelta(days=1))
     for month, late in enumerate((2, 3)):

@@ -1,4 +1,4 @@
-"""Flow: what lies in the outbox is sent, signed, until it is accepted or given up; at least once, beside the requests.
+"""Work beside the requests: what lies in the outbox is sent, signed, until it is accepted or given up; at least once.
 
 An attempt is claimed before it is made. If the service dies in between, the claim runs out and the notice is sent
 again under the same key, by which the receiver knows it.
@@ -15,20 +15,24 @@ from threading import Event
 import httpx
 
 from service.errors import ServiceError
-from service.flows.webhooks import fault_of
+from service.flows.register_webhook import fault_of
 from service.records.webhook import DeliveryState, Outgoing
 from service.storage import Storage
 
 AT_A_TIME = 20
+"""Messages that are claimed together: few enough that a claim outlasts them."""
 CLAIM = timedelta(minutes=10)
 """Longer than `AT_A_TIME` attempts that all time out."""
 TIMEOUT = httpx.Timeout(10.0, connect=5.0)
+"""Seconds: a receiver that takes longer should accept first and work after."""
 FIRST_PAUSE, LONGEST_PAUSE = timedelta(seconds=10), timedelta(hours=1)
+"""A restart of the receiver is waited for, and an hour after it is back at most everything has been told."""
 MOST_ATTEMPTS = 30
 """Over about 21 hours."""
 LOOK_EVERY = 1.0
 """Seconds between two looks into the outbox."""
 SIGNATURE, KEY = "X-Imu-Health-Signature", "Idempotency-Key"
+"""Header of the HMAC; header of the message's key (IETF draft idempotency-key-header)."""
 log = logging.getLogger("imu_health")
 
 

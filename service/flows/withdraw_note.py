@@ -1,18 +1,10 @@
-"""Flow: remarks on a unit's history; one that no longer holds is withdrawn with a reason, never erased."""
+"""Flow: a remark that no longer holds is withdrawn with a reason, never erased."""
 
 from datetime import datetime
 
 from service.errors import ConflictError
 from service.records.event import Note
 from service.storage import Storage
-
-
-def add_note(storage: Storage, serial: str, at: datetime, text: str, who: str, now: datetime) -> Note:
-    """Keeps a note on a unit at a date."""
-    with storage.database.writing() as store:
-        id = store.notes.add(store.units.key(serial), at, text, who, now)
-        store.log.audit(now, who, "note", serial, {"note": id, "at": at.isoformat(), "text": text})
-        return store.notes.get(id)
 
 
 def withdraw_note(storage: Storage, id: int, who: str, why: str, now: datetime) -> Note:

@@ -1,0 +1,98 @@
+"""Step: uploaded bytes → a session that can be calibrated and stored; every fault is named with its place."""
+
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+
+from estimator.errors import FormatError, Problem
+from estimator.session import CalibrationSession
+from service.ingest import read_upload
+
+LONGEST_NAME = 200
+"""Characters of a name that the store keeps: the width of its columns."""
+LONGEST_NOTES = 20_000
+"""Characters of a text that people write: some pages, so that no upload fills the database."""
+CLOCK_LEEWAY = timedelta(days=1)
+"""How far a date may lie ahead: a stand's clock in another time zone is up to a day ahead."""
+
+
+@dataclass(frozen=True, eq=False)
+class Checked:
+    """A session as the later steps need it: what the file says, and what follows from it for the store."""
+
+    session: CalibrationSession
+    measured_at: datetime
+    """UTC; the upload's time when the file does not say."""
+    type_name: str
+    """What the unit's type is called after its first session: the file's own word, or a description."""
+    stand: str | None
+    """That it was measured on."""
+
+
+def check(content: bytes, filename: str, now: datetime) -> Checked:
+    """The session that uploaded bytes hold; SessionError with every problem where they cannot be used."""
+    session = read_upload(content, filename)
+    problems = [*_text_problems(session), *_date_problems(session, now)]
+    if problems:
+        raise FormatError(problems, filename)
+    return as_checked(session, now)
+
+
+def as_checked(session: CalibrationSession, uploaded_at: datetime) -> Checked:
+    """A session that was checked before, as one that is read from the store was."""
+    return Checked(
+        session=session,
+        measured_at=_measured_at(session, uploaded_at),
+        type_name=session.unit_type or _described(session),
+        stand=None if session.stand is None else session.stand.id,
+    )
+
+
+def plain_filename(filename: str) -> str:
+    """The last part of an uploaded name, printable; only ever shown, never used as a path."""
+    last = filename.replace("\\", "/").rsplit("/", 1)[-1]
+    return "".join(c for c in last if c.isprintable())[:LONGEST_NAME] or "upload"
+
+
+def _measured_at(session: CalibrationSession, now: datetime) -> datetime:
+    if session.started_at is None:
+        return now
+    stated = datetime.fromisoformat(session.started_at)
+    return (stated if stated.tzinfo else stated.replace(tzinfo=UTC)).astimezone(UTC)
+
+
+def _described(session: CalibrationSession) -> str:
+    """``accelerometer × 6, V``."""
+    units = sorted({sensor.reading_unit for sensor in session.sensors})
+    return f"{session.block} × {len(session.sensors)}, {' and '.join(units)}"[:LONGEST_NAME]
+
+
+def _text_problems(session: CalibrationSession) -> list[Problem]:
+    names = {
+        "unit": session.unit,
+        "unit_type": session.unit_type or "",
+        "stand.id": session.stand.id if session.stand else "",
+    }
+    names |= {f"sensors[{i}].name": sensor.name for i, sensor in enumerate(session.sensors)}
+    names |= {f"sensors[{i}].reading_unit": sensor.reading_unit for i, sensor in enumerate(session.sensors)}
+    texts = {"operator": session.operator, "notes": session.notes}
+    limits = [(field, text, LONGEST_NAME) for field, text in names.items()]
+    limits += [(field, text, LONGEST_NOTES) for field, text in texts.items()]
+    return [Problem(field, fault) for field, text, longest in limits if (fault := _fault(text, longest))]
+
+
+def _fault(text: str, longest: int) -> str | None:
+    if len(text) > longest:
+        return f"is {len(text)} characters long; at most {longest} are kept"
+    if "\x00" in text or any("\ud800" <= c <= "\udfff" for c in text):
+        return "holds characters that are not text (NUL or half of a pair); remove them"
+    return None
+
+
+def _date_problems(session: CalibrationSession, now: datetime) -> list[Problem]:
+    try:
+        at = _measured_at(session, now)
+    except (ValueError, OverflowError):
+        return [Problem("started_at", "is not a date and time; write it like 2026-03-01T09:00:00Z")]
+    if at > now + CLOCK_LEEWAY:
+        return [Problem("started_at", f"lies in the future ({at:%Y-%m-%d}); check the date or the clock that wrote it")]
+    return []

@@ -1,0 +1,68 @@
+"""Step: a checked session → its calibration under the model in force.
+
+A recording in service has none of its own: it is compared with its unit's calibration, and that calibration is moved by
+what the recording shows.
+"""
+
+from dataclasses import dataclass
+
+from estimator.diagnosis.explanation.accepted import calibrate_extended
+from estimator.parity import ParityResult, parity_check
+from estimator.parity.as_calibration import parity_calibration
+from estimator.programmes import calibrate as calibrate_baseline
+from estimator.results import Calibration
+from estimator.session import CALIBRATIONS, IN_SERVICE, CalibrationSession
+from service.ingest.checked import Checked
+from service.judging.reference import calibration_to_compare_with
+from service.records.model import Model
+from service.storage.store import Store
+
+
+@dataclass(frozen=True, eq=False)
+class Basis:
+    """What is stored already that the calibration of a session rests on."""
+
+    model: Model
+    compared_with: Calibration | None
+    """A recording in service: its unit's calibration; None for every other programme."""
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """A recording in service beside the calibration that its unit's readings are corrected by."""
+
+    reference: Calibration
+    result: ParityResult
+
+
+@dataclass(frozen=True, eq=False)
+class Calibrated:
+    """A checked session with its calibration."""
+
+    checked: Checked
+    model: Model
+    """That it was calibrated under."""
+    calibration: Calibration
+    comparison: Comparison | None
+    """Of a recording in service; None for every other programme."""
+
+
+def basis_of(store: Store, new: Checked, model: Model) -> Basis:
+    """What a calibration under a model needs of the store; ScheduleError for a recording of an uncalibrated unit."""
+    is_recording = new.session.programme == IN_SERVICE
+    return Basis(model, calibration_to_compare_with(store, new) if is_recording else None)
+
+
+def calibrate(new: Checked, basis: Basis) -> Calibrated:
+    """The numerical part, with no store at hand; SessionError where the session cannot tell what it should."""
+    if basis.compared_with is None:
+        return Calibrated(new, basis.model, _under(basis.model, new.session), None)
+    found = Comparison(basis.compared_with, parity_check(new.session, basis.compared_with))
+    return Calibrated(new, basis.model, parity_calibration(found.result, found.reference), found)
+
+
+def _under(model: Model, session: CalibrationSession) -> Calibration:
+    """Under a model; a session that a cause of it does not show is calibrated without that cause."""
+    if model.causes and session.programme in CALIBRATIONS:
+        return calibrate_extended(session, model.causes)
+    return calibrate_baseline(session)

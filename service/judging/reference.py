@@ -1,0 +1,54 @@
+"""Step: which session another is judged against: the reference of its block in its epoch.
+
+An epoch lasts from one known break in the unit's history, a service, to the next; what is measured at the moment of the
+service is after it. Its reference is the first session that was kept as one. Calibrations have one reference together,
+alignments and rate tables one each; a recording in service never becomes one and is compared with the calibrations'.
+"""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from estimator.errors import Problem, ScheduleError
+from estimator.results import Calibration
+from estimator.session import CALIBRATIONS, IN_SERVICE, comparable
+from service.ingest.checked import Checked
+from service.storage.store import Store
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What a session of an epoch is judged against."""
+
+    session: str | None
+    """Its id; None where the epoch has no reference yet."""
+    since: datetime | None
+    """Of the service that the epoch began with; None in a unit's first epoch."""
+
+
+def reference_of(store: Store, unit: int, block: str, programme: str, at: datetime) -> Reference:
+    """The reference for a session of a block of the unit, by what was measured and when."""
+    since, until = store.services.around(unit, at)
+    alike = CALIBRATIONS if programme == IN_SERVICE else comparable(programme)
+    return Reference(store.sessions.reference(unit, block, since, until, alike), since)
+
+
+def calibration_to_compare_with(store: Store, recording: Checked) -> Calibration:
+    """The calibration of the epoch that a recording in service was made in; ScheduleError where there is none yet."""
+    session = recording.session
+    if not store.units.exists(session.unit):
+        raise _uncalibrated(session.unit, None)
+    unit = store.units.key(session.unit)
+    found = reference_of(store, unit, session.block, session.programme, recording.measured_at)
+    if found.session is None:
+        raise _uncalibrated(session.unit, found.since)
+    return store.calibrations.get(found.session)
+
+
+def _uncalibrated(unit: str, since: datetime | None) -> ScheduleError:
+    """That the unit has no calibration, and what to do first."""
+    service = "" if since is None else f" since its service of {since:%Y-%m-%d}"
+    message = (
+        f"{unit} has no calibration yet{service}, and a recording in service is compared with one: "
+        "upload a calibration session of the unit first, then this file again"
+    )
+    return ScheduleError([Problem("unit", message)])

@@ -1,0 +1,69 @@
+"""The reference of an epoch: the first comparable session kept as one, from one service up to the next."""
+
+from datetime import UTC, datetime
+
+from estimator.session import ACCELEROMETER, IN_SERVICE, ROTATION_ALIGNMENT, TWO_AXIS_STAND
+from service.flows.receive import upload
+from service.flows.record_service import record_service
+from service.judging.reference import Reference, reference_of
+from service.records.event import NewService
+from service.storage import Storage
+from tests.service.sessions import session_bytes
+
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
+APRIL, JUNE, AUGUST = (datetime(2026, month, 1, 9, tzinfo=UTC) for month in (4, 6, 8))
+"""To the second when the sessions of these months are measured."""
+
+
+def stored(storage: Storage, month: int) -> str:
+    """The id of a calibration measured in a month."""
+    return upload(storage, session_bytes(month=month, seed=month), "a.json", NOW).id
+
+
+def serviced(storage: Storage, at: datetime) -> None:
+    """A repair of the unit."""
+    record_service(storage, "BA-017", NewService("repair", at), NOW)
+
+
+def chosen(storage: Storage, at: datetime, programme: str = TWO_AXIS_STAND) -> Reference:
+    """What a session measured at a time would be judged against."""
+    with storage.database.reading() as store:
+        return reference_of(store, store.units.key("BA-017"), ACCELEROMETER, programme, at)
+
+
+def test_the_session_that_was_kept_first_is_the_reference_whenever_it_was_measured(storage: Storage) -> None:
+    first = stored(storage, 5)
+    stored(storage, 3)
+    assert chosen(storage, APRIL) == Reference(first, None)
+
+
+def test_after_a_service_there_is_none_until_the_next_session(storage: Storage) -> None:
+    stored(storage, 3)
+    serviced(storage, JUNE)
+    assert chosen(storage, AUGUST) == Reference(None, JUNE)
+
+
+def test_a_session_at_the_moment_of_the_service_is_the_reference_after_it(storage: Storage) -> None:
+    stored(storage, 3)
+    serviced(storage, JUNE)
+    second = stored(storage, 6)
+    assert chosen(storage, JUNE) == chosen(storage, AUGUST) == Reference(second, JUNE)
+
+
+def test_a_session_at_the_moment_of_the_service_is_none_before_it(storage: Storage) -> None:
+    stored(storage, 9)
+    serviced(storage, AUGUST)
+    serviced(storage, JUNE)
+    second = stored(storage, 6)
+    assert chosen(storage, JUNE).session == second
+    assert chosen(storage, APRIL) == Reference(None, None)
+
+
+def test_a_recording_in_service_is_compared_with_the_calibrations_reference(storage: Storage) -> None:
+    calibration = stored(storage, 3)
+    assert chosen(storage, APRIL, IN_SERVICE).session == calibration
+
+
+def test_an_alignment_is_not_judged_against_a_calibration(storage: Storage) -> None:
+    stored(storage, 3)
+    assert chosen(storage, APRIL, ROTATION_ALIGNMENT).session is None
