@@ -37,9 +37,7 @@ class House:
 
     def run(self, *command: str) -> str:
         """What a command prints in the copy; it must succeed."""
-        done = subprocess.run(
-            command, cwd=self.root, env=self.environment, capture_output=True, text=True, check=False
-        )
+        done = subprocess.run(command, cwd=self.root, env=self.environment, capture_output=True, text=True, check=False)
         assert done.returncode == 0, f"{done.stdout}\n{done.stderr}"
         return plain(done.stdout)
 

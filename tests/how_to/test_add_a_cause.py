@@ -1,7 +1,5 @@
 """docs/how-to/add-a-cause.md, followed: one class and one line, and every room knows the new cause."""
 
-from pathlib import Path
-
 import httpx
 import pytest
 
