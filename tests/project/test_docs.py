@@ -18,7 +18,7 @@ from tests.serving import serving
 
 PROJECT = Path(__file__).parents[2]
 README = PROJECT / "README.md"
-PAGES = [README, PROJECT / "CHANGELOG.md", *sorted((PROJECT / "docs").rglob("*.md"))]
+PAGES = [README, PROJECT / "CHANGELOG.md", PROJECT / "CONTRIBUTING.md", *sorted((PROJECT / "docs").rglob("*.md"))]
 ADDRESS = "http://127.0.0.1:8000"
 BIN = Path(sys.executable).parent
 MAKE = re.compile(r"^make \w+.*$", re.MULTILINE)

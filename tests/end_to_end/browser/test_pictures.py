@@ -27,6 +27,9 @@ from tests.serving import serving
 ASKED = "IMU_HEALTH_PICTURES"
 FOLDER = Path(__file__).parents[3] / "docs" / "pictures"
 UNIT = "BA-107"
+"""A4 wore out and was replaced: its history has a break."""
+STICKING = "BA-110"
+"""A4 sticks since the last session, which the diagnosis names."""
 NOW = datetime(2026, 11, 21, tzinfo=UTC)
 
 pytestmark = [
@@ -78,14 +81,18 @@ def test_picture_of_the_first_page_of_a_certificate(filled: Settings) -> None:
         ("fleet-phone", "/", 390, 844),
         ("unit", f"/units/{UNIT}", 1280, 1500),
         ("session", "/sessions/{last}", 1280, 1500),
+        ("diagnosis", "/sessions/{sticking}/diagnosis", 1280, 1500),
+        ("plan", "/plan", 1280, 1500),
         ("upload", "/upload", 1280, 560),
     ],
 )
 def test_picture(chromium: Browser, demonstration: str, name: str, path: str, width: int, height: int) -> None:
-    last = httpx.get(f"{demonstration}/api/v1/units").json()["units"][0]["last_session"]
+    units = httpx.get(f"{demonstration}/api/v1/units").json()["units"]
+    sticking = next(unit["last_session"] for unit in units if unit["serial"] == STICKING)
     with opened(chromium, width) as (_, page):
         page.set_viewport_size({"width": width, "height": height})
-        page.goto(demonstration + path.format(last=last), wait_until="networkidle")
+        address = demonstration + path.format(last=units[0]["last_session"], sticking=sticking)
+        page.goto(address, wait_until="networkidle")
         page.wait_for_timeout(500)
         FOLDER.mkdir(parents=True, exist_ok=True)
         page.screenshot(path=FOLDER / f"{name}.png")

@@ -1,0 +1,51 @@
+"""docs/how-to/add-a-cause.md, followed: one class and one line, and every room knows the new cause."""
+
+import httpx
+import pytest
+
+from tests.how_to.follow import House, followed, plain
+
+SENTENCE = "The zero of A2 is another one beyond a certain input"
+
+
+@pytest.fixture(scope="module")
+def house(tmp_path_factory: pytest.TempPathFactory) -> House:
+    """The source with the page's cause."""
+    return followed("add-a-cause", tmp_path_factory.mktemp("cause"))
+
+
+@pytest.fixture(scope="module")
+def said(house: House) -> list[str]:
+    """What the page's shell example says of each of its three sessions."""
+    return house.shell().split("\n\n")
+
+
+def test_the_hidden_effect_is_named_with_its_size_and_place(said: list[str]) -> None:
+    assert SENTENCE in said[0]
+    assert "size 102.1 ± 2.0 µg; beyond 493.3 mg" in said[0]
+
+
+def test_the_cause_may_act_twice_on_one_sensor(said: list[str]) -> None:
+    assert "A2: beyond 371.4 mg; A2: beyond 718.5 mg" in said[1]
+
+
+def test_a_third_time_withdraws_the_name(said: list[str]) -> None:
+    assert "no known cause explains" in said[2]
+    assert SENTENCE not in said[2]
+
+
+def test_the_catalogue_page_shows_the_cause(house: House) -> None:
+    house.run("python", "-m", "benchmarks.catalogue")
+    page = (house.root / "docs" / "diagnosis" / "causes.md").read_text(encoding="utf-8")
+    assert "| `range-switch` | k where \\|a\\| > a0, a0 free | m/s² | – | The zero of the sensor is another" in page
+
+
+def test_the_page_of_an_uploaded_session_says_it_in_the_cause_s_words(house: House, said: list[str]) -> None:
+    content = (house.root / "once.json").read_bytes()
+    with house.serving() as address:
+        id = httpx.post(f"{address}/api/v1/sessions", content=content).json()["id"]
+        page = plain(httpx.get(f"{address}/sessions/{id}/diagnosis").text)
+    assert SENTENCE in page
+    assert "Fix the voltmeter" in page
+    assert "102.1 ± 2.0 µg" in page
+    assert '<input type="hidden" name="cause" value="range-switch">' in page, "it can be accepted into a model"
