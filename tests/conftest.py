@@ -16,6 +16,7 @@ from tests.stock import Stock, stores
 
 SettingsHolding = Callable[..., Settings]
 Holding = Callable[..., httpx.Client]
+StockOf = Callable[[Databases], Stock]
 
 
 @pytest.fixture(scope="session")
@@ -40,13 +41,13 @@ def databases(request: pytest.FixtureRequest) -> Databases:
 
 
 @pytest.fixture(scope="session")
-def stock_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Databases], Stock]:
+def stock_of(tmp_path_factory: pytest.TempPathFactory) -> StockOf:
     """The services of an engine that this worker has filled so far."""
     return cache(lambda databases: Stock(databases, tmp_path_factory.mktemp("stock")))
 
 
 @pytest.fixture
-def settings_holding(databases: Databases, stock_of: Callable[[Databases], Stock]) -> Iterator[SettingsHolding]:
+def settings_holding(databases: Databases, stock_of: StockOf) -> Iterator[SettingsHolding]:
     """Settings of a service that holds uploads already, of each engine in turn."""
     with ExitStack() as opened:
         yield lambda *uploads: opened.enter_context(stock_of(databases).holding(*uploads))

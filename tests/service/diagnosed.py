@@ -55,13 +55,6 @@ def held(holding: Holding, what: tuple[str, tuple[int, ...], str | None]) -> tup
     return holding(*files), session_id(files[-1])
 
 
-def send_case(client: httpx.Client, case: Case) -> str:
-    """Uploads the files of a case and returns the session's id."""
-    for content in files_of(case):
-        client.post("/api/v1/sessions", content=content).raise_for_status()
-    return session_id(content)
-
-
 def diagnosis_of(client: httpx.Client, id: str) -> dict[str, Any]:
     """imu-diagnosis/1 of a stored session."""
     answer = client.get(f"/api/v1/sessions/{id}/diagnosis")
