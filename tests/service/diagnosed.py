@@ -28,12 +28,13 @@ def drawn(what: tuple[str, tuple[int, ...], str | None]) -> Case:
     return draw_case(*what, LONGEST)
 
 
-def warm(seed: int, started_at: str) -> dict[str, Any]:
-    """A session of a unit whose A2 follows the temperature in every session."""
+def warm(seed: int, started_at: str, *, follows: bool = True) -> dict[str, Any]:
+    """A session of a unit whose A2 follows the temperature, or does not yet."""
     where = scene(ACCELEROMETER, 2)
     session = where.measured(seed)
-    moved = with_readings(session, change("bias-temperature", where) * where.world.truth.scale)
-    return session_document(moved) | {"unit": "WARM-1", "started_at": started_at}
+    if follows:
+        session = with_readings(session, change("bias-temperature", where) * where.world.truth.scale)
+    return session_document(session) | {"unit": "WARM-1", "started_at": started_at}
 
 
 def send(client: httpx.Client, document: dict[str, Any]) -> str:

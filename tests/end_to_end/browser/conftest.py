@@ -119,3 +119,11 @@ def opened(browser: Browser, width: int = 1280, **options: object) -> Iterator[t
     context = browser.new_context(viewport={"width": width, "height": 900}, **options)  # type: ignore[arg-type]
     yield context, context.new_page()
     context.close()
+
+
+def draw_all(page: Page) -> None:
+    """Brings every chart near the screen, waits until it is drawn, and goes back to the top."""
+    for chart in page.locator(".chart").all():
+        chart.scroll_into_view_if_needed()
+    page.wait_for_function("[...document.querySelectorAll('.chart')].every((c) => c.classList.contains('drawn'))")
+    page.evaluate("scrollTo(0, 0)")

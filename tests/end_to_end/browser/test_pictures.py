@@ -20,7 +20,7 @@ from service.settings import Settings
 from service.views.certificate import certified_session
 from service.views.fleet import fleet_overview
 from tests.databases import Databases
-from tests.end_to_end.browser.conftest import opened
+from tests.end_to_end.browser.conftest import draw_all, opened
 from tests.serving import serving
 from tests.stock import stores
 
@@ -83,8 +83,8 @@ def test_picture(chromium: Browser, demonstration: str, name: str, path: str, wi
     last = httpx.get(f"{demonstration}/api/v1/units").json()["units"][0]["last_session"]
     with opened(chromium, width) as (_, page):
         page.set_viewport_size({"width": width, "height": height})
-        page.goto(demonstration + path.format(last=last), wait_until="networkidle")
-        page.wait_for_timeout(500)
+        page.goto(demonstration + path.format(last=last))
+        draw_all(page)
         FOLDER.mkdir(parents=True, exist_ok=True)
         page.screenshot(path=FOLDER / f"{name}.png")
     assert (FOLDER / f"{name}.png").stat().st_size > 10_000

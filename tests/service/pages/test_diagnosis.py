@@ -46,9 +46,23 @@ def test_session_and_unit_say_it_in_one_line(holding: Holding) -> None:
         assert "The zero of A5 follows the temperature." in client.get(path, headers=HTML).text
 
 
+def page_after(holding: Holding, *, follows: bool) -> str:
+    """The page of a unit's second session, in which A2 follows the temperature, as it did in the first or did not."""
+    before = json.dumps(warm(1, "2026-01-05T08:00:00Z", follows=follows)).encode()
+    now = json.dumps(warm(2, "2026-03-05T08:00:00Z")).encode()
+    return page(holding(before, now), session_id(now))
+
+
+@pytest.mark.parametrize(
+    ("follows", "since"),
+    [(True, "It was there in the earlier sessions too."), (False, "New since the earlier sessions.")],
+)
+def test_the_page_says_whether_the_cause_is_new(holding: Holding, follows: bool, since: str) -> None:
+    assert since in page_after(holding, follows=follows)
+
+
 def test_the_gain_is_shown_on_the_session_before_too(holding: Holding) -> None:
-    before, now = (json.dumps(warm(seed, f"2026-0{2 * seed - 1}-05T08:00:00Z")).encode() for seed in (1, 2))
-    text = page(holding(before, now), session_id(now))
+    text = page_after(holding, follows=True)
     assert "Positions held out" in text
     assert text.index("The session before") > text.index("the session before, of <time")
 
