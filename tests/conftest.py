@@ -1,16 +1,22 @@
-"""What all tests share: databases of both engines, and the service on a fresh one of each."""
+"""What all tests share: databases of both engines, and services on them that are empty or hold sessions already."""
 
-from collections.abc import Iterator
-from pathlib import Path
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from functools import cache
 
 import httpx
 import pytest
 
 from service.app import create_app
 from service.settings import Settings
-from service.storage import Database, Files, Storage
+from service.storage import Storage
 from tests.databases import ENGINES, Databases, PostgresDatabases, postgres_databases, sqlite_databases
 from tests.serving import http_client
+from tests.stock import Stock, stores
+
+SettingsHolding = Callable[..., Settings]
+Holding = Callable[..., httpx.Client]
+StockOf = Callable[[Databases], Stock]
 
 
 @pytest.fixture(scope="session")
@@ -34,30 +40,47 @@ def databases(request: pytest.FixtureRequest) -> Databases:
     return chosen
 
 
+@pytest.fixture(scope="session")
+def stock_of(tmp_path_factory: pytest.TempPathFactory) -> StockOf:
+    """The services of an engine that this worker has filled so far."""
+    return cache(lambda databases: Stock(databases, tmp_path_factory.mktemp("stock")))
+
+
 @pytest.fixture
-def store_url(databases: Databases) -> Iterator[str]:
+def settings_holding(databases: Databases, stock_of: StockOf) -> Iterator[SettingsHolding]:
+    """Settings of a service that holds uploads already, of each engine in turn."""
+    with ExitStack() as opened:
+        yield lambda *uploads: opened.enter_context(stock_of(databases).holding(*uploads))
+
+
+@pytest.fixture
+def holding(settings_holding: SettingsHolding) -> Iterator[Holding]:
+    """HTTP to a service that holds uploads already, of each engine in turn."""
+    with ExitStack() as opened:
+        yield lambda *uploads: opened.enter_context(http_client(create_app(settings_holding(*uploads))))
+
+
+@pytest.fixture
+def settings(settings_holding: SettingsHolding) -> Settings:
+    """Settings of an empty service, of each engine in turn."""
+    return settings_holding()
+
+
+@pytest.fixture
+def store_url(settings: Settings) -> str:
     """A fresh database with its schema at head, of each engine in turn."""
-    url = databases.migrated()
-    yield url
-    databases.drop(url)
-
-
-@pytest.fixture
-def settings(store_url: str, tmp_path: Path) -> Settings:
-    """Settings of a service on the fresh database."""
-    return Settings(database_url=store_url, data_folder=tmp_path / "data")
+    return settings.database
 
 
 @pytest.fixture
 def storage(settings: Settings) -> Iterator[Storage]:
-    """The stores of the service, without the service."""
-    database = Database(settings.database)
-    yield Storage(database, Files(settings.files))
-    database.close()
+    """The stores of an empty service, without the service."""
+    with stores(settings) as found:
+        yield found
 
 
 @pytest.fixture
 def client(settings: Settings) -> Iterator[httpx.Client]:
-    """HTTP to a service on a fresh database, of each engine in turn."""
+    """HTTP to an empty service, of each engine in turn."""
     with http_client(create_app(settings)) as http:
         yield http

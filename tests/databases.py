@@ -33,6 +33,10 @@ class Databases(ABC):
         """URL of a new database without a schema."""
 
     @abstractmethod
+    def copied(self, url: str) -> str:
+        """URL of a copy of a database that nobody is connected to."""
+
+    @abstractmethod
     def migrated(self) -> str:
         """URL of a new database with its schema at head."""
 
@@ -46,16 +50,19 @@ class SqliteDatabases(Databases):
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self._template = folder / "template.sqlite"
-        upgrade(f"sqlite:///{self._template}")
+        self._template = self.empty()
+        upgrade(self._template)
 
     def empty(self) -> str:
         return f"sqlite:///{self.folder / uuid4().hex}.sqlite"
 
+    def copied(self, url: str) -> str:
+        copy = self.empty()
+        shutil.copyfile(url.removeprefix("sqlite:///"), copy.removeprefix("sqlite:///"))
+        return copy
+
     def migrated(self) -> str:
-        url = self.empty()
-        shutil.copyfile(self._template, url.removeprefix("sqlite:///"))
-        return url
+        return self.copied(self._template)
 
     def drop(self, url: str) -> None:
         file = Path(url.removeprefix("sqlite:///"))
@@ -71,23 +78,27 @@ class PostgresDatabases(Databases):
         for setting in ("fsync", "full_page_writes"):  # no test cuts the power
             self._run(sql.SQL("ALTER SYSTEM SET {} = off").format(sql.Identifier(setting)))
         self._run(sql.SQL("SELECT pg_reload_conf()"))
-        self._create("template_imu_health")
-        upgrade(server.get_uri("template_imu_health"))
+        self._template = self.empty()
+        upgrade(self._template)
 
     def empty(self) -> str:
-        return self.server.get_uri(self._create(f"db_{uuid4().hex}"))
+        return self._create("template1")
+
+    def copied(self, url: str) -> str:
+        return self._create(make_url(url).database or "")
 
     def migrated(self) -> str:
-        return self.server.get_uri(self._create(f"db_{uuid4().hex}", "template_imu_health"))
+        return self.copied(self._template)
 
     def drop(self, url: str) -> None:
         name = sql.Identifier(make_url(url).database or "")
         self._run(sql.SQL("DROP DATABASE {} WITH (FORCE)").format(name))
 
-    def _create(self, name: str, template: str = "template1") -> str:
+    def _create(self, template: str) -> str:
+        name = f"db_{uuid4().hex}"
         names = sql.Identifier(name), sql.Identifier(template)
         self._run(sql.SQL("CREATE DATABASE {} TEMPLATE {} STRATEGY FILE_COPY").format(*names))
-        return name
+        return self.server.get_uri(name)
 
     def _run(self, statement: sql.Composable) -> None:
         with psycopg.connect(self.server.get_uri(), autocommit=True) as connection:

@@ -1,9 +1,10 @@
 """The service over real HTTP, on a free port of this machine."""
 
+import asyncio
+import socket
 from collections.abc import Iterator
 from contextlib import contextmanager
-from threading import Thread
-from time import sleep
+from threading import Event, Thread
 
 import httpx
 import uvicorn
@@ -13,20 +14,53 @@ from service.app import create_app
 from service.settings import Settings
 
 
+class Server(uvicorn.Server):
+    """Says at once that it has started, and stops as soon as it is told to, where uvicorn looks ten times a second."""
+
+    def __init__(self, app: FastAPI) -> None:
+        super().__init__(uvicorn.Config(app, port=0, log_level="warning"))
+        self.settled = Event()
+        """Whether it has started, or never will."""
+
+    def work(self) -> None:
+        """Serves until it is told to stop."""
+        try:
+            self.run()
+        finally:
+            self.settled.set()
+
+    async def main_loop(self) -> None:
+        self._loop, self._end = asyncio.get_running_loop(), asyncio.Event()
+        await self.on_tick(0)
+        self.settled.set()
+        await self._end.wait()
+
+    def stop(self) -> None:
+        """Ends the main loop."""
+        self._loop.call_soon_threadsafe(self._end.set)
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        for server in self.servers:
+            server.close()
+        for connection in list(self.server_state.connections):
+            connection.shutdown()
+        await asyncio.gather(*self.server_state.tasks)
+        await self.lifespan.shutdown()
+
+
 @contextmanager
 def running(app: FastAPI) -> Iterator[str]:
     """The address of an application that runs until the block ends."""
-    server = uvicorn.Server(uvicorn.Config(app, port=0, log_level="warning"))
-    thread = Thread(target=server.run, daemon=True)
+    server = Server(app)
+    thread = Thread(target=server.work, daemon=True)
     thread.start()
-    while not server.started:
-        assert thread.is_alive(), "the service did not start"
-        sleep(0.02)
+    server.settled.wait()
+    assert server.started, "the service did not start"
     port = server.servers[0].sockets[0].getsockname()[1]
     try:
         yield f"http://127.0.0.1:{port}"
     finally:
-        server.should_exit = True
+        server.stop()
         thread.join()
 
 

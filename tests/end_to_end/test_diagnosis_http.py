@@ -1,20 +1,25 @@
 """Every cause of the catalogue, hidden by an independent generator, is found over HTTP."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from datetime import UTC, datetime
+from typing import Any
 
-import httpx
 import pytest
 
 from service.app import create_app
-from service.settings import Settings
+from service.flows.receive import upload
 from tests.blind.case import Case
 from tests.blind.cases import draw_case
 from tests.blind.catalogue import CATALOGUE
 from tests.blind.score import score
+from tests.conftest import StockOf
 from tests.databases import Databases
-from tests.service.diagnosed import diagnosis_of, send_case
+from tests.service.diagnosed import diagnosis_of, files_of
 from tests.serving import http_client
+from tests.stock import stores
 
+Diagnosed = Callable[[Case], dict[str, Any]]
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 LONGEST = 16
 SEED = 400
 TRIES = 12
@@ -24,11 +29,21 @@ SHARED = {"bias-per-position", "levelling-y", "meridian-error", "g-sensitivity"}
 
 
 @pytest.fixture(scope="module")
-def address(sqlite: Databases, tmp_path_factory: pytest.TempPathFactory) -> Iterator[httpx.Client]:
-    """One service for all causes."""
-    settings = Settings(database_url=sqlite.migrated(), data_folder=tmp_path_factory.mktemp("data"))
-    with http_client(create_app(settings)) as client:
-        yield client
+def diagnosed(sqlite: Databases, stock_of: StockOf) -> Iterator[Diagnosed]:
+    """What one service for all causes finds over HTTP in the session of a case, its history stored before."""
+    with (
+        stock_of(sqlite).holding() as settings,
+        http_client(create_app(settings)) as client,
+        stores(settings) as storage,
+    ):
+
+        def diagnose(case: Case) -> dict[str, Any]:
+            *history, session = files_of(case)
+            for earlier in history:
+                upload(storage, earlier, "earlier.json", NOW)
+            return diagnosis_of(client, client.post("/api/v1/sessions", content=session).json()["id"])
+
+        yield diagnose
 
 
 def separated(cause: str) -> Case:
@@ -42,22 +57,19 @@ def separated(cause: str) -> Case:
 
 
 @pytest.mark.parametrize("cause", CATALOGUE)
-def test_a_hidden_cause_is_found_over_http(address: httpx.Client, cause: str) -> None:
+def test_a_hidden_cause_is_found_over_http(diagnosed: Diagnosed, cause: str) -> None:
     case = separated(cause)
-    found = diagnosis_of(address, send_case(address, case))
-    outcome = score(case, found, 0.0)
+    outcome = score(case, diagnosed(case), 0.0)
     assert outcome.listed, outcome
     assert outcome.first or not outcome.separated or cause in SHARED, outcome
 
 
-def test_a_session_without_an_effect_gets_no_name(address: httpx.Client) -> None:
-    case = draw_case("none", (SEED, 1), None, LONGEST)
-    found = diagnosis_of(address, send_case(address, case))
+def test_a_session_without_an_effect_gets_no_name(diagnosed: Diagnosed) -> None:
+    found = diagnosed(draw_case("none", (SEED, 1), None, LONGEST))
     assert (found["findings"], found["unexplained"], found["state"]) == ([], False, "nothing wrong")
 
 
-def test_structure_outside_the_catalogue_is_unexplained_over_http(address: httpx.Client) -> None:
-    case = draw_case("outside", (5, 1), "fifth-harmonic", LONGEST)
-    found = diagnosis_of(address, send_case(address, case))
+def test_structure_outside_the_catalogue_is_unexplained_over_http(diagnosed: Diagnosed) -> None:
+    found = diagnosed(draw_case("outside", (5, 1), "fifth-harmonic", LONGEST))
     assert (found["findings"], found["unexplained"]) == ([], True)
     assert "harmonic 5" in found["summary"]

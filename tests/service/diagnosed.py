@@ -1,6 +1,7 @@
 """Sessions with a hidden effect, from the tests' own generator, given to the service over HTTP."""
 
 import json
+from functools import cache
 from typing import Any
 
 import httpx
@@ -9,7 +10,9 @@ from estimator.session import ACCELEROMETER
 from estimator.writing import session_document
 from tests.blind.case import Case
 from tests.blind.cases import draw_case
+from tests.conftest import Holding
 from tests.estimator.causes.hiding import change, scene, with_readings
+from tests.service.sessions import session_id
 
 LONGEST = 16
 TEMPERATURE = ("single", (77, 3), "bias-temperature")
@@ -19,17 +22,19 @@ UNEXPLAINED = ("outside", (5, 1), "fifth-harmonic")
 ALIASES = ("single", (77, 0), "cubic-nonlinearity")
 
 
+@cache
 def drawn(what: tuple[str, tuple[int, ...], str | None]) -> Case:
     """A case by its kind, seed and cause."""
     return draw_case(*what, LONGEST)
 
 
-def warm(seed: int, started_at: str) -> dict[str, Any]:
-    """A session of a unit whose A2 follows the temperature in every session."""
+def warm(seed: int, started_at: str, *, follows: bool = True) -> dict[str, Any]:
+    """A session of a unit whose A2 follows the temperature, or does not yet."""
     where = scene(ACCELEROMETER, 2)
     session = where.measured(seed)
-    moved = with_readings(session, change("bias-temperature", where) * where.world.truth.scale)
-    return session_document(moved) | {"unit": "WARM-1", "started_at": started_at}
+    if follows:
+        session = with_readings(session, change("bias-temperature", where) * where.world.truth.scale)
+    return session_document(session) | {"unit": "WARM-1", "started_at": started_at}
 
 
 def send(client: httpx.Client, document: dict[str, Any]) -> str:
@@ -39,12 +44,16 @@ def send(client: httpx.Client, document: dict[str, Any]) -> str:
     return str(answer.json()["id"])
 
 
-def send_case(client: httpx.Client, case: Case) -> str:
-    """Uploads a case's history, then its session, as a unit of its own, and returns the session's id."""
+def files_of(case: Case) -> tuple[bytes, ...]:
+    """A case's history, then its session, as files of a unit of its own."""
     own = {"unit": f"{case.session['unit']}-{case.label}"}
-    for earlier in case.history:
-        send(client, earlier | own)
-    return send(client, case.session | own)
+    return tuple(json.dumps(document | own).encode() for document in (*case.history, case.session))
+
+
+def held(holding: Holding, what: tuple[str, tuple[int, ...], str | None]) -> tuple[httpx.Client, str]:
+    """A service that holds a case, and the id of its session."""
+    files = files_of(drawn(what))
+    return holding(*files), session_id(files[-1])
 
 
 def diagnosis_of(client: httpx.Client, id: str) -> dict[str, Any]:
@@ -53,3 +62,13 @@ def diagnosis_of(client: httpx.Client, id: str) -> dict[str, Any]:
     assert answer.status_code == 200, answer.text
     document: dict[str, Any] = answer.json()
     return document
+
+
+def accepted(client: httpx.Client, id: str) -> tuple[dict[str, Any], int]:
+    """The only finding of a session, and the model revision since it was accepted for the stand."""
+    [finding] = diagnosis_of(client, id)["findings"]
+    own = {"cause": finding["cause"], "scope": "stand", "by": "K. Ito"}
+    revision = client.post(f"/api/v1/sessions/{id}/diagnosis/accept", json=own).json()["id"]
+    unit = client.get(f"/api/v1/sessions/{id}").json()["unit"]
+    client.post(f"/api/v1/units/{unit}/recalibrate").raise_for_status()
+    return finding, revision

@@ -4,8 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from threading import Thread
-from time import monotonic, sleep
+from threading import Condition, Thread
 
 
 @dataclass(frozen=True)
@@ -24,6 +23,7 @@ class Receiver:
     host: str
     statuses: list[int] = field(default_factory=list)
     messages: list[Message] = field(default_factory=list)
+    _came: Condition = field(default_factory=Condition)
 
     @property
     def url(self) -> str:
@@ -32,11 +32,16 @@ class Receiver:
 
     def wait_for(self, count: int, seconds: float = 30.0) -> list[Message]:
         """What it got, once that is so much."""
-        end = monotonic() + seconds
-        while len(self.messages) < count and monotonic() < end:
-            sleep(0.05)
-        assert len(self.messages) >= count, f"{len(self.messages)} of {count} messages came"
+        with self._came:
+            enough = self._came.wait_for(lambda: len(self.messages) >= count, seconds)
+        assert enough, f"{len(self.messages)} of {count} messages came"
         return self.messages
+
+    def keep(self, message: Message) -> None:
+        """Takes one more."""
+        with self._came:
+            self.messages.append(message)
+            self._came.notify_all()
 
 
 @contextmanager
@@ -46,7 +51,7 @@ def receiver() -> Iterator[Receiver]:
     class Handler(BaseHTTPRequestHandler):
         def do_POST(self) -> None:
             body = self.rfile.read(int(self.headers["Content-Length"]))
-            found.messages.append(Message(self.path, dict(self.headers), body))
+            found.keep(Message(self.path, dict(self.headers), body))
             status = found.statuses.pop(0) if found.statuses else 204
             self.send_response(status)
             if 300 <= status < 400:

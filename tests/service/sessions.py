@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from hashlib import sha256
 from typing import Any
 
 from tests.builders import accelerometer_block, true_sensors
@@ -17,3 +18,12 @@ def session_bytes(
     sensors[2] = replace(sensors[2], bias=sensors[2].bias + a3_moved * MICRO_G)
     document = accelerometer_block(m, seed=seed, unit=unit, sensors=sensors, positions=24)
     return json.dumps(document | {"started_at": f"2026-{month:02d}-01T09:00:00Z"} | changes).encode()
+
+
+def session_id(content: bytes) -> str:
+    """The id under which the service keeps a file."""
+    return sha256(content).hexdigest()[:20]
+
+
+FAILED = (session_bytes(month=1), session_bytes(seed=2, month=2, a3_moved=90.0))
+"""A unit's reference session, and one in which A3's bias is out of tolerance."""

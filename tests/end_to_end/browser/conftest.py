@@ -6,18 +6,21 @@ import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
 
 import httpx
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
 
-from service.settings import Settings
+from service.flows.receive import upload as receive
 from tests.builders import Document, accelerometer_block, arbitrary_orientations, gyro_block, true_sensors
+from tests.conftest import StockOf
 from tests.databases import Databases
 from tests.service.recordings import recording_document
 from tests.service.sessions import session_bytes
 from tests.service.turntable import alignment_bytes
 from tests.serving import serving
+from tests.stock import stores
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 FLAGS = (
@@ -29,6 +32,7 @@ FLAGS = (
     "--no-first-run",
 )
 MICRO_G = 9.80665e-6
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 
 
 @dataclass(frozen=True)
@@ -50,6 +54,16 @@ def drifting(step: int) -> Document:
     return document | {"started_at": f"202{4 + step // 4}-{1 + 3 * (step % 4):02}-15T09:00:00Z"}
 
 
+def earlier() -> Iterator[Document]:
+    """Sessions whose own pages are not opened."""
+    yield from map(drifting, range(6))
+    for seed in (1, 2):
+        yield accelerometer_block(unit="BA-018", seed=seed) | {"started_at": f"2026-0{seed}-01T08:00:00Z"}
+    yield gyro_block() | {"unit": "GB-004"}
+    yield json.loads(alignment_bytes())
+    yield json.loads(session_bytes(unit="FL-1"))
+
+
 def upload(url: str, document: Document) -> str:
     """Uploads a session and returns its id."""
     answer = httpx.post(f"{url}/api/v1/sessions", content=json.dumps(document), timeout=60)
@@ -58,18 +72,14 @@ def upload(url: str, document: Document) -> str:
 
 
 @pytest.fixture(scope="session")
-def site(sqlite: Databases, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
+def site(sqlite: Databases, stock_of: StockOf) -> Iterator[Site]:
     """A service with six units: drifted out of tolerance, two fit, measured by hand, aligned on a turntable, flown."""
-    settings = Settings(database_url=sqlite.migrated(), data_folder=tmp_path_factory.mktemp("service"))
-    with serving(settings) as url:
-        unfit = [upload(url, drifting(step)) for step in range(7)][-1]
-        for seed in (1, 2):
-            upload(url, accelerometer_block(unit="BA-018", seed=seed) | {"started_at": f"2026-0{seed}-01T08:00:00Z"})
-        upload(url, gyro_block() | {"unit": "GB-004"})
+    with stock_of(sqlite).holding() as settings, serving(settings) as url, stores(settings) as storage:
+        for document in earlier():
+            receive(storage, json.dumps(document).encode(), "earlier.json", NOW)
+        unfit = upload(url, drifting(6))
         loose = upload(url, arbitrary_orientations() | {"unit": "HAND-1"})
-        for document in map(json.loads, (alignment_bytes(), alignment_bytes(seed=2, month=4))):
-            aligned = upload(url, document)
-        upload(url, json.loads(session_bytes(unit="FL-1")))
+        aligned = upload(url, json.loads(alignment_bytes(seed=2, month=4)))
         flown = upload(url, recording_document(unit="FL-1", a3_moved=400.0))
         yield Site(url, unfit, loose, aligned, flown)
 
@@ -109,3 +119,11 @@ def opened(browser: Browser, width: int = 1280, **options: object) -> Iterator[t
     context = browser.new_context(viewport={"width": width, "height": 900}, **options)  # type: ignore[arg-type]
     yield context, context.new_page()
     context.close()
+
+
+def draw_all(page: Page) -> None:
+    """Brings every chart near the screen, waits until it is drawn, and goes back to the top."""
+    for chart in page.locator(".chart").all():
+        chart.scroll_into_view_if_needed()
+    page.wait_for_function("[...document.querySelectorAll('.chart')].every((c) => c.classList.contains('drawn'))")
+    page.evaluate("scrollTo(0, 0)")

@@ -1,11 +1,12 @@
 """Every page, wide and narrow: quiet console, only our own requests, nothing wider than the screen."""
 
 import itertools
+from dataclasses import dataclass
 
 import pytest
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser
 
-from tests.end_to_end.browser.conftest import Site, Witness, opened
+from tests.end_to_end.browser.conftest import Site, Witness, draw_all, opened
 
 pytestmark = pytest.mark.browser
 
@@ -36,26 +37,80 @@ def address(site: Site, path: str) -> str:
     return site.url + path.format(**sessions, aligned=site.aligned_session, flown=site.flown_session)
 
 
-def draw_all(page: Page) -> None:
-    """Brings every chart near the screen and waits until it is drawn."""
-    for chart in page.locator(".chart").all():
-        chart.scroll_into_view_if_needed()
-    page.wait_for_function("[...document.querySelectorAll('.chart')].every((c) => c.classList.contains('drawn'))")
+@dataclass(frozen=True)
+class Seen:
+    """One visit to a page."""
+
+    complaints: tuple[str, ...]
+    addresses: tuple[str, ...]
+    """Of its requests."""
+    received: float
+    """Bytes on the wire."""
+    overflow: int
+    """Pixels by which it is wider than the screen."""
+    levels: tuple[int, ...]
+    """Of its headings, in order."""
+    nameless: int
+    """Controls without a label."""
 
 
-@pytest.mark.parametrize("path", PATHS)
-@pytest.mark.parametrize("width", [1280, 390])
-def test_page_is_whole(chromium: Browser, site: Site, path: str, width: int) -> None:
+OVERFLOW = "document.documentElement.scrollWidth - window.innerWidth"
+LEVELS = "[...document.querySelectorAll('h1,h2,h3')].map((h) => +h.tagName[1])"
+NAMELESS = "[...document.querySelectorAll('input,select')].filter((e) => !e.labels.length).length"
+
+
+def visit(browser: Browser, site: Site, path: str, width: int) -> Seen:
+    """A page opened for the first time, with all its charts."""
     witness = Witness()
-    with opened(chromium, width) as (_, page):
+    received: list[float] = []
+    with opened(browser, width) as (context, page):
         witness.watch(page)
+        wire = context.new_cdp_session(page)
+        wire.send("Network.enable")
+        wire.on("Network.loadingFinished", lambda event: received.append(event["encodedDataLength"]))
         page.goto(address(site, path))
         draw_all(page)
-        overflow = page.evaluate("document.documentElement.scrollWidth - window.innerWidth")
-    expected = [c for c in witness.complaints if path != "/units/nobody" or "404" not in c]
-    assert expected == []
-    assert [a for a in witness.addresses if not a.startswith(site.url)] == []
-    assert overflow <= 0
+        overflow, levels, nameless = (page.evaluate(script) for script in (OVERFLOW, LEVELS, NAMELESS))
+    complaints, addresses = tuple(witness.complaints), tuple(witness.addresses)
+    return Seen(complaints, addresses, sum(received), overflow, tuple(levels), nameless)
+
+
+@pytest.fixture(scope="module", params=PATHS)
+def path(request: pytest.FixtureRequest) -> str:
+    """Every page in turn."""
+    chosen: str = request.param
+    return chosen
+
+
+@pytest.fixture(scope="module", params=[1280, 390])
+def seen(request: pytest.FixtureRequest, chromium: Browser, site: Site, path: str) -> Seen:
+    """A visit on a wide screen and on a phone."""
+    return visit(chromium, site, path, request.param)
+
+
+def test_the_console_is_quiet(seen: Seen, path: str) -> None:
+    assert [c for c in seen.complaints if path != "/units/nobody" or "404" not in c] == []
+
+
+def test_only_our_own_service_is_asked(seen: Seen, site: Site) -> None:
+    assert {address.startswith(site.url) for address in seen.addresses} == {True}
+
+
+def test_nothing_is_wider_than_the_screen(seen: Seen) -> None:
+    assert seen.overflow <= 0
+
+
+def test_first_load_is_light(seen: Seen) -> None:
+    assert 0 < seen.received < 1.5e6
+
+
+def test_headings_do_not_skip(seen: Seen) -> None:
+    assert seen.levels.count(1) == 1
+    assert all(after - before <= 1 for before, after in itertools.pairwise(seen.levels))
+
+
+def test_every_control_has_a_name(seen: Seen) -> None:
+    assert seen.nameless == 0
 
 
 def test_verdict_and_reason_are_the_first_thing_said(chromium: Browser, site: Site) -> None:
@@ -100,17 +155,6 @@ def test_every_page_names_its_json_twin(chromium: Browser, site: Site) -> None:
             assert context.request.get(site.url + str(twin)).json()
 
 
-def test_first_load_is_light(chromium: Browser, site: Site) -> None:
-    for path in PATHS:
-        with opened(chromium) as (context, page):
-            received: list[float] = []
-            wire = context.new_cdp_session(page)
-            wire.send("Network.enable")
-            wire.on("Network.loadingFinished", lambda event, sizes=received: sizes.append(event["encodedDataLength"]))
-            page.goto(address(site, path), wait_until="networkidle")
-            assert sum(received) < 1.5e6, path
-
-
 def test_everything_can_be_reached_by_keyboard(chromium: Browser, site: Site) -> None:
     with opened(chromium) as (_, page):
         page.goto(site.url)
@@ -118,15 +162,3 @@ def test_everything_can_be_reached_by_keyboard(chromium: Browser, site: Site) ->
         assert page.evaluate("document.activeElement.textContent") == "Skip to the content"
         page.keyboard.press("Enter")
         page.wait_for_url("**/#content")
-
-
-def test_every_control_has_a_name_and_headings_do_not_skip(chromium: Browser, site: Site) -> None:
-    nameless = "[...document.querySelectorAll('input,select')].filter((e) => !e.labels.length).length"
-    levels = "[...document.querySelectorAll('h1,h2,h3')].map((h) => +h.tagName[1])"
-    for path in PATHS:
-        with opened(chromium) as (_, page):
-            page.goto(address(site, path))
-            found = page.evaluate(levels)
-            assert found.count(1) == 1, path
-            assert all(after - before <= 1 for before, after in itertools.pairwise(found)), path
-            assert page.evaluate(nameless) == 0, path

@@ -17,12 +17,12 @@ from service.reports.certificate import certificate
 from service.reports.printable import printable_data
 from service.reports.typeset import TEMPLATES
 from service.settings import Settings
-from service.storage import Database, Files, Storage
 from service.storage.queries.fleet import FleetQuery
 from service.views.certificate import certified_session
 from tests.databases import Databases
-from tests.end_to_end.browser.conftest import opened
+from tests.end_to_end.browser.conftest import draw_all, opened
 from tests.serving import serving
+from tests.stock import stores
 
 ASKED = "IMU_HEALTH_PICTURES"
 FOLDER = Path(__file__).parents[3] / "docs" / "pictures"
@@ -42,9 +42,8 @@ pytestmark = [
 def filled(sqlite: Databases, tmp_path_factory: pytest.TempPathFactory) -> Settings:
     """Settings of a service that holds the demonstration fleet."""
     settings = Settings(database_url=sqlite.migrated(), data_folder=tmp_path_factory.mktemp("demonstration"))
-    storage = Storage(Database(settings.database), Files(settings.files))
-    fill(storage, settings.coverage_factor, lambda: None)
-    storage.database.close()
+    with stores(settings) as storage:
+        fill(storage, settings.coverage_factor, lambda: None)
     return settings
 
 
@@ -56,12 +55,11 @@ def demonstration(filled: Settings) -> Iterator[str]:
 
 
 def test_picture_of_the_first_page_of_a_certificate(filled: Settings) -> None:
-    storage = Storage(Database(filled.database), Files(filled.files))
-    with storage.database.reading() as store:
-        worst = store.fleet.units(FleetQuery(limit=1))[0].last_session
-    assert worst is not None
-    record = printable_data(certificate(certified_session(storage, diagnose(storage, worst, NOW))))
-    storage.database.close()
+    with stores(filled) as storage:
+        with storage.database.reading() as store:
+            worst = store.fleet.units(FleetQuery(limit=1))[0].last_session
+        assert worst is not None
+        record = printable_data(certificate(certified_session(storage, diagnose(storage, worst, NOW))))
     pages = typst.compile(
         TEMPLATES / "certificate.typ",
         root=TEMPLATES,
@@ -91,9 +89,8 @@ def test_picture(chromium: Browser, demonstration: str, name: str, path: str, wi
     sticking = next(unit["last_session"] for unit in units if unit["serial"] == STICKING)
     with opened(chromium, width) as (_, page):
         page.set_viewport_size({"width": width, "height": height})
-        address = demonstration + path.format(last=units[0]["last_session"], sticking=sticking)
-        page.goto(address, wait_until="networkidle")
-        page.wait_for_timeout(500)
+        page.goto(demonstration + path.format(last=units[0]["last_session"], sticking=sticking))
+        draw_all(page)
         FOLDER.mkdir(parents=True, exist_ok=True)
         page.screenshot(path=FOLDER / f"{name}.png")
     assert (FOLDER / f"{name}.png").stat().st_size > 10_000

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from tests.builders import accelerometer_block, arbitrary_orientations, gyro_block, raw_log
-from tests.service.diagnosed import ECCENTRIC, diagnosis_of, drawn, send, send_case
+from tests.conftest import Holding
+from tests.service.diagnosed import ECCENTRIC, accepted, held, send
 from tests.service.turntable import alignment_bytes
 
 Document = dict[str, Any]
@@ -56,17 +57,12 @@ def test_a_raw_log_is_corrected_too(client: httpx.Client) -> None:
     assert np.linalg.norm(block["example"]["vector"]) == pytest.approx(9.81532, rel=1e-3)
 
 
-def test_it_says_what_it_rests_on_and_what_it_leaves(client: httpx.Client) -> None:
-    id = send_case(client, drawn(ECCENTRIC))
-    [finding] = diagnosis_of(client, id)["findings"]
-    accepted = client.post(
-        f"/api/v1/sessions/{id}/diagnosis/accept", json={"cause": finding["cause"], "scope": "stand", "by": "K. Ito"}
-    ).json()
-    session = client.get(f"/api/v1/sessions/{id}").json()
-    client.post(f"/api/v1/units/{session['unit']}/recalibrate").raise_for_status()
+def test_it_says_what_it_rests_on_and_what_it_leaves(holding: Holding) -> None:
+    client, id = held(holding, ECCENTRIC)
+    finding, revision = accepted(client, id)
     found = correction(client, id)
     [extended] = found["extended_model"]
-    assert (found["sha256"], found["model_revision"]) == (session["sha256"], accepted["id"])
+    assert (found["sha256"][:20], found["model_revision"]) == (id, revision)
     assert (extended["cause"], extended["amplitude"]) == (finding["cause"], finding["amplitude"])
     assert any("temperature" in line for line in found["not_corrected"])
 

@@ -3,6 +3,7 @@
 import httpx
 import pytest
 
+from tests.conftest import Holding
 from tests.service.sessions import session_bytes
 
 UNIT = "/api/v1/units/BA-017"
@@ -15,10 +16,9 @@ def upload(client: httpx.Client, **session: object) -> str:
 
 
 @pytest.fixture
-def measured(client: httpx.Client) -> httpx.Client:
+def measured(holding: Holding) -> httpx.Client:
     """A unit with its reference session."""
-    upload(client)
-    return client
+    return holding(session_bytes())
 
 
 @pytest.mark.parametrize("kind", ["adjustment", "repair", "sensor-swap", "reference", "service"])

@@ -11,28 +11,26 @@ from icalendar import Calendar
 from service.api.atom import atom_feed
 from service.api.calendar import DueDay, calendar
 from service.records.flag import Notice, NoticeKind
-from tests.service.sessions import session_bytes
+from tests.conftest import Holding
+from tests.service.sessions import FAILED
 
 ATOM = {"a": "http://www.w3.org/2005/Atom"}
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 TEXT = st.text(st.characters(exclude_categories=["Cs"]), max_size=200)
 
 
-def fail(client: httpx.Client) -> None:
-    """A reference and a session that is out of tolerance."""
-    for month, moved in ((1, 0.0), (2, 90.0)):
-        client.post("/api/v1/sessions", content=session_bytes(seed=month, month=month, a3_moved=moved))
-
-
 def texts(feed: ElementTree.Element, path: str) -> list[str | None]:
     return [found.text for found in feed.findall(path, ATOM)]
 
 
-def test_flags_and_verdicts_come_as_a_feed_newest_first(client: httpx.Client) -> None:
+def test_an_empty_feed_can_be_read(client: httpx.Client) -> None:
     empty = client.get("/api/v1/feeds/flags.atom")
     assert empty.headers["content-type"] == "application/atom+xml"
     assert texts(ElementTree.fromstring(empty.content), "a:entry/a:title") == []
-    fail(client)
+
+
+def test_flags_and_verdicts_come_as_a_feed_newest_first(holding: Holding) -> None:
+    client = holding(*FAILED)
     client.post("/api/v1/flags/1/resolve", json={"by": "K. Ito", "why": "<cable> & plug"}).raise_for_status()
     feed = ElementTree.fromstring(client.get("/api/v1/feeds/flags.atom").content)
     assert texts(feed, "a:entry/a:title") == [
@@ -58,8 +56,8 @@ def test_any_text_makes_a_feed_that_can_be_read(unit: str, text: str) -> None:
     assert len(feed.findall("a:entry", ATOM)) == 1
 
 
-def test_due_dates_come_as_a_calendar(client: httpx.Client) -> None:
-    fail(client)
+def test_due_dates_come_as_a_calendar(holding: Holding) -> None:
+    client = holding(*FAILED)
     answer = client.get("/api/v1/feeds/due.ics")
     assert answer.headers["content-type"] == "text/calendar; charset=utf-8"
     [event] = Calendar.from_ical(answer.content).events

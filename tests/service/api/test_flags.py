@@ -3,18 +3,17 @@
 import httpx
 import pytest
 
-from tests.service.sessions import session_bytes
+from tests.conftest import Holding
+from tests.service.sessions import FAILED
 
 FLAGS = "/api/v1/units/BA-017/flags"
 WHO = {"by": "K. Ito", "why": "replacement ordered"}
 
 
 @pytest.fixture
-def flagged(client: httpx.Client) -> httpx.Client:
+def flagged(holding: Holding) -> httpx.Client:
     """A unit whose second session has A3 out of tolerance."""
-    for month, moved in ((1, 0.0), (2, 90.0)):
-        client.post("/api/v1/sessions", content=session_bytes(seed=month, month=month, a3_moved=moved))
-    return client
+    return holding(*FAILED)
 
 
 def only(client: httpx.Client) -> dict[str, object]:

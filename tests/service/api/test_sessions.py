@@ -1,14 +1,18 @@
 """Sessions over HTTP: uploaded once, judged, read back unchanged; or refused with every fault."""
 
 import json
+from datetime import UTC, datetime
 from hashlib import sha256
 
 import httpx
 
 from estimator import calibrate
 from estimator.reading import read_session
+from service.flows.receive import upload
+from service.storage import Storage
 from tests.builders import accelerometer_block
-from tests.service.sessions import session_bytes
+from tests.conftest import Holding
+from tests.service.sessions import session_bytes, session_id
 
 SESSIONS = "/api/v1/sessions"
 
@@ -50,18 +54,16 @@ def test_the_stored_calibration_is_the_one_that_the_library_computes(client: htt
     assert client.get(f"{SESSIONS}/{id}/calibration").json() == expected
 
 
-def test_a_moved_bias_fails_and_the_reason_names_it(client: httpx.Client) -> None:
-    post(client, session_bytes())
-    found = post(client, session_bytes(seed=2, month=9, a3_moved=90.0)).json()
+def test_a_moved_bias_fails_and_the_reason_names_it(holding: Holding) -> None:
+    found = post(holding(session_bytes()), session_bytes(seed=2, month=9, a3_moved=90.0)).json()
     assert found["verdict"] == "fail"
     assert found["reason"].startswith("A3 bias moved +9")
     assert found["reason"].endswith("µg) beyond the tolerance of 50 µg.")
 
 
-def test_every_decision_says_what_it_rests_on(client: httpx.Client) -> None:
-    post(client, session_bytes())
-    id = post(client, session_bytes(seed=2, month=9)).json()["id"]
-    decisions = client.get(f"{SESSIONS}/{id}").json()["decisions"]
+def test_every_decision_says_what_it_rests_on(holding: Holding) -> None:
+    later = session_bytes(seed=2, month=5)
+    decisions = holding(session_bytes(), later).get(f"{SESSIONS}/{session_id(later)}").json()["decisions"]
     assert len(decisions) == 24
     assert {d["verdict"] for d in decisions} == {"pass"}
     assert all(abs(d["expanded"] - 2 * d["uncertainty"]) < 1e-12 for d in decisions)
@@ -109,9 +111,9 @@ def test_a_session_from_the_future_is_refused(client: httpx.Client) -> None:
     assert answer.json()["problems"][0]["field"] == "started_at"
 
 
-def test_sessions_are_listed_page_by_page_newest_first(client: httpx.Client) -> None:
+def test_sessions_are_listed_page_by_page_newest_first(client: httpx.Client, storage: Storage) -> None:
     for month in (3, 5, 4):
-        post(client, session_bytes(seed=month, month=month))
+        upload(storage, session_bytes(seed=month, month=month), "a.json", datetime(2026, 11, 21, tzinfo=UTC))
     first = client.get(SESSIONS, params={"limit": 2, "unit": "BA-017"}).json()
     rest = client.get(SESSIONS, params={"limit": 2, "page": first["next_page"]}).json()
     months = [s["started_at"][5:7] for s in first["sessions"] + rest["sessions"]]

@@ -6,6 +6,7 @@ import httpx
 import polars as pl
 import pytest
 
+from tests.conftest import Holding
 from tests.service.sessions import session_bytes
 
 UNIT = "/api/v1/units/BA-017"
@@ -19,12 +20,9 @@ def upload(client: httpx.Client, **session: object) -> dict[str, object]:
 
 
 @pytest.fixture
-def measured(client: httpx.Client) -> httpx.Client:
+def measured(holding: Holding) -> httpx.Client:
     """A unit with a reference, a good session, and one with A3 beyond its tolerance."""
-    upload(client)
-    upload(client, seed=2, month=5)
-    upload(client, seed=3, month=7, a3_moved=90.0)
-    return client
+    return holding(session_bytes(), session_bytes(seed=2, month=5), session_bytes(seed=3, month=7, a3_moved=90.0))
 
 
 def test_a_unit_shows_condition_type_reference_and_sessions(measured: httpx.Client) -> None:

@@ -18,7 +18,7 @@ from service.records.webhook import DeliveryState
 from service.settings import Settings
 from service.storage import Storage
 from tests.service.receiver import Receiver, receiver
-from tests.service.sessions import session_bytes
+from tests.service.sessions import FAILED, session_bytes
 from tests.serving import http_client
 
 SECRET = "sixteen or more letters"
@@ -36,19 +36,17 @@ def body(hook: Receiver) -> dict[str, str]:
     return {"url": hook.url, "secret": SECRET, "by": "K. Ito"}
 
 
-def fail(client: httpx.Client) -> None:
-    """Uploads a reference and a session that is out of tolerance: a verdict changes, a flag is raised."""
-    for month, moved in ((1, 0.0), (2, 90.0)):
-        client.post("/api/v1/sessions", content=session_bytes(seed=month, month=month, a3_moved=moved))
-
-
-def test_a_flag_and_a_verdict_are_told_signed(settings: Settings, hook: Receiver) -> None:
+def test_a_flag_and_a_verdict_are_told_signed(
+    settings: Settings, hook: Receiver, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.background.deliver.LOOK_EVERY", 0.01)
     allowed = settings.model_copy(update={"webhook_hosts": (hook.host,)})
     with http_client(create_app(allowed)) as client:
         registered = client.post("/api/v1/webhooks", json=body(hook))
         assert registered.status_code == 201
         assert SECRET not in registered.text + client.get("/api/v1/webhooks").text
-        fail(client)
+        for content in FAILED:
+            client.post("/api/v1/sessions", content=content).raise_for_status()
         messages = hook.wait_for(2)
         told = [json.loads(message.body) for message in messages]
         assert [one["type"] for one in told] == ["verdict.changed", "flag.raised"]
@@ -115,8 +113,8 @@ class Outbox:
     def __init__(self, storage: Storage, hook: Receiver) -> None:
         self.storage, self.hook, self.now = storage, hook, NOW
         self.id = register_webhook(storage, (hook.host,), hook.url, SECRET, who="K. Ito", now=NOW).id
-        for month, moved in ((1, 0.0), (2, 90.0)):
-            upload(storage, session_bytes(seed=month, month=month, a3_moved=moved), "a.json", NOW)
+        for content in FAILED:
+            upload(storage, content, "a.json", NOW)
 
     def deliver(self, hosts: tuple[str, ...] | None = None) -> int:
         """Attempts what is due now."""
@@ -190,8 +188,8 @@ def test_a_removed_webhook_is_told_no_more(outbox: Outbox) -> None:
 def test_a_receiver_that_is_away_keeps_no_upload_waiting(storage: Storage) -> None:
     nowhere = "http://127.0.0.1:9/hook"
     register_webhook(storage, ("127.0.0.1:9",), nowhere, SECRET, who="K. Ito", now=NOW)
-    for month, moved in ((1, 0.0), (2, 90.0)):
-        assert upload(storage, session_bytes(seed=month, month=month, a3_moved=moved), "a.json", NOW).created
+    for content in FAILED:
+        assert upload(storage, content, "a.json", NOW).created
     with httpx.Client(trust_env=False) as http:
         assert deliver_due(storage, ("127.0.0.1:9",), lambda: NOW, http) == 2
     with storage.database.reading() as store:

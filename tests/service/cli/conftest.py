@@ -1,7 +1,11 @@
-"""The command line as a user runs it, in this process."""
+"""The command line as a user runs it: in this process, or the service as one of its own."""
 
 import json
-from collections.abc import Callable
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,6 +14,9 @@ import pytest
 
 from service.cli import main
 from tests.builders import Document, accelerometer_block
+
+COMMAND = Path(sys.executable).parent / "imu-health"
+READY = "imu-health is ready: open "
 
 
 @dataclass(frozen=True)
@@ -65,3 +72,22 @@ def bad_file(tmp_path: Path) -> Path:
     document["stand"]["alpha_deg"] = 90.0
     document["table"]["A4_se"][4] = -1e-6
     return write(tmp_path, "bad.json", document)
+
+
+@contextmanager
+def started(*command: object, **environment: str) -> Iterator[str]:
+    """The address that a starting service prints; the service is stopped as Ctrl-C stops it, and stops cleanly."""
+    with subprocess.Popen(
+        list(map(str, command)),
+        stdout=subprocess.PIPE,
+        text=True,
+        env={"PATH": f"{COMMAND.parent}:/usr/bin:/bin", **environment},
+    ) as process:
+        try:
+            assert process.stdout is not None
+            line = process.stdout.readline().strip()
+            assert line.startswith(READY), line
+            yield line.removeprefix(READY)
+        finally:
+            process.send_signal(signal.SIGINT)
+            process.wait(timeout=20)

@@ -1,9 +1,10 @@
 """The demonstration fleet: what it shows, that it is always the same, and that it is never mixed with real units."""
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from itertools import pairwise
-from pathlib import Path
 
+import httpx
 import pytest
 
 from estimator.reading import read_session
@@ -12,12 +13,17 @@ from service.demo.fill import FILES, fill, is_wanted
 from service.demo.history import files_of
 from service.flows.receive import upload
 from service.records.decision import Verdict
-from service.storage import Database, Files, Storage
+from service.settings import Settings
+from service.storage import Storage
 from service.storage.queries.flags import FlagQuery
 from service.storage.queries.fleet import FleetQuery
+from service.storage.schema import upgrade
 from service.views.outlook import outlooks_of_fleet
 from service.views.stands import stand_conditions
+from tests.conftest import StockOf
 from tests.databases import Databases
+from tests.service.cli.conftest import COMMAND, started
+from tests.stock import stores
 
 CONDITIONS = {
     "BA-103": Verdict.PASS,
@@ -32,15 +38,45 @@ CONDITIONS = {
 
 
 @pytest.fixture
-def empty(sqlite: Databases, tmp_path: Path) -> Iterator[Storage]:
+def empty(sqlite: Databases, stock_of: StockOf) -> Iterator[Storage]:
     """Stores that hold nothing."""
-    database = Database(sqlite.migrated())
-    yield Storage(database, Files(tmp_path / "files"))
-    database.close()
+    with stock_of(sqlite).holding() as settings, stores(settings) as found:
+        yield found
 
 
-def ignore() -> None:
-    """Nothing is shown of the progress."""
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Settings:
+    """Settings of a service whose demonstration was begun, broken off, and finished by `imu-health serve --demo`."""
+    settings = Settings(data_folder=tmp_path_factory.mktemp("demonstration"))
+    upgrade(settings.database)
+    with stores(settings) as storage:
+        begin(storage)
+    with serve_demo(settings):
+        return settings
+
+
+@contextmanager
+def serve_demo(settings: Settings) -> Iterator[str]:
+    """The address of `imu-health serve --demo`."""
+    with started(COMMAND, "serve", "--demo", "--port", 0, "--data-folder", settings.data_folder) as address:
+        yield address
+
+
+@pytest.fixture
+def demonstration(served: Settings) -> Iterator[Storage]:
+    """Stores that hold the demonstration fleet."""
+    with stores(served) as found:
+        yield found
+
+
+def begin(storage: Storage) -> None:
+    """Fills until the first session is stored."""
+
+    def break_off() -> None:
+        raise InterruptedError
+
+    with pytest.raises(InterruptedError):
+        fill(storage, 2.0, break_off)
 
 
 def test_the_files_are_the_same_every_time_and_say_that_they_are_simulated() -> None:
@@ -60,9 +96,8 @@ def test_dates_are_irregular_and_in_order_over_three_years() -> None:
         assert (dates[0].year, dates[-1].year) == (2025 if member.joined else 2023, 2025 if member.left < 2 else 2026)
 
 
-def test_the_fleet_shows_every_condition(empty: Storage) -> None:
-    fill(empty, 2.0, ignore)
-    with empty.database.reading() as store:
+def test_the_fleet_shows_every_condition(demonstration: Storage) -> None:
+    with demonstration.database.reading() as store:
         units = {unit.serial: unit for unit in store.fleet.units(FleetQuery())}
         flags = [(flag.unit, flag.place, flag.state.value) for flag in store.flags.page(FlagQuery())]
         notes = [note.text for serial in units for note in store.notes.of_unit(serial)]
@@ -86,6 +121,15 @@ def test_the_fleet_shows_every_condition(empty: Storage) -> None:
     assert [s.is_reference for s in sessions].count(True) == 2, "a new reference after the service"
 
 
+def test_it_is_filled_once_and_its_units_say_that_they_are_simulated(served: Settings) -> None:
+    with serve_demo(served) as address:
+        assert address.startswith("http://127.0.0.1:")
+        assert httpx.get(f"{address}/readyz").status_code == 200
+        fleet = httpx.get(f"{address}/api/v1/fleet").json()
+        sessions = httpx.get(f"{address}/api/v1/sessions", params={"limit": 1000}).json()["sessions"]
+    assert (fleet["units"], fleet["simulated"], len(sessions)) == (len(CAST), len(CAST), FILES)
+
+
 def test_a_flight_shows_what_the_stand_has_not_seen_yet(empty: Storage) -> None:
     member = next(m for m in CAST if m.flown is not None)
     receipts = [upload(empty, file.content, file.name, file.at, simulated=True) for file in files_of(member)]
@@ -94,13 +138,13 @@ def test_a_flight_shows_what_the_stand_has_not_seen_yet(empty: Storage) -> None:
     assert receipts[-1].reason.startswith("A2 has changed since the calibration: bias +1")
 
 
-def test_only_an_empty_database_or_an_unfinished_demonstration_is_filled(empty: Storage) -> None:
+def test_only_an_empty_database_or_an_unfinished_demonstration_is_filled(
+    empty: Storage, demonstration: Storage
+) -> None:
     assert is_wanted(empty)
-    first = next(files_of(CAST[0]))
-    upload(empty, first.content, first.name, first.at, simulated=True)
+    begin(empty)
     assert is_wanted(empty)
-    fill(empty, 2.0, ignore)
-    assert not is_wanted(empty)
+    assert not is_wanted(demonstration)
 
 
 def test_a_database_with_a_real_unit_is_left_alone(empty: Storage) -> None:

@@ -7,12 +7,12 @@ import pytest
 
 from service.flows.receive import upload
 from service.settings import Settings
-from service.storage import Database, Files, Storage
 from tests.databases import Databases
 from tests.service.cli.conftest import Run, write
 from tests.service.diagnosed import ALIASES, TEMPERATURE, UNEXPLAINED, drawn, warm
 from tests.service.flows.test_diagnose import NOW
 from tests.service.recordings import recording_document
+from tests.stock import stores
 
 
 @pytest.fixture
@@ -60,9 +60,8 @@ def test_a_history_that_cannot_be_read_is_unusable_input(run: Run, warm_file: Pa
 
 def test_recalibrate_works_on_the_database(run: Run, sqlite: Databases, tmp_path: Path) -> None:
     settings = Settings(database_url=sqlite.migrated(), data_folder=tmp_path)
-    storage = Storage(Database(settings.database), Files(settings.files))
-    upload(storage, json.dumps(drawn(TEMPERATURE).session).encode(), "a.json", NOW)
-    storage.database.close()
+    with stores(settings) as storage:
+        upload(storage, json.dumps(drawn(TEMPERATURE).session).encode(), "a.json", NOW)
     ran = run("recalibrate", "--database-url", settings.database, "--data-folder", tmp_path, "--json")
     assert [(d["sessions"], d["recomputed"], d["unchanged"]) for d in ran.documents] == [(1, 0, 1)]
 

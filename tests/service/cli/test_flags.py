@@ -1,25 +1,21 @@
 """`imu-health flags` against a running service."""
 
 from collections.abc import Iterator
-from pathlib import Path
 
 import httpx
 import pytest
 
-from service.settings import Settings
+from tests.conftest import StockOf
 from tests.databases import Databases
 from tests.service.cli.conftest import Run
-from tests.service.sessions import session_bytes
+from tests.service.sessions import FAILED
 from tests.serving import serving
 
 
 @pytest.fixture
-def address(sqlite: Databases, tmp_path: Path) -> Iterator[str]:
+def address(sqlite: Databases, stock_of: StockOf) -> Iterator[str]:
     """A running service with one flag."""
-    with serving(Settings(database_url=sqlite.migrated(), data_folder=tmp_path / "data")) as address:
-        for month, moved in ((1, 0.0), (2, 90.0)):
-            content = session_bytes(seed=month, month=month, a3_moved=moved)
-            httpx.post(f"{address}/api/v1/sessions", content=content).raise_for_status()
+    with stock_of(sqlite).holding(*FAILED) as settings, serving(settings) as address:
         yield address
 
 

@@ -1,52 +1,16 @@
 """`imu-health serve` and `db`, as processes of their own."""
 
-import signal
 import subprocess
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import httpx
 import pytest
 
-from service.demo.fill import FILES
 from service.storage.database import Database
 from tests.databases import Databases
-from tests.service.cli.conftest import Run
+from tests.service.cli.conftest import COMMAND, Run, started
 
-COMMAND = Path(sys.executable).parent / "imu-health"
 ENTRYPOINT = Path(__file__).parents[3] / "docker" / "entrypoint.sh"
-READY = "imu-health is ready: open "
-
-
-@contextmanager
-def started(*command: object, **environment: str) -> Iterator[str]:
-    """The address that a starting service prints; the service is stopped as Ctrl-C stops it, and stops cleanly."""
-    with subprocess.Popen(
-        list(map(str, command)),
-        stdout=subprocess.PIPE,
-        text=True,
-        env={"PATH": f"{COMMAND.parent}:/usr/bin:/bin", **environment},
-    ) as process:
-        try:
-            assert process.stdout is not None
-            line = process.stdout.readline().strip()
-            assert line.startswith(READY), line
-            yield line.removeprefix(READY)
-        finally:
-            process.send_signal(signal.SIGINT)
-            process.wait(timeout=20)
-
-
-def test_an_empty_database_is_filled_once_with_units_that_say_they_are_simulated(tmp_path: Path) -> None:
-    for _ in range(2):
-        with started(COMMAND, "serve", "--demo", "--port", 0, "--data-folder", tmp_path) as address:
-            assert address.startswith("http://127.0.0.1:")
-            assert httpx.get(f"{address}/readyz").status_code == 200
-            fleet = httpx.get(f"{address}/api/v1/fleet").json()
-            assert (fleet["units"], fleet["simulated"]) == (14, 14)
-            assert len(httpx.get(f"{address}/api/v1/sessions", params={"limit": 1000}).json()["sessions"]) == FILES
 
 
 def test_without_demo_the_database_stays_empty(tmp_path: Path) -> None:

@@ -23,7 +23,9 @@ def recordings(tmp_path_factory):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_what_it_writes_can_be_read_and_calibrated(name, recordings):
-    for _, document in convert(name, recordings[name]):
+    sessions = convert(name, recordings[name])
+    assert sessions
+    for _, document in sessions:
         result = calibrate(read_session(json.dumps(document).encode()))
         assert result.fit.rank == result.fit.parameters
         assert all(s.observable["bias"] for s in result.sensors)
@@ -88,7 +90,9 @@ def test_an_unknown_format_lists_the_known_ones():
 @needs_recordings
 @pytest.mark.parametrize("name", NAMES)
 def test_the_real_recordings_convert_and_calibrate(name):
-    for _, document in convert(name, real(name)):
+    sessions = convert(name, real(name))
+    assert sessions
+    for _, document in sessions:
         result = calibrate(read_session(document))
         assert result.fit.rank == result.fit.parameters
         assert result.fit.converged

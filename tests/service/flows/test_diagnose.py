@@ -1,7 +1,7 @@
 """Stored sessions are diagnosed once; accepted causes become models; recomputing overwrites nothing."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from threading import Event
@@ -17,20 +17,36 @@ from service.flows.recalibrate import recalibrate
 from service.flows.receive import upload
 from service.flows.withdraw_model import withdraw_model
 from service.records.diagnosis import DiagnosisState
-from service.records.model import NewModel, Scope
+from service.records.model import ModelRevision, NewModel, Scope
 from service.storage import Storage
 from service.storage.queries.history import HistoryQuery
+from tests.conftest import SettingsHolding
 from tests.service.diagnosed import ECCENTRIC, TEMPERATURE, drawn
-from tests.service.sessions import session_bytes
+from tests.service.sessions import session_bytes, session_id
+from tests.stock import stores
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 WARM = drawn(TEMPERATURE).session
+CONTENT = json.dumps(WARM).encode()
+ID = session_id(CONTENT)
 ACCEPT = NewModel("bias-temperature", Scope.UNIT, "K. Ito", "seen twice")
 
 
 def stored(storage: Storage, **changes: object) -> str:
     """The id of a stored session in which A5 follows the temperature."""
     return upload(storage, json.dumps(WARM | changes).encode(), "warm.json", NOW).id
+
+
+@pytest.fixture
+def warm(settings_holding: SettingsHolding) -> Iterator[Storage]:
+    """Stores that hold the session with its diagnosis."""
+    with stores(settings_holding(CONTENT)) as found:
+        yield found
+
+
+def accept(storage: Storage, new: NewModel = ACCEPT) -> ModelRevision:
+    """The model revision since a cause of the session was accepted."""
+    return accept_model(storage, diagnose(storage, ID, NOW), new, NOW)
 
 
 def test_a_session_is_diagnosed_once(storage: Storage) -> None:
@@ -78,22 +94,21 @@ def test_one_session_is_not_diagnosed_twice_at_once() -> None:
         assert again
 
 
-def test_the_next_session_is_calibrated_with_the_accepted_cause(storage: Storage) -> None:
-    id = stored(storage)
-    revision = accept_model(storage, diagnose(storage, id, NOW), ACCEPT, NOW)
+def test_the_next_session_is_calibrated_with_the_accepted_cause(warm: Storage) -> None:
+    revision = accept(warm)
     assert (revision.id, revision.subject, revision.sensors) == (1, WARM["unit"], ("A5",))
     assert revision.evidence["gain"]["after"]["chi2_per_dof"] < revision.evidence["gain"]["before"]["chi2_per_dof"]
-    later = stored(storage, started_at="2026-08-01T09:00:00Z")
-    with storage.database.reading() as store:
+    later = stored(warm, started_at="2026-08-01T09:00:00Z")
+    with warm.database.reading() as store:
         assert store.sessions.get(later).revision == 1
-        assert store.calibrations.get(later).fit.chi2 < store.calibrations.get(id).fit.chi2 / 2
+        assert store.calibrations.get(later).fit.chi2 < store.calibrations.get(ID).fit.chi2 / 2
 
 
 @pytest.mark.parametrize("scope", [Scope.UNIT, Scope.UNIT_TYPE])
-def test_a_model_is_for_its_scope_alone(storage: Storage, scope: Scope) -> None:
-    accept_model(storage, diagnose(storage, stored(storage), NOW), replace(ACCEPT, scope=scope), NOW)
-    other = stored(storage, unit="ANOTHER")
-    with storage.database.reading() as store:
+def test_a_model_is_for_its_scope_alone(warm: Storage, scope: Scope) -> None:
+    accept(warm, replace(ACCEPT, scope=scope))
+    other = stored(warm, unit="ANOTHER")
+    with warm.database.reading() as store:
         assert store.sessions.get(other).revision == (1 if scope is Scope.UNIT_TYPE else 0)
 
 
@@ -114,31 +129,30 @@ REFUSED: dict[str, tuple[NewModel, str]] = {
 
 
 @pytest.mark.parametrize("why", REFUSED)
-def test_what_cannot_be_accepted_is_refused_with_its_field(storage: Storage, why: str) -> None:
+def test_what_cannot_be_accepted_is_refused_with_its_field(warm: Storage, why: str) -> None:
     new, field = REFUSED[why]
     with pytest.raises(RefusedError) as refused:
-        accept_model(storage, diagnose(storage, stored(storage), NOW), new, NOW)
+        accept(warm, new)
     assert [problem.field for problem in refused.value.problems] == [field]
 
 
-def test_recomputing_adds_a_calibration_and_overwrites_none(storage: Storage) -> None:
-    id = stored(storage)
-    with storage.database.reading() as store:
-        before = store.calibrations.json(id)
-    accept_model(storage, diagnose(storage, id, NOW), ACCEPT, NOW)
-    done = recalibrate(storage, WARM["unit"], NOW)
+def test_recomputing_adds_a_calibration_and_overwrites_none(warm: Storage) -> None:
+    with warm.database.reading() as store:
+        before = store.calibrations.json(ID)
+    accept(warm)
+    done = recalibrate(warm, WARM["unit"], NOW)
     assert (done.sessions, done.recomputed, done.revision) == (1, 1, 1)
-    assert recalibrate(storage, WARM["unit"], NOW).unchanged == 1
-    with storage.database.reading() as store:
-        assert store.calibrations.revisions(id) == (0, 1)
-        assert store.calibrations.json(id, 0) == before
-        assert store.calibrations.json(id) == store.calibrations.json(id, 1) != before
+    assert recalibrate(warm, WARM["unit"], NOW).unchanged == 1
+    with warm.database.reading() as store:
+        assert store.calibrations.revisions(ID) == (0, 1)
+        assert store.calibrations.json(ID, 0) == before
+        assert store.calibrations.json(ID) == store.calibrations.json(ID, 1) != before
 
 
-def test_the_history_can_be_read_under_an_earlier_revision(storage: Storage) -> None:
-    accept_model(storage, diagnose(storage, stored(storage), NOW), ACCEPT, NOW)
-    recalibrate(storage, WARM["unit"], NOW)
-    with storage.database.reading() as store:
+def test_the_history_can_be_read_under_an_earlier_revision(warm: Storage) -> None:
+    accept(warm)
+    recalibrate(warm, WARM["unit"], NOW)
+    with warm.database.reading() as store:
         unit = store.units.key(WARM["unit"])
         found = {revision: points_of(store.history.points, unit, revision) for revision in (None, 0, 1)}
     assert found[None] == found[1] != found[0]
@@ -150,11 +164,10 @@ def points_of(points: Callable[..., tuple], unit: int, revision: int | None) -> 
     return points(unit, HistoryQuery(revision=revision))
 
 
-def test_every_step_is_in_the_audit(storage: Storage) -> None:
-    id = stored(storage)
-    accept_model(storage, diagnose(storage, id, NOW), ACCEPT, NOW)
-    recalibrate(storage, WARM["unit"], NOW, who="R. Duarte")
-    with storage.database.engine.connect() as connection:
+def test_every_step_is_in_the_audit(warm: Storage) -> None:
+    accept(warm)
+    recalibrate(warm, WARM["unit"], NOW, who="R. Duarte")
+    with warm.database.engine.connect() as connection:
         lines = connection.execute(text("SELECT who, action FROM audit ORDER BY id")).all()
     assert [tuple(line) for line in lines] == [
         ("crew", "upload"),
@@ -164,18 +177,17 @@ def test_every_step_is_in_the_audit(storage: Storage) -> None:
     ]
 
 
-def test_a_diagnosis_that_another_version_failed_to_make_is_made_again(storage: Storage) -> None:
-    id = stored(storage)
-    made = diagnose(storage, id, NOW)
-    with storage.database.writing() as store:
+def test_a_diagnosis_that_another_version_failed_to_make_is_made_again(warm: Storage) -> None:
+    made = diagnose(warm, ID, NOW)
+    with warm.database.writing() as store:
         store.diagnoses.add_once(replace(made, estimator_version="later"))
-    assert diagnose(storage, id, NOW) == made
-    spoil(storage, id, estimator_version="0.0.1")
-    with storage.database.reading() as store:
-        assert store.sessions.without_diagnosis("", 10, made.estimator_version) == (id,)
-    assert diagnose(storage, id, NOW) == made
-    spoil(storage, id, estimator_version=made.estimator_version)
-    assert diagnose(storage, id, NOW).state is DiagnosisState.FAILED
+    assert diagnose(warm, ID, NOW) == made
+    spoil(warm, ID, estimator_version="0.0.1")
+    with warm.database.reading() as store:
+        assert store.sessions.without_diagnosis("", 10, made.estimator_version) == (ID,)
+    assert replace(diagnose(warm, ID, NOW), created_at=made.created_at) == made
+    spoil(warm, ID, estimator_version=made.estimator_version)
+    assert diagnose(warm, ID, NOW).state is DiagnosisState.FAILED
 
 
 def spoil(storage: Storage, id: str, *, estimator_version: str) -> None:
@@ -185,26 +197,25 @@ def spoil(storage: Storage, id: str, *, estimator_version: str) -> None:
         connection.execute(changed, {"version": estimator_version, "id": id})
 
 
-def test_a_withdrawn_cause_is_out_of_the_model_and_nothing_is_lost(storage: Storage) -> None:
-    id = stored(storage)
-    accepted = accept_model(storage, diagnose(storage, id, NOW), ACCEPT, NOW)
-    recalibrate(storage, WARM["unit"], NOW)
-    withdrawn = withdraw_model(storage, accepted.id, "R. Duarte", "the thermometer was at fault", NOW)
+def test_a_withdrawn_cause_is_out_of_the_model_and_nothing_is_lost(warm: Storage) -> None:
+    accepted = accept(warm)
+    recalibrate(warm, WARM["unit"], NOW)
+    withdrawn = withdraw_model(warm, accepted.id, "R. Duarte", "the thermometer was at fault", NOW)
     assert (withdrawn.withdraws, withdrawn.cause) == (accepted.id, accepted.cause)
-    later = stored(storage, notes="after the withdrawal", started_at="2026-11-20T08:00:00Z")
-    again = recalibrate(storage, WARM["unit"], NOW)
+    later = stored(warm, notes="after the withdrawal", started_at="2026-11-20T08:00:00Z")
+    again = recalibrate(warm, WARM["unit"], NOW)
     assert (again.recomputed, again.revision) == (1, withdrawn.id)
-    with storage.database.reading() as store:
+    with warm.database.reading() as store:
         assert store.sessions.get(later).revision == withdrawn.id
-        baseline, extended, now = (store.calibrations.get(id, r) for r in (0, accepted.id, withdrawn.id))
+        baseline, extended, now = (store.calibrations.get(ID, r) for r in (0, accepted.id, withdrawn.id))
     assert now.fit.chi2 == baseline.fit.chi2 > extended.fit.chi2
 
 
-def test_what_is_not_in_force_cannot_be_withdrawn(storage: Storage) -> None:
-    accepted = accept_model(storage, diagnose(storage, stored(storage), NOW), ACCEPT, NOW)
-    withdrawn = withdraw_model(storage, accepted.id, "R. Duarte", "a mistake", NOW)
+def test_what_is_not_in_force_cannot_be_withdrawn(warm: Storage) -> None:
+    accepted = accept(warm)
+    withdrawn = withdraw_model(warm, accepted.id, "R. Duarte", "a mistake", NOW)
     for revision in (accepted.id, withdrawn.id):
         with pytest.raises(ConflictError):
-            withdraw_model(storage, revision, "R. Duarte", "again", NOW)
+            withdraw_model(warm, revision, "R. Duarte", "again", NOW)
     with pytest.raises(NotFoundError):
-        withdraw_model(storage, 10**6, "R. Duarte", "none", NOW)
+        withdraw_model(warm, 10**6, "R. Duarte", "none", NOW)

@@ -2,7 +2,6 @@
 
 from datetime import UTC, datetime
 
-import httpx
 import pytest
 
 from service.flows.diagnose import diagnose, task_of
@@ -12,8 +11,9 @@ from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState
 from service.records.model import NewModel, Scope
 from service.storage import Storage
+from tests.conftest import Holding
 from tests.service.recordings import recording_bytes
-from tests.service.sessions import session_bytes
+from tests.service.sessions import session_bytes, session_id
 from tests.service.turntable import alignment_bytes, rate_table_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
@@ -42,9 +42,8 @@ def test_causes_are_not_looked_for_and_that_is_no_failure(storage: Storage, prog
 
 
 @pytest.mark.parametrize("programme", OTHERS)
-def test_pages_and_answers_say_so(client: httpx.Client, programme: str) -> None:
-    client.post("/api/v1/sessions", content=session_bytes())
-    id = client.post("/api/v1/sessions", content=OTHERS[programme]).json()["id"]
+def test_pages_and_answers_say_so(holding: Holding, programme: str) -> None:
+    client, id = holding(session_bytes(), OTHERS[programme]), session_id(OTHERS[programme])
     answer = client.get(f"/api/v1/sessions/{id}/diagnosis")
     document = answer.json()
     assert answer.status_code == 200

@@ -28,6 +28,7 @@ from service.storage.tables import (
 from tests.builders import arbitrary_orientations, gyro_block
 from tests.databases import Databases, PostgresDatabases
 from tests.service.sessions import session_bytes
+from tests.stock import stores
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 KEPT = (UnitRow, SessionRow, CalibrationRow, ParameterRow, DecisionRow, AuditRow)
@@ -42,9 +43,8 @@ def counts(storage: Storage) -> list[int]:
 @pytest.fixture
 def twin(settings: Settings) -> Iterator[Storage]:
     """A second service on the same database and folder."""
-    database = Database(settings.database)
-    yield Storage(database, Files(settings.files))
-    database.close()
+    with stores(settings) as found:
+        yield found
 
 
 def test_an_upload_leaves_one_row_of_everything(storage: Storage) -> None:

@@ -3,6 +3,7 @@
 import httpx
 import pytest
 
+from tests.conftest import Holding
 from tests.service.sessions import session_bytes
 
 HTML = {"Accept": "text/html"}
@@ -13,11 +14,9 @@ FORMS = {
 
 
 @pytest.fixture
-def measured(client: httpx.Client) -> httpx.Client:
+def measured(holding: Holding) -> httpx.Client:
     """A unit with two sessions."""
-    for month in (1, 2):
-        client.post("/api/v1/sessions", content=session_bytes(seed=month, month=month))
-    return client
+    return holding(session_bytes(month=1), session_bytes(seed=2, month=2))
 
 
 @pytest.mark.parametrize("path", FORMS)

@@ -5,18 +5,17 @@ import re
 import httpx
 import pytest
 
-from tests.service.sessions import session_bytes
+from tests.conftest import Holding
+from tests.service.sessions import FAILED
 
 HTML = {"Accept": "text/html"}
 WHO = {"by": "K. Ito", "why": "replacement <b>ordered</b>"}
 
 
 @pytest.fixture
-def flagged(client: httpx.Client) -> httpx.Client:
+def flagged(holding: Holding) -> httpx.Client:
     """A unit whose second session has A3 out of tolerance."""
-    for month, moved in ((1, 0.0), (2, 90.0)):
-        client.post("/api/v1/sessions", content=session_bytes(seed=month, month=month, a3_moved=moved))
-    return client
+    return holding(*FAILED)
 
 
 def form(client: httpx.Client) -> str:

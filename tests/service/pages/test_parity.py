@@ -1,18 +1,21 @@
 """The page of a recording in service speaks of agreement, of what would have been seen, and of what never is."""
 
-import httpx
 import pytest
 
+from tests.conftest import Holding
 from tests.service.recordings import recording_bytes
-from tests.service.sessions import session_bytes
+from tests.service.sessions import session_bytes, session_id
+
+
+def page_of(holding: Holding, recording: bytes) -> str:
+    """The page of a recording whose unit has a calibration."""
+    return holding(session_bytes(), recording).get(f"/sessions/{session_id(recording)}").text
 
 
 @pytest.fixture
-def page(client: httpx.Client) -> str:
+def page(holding: Holding) -> str:
     """The page of a recording in which A3 has moved."""
-    client.post("/api/v1/sessions", content=session_bytes())
-    id = client.post("/api/v1/sessions", content=recording_bytes(a3_moved=400.0)).json()["id"]
-    return client.get(f"/sessions/{id}").text
+    return page_of(holding, recording_bytes(a3_moved=400.0))
 
 
 def test_it_says_that_the_sensors_do_not_agree(page: str) -> None:
@@ -29,7 +32,5 @@ def test_it_says_what_parity_never_sees(page: str) -> None:
     assert "more or other positions would tell it" not in page
 
 
-def test_a_recording_of_one_orientation_is_told_to_turn(client: httpx.Client) -> None:
-    client.post("/api/v1/sessions", content=session_bytes())
-    id = client.post("/api/v1/sessions", content=recording_bytes(still=True)).json()["id"]
-    assert "The recording turns too little" in client.get(f"/sessions/{id}").text
+def test_a_recording_of_one_orientation_is_told_to_turn(holding: Holding) -> None:
+    assert "The recording turns too little" in page_of(holding, recording_bytes(still=True))

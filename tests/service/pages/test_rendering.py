@@ -36,7 +36,9 @@ def test_problems_name_field_row_and_what_to_do() -> None:
 
 
 def test_templates_hold_no_inline_style_and_no_inline_script() -> None:
-    for template in TEMPLATES.glob("*.html"):
+    templates = list(TEMPLATES.glob("*.html"))
+    assert templates
+    for template in templates:
         text = template.read_text()
         assert "style=" not in text
         assert "<style" not in text

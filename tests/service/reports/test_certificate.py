@@ -11,10 +11,11 @@ from estimator.health.rule import RULE
 from service.flows.receive import upload
 from service.storage import Storage
 from service.words.conditions import condition_of
-from tests.service.diagnosed import ECCENTRIC, diagnosis_of, drawn, send_case
+from tests.conftest import Holding
+from tests.service.diagnosed import ECCENTRIC, accepted, diagnosis_of, held
 from tests.service.recordings import recording_bytes
 from tests.service.reports.documents import pages_of, text_of
-from tests.service.sessions import session_bytes
+from tests.service.sessions import session_bytes, session_id
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 
@@ -34,17 +35,20 @@ def certificate(client: httpx.Client, id: str) -> bytes:
     return answer.content
 
 
+FAILING = session_bytes(seed=2, month=5, a3_moved=200.0)
+"""A3's bias moved far beyond its tolerance."""
+ID = session_id(FAILING)
+
+
 @pytest.fixture
-def failed(client: httpx.Client) -> dict[str, Any]:
-    """A session in which A3's bias moved far beyond its tolerance."""
-    sent(client, session_bytes(seed=1))
-    return sent(client, session_bytes(seed=2, month=5, a3_moved=200.0))
+def failed(holding: Holding) -> httpx.Client:
+    """A service that holds a reference and the failing session."""
+    return holding(session_bytes(), FAILING)
 
 
-def test_it_states_input_verdict_rule_and_model(client: httpx.Client, failed: dict[str, Any]) -> None:
-    text = text_of(certificate(client, failed["id"]))
-    digest = hashlib.sha256(session_bytes(seed=2, month=5, a3_moved=200.0)).hexdigest()
-    assert failed["verdict"] == "fail"
+def test_it_states_input_verdict_rule_and_model(failed: httpx.Client) -> None:
+    text = text_of(certificate(failed, ID))
+    digest = hashlib.sha256(FAILING).hexdigest()
     for stated in (
         "Unfit",
         digest,
@@ -58,9 +62,9 @@ def test_it_states_input_verdict_rule_and_model(client: httpx.Client, failed: di
         assert stated in text
 
 
-def test_it_states_every_decision(client: httpx.Client, failed: dict[str, Any]) -> None:
-    text = text_of(certificate(client, failed["id"]))
-    decisions = client.get(f"/api/v1/sessions/{failed['id']}").json()["decisions"]
+def test_it_states_every_decision(failed: httpx.Client) -> None:
+    text = text_of(certificate(failed, ID))
+    decisions = failed.get(f"/api/v1/sessions/{ID}").json()["decisions"]
     assert len(decisions) == 24
     states = [condition_of(d["verdict"]).formal for d in decisions]
     # The decision rule explains each state once.
@@ -69,23 +73,19 @@ def test_it_states_every_decision(client: httpx.Client, failed: dict[str, Any]) 
     assert f"+{a3['deviation'] / 9.80665e-6:.1f}" in text
 
 
-def test_pages_are_numbered_and_name_the_unit(client: httpx.Client, failed: dict[str, Any]) -> None:
-    pages = pages_of(certificate(client, failed["id"]))
+def test_pages_are_numbered_and_name_the_unit(failed: httpx.Client) -> None:
+    pages = pages_of(certificate(failed, ID))
     assert len(pages) > 1
     for number, text in enumerate(pages, 1):
         assert f"Page {number} of {len(pages)}" in text
-        assert f"No. {failed['id'][:12]}" in text
+        assert f"No. {ID[:12]}" in text
         assert "SIMULATED" not in text
 
 
-def test_the_same_record_gives_the_same_bytes(client: httpx.Client, failed: dict[str, Any]) -> None:
-    assert certificate(client, failed["id"]) == certificate(client, failed["id"])
-
-
-def test_later_sessions_change_nothing(client: httpx.Client, failed: dict[str, Any]) -> None:
-    before = certificate(client, failed["id"])
-    sent(client, session_bytes(seed=3, month=6, a3_moved=400.0))
-    assert certificate(client, failed["id"]) == before
+def test_the_same_record_gives_the_same_bytes_whatever_comes_later(failed: httpx.Client) -> None:
+    before = certificate(failed, ID)
+    sent(failed, session_bytes(seed=3, month=6, a3_moved=400.0))
+    assert certificate(failed, ID) == before
 
 
 def test_the_reference_says_that_it_is_one(client: httpx.Client) -> None:
@@ -94,8 +94,8 @@ def test_the_reference_says_that_it_is_one(client: httpx.Client) -> None:
     assert "it is the reference of later sessions" in text
 
 
-def test_named_causes_stand_with_their_amplitude(client: httpx.Client) -> None:
-    id = send_case(client, drawn(ECCENTRIC))
+def test_named_causes_stand_with_their_amplitude(holding: Holding) -> None:
+    client, id = held(holding, ECCENTRIC)
     [finding] = diagnosis_of(client, id)["findings"]
     text = text_of(certificate(client, id))
     assert finding["sentence"] in text
@@ -103,17 +103,11 @@ def test_named_causes_stand_with_their_amplitude(client: httpx.Client) -> None:
     assert "Amplitude (± one standard uncertainty): " in text
 
 
-def test_an_accepted_cause_is_named_as_the_model(client: httpx.Client) -> None:
-    id = send_case(client, drawn(ECCENTRIC))
-    [finding] = diagnosis_of(client, id)["findings"]
-    accepted = client.post(
-        f"/api/v1/sessions/{id}/diagnosis/accept", json={"cause": finding["cause"], "scope": "stand", "by": "K. Ito"}
-    ).json()
-    unit = client.get(f"/api/v1/sessions/{id}").json()["unit"]
-    client.post(f"/api/v1/units/{unit}/recalibrate").raise_for_status()
-    assert f"revision {accepted['id']}: baseline with {finding['cause'].replace('-', ' ')}" in text_of(
-        certificate(client, id)
-    )
+def test_an_accepted_cause_is_named_as_the_model(holding: Holding) -> None:
+    client, id = held(holding, ECCENTRIC)
+    finding, revision = accepted(client, id)
+    model = f"revision {revision}: baseline with {finding['cause'].replace('-', ' ')}"
+    assert model in text_of(certificate(client, id))
 
 
 def test_simulated_units_are_marked_on_every_page(storage: Storage, client: httpx.Client) -> None:

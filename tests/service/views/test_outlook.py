@@ -80,9 +80,8 @@ def test_a_rate_is_set_against_the_type_s_other_units(storage: Storage) -> None:
     assert all(o.trends for o in found.values())
 
 
-def test_the_outlook_over_http_with_the_risk_of_waiting(client: httpx.Client) -> None:
-    for month, moved in {1: 0.0, 3: 7.0, 5: 14.0, 7: 21.0, 9: 28.0}.items():
-        client.post("/api/v1/sessions", content=session_bytes(seed=month, month=month, a3_moved=moved))
+def test_the_outlook_over_http_with_the_risk_of_waiting(client: httpx.Client, storage: Storage) -> None:
+    measure(storage, {1: 0.0, 3: 7.0, 5: 14.0, 7: 21.0, 9: 28.0})
     found = client.get("/api/v1/units/BA-017/outlook?until=2027-06-01").json()
     assert (found["sensor"], found["parameter"], found["until"]["at"]) == ("A3", "bias", "2027-06-01T00:00:00Z")
     assert 0.3 < found["until"]["risk"] <= 1
@@ -90,9 +89,11 @@ def test_the_outlook_over_http_with_the_risk_of_waiting(client: httpx.Client) ->
     assert client.get("/api/v1/units/none/outlook").status_code == 404
 
 
-def test_another_longest_interval_holds_for_every_unit_of_the_type_at_once(client: httpx.Client) -> None:
+def test_another_longest_interval_holds_for_every_unit_of_the_type_at_once(
+    client: httpx.Client, storage: Storage
+) -> None:
     for unit in ("BA-1", "BA-2"):
-        client.post("/api/v1/sessions", content=session_bytes(unit=unit, month=1))
+        measure(storage, {1: 0.0}, unit)
     kind = client.get("/api/v1/unit-types").json()["unit_types"][0]
     body = {"tolerances": kind["tolerances"], "maximum_interval_days": 100}
     changed = client.put(f"/api/v1/unit-types/{kind['name']}", json=body).json()

@@ -15,6 +15,7 @@ from service.storage import Storage
 from service.storage.queries.flags import FlagQuery
 from tests.builders import ARCSEC, TrueSensor, accelerometer_block, true_sensors
 
+NOW = datetime(2026, 10, 1, tzinfo=UTC)
 TURN = Rotation.from_rotvec(np.array([5.0, -8.0, 12.0]) * ARCSEC)
 
 
@@ -36,11 +37,15 @@ def measured_on(stand: str, unit: str, month: int, seed: int) -> bytes:
     return json.dumps(document | {"started_at": f"2026-{month:02d}-01T09:00:00Z"}).encode()
 
 
-def test_a_turned_stand_is_flagged_and_its_units_are_not(client: httpx.Client) -> None:
+def measure(storage: Storage, number: int, last: str = "S2") -> None:
+    """Five sessions of a unit on the two stands, the last on one of them."""
+    for month, stand in ((1, "S1"), (3, "S2"), (5, "S1"), (7, "S2"), (9, last)):
+        upload(storage, measured_on(stand, f"BA-{number}", month, seed=10 * number + month), "a.json", NOW)
+
+
+def test_a_turned_stand_is_shown_and_its_units_pass(client: httpx.Client, storage: Storage) -> None:
     for number in range(4):
-        for month, stand in ((1, "S1"), (3, "S2"), (5, "S1"), (7, "S2"), (9, "S2")):
-            content = measured_on(stand, f"BA-{number}", month, seed=10 * number + month)
-            assert client.post("/api/v1/sessions", content=content).status_code == 201
+        measure(storage, number)
     found = {s["stand"]: s for s in client.get("/api/v1/stands").json()["stands"]}
     assert {stand: s["has_shifted"] for stand, s in found.items()} == {"S1": False, "S2": True}
     axes = next(e for e in found["S2"]["evidence"] if e["quantity"] == "axes")
@@ -54,22 +59,19 @@ def test_a_turned_stand_is_flagged_and_its_units_are_not(client: httpx.Client) -
 
 
 def test_a_shifted_stand_raises_one_flag_on_the_units_that_it_measured_last(storage: Storage) -> None:
-    now = datetime(2026, 10, 1, tzinfo=UTC)
     for number in range(4):
-        last = "S1" if number == 3 else "S2"
-        for month, stand in ((1, "S1"), (3, "S2"), (5, "S1"), (7, "S2"), (9, last)):
-            upload(storage, measured_on(stand, f"BA-{number}", month, seed=10 * number + month), "a.json", now)
+        measure(storage, number, "S1" if number == 3 else "S2")
 
     def flagged() -> list[tuple[str, str, str]]:
         with storage.database.reading() as store:
             found = [flag for flag in store.flags.page(FlagQuery()) if flag.matter is Matter.SHIFTED]
         return sorted((flag.unit, flag.place, flag.state.value) for flag in found)
 
-    flag_shifted_stands(storage, now)
+    flag_shifted_stands(storage, NOW)
     assert flagged() == [(f"BA-{number}", "S2", "raised") for number in range(3)]
     with storage.database.reading() as store:
         first = next(flag.id for flag in store.flags.page(FlagQuery("BA-0")) if flag.matter is Matter.SHIFTED)
-    resolve_flag(storage, first, "K. Ito", "seat of S2 mended", now)
-    flag_shifted_stands(storage, now)
+    resolve_flag(storage, first, "K. Ito", "seat of S2 mended", NOW)
+    flag_shifted_stands(storage, NOW)
     assert flagged()[0] == ("BA-0", "S2", "resolved")
     assert len(flagged()) == 3

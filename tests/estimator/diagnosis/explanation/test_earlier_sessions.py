@@ -18,7 +18,7 @@ def with_cause(session: CalibrationSession, cause: str) -> CalibrationSession:
 def test_a_lasting_cause_predicts_the_earlier_session_too(cause: str) -> None:
     earlier = [with_cause(h, cause) for h in WHERE.earlier(3)]
     found = diagnose(with_cause(WHERE.measured(3), cause), history=earlier)
-    assert found.findings[0].cause == cause
+    assert (found.findings[0].cause, found.findings[0].new) == (cause, False)
     on = found.gain.session
     assert on is not None
     assert on.before.chi2_per_dof > 1.3 > on.after.chi2_per_dof
@@ -28,12 +28,14 @@ def test_a_lasting_cause_predicts_the_earlier_session_too(cause: str) -> None:
 
 def test_a_cause_that_came_since_is_not_held_against_the_past() -> None:
     found = diagnose(with_cause(WHERE.measured(3), "hysteresis"), history=WHERE.earlier(3))
-    assert found.findings[0].new
+    assert (found.findings[0].cause, found.findings[0].new) == ("hysteresis", True)
     assert found.gain.session is None
 
 
-def test_without_history_there_is_no_other_session() -> None:
-    assert diagnose(with_cause(WHERE.measured(3), "hysteresis")).gain.session is None
+def test_without_history_there_is_no_other_session_and_nothing_is_called_new() -> None:
+    found = diagnose(with_cause(WHERE.measured(3), "hysteresis"))
+    assert (found.findings[0].cause, found.findings[0].new) == ("hysteresis", None)
+    assert found.gain.session is None
 
 
 def test_the_score_of_the_other_session_knows_the_amplitudes_uncertainty() -> None:

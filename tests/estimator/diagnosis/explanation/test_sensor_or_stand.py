@@ -43,7 +43,7 @@ def test_warm_up_states_its_time_constant_and_what_it_costs() -> None:
     assert 0.02 < finding.sigma[0] / abs(finding.amplitude[0]) < 0.5
 
 
-def test_history_tells_what_is_new() -> None:
+def test_a_drift_is_of_the_one_parameter_that_moved_since_the_history() -> None:
     (finding,) = found("sensor-drift").findings
-    assert finding.sensors == ("A2",)
+    assert (finding.cause, finding.sensors, finding.new) == ("sensor-drift", ("A2",), None)
     assert np.count_nonzero(finding.amplitude) == 1

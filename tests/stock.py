@@ -1,0 +1,58 @@
+"""Services that hold uploads already: each is filled once over HTTP, and copied for every test that asks for it."""
+
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from uuid import uuid4
+
+from service.app import create_app
+from service.settings import Settings
+from service.storage import Database, Files, Storage
+from tests.databases import Databases
+from tests.serving import http_client
+
+Uploads = tuple[bytes, ...]
+"""Session files in the order in which they are uploaded."""
+
+
+@contextmanager
+def stores(settings: Settings) -> Iterator[Storage]:
+    """The stores of a service, without the service."""
+    database = Database(settings.database)
+    yield Storage(database, Files(settings.files))
+    database.close()
+
+
+class Stock:
+    """Filled services of one engine, each made of the one that lacks its last upload."""
+
+    def __init__(self, databases: Databases, folder: Path) -> None:
+        self._databases, self._folder = databases, folder
+        self._filled: dict[Uploads, Settings] = {}
+
+    @contextmanager
+    def holding(self, *uploads: bytes) -> Iterator[Settings]:
+        """Settings of a new service that holds the uploads; its database is dropped at the end."""
+        settings = self._copy(uploads)
+        yield settings
+        self._databases.drop(settings.database)
+
+    def _copy(self, uploads: Uploads) -> Settings:
+        if not uploads:
+            return self._settings(self._databases.migrated())
+        original = self._original(uploads)
+        copy = self._settings(self._databases.copied(original.database))
+        shutil.copytree(original.files, copy.files)
+        return copy
+
+    def _original(self, uploads: Uploads) -> Settings:
+        if uploads not in self._filled:
+            settings = self._copy(uploads[:-1])
+            with http_client(create_app(settings)) as client:
+                client.post("/api/v1/sessions", content=uploads[-1]).raise_for_status()
+            self._filled[uploads] = settings
+        return self._filled[uploads]
+
+    def _settings(self, url: str) -> Settings:
+        return Settings(database_url=url, data_folder=self._folder / uuid4().hex)
