@@ -46,6 +46,13 @@ def test_a_sensor_that_moved_beyond_its_tolerance_fails_alone() -> None:
     assert {verdict for name, verdict in found.items() if name != "A2"} == {"pass"}
 
 
+def test_the_others_pass_only_where_the_tolerance_would_have_been_detected() -> None:
+    """Their own changes would be within it by the four states."""
+    size = judged(6, MOVED, 1.0)["A1"].critical
+    assert size is not None
+    assert set(verdicts(6, MOVED, 0.6 * size).values()) == {"fail", "undecidable"}
+
+
 def test_a_sensor_that_moved_within_its_tolerance_passes() -> None:
     assert verdicts(6, MOVED, 2e-2)["A2"] == "pass"
 

@@ -188,6 +188,21 @@ def test_a_direction_chosen_by_looking_has_the_p_value_of_the_largest_of_all() -
     assert found.outlooks[0].p_value == pytest.approx(np.exp(-(t**2) / 2))
 
 
+def test_an_outlook_does_not_depend_on_the_unit_of_measurement() -> None:
+    one = axis_track(np.random.default_rng(12), 6.0)
+    same = prognosis([Track(one.time, 10 * one.change, 10 * one.sigma, 10 * one.tolerance)]).outlooks[0]
+    found = prognosis([one]).outlooks[0]
+    assert (same.level_sigma, same.rate_sigma) == pytest.approx((10 * found.level_sigma, 10 * found.rate_sigma))
+
+
+def test_a_sudden_change_is_found_in_a_unit_of_several_parameters() -> None:
+    rng = np.random.default_rng(11)
+    still = axis_track(rng, 0.0)
+    change = np.where(np.arange(10) >= 5, 15.0, 0.0)[:, None] + rng.standard_normal((10, 1))
+    found = prognosis([still, Track(np.linspace(0, 3, 10), change, np.ones((10, 1)), 20.0)]).outlooks
+    assert [o.steps for o in found] == [(), (5,)]
+
+
 def test_the_unit_s_risk_is_that_of_all_its_parameters() -> None:
     rng = np.random.default_rng(8)
     drifting, still = axis_track(rng, 6.0), axis_track(rng, 0.0)

@@ -5,14 +5,15 @@ import pytest
 from scipy import stats
 
 from estimator.health.parity import probability_out
-from estimator.parity import ParityAccumulator, ParityResult
+from estimator.parity import ParityAccumulator, parity_check
 from estimator.parity.blocks import select
 from estimator.parity.hypotheses import Evidence, log_tail
+from estimator.parity.reference import reference_of
 from estimator.parity.regression import regress
 from estimator.parity.results import Sight
 from estimator.results import Calibration
-from estimator.session import CalibrationSession
-from tests.estimator.parity.cases import biased, block, recording
+from estimator.session import ACCELEROMETER, CalibrationSession
+from tests.estimator.parity.cases import biased, block, recording, scaled
 
 
 def given(size: float) -> tuple[CalibrationSession, Calibration]:
@@ -33,11 +34,6 @@ def evidence(size: float) -> Evidence:
     """Of the flight."""
     taken = stream(size)
     return Evidence(regress(select(taken.ledger, "auto"), taken.reference, 9.81))
-
-
-def result(size: float, false_alarm: float = 0.01) -> ParityResult:
-    """Of the flight."""
-    return stream(size).result(false_alarm=false_alarm)
 
 
 def test_half_of_the_false_alarms_is_for_all_numbers_and_half_for_the_best_hypothesis() -> None:
@@ -71,3 +67,27 @@ def test_the_probability_of_an_axis_being_out_is_noncentral_chi_square() -> None
 def test_the_closed_tail_is_that_of_chi_square(k: int) -> None:
     for x in (0.5, 3.0, 50.0):
         assert log_tail(x, k) == pytest.approx(stats.chi2.logsf(x, k))
+
+
+def test_the_regression_is_that_of_least_squares() -> None:
+    """All blocks are equally long here, so that their weights are one."""
+    taken = stream(0.0)
+    chosen = select(taken.ledger, "auto")
+    found = regress(chosen, taken.reference, 9.81)
+    n = taken.reference.vector(chosen.blocks.mean)
+    z = np.column_stack([np.ones(len(n)), n / 9.81]) @ found.excited
+    assert found.theta == pytest.approx(np.linalg.lstsq(z, chosen.blocks.mean @ taken.reference.parity)[0])
+    assert pytest.approx(np.linalg.lstsq(z, (n @ taken.reference.axes.T) ** 2)[0]) == found.quadratic.T
+
+
+def test_a_bias_shows_as_the_constant_of_its_sensor_in_parity_space() -> None:
+    taken = stream(5e-3)
+    assert taken.result().constant == pytest.approx(5e-3 * taken.reference.parity[2], abs=2e-4)
+
+
+def test_a_scale_shows_as_the_slope_of_its_sensor_in_parity_space() -> None:
+    true, calibration = block(6)
+    flight = recording(scaled(true, 2, 3e-3), seconds=120.0)
+    reference = reference_of(flight.sensors, calibration, ACCELEROMETER)
+    expected = 3e-3 * np.outer(reference.parity[2], reference.axes[2])
+    assert parity_check(flight, calibration).slope == pytest.approx(expected, abs=1e-4)
