@@ -9,6 +9,7 @@ from fastapi import FastAPI
 from fastapi.concurrency import run_in_threadpool
 
 from service import api, pages
+from service.api.measured import Measured
 from service.background.deliver import deliver_until
 from service.background.diagnose_pending import diagnose_pending
 from service.background.watch import watch_fleet
@@ -41,8 +42,9 @@ def create_app(settings: Settings, clock: Callable[[], datetime] = utc_now) -> F
         lifespan=_at_work(service),
     )
     app.state.service = service
-    api.mount(app, service.metrics)
+    api.mount(app)
     pages.mount(app)
+    app.add_middleware(Measured, metrics=service.metrics)
     return app
 
 

@@ -1,6 +1,5 @@
 """What routes of the API and of the pages ask for by type."""
 
-import logging
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -12,13 +11,12 @@ from starlette.types import Message
 from service.background.diagnose_pending import diagnose_quietly
 from service.errors import ServiceError, TooLargeError
 from service.flows.diagnose import InProgress, diagnose_now_or_later
+from service.log import log
 from service.metrics import Metrics
 from service.records.diagnosis import StoredDiagnosis
 from service.settings import Settings
 from service.storage import Storage
 from service.storage.store import Store
-
-log = logging.getLogger("imu_health")
 
 
 @dataclass(frozen=True)
@@ -49,7 +47,7 @@ class Diagnoser:
         try:
             self.of(id, wait=wait)
         except ServiceError as fault:
-            log.warning("the diagnosis of session %s is pending: %s", id, fault)
+            log.warning("diagnosis pending", session=id, reason=str(fault))
 
     def _later(self, id: str) -> None:
         service = self.service

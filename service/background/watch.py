@@ -1,6 +1,5 @@
 """Flow: units whose calibration is overdue are flagged; the flag resolves itself once nothing is due any more."""
 
-import logging
 from collections.abc import Callable
 from datetime import datetime
 from threading import Event
@@ -9,6 +8,7 @@ from service.background.shifted_stands import flag_shifted_stands
 from service.errors import ServiceError
 from service.flows.flagging.settle import Found, settle
 from service.flows.flagging.verdict import resolve_as_done
+from service.log import log
 from service.records.flag import Concern, Matter
 from service.records.outlook import UnitOutlook
 from service.storage import Storage
@@ -17,7 +17,6 @@ from service.words.names import day_of
 
 FIRST_LOOK, LOOK_EVERY = 20.0, 3600.0
 """Seconds after the start, and between two looks."""
-log = logging.getLogger("imu_health")
 
 
 def watch_fleet(storage: Storage, clock: Callable[[], datetime], stop: Event) -> None:
@@ -29,7 +28,7 @@ def watch_fleet(storage: Storage, clock: Callable[[], datetime], stop: Event) ->
             flag_overdue(storage, clock())
             flag_shifted_stands(storage, clock())
         except ServiceError as fault:
-            log.warning("due dates and stands are looked at later: %s", fault)
+            log.warning("due dates and stands looked at later", reason=str(fault))
 
 
 def flag_overdue(storage: Storage, now: datetime) -> None:
