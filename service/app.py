@@ -21,6 +21,7 @@ DESCRIPTION = (
     "Health of redundant inertial measurement units: calibration sessions in, parameters with uncertainties, "
     "verdicts and histories out. Numbers are SI; every error is application/problem+json."
 )
+"""Heads the description of the API."""
 LAST_WORK = 5.0
 """Seconds that a stopping service waits for the diagnosis or the message at hand; the next start takes them up."""
 

@@ -5,6 +5,7 @@ from prometheus_client import CollectorRegistry, Counter, Histogram, generate_la
 from service.records.session import Receipt
 
 BUCKETS = (0.005, 0.02, 0.05, 0.1, 0.25, 0.5, 1, 2.5, 5, 15)
+"""Seconds: from a page out of the cache to a large upload with its diagnosis."""
 
 
 class Metrics:

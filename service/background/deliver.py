@@ -20,15 +20,19 @@ from service.records.webhook import DeliveryState, Outgoing
 from service.storage import Storage
 
 AT_A_TIME = 20
+"""Notices claimed at once: few, so that a receiver that hangs keeps back few others."""
 CLAIM = timedelta(minutes=10)
 """Longer than `AT_A_TIME` attempts that all time out."""
 TIMEOUT = httpx.Timeout(10.0, connect=5.0)
+"""Seconds that a receiver has to answer, and to be reached."""
 FIRST_PAUSE, LONGEST_PAUSE = timedelta(seconds=10), timedelta(hours=1)
+"""After the first attempt, and between two at the most: a receiver that restarts is told soon, a dead one seldom."""
 MOST_ATTEMPTS = 30
 """Over about 21 hours."""
 LOOK_EVERY = 1.0
 """Seconds between two looks into the outbox."""
 SIGNATURE, KEY = "X-Imu-Health-Signature", "Idempotency-Key"
+"""Headers of a message: who sends it, and under which key."""
 
 
 def deliver_until(storage: Storage, hosts: tuple[str, ...], clock: Callable[[], datetime], stop: Event) -> None:

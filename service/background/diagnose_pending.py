@@ -11,6 +11,7 @@ from service.settings import VERSION
 from service.storage import Storage
 
 BATCH = 50
+"""Sessions asked for at once."""
 PAUSE = 0.05
 """Seconds between two diagnoses, so that requests are not kept waiting."""
 

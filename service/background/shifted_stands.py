@@ -10,6 +10,7 @@ from service.storage.queries.flags import FlagQuery
 from service.views.stands import stand_conditions
 
 EVERY = 10_000
+"""More flags than a unit has."""
 
 
 def flag_shifted_stands(storage: Storage, now: datetime) -> None:
