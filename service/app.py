@@ -9,6 +9,7 @@ from fastapi import FastAPI
 from fastapi.concurrency import run_in_threadpool
 
 from service import api, pages
+from service.api.measured import Measured
 from service.background.deliver_messages import deliver_until
 from service.background.diagnose_pending import diagnose_pending
 from service.background.watch_fleet import watch_fleet
@@ -42,8 +43,9 @@ def create_app(settings: Settings, clock: Callable[[], datetime] = utc_now) -> F
         lifespan=_at_work(application),
     )
     app.state.application = application
-    api.mount(app, application.metrics)
+    api.mount(app)
     pages.mount(app)
+    app.add_middleware(Measured, metrics=application.metrics)
     return app
 
 

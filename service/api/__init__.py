@@ -19,17 +19,15 @@ from service.api import (
     units,
     webhooks,
 )
-from service.api.measured import Measured
 from service.api.openapi import describe
 from service.api.problems import add_problem_handlers
-from service.metrics import Metrics
 
 PREFIX = "/api/v1"
 """The version of the contract is part of every address."""
 
 
-def mount(app: FastAPI, metrics: Metrics) -> None:
-    """Adds every route of the API, its error shape, its description and its figures to the application."""
+def mount(app: FastAPI) -> None:
+    """Adds every route of the API, its error shape and its description to the application."""
     api = APIRouter(prefix=PREFIX)
     for resource in (
         sessions, certificates, diagnoses, events, units, unit_types, models, plans, stands, flags, notes, webhooks,
@@ -38,6 +36,5 @@ def mount(app: FastAPI, metrics: Metrics) -> None:
         api.include_router(resource.router)
     app.include_router(api)
     app.include_router(operations.router)
-    app.add_middleware(Measured, metrics=metrics)
     add_problem_handlers(app)
     describe(app)

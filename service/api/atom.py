@@ -1,14 +1,17 @@
 """Atom (RFC 4287): what happened to flags and verdicts, newest first."""
 
-import re
 from collections.abc import Sequence
 from urllib.parse import quote
-from xml.etree.ElementTree import Element, SubElement, register_namespace, tostring
+
+from lxml.builder import ElementMaker
 
 from service.records.flag import Notice, NoticeKind
+from service.reports.xml import ILLEGAL, Element, document
 
 NAMESPACE = "http://www.w3.org/2005/Atom"
+"""Section 1.2 of the standard."""
 NEVER = "1970-01-01T00:00:00+00:00"
+"""Stands where the standard wants the date of the last change and there was none."""
 TITLES = {
     NoticeKind.RAISED: "flag raised",
     NoticeKind.SEEN: "flag seen again",
@@ -17,47 +20,42 @@ TITLES = {
     NoticeKind.RESOLVED: "flag resolved",
     NoticeKind.VERDICT: "verdict changed",
 }
-NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""Characters that no XML document can hold."""
+"""Of entries, after the unit."""
 
-register_namespace("", NAMESPACE)
+
+def _write(element: Element, text: str) -> None:
+    element.text = _legal(text)
+
+
+ATOM = ElementMaker({str: _write}, NAMESPACE, {None: NAMESPACE})
+"""``ATOM.name(...)`` makes an element of its children or its text, without what XML cannot hold."""
 
 
 def atom_feed(notices: Sequence[Notice], address: str, site: str) -> bytes:
     """The feed; an entry's identifier is the same wherever and whenever it is read."""
-    feed = Element(_tag("feed"))
-    _add(feed, "id", address)
-    _add(feed, "title", "imu-health: flags and verdicts")
-    _add(feed, "updated", notices[0].at.isoformat() if notices else NEVER)
-    _add(feed, "link", rel="self", href=address)
-    _add(feed, "link", rel="alternate", href=site)
-    _add(SubElement(feed, _tag("author")), "name", "imu-health")
-    for notice in notices:
-        _entry(feed, notice, site)
-    content: bytes = tostring(feed, encoding="utf-8", xml_declaration=True)
-    return content
+    feed = ATOM.feed(
+        ATOM.id(address),
+        ATOM.title("imu-health: flags and verdicts"),
+        ATOM.updated(notices[0].at.isoformat() if notices else NEVER),
+        ATOM.link(rel="self", href=_legal(address)),
+        ATOM.link(rel="alternate", href=_legal(site)),
+        ATOM.author(ATOM.name("imu-health")),
+        *(_entry(notice, _legal(site)) for notice in notices),
+    )
+    return document(feed)
 
 
-def _entry(feed: Element, notice: Notice, site: str) -> None:
-    entry = SubElement(feed, _tag("entry"))
-    _add(entry, "id", f"urn:uuid:{notice.key}")
-    _add(entry, "title", f"{notice.unit}: {TITLES[notice.kind]}")
-    _add(entry, "updated", notice.at.isoformat())
-    _add(entry, "link", rel="alternate", href=_page(notice, site))
-    _add(entry, "category", term=notice.kind.value)
-    _add(SubElement(entry, _tag("author")), "name", notice.who)
-    _add(entry, "content", notice.text, type="text")
+def _entry(notice: Notice, site: str) -> Element:
+    return ATOM.entry(
+        ATOM.id(f"urn:uuid:{notice.key}"),
+        ATOM.title(f"{notice.unit}: {TITLES[notice.kind]}"),
+        ATOM.updated(notice.at.isoformat()),
+        ATOM.link(rel="alternate", href=f"{site}units/{quote(notice.unit)}#flags"),
+        ATOM.category(term=notice.kind.value),
+        ATOM.author(ATOM.name(notice.who)),
+        ATOM.content(notice.text, type="text"),
+    )
 
 
-def _add(parent: Element, name: str, text: str = "", **attributes: str) -> None:
-    child = SubElement(parent, _tag(name), {key: NOT_XML.sub("", value) for key, value in attributes.items()})
-    child.text = NOT_XML.sub("", text) or None
-
-
-def _tag(name: str) -> str:
-    return f"{{{NAMESPACE}}}{name}"
-
-
-def _page(notice: Notice, site: str) -> str:
-    """Where people read on."""
-    return f"{site}units/{quote(notice.unit)}#flags"
+def _legal(text: str) -> str:
+    return ILLEGAL.sub("", text)

@@ -12,8 +12,11 @@ from service.views.outlook import fleet_outlook
 
 router = APIRouter(prefix="/feeds", tags=["feeds"])
 ATOM, CALENDAR = "application/atom+xml", "text/calendar"
+"""Media types (RFC 4287 section 8, RFC 5545 section 8.1)."""
 MOST_ENTRIES = 200
+"""Months of a fleet of a hundred units, and little to fetch every hour."""
 TEXT = {"type": "string"}
+"""What the description says of both."""
 
 
 @router.get("/flags.atom", responses={200: {"content": {ATOM: {"schema": TEXT}}}, **errors()}, response_class=Response)

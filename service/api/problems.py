@@ -1,6 +1,5 @@
 """Every error of the service as application/problem+json."""
 
-import logging
 from collections.abc import Mapping, Sequence
 from http import HTTPStatus
 from typing import Any
@@ -12,6 +11,7 @@ from starlette.exceptions import HTTPException
 
 from estimator.errors import Problem
 from service.errors import AwayError, RefusedError, ServiceError
+from service.log import log
 
 MEDIA_TYPE = "application/problem+json"
 """RFC 9457."""
@@ -19,7 +19,6 @@ UNEXPECTED = "Something went wrong that should not have. It was logged; nothing 
 """Says nothing of the cause, which may hold what others must not read; the log has it."""
 BODY_PARTS = ("body", "query", "path", "header")
 """What FastAPI puts before the name of a field."""
-log = logging.getLogger("imu_health")
 
 
 def add_problem_handlers(app: FastAPI) -> None:
@@ -75,5 +74,5 @@ def _http_error(request: Request, error: Exception) -> JSONResponse:
 
 def _unexpected(request: Request, error: Exception) -> JSONResponse:
     """The one boundary for what nobody foresaw."""
-    log.error("%s %s failed", request.method, request.url.path, exc_info=error)
+    log.error("request failed", request_id=request.state.request_id, exc_info=error)
     return problem(500, UNEXPECTED)

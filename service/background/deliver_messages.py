@@ -7,7 +7,6 @@ again under the same key, by which the receiver knows it.
 import hashlib
 import hmac
 import json
-import logging
 from collections.abc import Callable
 from datetime import datetime, timedelta
 from threading import Event
@@ -16,6 +15,7 @@ import httpx
 
 from service.errors import ServiceError
 from service.flows.register_webhook import fault_of
+from service.log import log
 from service.records.webhook import DeliveryState, Outgoing
 from service.storage import Storage
 
@@ -33,7 +33,6 @@ LOOK_EVERY = 1.0
 """Seconds between two looks into the outbox."""
 SIGNATURE, KEY = "X-Imu-Health-Signature", "Idempotency-Key"
 """Header of the HMAC; header of the message's key (IETF draft idempotency-key-header)."""
-log = logging.getLogger("imu_health")
 
 
 def deliver_until(storage: Storage, hosts: tuple[str, ...], clock: Callable[[], datetime], stop: Event) -> None:
@@ -44,7 +43,7 @@ def deliver_until(storage: Storage, hosts: tuple[str, ...], clock: Callable[[], 
                 while deliver_due(storage, hosts, clock, http) == AT_A_TIME and not stop.is_set():
                     pass
             except ServiceError as fault:
-                log.warning("the outbox waits: %s", fault)
+                log.warning("outbox waits", reason=str(fault))
 
 
 def deliver_due(storage: Storage, hosts: tuple[str, ...], clock: Callable[[], datetime], http: httpx.Client) -> int:

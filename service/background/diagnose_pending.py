@@ -1,12 +1,12 @@
 """Flow: diagnoses that a crash or an older version left undone, one after another."""
 
-import logging
 from collections.abc import Callable
 from datetime import datetime
 from threading import Event
 
 from service.errors import ServiceError
 from service.flows.diagnose import InProgress, diagnose
+from service.log import log
 from service.settings import VERSION
 from service.storage import Storage
 
@@ -14,7 +14,6 @@ BATCH = 50
 """Sessions that one query brings."""
 PAUSE = 0.05
 """Seconds between two diagnoses, so that requests are not kept waiting."""
-log = logging.getLogger("imu_health")
 
 
 def diagnose_pending(storage: Storage, clock: Callable[[], datetime], progress: InProgress, stop: Event) -> None:
@@ -25,7 +24,7 @@ def diagnose_pending(storage: Storage, clock: Callable[[], datetime], progress: 
             with storage.database.reading() as store:
                 waiting = store.sessions.without_diagnosis(last, BATCH, VERSION)
         except ServiceError as fault:
-            log.warning("pending diagnoses are left to their readers: %s", fault)
+            log.warning("pending diagnoses left to their readers", reason=str(fault))
             return
         if not waiting:
             return
@@ -44,4 +43,4 @@ def diagnose_quietly(storage: Storage, id: str, now: datetime, progress: InProgr
         try:
             diagnose(storage, id, now)
         except ServiceError as fault:
-            log.warning("the diagnosis of session %s is pending: %s", id, fault)
+            log.warning("diagnosis pending", session=id, reason=str(fault))

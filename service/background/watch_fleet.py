@@ -1,6 +1,5 @@
 """Work beside the requests: every due date and every stand, looked at now and then."""
 
-import logging
 from collections.abc import Callable
 from datetime import datetime
 from threading import Event
@@ -8,11 +7,11 @@ from threading import Event
 from service.background.flag_overdue import flag_overdue
 from service.background.flag_shifted_stands import flag_shifted_stands
 from service.errors import ServiceError
+from service.log import log
 from service.storage import Storage
 
 FIRST_LOOK, LOOK_EVERY = 20.0, 3600.0
 """Seconds after the start, which has other work, and between two looks: dates fall due by the day."""
-log = logging.getLogger("imu_health")
 
 
 def watch_fleet(storage: Storage, clock: Callable[[], datetime], stop: Event) -> None:
@@ -24,4 +23,4 @@ def watch_fleet(storage: Storage, clock: Callable[[], datetime], stop: Event) ->
             flag_overdue(storage, clock())
             flag_shifted_stands(storage, clock())
         except ServiceError as fault:
-            log.warning("due dates and stands are looked at later: %s", fault)
+            log.warning("due dates and stands looked at later", reason=str(fault))

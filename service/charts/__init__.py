@@ -17,6 +17,8 @@ DATA_FORM = "points"
 UNIT, LEFT, RIGHT, LOW, HIGH = "{unit}", "{left}", "{right}", "{low}", "{high}"
 """Blanks of a specification: the unit of y, and the ranges of x and y."""
 
+AIR = 0.06
+"""Share of a range that is left empty above and below, so that no mark is cut."""
 CONFIG: dict[str, Any] = {
     "background": "transparent",
     "font": "system-ui, sans-serif",
@@ -36,6 +38,7 @@ CONFIG: dict[str, Any] = {
     },
     "axisX": {"grid": False},
 }
+"""The look of every chart, in the style variables of the pages."""
 
 
 @dataclass(frozen=True)
@@ -76,5 +79,5 @@ def filled(part: Any, values: Mapping[str, Any]) -> Any:
 
 def padded(low: float, high: float) -> list[float]:
     """A range with a little air above and below."""
-    air = 0.06 * (high - low) or 1.0
+    air = AIR * (high - low) or 1.0
     return [low - air, high + air]

@@ -6,26 +6,28 @@ from typing import Any
 
 import altair as alt
 import numpy as np
-from numpy.typing import NDArray
 
 from estimator.results import Residuals, SensorCalibration
 from service.charts import DATA_FORM, ChartSet, Panel, padded, specification
+from service.charts.across import (
+    BETA,
+    BETA_RANGE,
+    HEIGHT,
+    RUNS,
+    SHAPES,
+    Across,
+    by_angle,
+    in_order,
+    largest_edge,
+    ticks,
+    zero_line,
+)
 from service.measures import THIN, Measure, decimals, deviation_measure, number
 
-HEIGHT = 130
 MOST_PANELS = 9
+"""Sensors that are drawn one way of looking, three rows of three; the page says how many are left out."""
 MODELS = ("before", "after")
-RUNS = ("direct", "flipped")
-
-
-@dataclass(frozen=True)
-class _Across:
-    """What is drawn against what."""
-
-    name: str
-    heading: str
-    title: str
-    values: NDArray[np.float64]
+"""Names of the models in the data, without the named causes and with them."""
 
 
 @dataclass(frozen=True)
@@ -48,23 +50,18 @@ def diagnosis_charts(sides: Sides, named: Sequence[str]) -> tuple[ChartSet, ...]
     )
 
 
-def _ways(residuals: Residuals) -> tuple[_Across, ...]:
-    rows = np.arange(1.0, len(residuals.value) + 1)
-    found = []
-    if residuals.beta is not None:
-        found.append(_Across("beta", "By the angle β of the head", "β, °", np.degrees(residuals.beta) % 360))
-    if residuals.time is not None:
-        found.append(_Across("time", "By time", "h", residuals.time / 3600))
-    else:
-        found.append(_Across("order", "In the order measured", "row", rows))
-    if residuals.temperature is not None and float(np.ptp(residuals.temperature)) > 0:
-        found.append(_Across("temperature", "By temperature", "°C", residuals.temperature))
-    return tuple(found)
+def _ways(residuals: Residuals) -> list[Across]:
+    angle, time, temperature = by_angle(residuals), residuals.time, residuals.temperature
+    found = [] if angle is None else [angle]
+    found.append(in_order(residuals) if time is None else Across("time", "By time", "h", time / 3600))
+    if temperature is not None and float(np.ptp(temperature)) > 0:
+        found.append(Across("temperature", "By temperature", "°C", temperature))
+    return found
 
 
-def _chart_set(sides: Sides, across: _Across, columns: list[int], several: bool) -> ChartSet:
+def _chart_set(sides: Sides, across: Across, columns: list[int], several: bool) -> ChartSet:
     kind = sides.sensors[columns[0]].kind
-    largest = _largest(sides, columns)
+    largest = largest_edge(sides.before.value[:, columns], sides.before.sigma[:, columns])
     unit = deviation_measure(kind, "bias", largest)
     return ChartSet(
         name=f"diagnosis-{kind}-{across.name}",
@@ -74,12 +71,7 @@ def _chart_set(sides: Sides, across: _Across, columns: list[int], several: bool)
     )
 
 
-def _largest(sides: Sides, columns: list[int]) -> float:
-    edges = np.abs(np.stack([sides.before.value[:, columns], 2 * sides.before.sigma[:, columns]]))
-    return float(np.max(edges, initial=0.0, where=np.isfinite(edges)))
-
-
-def _panel(sides: Sides, column: int, across: _Across, unit: Measure) -> Panel:
+def _panel(sides: Sides, column: int, across: Across, unit: Measure) -> Panel:
     shown = [_rms(side, column, unit) for side in (sides.before, sides.after) if side is not None]
     return Panel(
         title=sides.sensors[column].name,
@@ -95,7 +87,7 @@ def _rms(side: Residuals, column: int, unit: Measure) -> str:
     return number(rms, decimals(rms))
 
 
-def _points(sides: Sides, column: int, across: _Across, unit: Measure) -> list[dict[str, Any]]:
+def _points(sides: Sides, column: int, across: Across, unit: Measure) -> list[dict[str, Any]]:
     both = [(MODELS[0], sides.before), *([] if sides.after is None else [(MODELS[1], sides.after)])]
     flipped = sides.before.flipped
     return [
@@ -113,19 +105,18 @@ def _points(sides: Sides, column: int, across: _Across, unit: Measure) -> list[d
     ]
 
 
-def _spec(across: _Across, unit: Measure, largest: float) -> dict[str, Any]:
-    domain = [-12, 372] if across.name == "beta" else padded(float(across.values.min()), float(across.values.max()))
-    ticks = {"values": [0, 90, 180, 270, 360]} if across.name == "beta" else {"tickCount": 5}
-    x = alt.X("x:Q", title=across.title, axis=alt.Axis(**ticks), scale=alt.Scale(domain=domain, nice=False, zero=False))
+def _spec(across: Across, unit: Measure, largest: float) -> dict[str, Any]:
+    domain = BETA_RANGE if across.name == BETA else padded(float(across.values.min()), float(across.values.max()))
+    axis, scale = alt.Axis(**ticks(across.name)), alt.Scale(domain=domain, nice=False, zero=False)
+    x = alt.X("x:Q", title=across.title, axis=axis, scale=scale)
     y_scale = alt.Scale(domain=padded(-largest, largest))
     y = alt.Y("y:Q", title=unit.label, axis=alt.Axis(tickCount=5), scale=y_scale)
     base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
     band = base.transform_calculate(low="-datum.band").mark_area(color="var(--muted)", opacity=0.1)
-    zero = alt.Chart(alt.InlineData(values=[{"zero": 0}])).mark_rule(color="var(--muted)").encode(y="zero:Q")
     return specification(
         [
             band.encode(y=alt.Y("low:Q", scale=y_scale), y2="band:Q", detail="run:N"),
-            zero,
+            zero_line(),
             _marks(base, y, unit, MODELS[0]),
             _marks(base, y, unit, MODELS[1]),
         ],
@@ -144,7 +135,7 @@ def _marks(base: alt.Chart, y: alt.Y, unit: Measure, model: str) -> alt.Chart:
         .mark_point(color=colour, opacity=1, size=38, **style)
         .encode(
             y=y,
-            shape=alt.Shape("run:N", legend=None, scale=alt.Scale(domain=RUNS, range=["circle", "triangle-up"])),
+            shape=alt.Shape("run:N", legend=None, scale=SHAPES),
             tooltip=[
                 alt.Tooltip("row:Q", title="row"),
                 alt.Tooltip("run:N", title="run"),

@@ -11,12 +11,12 @@ from service.records.unit import UnitSummary
 from service.words.conditions import CONDITIONS, Condition, condition_of
 
 HEIGHT = 120
+"""Pixels: the whole fleet in one low strip above its table."""
 STEP, LAST = 10, 200
 """Per cent of the tolerance: width of a bar, and where the bar of everything beyond begins."""
 TITLE = f"tolerance used by the worst parameter, U included, %; the last bar holds all from {LAST} on"
 TICKS = list(range(0, LAST + 1, 2 * STEP))
-TITLE = f"tolerance used by the worst parameter, U included, %; the last bar holds all from {LAST} on"
-TICKS = list(range(0, LAST + 1, 2 * STEP))
+"""Of the axis of the tolerance: every other bar is numbered, so that numbers do not run into each other."""
 
 
 def fleet_chart(units: Sequence[UnitSummary]) -> ChartSet:

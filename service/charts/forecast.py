@@ -12,7 +12,9 @@ from service.records.outlook import ParameterTrend
 Trends = Mapping[tuple[str, str, str], ParameterTrend]
 """By sensor, kind and parameter."""
 NAMES = ("fan", "trend")
+"""Of the data sets."""
 YEAR_SECONDS = 365.25 * 86400
+"""Julian years, as rates a year are given in."""
 ROOM = 1.5
 """The fan may widen a chart to this many tolerances, not further."""
 

@@ -7,14 +7,18 @@ import numpy as np
 
 from estimator.planning import Plan, Sweep
 from estimator.results import PARAMETERS
+from estimator.session import Array
 from service.charts import DATA_FORM, ChartSet, Panel, specification
 from service.measures import MEASURES, Measure
 
 HEIGHT = 150
+"""Pixels: two rows of panels fit on a screen."""
 NAMES = {"scale": "Scale factor", "bias": "Bias", "quadratic": "Quadratic term", "axis": "Axis"}
+"""Of the parameters, as panels are headed."""
 SERIES = ("total", "repeatability", "tolerance")
 COLOURS = ["var(--accent)", "var(--second)", "var(--tolerance)"]
 DASHES = [[1, 0], [4, 3], [5, 3]]
+"""What the lines of a panel show, in their colours and dashes: they are told apart in black and white too."""
 
 
 def plan_charts(plan: Plan, kind: str) -> tuple[ChartSet, ChartSet]:
@@ -30,8 +34,8 @@ def plan_charts(plan: Plan, kind: str) -> tuple[ChartSet, ChartSet]:
     )
 
 
-def _parameters(plan: Plan, kind: str, sweep: Sweep, at: Any, chosen: float) -> list[Panel]:
-    """One panel a parameter that is observed anywhere."""
+def _parameters(plan: Plan, kind: str, sweep: Sweep, at: Array, chosen: float) -> list[Panel]:
+    """One panel a parameter that is observed anywhere; ``at``, shape (points,), is the number of positions or in °."""
     wanted = plan.request.wanted.row() * plan.request.share
     panels = []
     for k, name in enumerate(PARAMETERS):
@@ -55,7 +59,8 @@ def _panel(title: str, unit: Measure, points: list[dict[str, Any]], chosen: floa
     )
 
 
-def _points(series: str, at: Any, values: Any) -> list[dict[str, Any]]:
+def _points(series: str, at: Array, values: Array) -> list[dict[str, Any]]:
+    """Finite values over where they hold, both of shape (points,), in the units of the panel's axes (number or °)."""
     return [
         {"x": round(float(x), 2), "y": float(f"{y:.4g}"), "series": series}
         for x, y in zip(at, values, strict=True)
@@ -63,8 +68,8 @@ def _points(series: str, at: Any, values: Any) -> list[dict[str, Any]]:
     ]
 
 
-def _rho(plan: Plan, degrees: Any) -> list[Panel]:
-    """The conditioning, where it is finite."""
+def _rho(plan: Plan, degrees: Array) -> list[Panel]:
+    """The conditioning, where it is finite, over elevations in °, shape (points,)."""
     points = _points("total", degrees, plan.over_elevation.conditioning)
     if not points:
         return []

@@ -1,31 +1,33 @@
 """Residuals of a session, a panel a sensor: by β with both runs, and in the order measured, with ±2σ bands."""
 
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
 import altair as alt
 import numpy as np
-from numpy.typing import NDArray
 
 from estimator.results import Calibration, Residuals
 from service.charts import DATA_FORM, HIGH, LEFT, LOW, RIGHT, UNIT, ChartSet, Panel, filled, padded, specification
+from service.charts.across import (
+    BETA,
+    BETA_RANGE,
+    HEIGHT,
+    ORDER,
+    RUNS,
+    SHAPES,
+    Across,
+    by_angle,
+    in_order,
+    largest_edge,
+    ticks,
+    zero_line,
+)
 from service.measures import THIN, Measure, decimals, deviation_measure, number
 
-HEIGHT = 130
-RUNS = ("direct", "flipped")
 RESIDUAL, BAND = "{residual}", "{band}"
 """Blanks: the names of the tooltip's numbers, with their unit."""
-
-
-@dataclass(frozen=True)
-class _Across:
-    """What a residual chart is drawn against."""
-
-    name: str
-    heading: str
-    title: str
-    values: NDArray[np.float64]
+SHADES = {BETA: 0.07, ORDER: 0.13}
+"""Opacity of the ±2σ bands: by the angle both runs lie on each other."""
 
 
 def residual_charts(calibration: Calibration) -> tuple[ChartSet, ...]:
@@ -45,18 +47,15 @@ def _columns(calibration: Calibration, kind: str) -> list[int]:
     return [i for i, s in enumerate(calibration.sensors) if s.kind == kind and np.isfinite(value[:, i]).any()]
 
 
-def _ways(residuals: Residuals) -> tuple[_Across, ...]:
-    order = _Across("order", "In the order measured", "row", np.arange(1.0, len(residuals.value) + 1))
-    if residuals.beta is None:
-        return (order,)
-    return (_Across("beta", "By the angle β of the head", "β, °", np.degrees(residuals.beta) % 360), order)
+def _ways(residuals: Residuals) -> tuple[Across, ...]:
+    angle, order = by_angle(residuals), in_order(residuals)
+    return (order,) if angle is None else (angle, order)
 
 
-def _chart_set(calibration: Calibration, kind: str, across: _Across, several: bool) -> ChartSet:
+def _chart_set(calibration: Calibration, kind: str, across: Across, several: bool) -> ChartSet:
     columns = _columns(calibration, kind)
     residuals = calibration.residuals
-    edges = np.abs(np.stack([residuals.value[:, columns], 2 * residuals.sigma[:, columns]]))
-    largest = float(np.max(edges, initial=0.0, where=np.isfinite(edges)))
+    largest = largest_edge(residuals.value[:, columns], residuals.sigma[:, columns])
     unit = deviation_measure(kind, "bias", largest)
     return ChartSet(
         name=f"residuals-{kind}-{across.name}",
@@ -66,7 +65,7 @@ def _chart_set(calibration: Calibration, kind: str, across: _Across, several: bo
     )
 
 
-def _panel(calibration: Calibration, column: int, across: _Across, unit: Measure) -> Panel:
+def _panel(calibration: Calibration, column: int, across: Across, unit: Measure) -> Panel:
     residuals = calibration.residuals
     value, sigma = residuals.value[:, column], residuals.sigma[:, column]
     outside = int(np.sum(np.abs(value) > 2 * sigma))
@@ -79,7 +78,7 @@ def _panel(calibration: Calibration, column: int, across: _Across, unit: Measure
     )
 
 
-def _rows(residuals: Residuals, column: int, across: _Across, unit: Measure) -> list[dict[str, Any]]:
+def _rows(residuals: Residuals, column: int, across: Across, unit: Measure) -> list[dict[str, Any]]:
     flipped = np.zeros(len(residuals.value), bool) if residuals.flipped is None else residuals.flipped
     return [
         {
@@ -97,8 +96,8 @@ def _rows(residuals: Residuals, column: int, across: _Across, unit: Measure) -> 
     ]
 
 
-def _filled(across: _Across, unit: Measure, largest: float) -> dict[str, Any]:
-    left, right = (-12, 372) if across.name == "beta" else (0, len(across.values) + 1)
+def _filled(across: Across, unit: Measure, largest: float) -> dict[str, Any]:
+    left, right = BETA_RANGE if across.name == BETA else (0, len(across.values) + 1)
     low, high = padded(-largest, largest)
     ranges = {LEFT: left, RIGHT: right, LOW: low, HIGH: high}
     texts = {UNIT: unit.label, RESIDUAL: f"residual, {unit.label}", BAND: f"2σ, {unit.label}"}
@@ -109,29 +108,20 @@ def _filled(across: _Across, unit: Measure, largest: float) -> dict[str, Any]:
 @cache
 def _spec(name: str, title: str) -> dict[str, Any]:
     """With blanks for the unit and the ranges."""
-    ticks = {"tickCount": 5} if name == "order" else {"values": [0, 90, 180, 270, 360]}
-    x = alt.X("x:Q", title=title, axis=alt.Axis(**ticks), scale=alt.Scale(domain=[LEFT, RIGHT], nice=False))
+    x = alt.X("x:Q", title=title, axis=alt.Axis(**ticks(name)), scale=alt.Scale(domain=[LEFT, RIGHT], nice=False))
     y_scale = alt.Scale(domain=[LOW, HIGH])
     y = alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=y_scale)
     base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
-    shade = 0.07 if name == "beta" else 0.13
-    band = base.transform_calculate(low="-datum.band").mark_area(color="var(--accent)", opacity=shade)
-    zero = alt.Chart(alt.InlineData(values=[{"zero": 0}])).mark_rule(color="var(--muted)").encode(y="zero:Q")
-    return specification(
-        [
-            band.encode(y=alt.Y("low:Q", scale=y_scale), y2="band:Q", detail="run:N"),
-            zero,
-            _marks(base, y),
-        ],
-        HEIGHT,
-    )
+    band = base.transform_calculate(low="-datum.band").mark_area(color="var(--accent)", opacity=SHADES[name])
+    shades = band.encode(y=alt.Y("low:Q", scale=y_scale), y2="band:Q", detail="run:N")
+    return specification([shades, zero_line(), _marks(base, y)], HEIGHT)
 
 
 def _marks(base: alt.Chart, y: alt.Y) -> alt.Chart:
     chart: alt.Chart = base.mark_point(filled=True, opacity=1, size=36, stroke="var(--card)", strokeWidth=0.5).encode(
         y=y,
         color=alt.Color("run:N", legend=None, scale=alt.Scale(domain=RUNS, range=["var(--accent)", "var(--second)"])),
-        shape=alt.Shape("run:N", legend=None, scale=alt.Scale(domain=RUNS, range=["circle", "triangle-up"])),
+        shape=alt.Shape("run:N", legend=None, scale=SHAPES),
         tooltip=[
             alt.Tooltip("row:Q", title="row"),
             alt.Tooltip("run:N", title="run"),

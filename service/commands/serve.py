@@ -11,9 +11,13 @@ from service.app import create_app
 from service.commands.console import progress, say
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.demo.fill import FILES, fill, is_wanted
+from service.log import write_log
 from service.settings import Settings
 from service.storage import Database, Files, Storage
 from service.storage.schema import upgrade
+
+LAST_ANSWERS = 10
+"""Seconds that a stopping service gives the requests at hand."""
 
 
 def serve(
@@ -30,8 +34,14 @@ def serve(
     upgrade(settings.database)
     if demo:
         _fill(settings)
+    write_log()
     config = uvicorn.Config(
-        create_app(settings), settings.host, settings.port, log_level="warning", timeout_graceful_shutdown=10
+        create_app(settings),
+        settings.host,
+        settings.port,
+        log_config=None,
+        access_log=False,
+        timeout_graceful_shutdown=LAST_ANSWERS,
     )
     _Server(config).run()
 

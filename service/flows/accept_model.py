@@ -24,7 +24,7 @@ def accept_model(storage: Storage, diagnosis: StoredDiagnosis, new: NewModel, no
         unit_type = store.unit_types.of_unit(session.unit).name
         subject = _subject(new, session, unit_type, sensors)
         evidence = {name: finding[name] for name in EVIDENCE} | {"gain": (diagnosis.document or {})["gain"]}
-        revision = store.models.add(new, subject, sensors, session.id, evidence, now)
+        revision = store.models.add(new, subject, sensors, session=session.id, evidence=evidence, at=now)
         details = {"cause": new.cause, "sensors": list(sensors), "session": session.id, "note": new.note}
         store.log.audit(now, new.by, "accept model", f"{new.scope} {subject}", {"revision": revision.id, **details})
         return revision

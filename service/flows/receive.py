@@ -3,7 +3,6 @@
 The one entry of the API and of the pages.
 """
 
-import logging
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
@@ -21,6 +20,7 @@ from service.judging.calibrate import Calibrated, basis_of, calibrate
 from service.judging.judge import judge_in_epoch
 from service.judging.model_in_force import model_for
 from service.judging.tolerances import type_of
+from service.log import log
 from service.metrics import Metrics
 from service.records.decision import Judged
 from service.records.received import Received, SentFile
@@ -33,7 +33,6 @@ ID_DIGITS = 20
 """Of the file's SHA-256: 80 bits, so that among a million sessions two share them with a chance of 4e-13."""
 FEW = 4
 """Files whose diagnosis an upload waits for; those of more files are made after the answer."""
-log = logging.getLogger("imu_health")
 
 
 @dataclass(frozen=True)
@@ -78,7 +77,7 @@ def _diagnose(reception: Reception, id: str, now: datetime, *, wait: bool) -> No
     try:
         diagnose_now_or_later(reception.storage, id, now, reception.later, wait=wait)
     except ServiceError as fault:
-        log.warning("the diagnosis of session %s is pending: %s", id, fault)
+        log.warning("diagnosis pending", session=id, reason=str(fault))
 
 
 def upload(

@@ -8,6 +8,7 @@ from fastapi import FastAPI, Request, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from estimator.errors import Problem
+from service.log import REQUEST_ID
 from service.pages.headers import HEADERS
 from service.pages.render import render
 
@@ -59,7 +60,7 @@ def unexpected_pages(app: FastAPI) -> None:
         if _wants_page(request.scope):
             page = problem_page(json.loads(bytes(response.body)))
             response = render(request, "problem.html", page, page.status)
-        response.headers.update(HEADERS)
+        response.headers.update({**HEADERS, REQUEST_ID: request.state.request_id})
         return response
 
     app.add_exception_handler(Exception, unexpected)

@@ -42,6 +42,7 @@ HISTORIES = (
     Column("Model revision", Kind.NUMBER, 9), Column("Session", width=23),
 )  # fmt: skip
 ABOUT = (Column("What", width=26), Column("Value", width=110))
+"""The columns of the four sheets; widths in characters, for the longest usual text."""
 
 
 def fleet_xlsx(store: Store, report: FleetReport) -> bytes:

@@ -27,6 +27,7 @@ PALETTE = {
 }
 """The light colours of the pages' style; a test holds them to it."""
 VARIABLE = re.compile(r"var\(--([\w-]+)\)")
+"""How a specification names a colour of the pages' style."""
 MEASURED, PRINTED = "Liberation Sans", "Libertinus Serif"
 """The font that charts are laid out with, a little wider, and the one that they are printed in."""
 

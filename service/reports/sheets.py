@@ -19,6 +19,7 @@ FORMULA = re.compile(r"^[=+\-@\t\r]")
 LONGEST_TEXT = 32_767
 """Characters that a cell holds."""
 OPTIONS = {"constant_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
+"""Rows go to disk as they come, and no text becomes a formula or a link by what it looks like."""
 
 Cell = str | float | int | bool | datetime | None
 

@@ -10,6 +10,7 @@ import typst
 from service.reports.printable import printable_data
 
 TEMPLATES = Path(__file__).parent / "templates"
+"""The only folder that typst may read."""
 
 
 def typeset(template: str, record: Any, at: datetime) -> bytes:

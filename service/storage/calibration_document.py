@@ -34,7 +34,7 @@ def calibration_from_dict(document: dict[str, Any]) -> Calibration:
 
 
 def _numbers(listed: Any) -> Array:
-    """Nested lists with null to an array with NaN."""
+    """Nested lists with null to an array of their shape with NaN, in the unit that the document states."""
     return np.array(listed, dtype=float)
 
 

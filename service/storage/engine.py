@@ -10,6 +10,9 @@ from sqlalchemy.pool import ConnectionPoolEntry
 from service.errors import ServiceError
 
 BUSY_TIMEOUT_MS = 10_000
+"""Milliseconds that a connection waits for another one's write lock before the database counts as away."""
+WAIT_FOR_CONNECTION, WAIT_FOR_SERVER = 10, 5
+"""Seconds for a free connection of the pool, and for PostgreSQL to answer, before it counts as away."""
 WRITES = "imu_health_writes"
 """Execution option of a connection that will write."""
 
@@ -33,13 +36,18 @@ def _unknown(fault: str) -> ServiceError:
 
 
 def open_engine(url: str) -> Engine:
-    """An engine for the database; the folder of an SQLite file is made when it is missing."""
+    """An engine for the database; the folder of an SQLite file is made when it is missing.
+
+    Its errors repeat statements without their values, so that no secret and no upload comes into a log with them.
+    """
     parsed = normal_url(url)
     if parsed.get_backend_name() != "sqlite":
-        return create_engine(parsed, pool_pre_ping=True, pool_timeout=10, connect_args={"connect_timeout": 5})
+        return create_engine(
+            parsed, hide_parameters=True, pool_pre_ping=True, pool_timeout=10, connect_args={"connect_timeout": 5}
+        )
     if parsed.database and parsed.database != ":memory:":
         Path(parsed.database).parent.mkdir(parents=True, exist_ok=True)
-    engine = create_engine(parsed)
+    engine = create_engine(parsed, hide_parameters=True)
     event.listen(engine, "connect", _prepare_sqlite)
     event.listen(engine, "begin", _begin_sqlite)
     return engine

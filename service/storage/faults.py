@@ -13,10 +13,13 @@ from service.errors import AwayError, NoSpaceError, ServiceError
 FULL_SQLSTATES = frozenset({"53100"})
 """PostgreSQL: disk_full."""
 DAMAGED = frozenset({sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT})
+"""SQLite: what the file holds cannot be read as a database."""
 FULL_ERRNOS = frozenset({errno.ENOSPC, errno.EDQUOT})
+"""The disk, or what the service may use of it, is full."""
 NO_SPACE = "The disk is full: nothing was stored. Free some space and send it again."
 NO_DATABASE = "The database's file is damaged, or is not an SQLite database."
 AWAY = "The database does not answer. Nothing was lost; try again in a few seconds."
+"""What is said to the one who asked: what holds, and what to do."""
 
 
 @contextmanager

@@ -7,6 +7,7 @@ from typing import Any
 from service.records.outlook import FanPoint, ParameterTrend, RiskPoint, UnitOutlook
 
 TIMES = ("due", "reach_50", "reach_90")
+"""Fields of an outlook that are times."""
 
 
 def outlook_to_dicts(outlook: UnitOutlook) -> tuple[dict[str, Any], dict[str, Any]]:

@@ -27,6 +27,7 @@ from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 from service.storage.columns import UtcDateTime
 
 IS_OPEN, IS_WAITING = "state <> 'resolved'", "state = 'waiting'"
+"""Rows of flags and of deliveries that are looked for all the time: few of many, so each has an index of its own."""
 
 
 def only_where(condition: str) -> dict[str, Any]:

@@ -8,7 +8,7 @@ import pytest
 from tests.project.source import PACKAGES, Module, modules
 
 SERVICE_LAYERS = (
-    {"settings", "errors", "records", "measures"},
+    {"settings", "errors", "records", "measures", "log"},
     {"metrics", "words"},
     {"ingest", "storage", "planning"},
     {"judging"},
@@ -40,6 +40,7 @@ HOMES = {
     "fastapi": ("service.api", "service.pages", "service.dependencies", "service.app"),
     "starlette": ("service.api", "service.pages", "service.dependencies", "service.app"),
     "typer": ("service.cli", "service.commands"),
+    "structlog": ("service.log", "service.api.measured"),
 }
 ALL = modules(*PACKAGES)
 NAMES = [module.name for module in ALL]

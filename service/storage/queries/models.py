@@ -30,6 +30,7 @@ class Models(Queries):
         new: NewModel,
         subject: str,
         sensors: tuple[str, ...],
+        *,
         session: str,
         evidence: dict[str, Any],
         at: datetime,

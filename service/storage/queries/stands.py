@@ -12,6 +12,7 @@ from service.storage.tables import CommonMotionRow, ConditionRow, SessionRow, St
 MOST = 4000
 """Rows, the newest, that stands are judged by."""
 STILL = {AXES: ((0.0,) * 3, ((0.0,) * 3,) * 3), SCALES: ((0.0,), ((0.0,),))}
+"""Value and covariance of a reference's motion, zero by definition: of all axes (rad) and of all scales (relative)."""
 
 
 class Stands(Queries):

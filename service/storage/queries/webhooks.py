@@ -13,6 +13,7 @@ from service.storage.queries.notices import notice_of
 from service.storage.tables import DeliveryRow, FlagRow, NoticeRow, UnitRow, WebhookRow
 
 REMOVED = "the webhook was removed"
+"""The outcome of deliveries that then still waited."""
 
 
 class Webhooks(Queries):

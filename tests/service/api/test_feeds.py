@@ -1,10 +1,11 @@
 """Feeds: read by other programs' own readers, exact to the letter of their standards."""
 
 from datetime import UTC, date, datetime
+from uuid import NAMESPACE_URL, uuid5
 from xml.etree import ElementTree
 
 import httpx
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from icalendar import Calendar
 
@@ -69,6 +70,7 @@ def test_due_dates_come_as_a_calendar(holding: Holding) -> None:
 
 
 @given(unit=TEXT, summary=TEXT, description=TEXT)
+@example(unit="A", summary="C:\\New", description="\\\\N, \\n; \n")
 def test_any_text_survives_folding_and_escaping(unit: str, summary: str, description: str) -> None:
     content = calendar([DueDay(unit, date(2026, 3, 1), summary, description, "http://a/")], NOW)
     lines = content.split(b"\r\n")
@@ -78,6 +80,39 @@ def test_any_text_survives_folding_and_escaping(unit: str, summary: str, descrip
     assert str(event.get("SUMMARY", "")) == printable(summary)
     assert str(event.get("DESCRIPTION", "")) == printable(description)
     assert event.start == date(2026, 3, 1)
+
+
+def test_an_event_is_written_to_the_letter() -> None:
+    day = DueDay("BA-017", date(2026, 12, 31), "BA-017: due", "a, b; C:\\New\nand on", "http://a/units/BA-017")
+    assert calendar([day], NOW).decode().split("\r\n")[6:-2] == [
+        "BEGIN:VEVENT",
+        f"UID:{uuid5(NAMESPACE_URL, 'imu-health/due/BA-017')}@imu-health",
+        "DTSTAMP:20261121T120000Z",
+        "DTSTART;VALUE=DATE:20261231",
+        "DTEND;VALUE=DATE:20270101",
+        "SUMMARY:BA-017: due",
+        r"DESCRIPTION:a\, b\; C:\\New\nand on",
+        "URL:http://a/units/BA-017",
+        "TRANSP:TRANSPARENT",
+        "END:VEVENT",
+    ]
+
+
+def test_an_entry_is_written_to_the_letter() -> None:
+    notice = Notice(1, "BA 017", 1, NoticeKind.RAISED, NOW, "K. <Ito>", "a & b", None)
+    feed = ElementTree.canonicalize(atom_feed([notice], "http://a/feed", "http://a/").decode(), strip_text=True)
+    assert feed.partition("</author>")[2] == (
+        f"<entry><id>urn:uuid:{notice.key}</id><title>BA 017: flag raised</title>"
+        "<updated>2026-11-21T12:00:00+00:00</updated>"
+        '<link href="http://a/units/BA%20017#flags" rel="alternate"></link>'
+        '<category term="flag.raised"></category><author><name>K. &lt;Ito&gt;</name></author>'
+        '<content type="text">a &amp; b</content></entry></feed>'
+    )
+
+
+def test_a_feed_without_entries_still_has_a_date() -> None:
+    feed = ElementTree.fromstring(atom_feed([], "http://a/feed", "http://a/"))
+    assert texts(feed, "a:updated") == ["1970-01-01T00:00:00+00:00"]
 
 
 def printable(text: str) -> str:

@@ -30,7 +30,7 @@ def stored(storage: Storage, content: bytes) -> str:
 def accepted(storage: Storage, session: str) -> None:
     """A cause of A3 in the unit's model."""
     with storage.database.writing() as store:
-        store.models.add(CUBIC, "BA-017", ("A3",), session, {}, NOW)
+        store.models.add(CUBIC, "BA-017", ("A3",), session=session, evidence={}, at=NOW)
 
 
 @pytest.mark.parametrize("programme", OTHERS)

@@ -1,14 +1,15 @@
 """Quantities of a Digital Calibration Certificate: value, unit and expanded uncertainty by the rules of D-SI."""
 
 from math import erf, sqrt
-from xml.etree.ElementTree import Element
 
 from estimator.session import ACCELEROMETER
-from service.reports.elements import content, dcc, si
+from service.reports.dcc.elements import DCC, SI, english
+from service.reports.xml import Element
 
 ONE, RADIAN = r"\one", r"\radian"
 INPUT = {True: r"\metre\second\tothe{-2}", False: r"\radian\second\tothe{-1}"}
 PER_INPUT = {True: r"\metre\tothe{-1}\second\tothe{2}", False: r"\radian\tothe{-1}\second"}
+"""D-SI of what a sensor measures, and of its inverse: of an accelerometer (True) and of a gyro."""
 READINGS = {"V": r"\volt", "mV": r"\milli\volt", "A": r"\ampere", "mA": r"\milli\ampere", "Hz": r"\hertz"}
 """D-SI of the units that readings come in; counts and pulses have the unit one."""
 
@@ -27,17 +28,16 @@ def deviation_measure(kind: str, parameter: str) -> str:
     return ONE if parameter == "scale" else value_measure(kind, parameter, "", counted=False)
 
 
-def quantity(parent: Element, name: str, value: float, unit: str, sigma: float | None, k: float) -> Element:
+def quantity(name: str, value: float, unit: str, sigma: float | None, k: float) -> Element:
     """``dcc:quantity`` with ``si:real``; k and its coverage stand with U."""
-    found = dcc(parent, "quantity")
-    content(found, "name", name)
-    real = si(found, "real")
-    si(real, "value", repr(float(value)))
-    si(real, "unit", unit)
+    real = SI.real(SI.value(repr(float(value))), SI.unit(unit))
     if sigma is not None:
-        expanded = si(real, "expandedUnc")
-        si(expanded, "uncertainty", repr(float(k * sigma)))
-        si(expanded, "coverageFactor", f"{k:g}")
-        si(expanded, "coverageProbability", f"{erf(k / sqrt(2)):.4f}")
-        si(expanded, "distribution", "normal")
-    return found
+        real.append(
+            SI.expandedUnc(
+                SI.uncertainty(repr(float(k * sigma))),
+                SI.coverageFactor(f"{k:g}"),
+                SI.coverageProbability(f"{erf(k / sqrt(2)):.4f}"),
+                SI.distribution("normal"),
+            )
+        )
+    return DCC.quantity(english("name", name), real)

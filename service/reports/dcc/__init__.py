@@ -1,0 +1,23 @@
+"""The certificate for programs: a PTB Digital Calibration Certificate, schema 3.2.0 with D-SI 2.1.0. SI throughout."""
+
+from service.reports.dcc.administrative import administrative
+from service.reports.dcc.elements import DCC, NAMESPACES
+from service.reports.dcc.measurement import measurement
+from service.reports.xml import document
+from service.views.certificate import CertifiedSession
+
+SCHEMA = "3.2.0"
+"""Of the DCC, as PTB published it; with it goes D-SI 2.1.0."""
+LOCATION = f"{{{NAMESPACES['xsi']}}}schemaLocation"
+LOCATIONS = "{dcc} {dcc}/v{schema}/dcc.xsd {si} {si}/v2.1.0/SI_Format.xsd".format(schema=SCHEMA, **NAMESPACES)
+"""The attribute that names, and the text that holds, where the schema of each namespace is found."""
+
+
+def certificate_dcc(found: CertifiedSession) -> bytes:
+    """The certificate as XML; the same record gives the same bytes."""
+    root = DCC.digitalCalibrationCertificate(
+        {"schemaVersion": SCHEMA, LOCATION: LOCATIONS},
+        administrative(found),
+        DCC.measurementResults(measurement(found)),
+    )
+    return document(root)

@@ -1,0 +1,83 @@
+"""What was measured: method, equipment and, a sensor a result, every value with U and the decision on it."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from estimator.results import SensorCalibration
+from estimator.session import ACCELEROMETER
+from service.measures import COVERAGE
+from service.records.decision import Decision
+from service.reports.certificate.facts import title_of
+from service.reports.dcc.elements import DCC, conformity, english, software
+from service.reports.dcc.quantities import ONE, deviation_measure, quantity, value_measure
+from service.reports.xml import Element
+from service.views.certificate import CertifiedSession
+from service.words.finding import in_words
+
+
+def measurement(found: CertifiedSession) -> Element:
+    """The one measurement result of a session."""
+    session, calibration, stand = found.report.session, found.report.calibration, found.source.stand
+    model = f"Model revision {session.revision}; block axes held by {calibration.gauge}."
+    method = DCC.usedMethod(english("name", calibration.method), english("description", model))
+    equipment = () if stand is None else (english("name", f"Stand {stand.id}"),)
+    decisions = {(d.sensor, d.parameter): d for d in found.report.decisions if not session.is_reference}
+    return DCC.measurementResult(
+        english("name", f"{title_of(session)}: {in_words(session.programme)}"),
+        DCC.usedMethods(method),
+        DCC.usedSoftware(software(found.software)),
+        *(DCC.measuringEquipments(DCC.measuringEquipment(name)) for name in equipment),
+        DCC.results(*(_result(sensor, found, decisions) for sensor in calibration.sensors)),
+    )
+
+
+def _result(
+    sensor: SensorCalibration, found: CertifiedSession, decisions: Mapping[tuple[str, str], Decision]
+) -> Element:
+    data = DCC.data()
+    for parameter, seen in sensor.observable.items():
+        unseen = english("text", f"{parameter}: not observable in this session")
+        data.append(_value(sensor, parameter, found) if seen else unseen)
+        decision = decisions.get((sensor.name, parameter))
+        if decision is not None and decision.deviation is not None:
+            data.append(_deviation(decision, decision.deviation))
+    return DCC.result(english("name", f"{sensor.kind} {sensor.name}"), data)
+
+
+def _value(sensor: SensorCalibration, parameter: str, found: CertifiedSession) -> Element:
+    k = found.report.decisions[0].coverage_factor if found.report.decisions else COVERAGE
+    if parameter == "axis":
+        return _axis(sensor, k)
+    estimate = getattr(sensor, parameter)
+    declared = next((s for s in found.source.sensors if s.name == sensor.name), None)
+    reading = "" if declared is None else declared.reading_unit
+    counted = found.source.count_time is not None and sensor.kind != ACCELEROMETER
+    unit = value_measure(sensor.kind, parameter, reading, counted=counted)
+    name = f"{parameter}, in {reading or '1'} per input" if parameter == "scale" else parameter
+    return quantity(name, estimate.value, unit, estimate.sigma, k)
+
+
+def _axis(sensor: SensorCalibration, k: float) -> Element:
+    """Three components; the uncertainty is the turn's along each of them."""
+    assert sensor.axis is not None
+    spread = np.sqrt(np.diag(sensor.axis_tangents @ sensor.axis_covariance @ sensor.axis_tangents.T))
+    components = zip("xyz", sensor.axis, spread, strict=True)
+    return DCC.list(
+        english("name", "input axis, block axes"),
+        *(quantity(name, component, ONE, float(sigma), k) for name, component, sigma in components),
+    )
+
+
+def _deviation(decision: Decision, deviation: float) -> Element:
+    """The deviation with what it was decided by."""
+    unit, k = deviation_measure(decision.kind, decision.parameter), decision.coverage_factor
+    name = f"{decision.parameter}, deviation from the reference"
+    found = quantity(name, deviation, unit, decision.uncertainty, k)
+    judged = DCC.metaData(
+        english("declaration", f"{decision.rule}: {decision.verdict.value}"),
+        *conformity(decision.verdict),
+        DCC.data(quantity("tolerance", decision.tolerance, unit, None, k)),
+    )
+    found.append(DCC.measurementMetaData(judged))
+    return found
