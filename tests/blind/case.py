@@ -60,7 +60,7 @@ class Draw:
 
 
 def truth_of(field: Field, effect: Effect, strength: float, readings: Array) -> Truth:
-    """The truth with its nearest rival among the field's explanations."""
+    """The truth with its nearest rival among the field's explanations; readings (R, m), reading units."""
     session = field.lens.session
     names = tuple(session.unit.names[i] for i in effect.sensors)
     if effect.cause == "excess-noise":
@@ -86,7 +86,7 @@ def _all_seen(left: Array) -> bool:
 
 
 def effect_columns(session: Session, effect: Effect) -> Array:
-    """(R·m, p) what the fit of an effect could take away."""
+    """(R·m, p) what the fit of an effect could take away, reading units."""
     if effect.cause == "excess-noise":
         return np.zeros((session.schedule.rows * session.unit.size, 1))
     if effect.cause in DISCRETE or effect.cause == "saturation":
@@ -117,5 +117,5 @@ def written(
     truths: tuple[Truth, ...] = (),
     history: list[dict[str, Any]] | None = None,
 ) -> Case:
-    """The case in the form in which it is given away."""
+    """The case in the form in which it is given away; readings (R, m), reading units."""
     return Case(draw.label, kind, session_file(session, readings), history or [], truths, session)

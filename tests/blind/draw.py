@@ -41,7 +41,7 @@ def draw_arrangement(rng: np.random.Generator, needs: frozenset[str]) -> Arrange
 
 
 def draw_axes(m: int, rng: np.random.Generator) -> Array:
-    """(m, 3) nominal axes: a cone anyhow oriented, dodecahedron normals, or an orthogonal triad with skewed axes."""
+    """(m, 3) nominal axes, dimensionless: a cone anyhow, dodecahedron normals, or a triad with skewed axes."""
     form = rng.choice(["cone", "dodecahedron", "skew"], p=[0.6, 0.2, 0.2]) if m <= 6 else "cone"
     turn = Rotation.random(random_state=rng) if rng.random() < 0.7 else Rotation.identity()
     if form == "dodecahedron":
@@ -138,7 +138,7 @@ def draw_stand(site: Site, rng: np.random.Generator) -> Stand:
 
 
 def draw_mounting(rng: np.random.Generator) -> Array:
-    """Identity, the published fixture, or anyhow."""
+    """(3, 3) rotation, dimensionless: identity, the published fixture, or anyhow."""
     form = rng.random()
     if form < 0.4:
         return np.eye(3)

@@ -1,7 +1,8 @@
 """Causes inside one sensor: what is added at its input, what changes its parameters, what clips its readings.
 
-Every function takes the session, the effect, n (R, 3) and a (R,) of that sensor and the specific force (R, 3), and
-returns what is added inside the bracket of the sensor model, (R,).
+Every function takes the session, the effect, n (R, 3) and a (R,) of that sensor, m/s² or rad/s, and the specific force
+(R, 3), m/s², and returns what is added inside the bracket of the sensor model, (R,) m/s² or rad/s. p and o are the two
+unit vectors across the axis, t the time, T the temperature, k the amplitudes.
 """
 
 from collections.abc import Sequence
@@ -13,7 +14,7 @@ from tests.blind.world import Array, Effect, Session, Unit
 
 
 def across(axis: Array) -> tuple[Array, Array]:
-    """Two unit vectors orthogonal to an axis and to one another."""
+    """Two unit vectors (3,), dimensionless, orthogonal to an axis (3,) and to one another."""
     helper = np.eye(3)[np.argmin(np.abs(axis))]
     p = np.cross(axis, helper)
     p /= np.linalg.norm(p)
@@ -21,50 +22,59 @@ def across(axis: Array) -> tuple[Array, Array]:
 
 
 def sideways(session: Session, effect: Effect, n: Array) -> tuple[Array, Array]:
-    """(R,) p·n and o·n."""
+    """(R,) p·n and (R,) o·n of n (R, 3), m/s² or rad/s."""
     p, o = across(session.unit.axis[effect.sensor])
     return n @ p, n @ o
 
 
 def centred(values: Array) -> Array:
-    """Without the session mean."""
+    """(R,) without the session mean, in its own unit, s or °C."""
     return values - values.mean()
 
 
 def cubic_nonlinearity(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s² or rad/s: k·a³."""
     return effect.k * a**3
 
 
 def scale_asymmetry(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s² or rad/s: k·|a|."""
     return effect.k * np.abs(a)
 
 
 def cross_coupling(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s² or rad/s: a·(k₁ p·n + k₂ o·n)."""
     pn, on = sideways(session, effect, n)
     return a * (effect.amplitude[0] * pn + effect.amplitude[1] * on)
 
 
 def bias_temperature(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s² or rad/s: k·(T − mean T)."""
     return effect.k * centred(session.schedule.temperature)
 
 
 def scale_temperature(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s² or rad/s: k·(T − mean T)·a."""
     return effect.k * centred(session.schedule.temperature) * a
 
 
 def bias_ramp(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s² or rad/s: k·(t − mean t)."""
     return effect.k * centred(session.schedule.time)
 
 
 def warm_up(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s² or rad/s: k·exp(−t/τ)."""
     return effect.k * np.exp(-session.schedule.time / effect.shape[0])
 
 
 def bias_jump(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s² or rad/s: k from a row on."""
     return effect.k * (np.arange(len(a)) >= effect.shape[0])
 
 
 def hysteresis(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s² or rad/s: k·sign of the way that a came from, 0 in the first row of a run."""
     flipped = session.schedule.flipped
     came_from = np.sign(np.diff(a, prepend=a[0]))
     first = np.concatenate([[True], flipped[1:] != flipped[:-1]])
@@ -72,41 +82,50 @@ def hysteresis(session: Session, effect: Effect, n: Array, a: Array, force: Arra
 
 
 def odd_quadratic(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s² or rad/s: k·a·|a|."""
     return effect.k * a * np.abs(a)
 
 
 def bias_asymmetry(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s² or rad/s: k·sign a."""
     return effect.k * np.sign(a)
 
 
 def cross_axis_quadratic(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s² or rad/s: k₁ (p·n)² + k₂ (p·n)(o·n)."""
     pn, on = sideways(session, effect, n)
     return effect.amplitude[0] * pn**2 + effect.amplitude[1] * pn * on
 
 
 def scale_ramp(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s² or rad/s: k·(t − mean t)·a."""
     return effect.k * centred(session.schedule.time) * a
 
 
 def axis_creep(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s² or rad/s: (k₁ p·n + k₂ o·n)·(t − mean t)."""
     pn, on = sideways(session, effect, n)
     return (effect.amplitude[0] * pn + effect.amplitude[1] * on) * centred(session.schedule.time)
 
 
 def temperature_rate(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s² or rad/s: k·dT/dt."""
     return effect.k * session.schedule.temperature_rate
 
 
 def bias_per_position(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s² or rad/s: k₁ sin β + k₂ cos β."""
     beta = session.schedule.beta
     return effect.amplitude[0] * np.sin(beta) + effect.amplitude[1] * np.cos(beta)
 
 
 def reading_outlier(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s² or rad/s: k in one row."""
     return effect.k * (np.arange(len(a)) == effect.shape[0])
 
 
 def g_sensitivity(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s² or rad/s: k·(specific force)."""
     return force @ np.array(effect.amplitude)
 
 
@@ -149,7 +168,7 @@ UNIT = {"sensor-drift": sensor_drift}
 
 
 def clipped(u: Array, effects: Sequence[Effect]) -> Array:
-    """Readings beyond a limit cut to it. Shape: the side, +1 or −1, or 0 for both."""
+    """Readings (R, m), reading units, cut to a limit. The effect's shape: the side, +1 or −1, or 0 for both."""
     u = u.copy()
     for effect in effects:
         if effect.cause == "saturation":

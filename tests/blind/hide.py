@@ -25,7 +25,7 @@ class UnhideableError(Exception):
 
 
 def signature(session: Session, effect: Effect, others: tuple[Effect, ...] = ()) -> Array:
-    """(R, m) what the effect changes in the readings."""
+    """(R, m) what the effect changes in the readings, reading units."""
     return mean_readings(session, [*others, effect]) - mean_readings(session, others)
 
 

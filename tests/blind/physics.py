@@ -33,7 +33,10 @@ def draw_errors(session: Session, rng: np.random.Generator) -> StandErrors:
 
 
 def direction(elevation: Array, beta: Array, across: Array) -> Array:
-    """(R, 3) platform axes: up tilted by ``across`` about the level Y axis, raised by the head, turned by β."""
+    """(R, 3) up in platform axes, dimensionless: tilted about the level Y axis, raised by the head, turned by β.
+
+    ``elevation``, ``beta`` and ``across`` (the tilt), each (R,), rad.
+    """
     up = np.stack([across, np.zeros_like(across), np.ones_like(across)]) / np.hypot(across, 1.0)
     y = np.sin(elevation) * up[2]
     z = np.cos(elevation) * up[2]
@@ -41,7 +44,7 @@ def direction(elevation: Array, beta: Array, across: Array) -> Array:
 
 
 def reference_vectors(session: Session, pose: Pose) -> tuple[Array, Array]:
-    """(R, 3) specific force and Earth rate in block axes."""
+    """Specific force (R, 3), m/s², and Earth rate (R, 3), rad/s, in block axes."""
     phi = session.site.latitude
     force = gravity(session.site) * pose.gravity_factor * direction(pose.alpha, pose.beta, pose.theta_y)
     across = np.sin(phi) * pose.theta_y + np.cos(phi) * pose.meridian
@@ -63,7 +66,7 @@ def with_errors(pose: Pose, errors: StandErrors | None) -> Pose:
 
 
 def true_input(session: Session, effects: Sequence[Effect] = (), errors: StandErrors | None = None) -> Array:
-    """(R, m) a + b + c·a² + every hidden term, at the input."""
+    """(R, m) a + b + c·a² + every hidden term, at the input, m/s² or rad/s."""
     unit = session.unit
     pose = with_errors(believed(session), errors)
     for effect in effects:
@@ -80,7 +83,7 @@ def true_input(session: Session, effects: Sequence[Effect] = (), errors: StandEr
 
 
 def scale_of(session: Session, effects: Sequence[Effect]) -> Array:
-    """(m,) true scale, the drift of a sensor included."""
+    """(m,) true scale, reading units per m/s² or rad/s, the drift of a sensor included."""
     unit = session.unit
     for effect in effects:
         unit = UNIT[effect.cause](unit, effect) if effect.cause in UNIT else unit
@@ -88,13 +91,13 @@ def scale_of(session: Session, effects: Sequence[Effect]) -> Array:
 
 
 def mean_readings(session: Session, effects: Sequence[Effect] = (), errors: StandErrors | None = None) -> Array:
-    """(R, m) readings without noise."""
+    """(R, m) readings without noise, reading units."""
     u = scale_of(session, effects) * true_input(session, effects, errors)
     return recorded(clipped(u, effects), effects)
 
 
 def recorded(u: Array, effects: Sequence[Effect]) -> Array:
-    """What was written down: columns exchanged, signs turned."""
+    """What was written down of readings (R, m), reading units: columns exchanged, signs turned."""
     u = u.copy()
     for effect in effects:
         if effect.cause == "channels-swapped":
@@ -106,7 +109,7 @@ def recorded(u: Array, effects: Sequence[Effect]) -> Array:
 
 
 def measure(session: Session, effects: Sequence[Effect], rng: np.random.Generator) -> tuple[Array, StandErrors]:
-    """(R, m) readings as the file holds them, and the stand's errors that went into them."""
+    """(R, m) readings as the file holds them, reading units, and the stand's errors that went into them."""
     errors = draw_errors(session, rng)
     scale = scale_of(session, effects)
     x = true_input(session, effects, errors)
@@ -121,7 +124,7 @@ def measure(session: Session, effects: Sequence[Effect], rng: np.random.Generato
 
 
 def before_counting(session: Session) -> Array:
-    """(m,) stated noise at the input without the share that counting whole pulses adds."""
+    """(m,) stated noise at the input, m/s² or rad/s, without the share that counting whole pulses adds."""
     counted = session.unit.gyro & (session.count_time is not None)
     share = np.where(counted, 1 / 12, 0.0) / session.unit.scale**2
     return np.sqrt(session.noise.reading**2 - share)

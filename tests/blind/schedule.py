@@ -41,7 +41,7 @@ class Wanted:
 
 
 def draw_beta(wanted: Wanted, rng: np.random.Generator) -> Array:
-    """(N,) of one run: equal steps over the whole circle, or jittered with a gap, in order or shuffled."""
+    """(N,) rad, of one run: equal steps over the whole circle, or jittered with a gap, in order or shuffled."""
     N = wanted.positions
     beta = 2 * np.pi * np.arange(N) / N
     if not wanted.equal:
@@ -51,7 +51,7 @@ def draw_beta(wanted: Wanted, rng: np.random.Generator) -> Array:
 
 
 def draw_profile(name: str, time: Array, rng: np.random.Generator) -> tuple[Array, Array]:
-    """Temperature (R,) and its rate (R,), smooth on the scale of a few rows."""
+    """Temperature (R,), °C, and its rate (R,), °C/s, at times (R,), s: smooth on the scale of a few rows."""
     span = time[-1] - time[0]
     start, swing = rng.uniform(15, 30), rng.uniform(1.5, 12) * rng.choice([-1, 1])
     if name == "constant":

@@ -37,7 +37,7 @@ class Field:
         self._seen = [(c, *_through(lens, c)) for c in candidates(lens.session, between)]
 
     def rivals(self, left: Array, cause: str, sensors: tuple[int, ...], own: int | None) -> list[Rival]:
-        """Every other explanation of a truth of which ``left`` (n,) is left, nearest first.
+        """Every other explanation of a truth of which ``left`` (n,), standard errors, is left, nearest first.
 
         ``own`` counts the truth's parameters for parsimony; None when the truth is no cause of the catalogue.
         """
@@ -51,7 +51,10 @@ class Field:
         return sorted(found, key=lambda rival: rival.left)
 
     def nearest_to_noise(self, effect: Effect, left: Array) -> Rival:
-        """The mean effect that explains most of added noise as it was drawn; as far off as the evidence it lacks."""
+        """The mean effect that explains most of added noise as it was drawn, ``left`` (n,) in standard errors.
+
+        It is as far off as the evidence it lacks.
+        """
         evidence = self.lens.noise_evidence(effect.sensor, effect.k, left)
         nearest = self.rivals(left, effect.cause, effect.sensors, None)[0]
         explained = left @ left - nearest.left**2
@@ -76,7 +79,7 @@ def _through(lens: Lens, candidate: Candidate) -> tuple[Array, Array]:
 
 
 def best_fit(columns: Array, visible: Array, left: Array, fixed: bool) -> float:
-    """Norm that the best shape leaves."""
+    """Norm that the best of G shapes leaves of ``left`` (n,), standard errors: columns (G, n, p), visible (G, p)."""
     if fixed:
         squared = np.sum(columns[..., 0] ** 2, axis=1) - 2 * columns[..., 0] @ left + left @ left
         return float(np.sqrt(max(squared.min(), 0.0)))

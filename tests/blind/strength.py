@@ -19,7 +19,7 @@ ANGLE = 1e-5
 
 
 def parameter_columns(session: Session) -> Array:
-    """(R·m, 5·m) derivative of the readings by scale (relative), bias, quadratic, two turns of each sensor's axis."""
+    """(R·m, 5·m) derivative of the readings by relative scale, bias, quadratic and two turns (rad) of each axis."""
     unit = session.unit
     R, m = session.schedule.rows, unit.size
     columns = np.zeros((R, m, m, ELEMENTS))
@@ -44,7 +44,7 @@ def _stepped(unit: Unit, element: int, step: Array) -> Unit:
 
 
 def covariance(session: Session) -> Array:
-    """(R·m, R·m) of the readings."""
+    """(R·m, R·m) of the readings, reading units squared."""
     R, m = session.schedule.rows, session.unit.size
     own = session.unit.scale**2 * (session.noise.reading**2 + session.noise.repeatability**2)
     C = np.diag(np.tile(own, R))
@@ -83,28 +83,28 @@ class Lens:
         self._basis = orthonormal(baseline)
 
     def information(self) -> Array:
-        """(5m, 5m) on the parameters."""
+        """(5m, 5m) on the parameters, one over their units squared."""
         return self.whitened.T @ self.whitened
 
     def whiten(self, columns: Array) -> Array:
-        """(R·m + p, k) whitened columns; the rows of the prior are zero."""
+        """(R·m + p, k) columns (R·m, k) of reading units in standard errors; the rows of the prior are zero."""
         white = solve_triangular(self._root, columns, lower=True)
         return np.vstack([white, np.zeros((self._added, columns.shape[1]))])
 
     def left(self, columns: Array) -> Array:
-        """What the baseline leaves of (R·m, k) columns of readings."""
+        """(R·m + p, k) what the baseline leaves of columns (R·m, k) of readings, standard errors."""
         white = self.whiten(columns)
         return white - self._basis @ (self._basis.T @ white)
 
     def without(self, columns: Array) -> "Lens":
-        """The same lens with further columns of readings taken into the baseline."""
+        """The same lens with further columns (R·m, k), reading units, taken into the baseline."""
         other = object.__new__(Lens)
         other.__dict__.update(self.__dict__)
         other._basis = np.hstack([self._basis, orthonormal(self.left(columns))])
         return other
 
     def strength(self, readings: Array) -> float:
-        """Norm of what is left of a difference of readings (R, m)."""
+        """Norm, in standard errors, of what is left of a difference of readings (R, m), reading units."""
         return float(np.linalg.norm(self.left(readings.reshape(-1, 1))))
 
     def noise_strength(self, sensor: int, sigma: float) -> float:
@@ -114,7 +114,7 @@ class Lens:
         return float(np.sqrt(max(0.0, np.trace(grown) - np.linalg.slogdet(np.eye(len(grown)) + grown)[1])))
 
     def noise_evidence(self, sensor: int, sigma: float, left: Array) -> float:
-        """Twice the log-likelihood ratio that added variance gains on what is ``left`` of a drawn session."""
+        """Twice the log-likelihood ratio that added variance gains on what is ``left`` (n,), standard errors."""
         columns = self._noise_columns(sensor, sigma)
         grown = np.eye(columns.shape[1]) + columns.T @ columns
         seen = columns.T @ left
@@ -129,20 +129,20 @@ class Lens:
 
 
 def orthonormal(columns: Array) -> Array:
-    """Orthonormal basis of the span, directions that are numerically nothing left out."""
+    """Orthonormal basis (n, r), dimensionless, of the span of (n, k); what is numerically nothing is left out."""
     size = np.linalg.norm(columns, axis=0)
     left, values, _ = np.linalg.svd(columns[:, size > 0] / size[size > 0], full_matrices=False)
     return left[:, values > RANK * values[:1]]
 
 
 def root(information: Array) -> Array:
-    """(p, p) matrix whose square is the information."""
+    """(p, p) matrix whose square is the information (p, p), which is one over the parameters' units squared."""
     values, vectors = np.linalg.eigh(information)
     return np.sqrt(np.clip(values, 0, None))[:, None] * vectors.T
 
 
 def history_information(earlier: list[Session]) -> Array:
-    """(5m, 5m) information of earlier sessions on the parameters, one stand draw each."""
+    """(5m, 5m) of earlier sessions on the parameters, one over their units squared; one stand draw each."""
     total = np.zeros((0, 0))
     for session in earlier:
         information = Lens(session).information()
@@ -155,6 +155,6 @@ NOMINAL_AXIS = np.radians(0.5) / np.sqrt(6)
 
 
 def nominal_information(session: Session) -> Array:
-    """What the maker's nominal axes and scales say, as loosely as units are drawn."""
+    """(5m, 5m) of the maker's nominal axes and scales, one over units squared, as loosely as units are drawn."""
     one = np.array([NOMINAL_SCALE**-2, 0, 0, NOMINAL_AXIS**-2, NOMINAL_AXIS**-2])
     return np.diag(np.tile(one, session.unit.size))

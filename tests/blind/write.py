@@ -8,7 +8,7 @@ from tests.blind.world import ARCSEC, Array, Session
 
 
 def session_file(session: Session, readings: Array) -> dict[str, Any]:
-    """The dictionary of the file's JSON."""
+    """The dictionary of the file's JSON; readings (R, m), reading units."""
     unit, stand = session.unit, session.stand
     gyro = bool(unit.gyro.all())
     document: dict[str, Any] = {

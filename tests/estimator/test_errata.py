@@ -28,21 +28,21 @@ PERFECT = Conditions(ALPHA, N, GRAVITY, 0.0, 0.0, StandErrors())
 
 
 def readings(e: Array, c: float = C) -> tuple[Array, Array]:
-    """Noiseless direct and flipped readings."""
+    """Noiseless direct and flipped readings, each (N,) reading units, of an input axis (3,)."""
     n = np.stack([N1, N2, N3], axis=-1)
     direct, flipped = n @ e, n @ (e * [-1, -1, 1])
     return K * (direct + B + c * direct**2), K * (flipped + B + c * flipped**2)
 
 
 def matrix_26(beta: Array) -> Array:
-    """(26) as printed."""
+    """(26) as printed: (N, 5) of powers of m/s², for β (N,), rad."""
     reach = GRAVITY * np.cos(ALPHA)
     n1, n3 = -reach * np.sin(beta), reach * np.cos(beta)
     return np.column_stack([np.ones_like(beta), n1, n3, n1**2, n3**2])
 
 
 def gram_1(beta: Array) -> Array:
-    """C₁ as printed, its fourth column and row."""
+    """(2,) C₁ as printed, its fourth column and row, (m/s²)³, for β (N,), rad."""
     sin, cos, r = np.sin(beta), np.cos(beta), GRAVITY * np.cos(ALPHA)
     upper = -(r**3) * (sin**3 * cos).sum()
     lower = -(r**3) * (sin**3).sum()
@@ -50,7 +50,7 @@ def gram_1(beta: Array) -> Array:
 
 
 def share(e2_squared: float) -> Array:
-    """(1, 3) an input axis with e2² and e3 = 0."""
+    """(1, 3) an input axis, dimensionless, with e2² and e3 = 0."""
     return np.array([[np.sqrt(1 - e2_squared), np.sqrt(e2_squared), 0.0]])
 
 

@@ -16,7 +16,7 @@ FOUR = accelerometers(4)
 
 
 def in_two_planes(count: int) -> Array:
-    """(2 count, 3) turns that stay in XZ and YZ."""
+    """(2 count, 3) unit vectors, dimensionless, of turns that stay in XZ and YZ."""
     t = 2 * np.pi * np.arange(count) / count
     zero = np.zeros(count)
     return np.concatenate([np.stack([np.sin(t), zero, np.cos(t)], -1), np.stack([zero, np.sin(t), np.cos(t)], -1)])

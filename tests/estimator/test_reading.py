@@ -10,16 +10,8 @@ from estimator.reading import read_session
 from tests import builders
 from tests.builders import ARCSEC
 
-BUILDERS = (
-    builders.accelerometer_block,
-    builders.gyro_block,
-    builders.mixed_block,
-    builders.arbitrary_orientations,
-    builders.raw_log,
-)
 
-
-@pytest.mark.parametrize("build", BUILDERS)
+@pytest.mark.parametrize("build", builders.EVERY)
 def test_every_kind_of_session_is_read(build):
     document = build()
     session = read_session(document)

@@ -10,14 +10,6 @@ from estimator.errors import FormatError
 from estimator.reading import read_session
 from tests import builders
 
-BUILDERS = (
-    builders.accelerometer_block,
-    builders.gyro_block,
-    builders.mixed_block,
-    builders.arbitrary_orientations,
-    builders.raw_log,
-)
-
 
 def table_text(table, separator=",", end="\n"):
     cells = [["" if cell is None else str(cell) for cell in row] for row in zip(*table.values(), strict=True)]
@@ -50,7 +42,7 @@ def problems_of(content):
     return caught.value.problems
 
 
-@pytest.mark.parametrize("build", BUILDERS)
+@pytest.mark.parametrize("build", builders.EVERY)
 def test_csv_and_json_give_the_same_session(build):
     document = build()
     assert same(read_session(csv_of(document)), read_session(json.dumps(document).encode()))

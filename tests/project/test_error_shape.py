@@ -8,6 +8,7 @@ import pytest
 
 from service.app import create_app
 from service.settings import Settings
+from tests.databases import one_engine
 from tests.serving import http_client
 
 EXAMPLES = {"serial": "BA-017", "id": "3f9a0c5be1d24786aa10", "name": "hex"}
@@ -72,6 +73,7 @@ def test_without_a_database_every_route_answers_503_in_the_one_shape(
                 assert_problem(ask(client, method, path), 503)
 
 
+@one_engine
 @pytest.mark.parametrize(
     "path", ["/nothing", "/api/v1/nothing", "/static/nothing.css", "/sessions/none", "/units/none"]
 )
@@ -79,6 +81,7 @@ def test_what_is_not_there_has_the_one_shape_on_pages_too(client: httpx.Client, 
     assert_problem(client.get(path), 404)
 
 
+@one_engine
 def test_a_wrong_method_has_the_one_shape_on_every_route(
     client: httpx.Client, operations: list[tuple[str, str, dict[str, Any]]]
 ) -> None:

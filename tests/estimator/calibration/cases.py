@@ -143,7 +143,7 @@ def mixed() -> CalibrationSession:
 
 
 def sphere(count: int) -> Array:
-    """(count, 3) directions drawn evenly."""
+    """(count, 3) directions drawn evenly, dimensionless."""
     v = np.random.default_rng(5).standard_normal((count, 3))
     return v / np.linalg.norm(v, axis=1, keepdims=True)
 

@@ -97,7 +97,7 @@ def with_readings(session: CalibrationSession, more: Array) -> CalibrationSessio
 
 
 def change(identifier: str, where: Scene) -> Array:
-    """(R, m) what the cause adds at the input, scaled to `STRENGTH`."""
+    """(R, m) what the cause adds at the input, m/s² or rad/s, scaled to `STRENGTH`."""
     world, shape = where.world, SHAPES.get(identifier, ())
     before = world.inputs(world.vectors())
     k = 1e-9 * np.array(DIRECTION.get(identifier, np.ones(len(cause(identifier).units))))
@@ -108,7 +108,7 @@ def change(identifier: str, where: Scene) -> Array:
 
 
 def strength(added: Array, where: Scene) -> float:
-    """Norm of what is left, in standard errors; of all of it where the history tells."""
+    """Norm of what is left of (R, m) inputs, in standard errors; of all of it where the history tells."""
     world = where.world
     repeatability = np.array([s.bias_repeatability for s in world.session.sensors])
     variance = (where.noise / world.truth.scale) ** 2 + repeatability**2
@@ -119,6 +119,7 @@ def strength(added: Array, where: Scene) -> float:
     return float(np.linalg.norm(trace))
 
 
+@cache
 def found(identifier: str, seed: int = 1) -> Diagnosis:
     """The diagnosis of a session with the cause hidden in it."""
     where = scene_for(identifier)

@@ -27,27 +27,28 @@ class World:
     truth: SensorParameters
 
     def vectors(self, happened: Happened | None = None) -> Array:
-        """(R, m, 3) what is applied, block axes."""
+        """(R, m, 3) what is applied, block axes, m/s² or rad/s."""
         found = {k: applied(self.session, k, happened or Happened({})) for k in {s.kind for s in self.session.sensors}}
         return np.stack([found[s.kind] for s in self.session.sensors], axis=1)
 
     def inputs(self, n: Array, p: SensorParameters | None = None) -> Array:
-        """(R, m) readings over the believed scale: (K'/K)·(a + b + c·a²)."""
+        """(R, m) readings over the believed scale, m/s² or rad/s, of n (R, m, 3): (K'/K)·(a + b + c·a²)."""
         p = p or self.truth
         a = np.einsum("rmk,mk->rm", n, p.axis)
         return p.scale / self.truth.scale * (a + p.bias + p.quadratic * a**2)
 
     def of_kind(self, kind: str) -> Array:
-        """(m,) 1 for sensors of a kind, 0 for others."""
+        """(m,) dimensionless: 1 for sensors of a kind, 0 for others."""
         return np.array([s.kind == kind for s in self.session.sensors], dtype=float)
 
 
 Acted = Callable[[World, Array, int, tuple[float, ...]], Array]
-"""(world, amplitudes, sensor, nonlinear parameters) → (R, m) inputs with the effect in them."""
+"""(world, amplitudes (p,) in the cause's units, sensor, nonlinear parameters) → (R, m) inputs with the effect, m/s² or
+rad/s."""
 
 
 def term(added: Callable[["Seen", tuple[float, ...]], tuple[Array, ...]]) -> Acted:
-    """A term inside the bracket of one sensor."""
+    """A term inside the bracket of one sensor: what is added per unit amplitude, p times (R,) m/s² or rad/s."""
 
     def acted(world: World, k: Array, i: int, nonlinear: tuple[float, ...]) -> Array:
         h = world.inputs(world.vectors())
@@ -71,17 +72,17 @@ class Seen:
         self.row, self.flipped = np.arange(len(n)), session.flipped
 
     def risen(self) -> Array:
-        """sign(a_j − a_{j−1}), 0 at the first position of a run."""
+        """(R,) sign(a_j − a_{j−1}), dimensionless, 0 at the first position of a run."""
         turned = np.diff(self.flipped.astype(int)) != 0
         return np.concatenate([[0.0], np.where(turned, 0.0, np.sign(np.diff(self.a)))])
 
     def rate(self) -> Array:
-        """dT/dt from neighbouring rows."""
+        """(R,) dT/dt from neighbouring rows, °C/s."""
         return np.gradient(self.T, self.t)
 
 
 def turned_head(alpha: Callable[[CalibrationSession], Array], beta: Callable[[CalibrationSession], Array]) -> Acted:
-    """The head really stands elsewhere: α and β errors (R, q) per unit amplitude."""
+    """The head really stands elsewhere: α and β errors (R, p), rad per unit amplitude."""
 
     def acted(world: World, k: Array, i: int, nonlinear: tuple[float, ...]) -> Array:
         session = world.session
@@ -92,17 +93,17 @@ def turned_head(alpha: Callable[[CalibrationSession], Array], beta: Callable[[Ca
 
 
 def still(session: CalibrationSession) -> Array:
-    """No error, whatever the amplitudes."""
+    """(R, 1) no error, rad per unit amplitude."""
     return np.zeros((len(session.beta), 1))
 
 
 def both(order: int) -> Callable[[CalibrationSession], Array]:
-    """sin and cos of a multiple of β."""
+    """(R, 2) sin and cos of a multiple of β, dimensionless."""
     return lambda s: np.stack([np.sin(order * s.beta), np.cos(order * s.beta)], axis=-1)
 
 
 def still_pair(session: CalibrationSession) -> Array:
-    """No error, for two amplitudes."""
+    """(R, 2) no error, rad per unit of two amplitudes."""
     return np.zeros((len(session.beta), 2))
 
 
@@ -118,7 +119,7 @@ def constant(name: str, kind: str | None = None) -> Acted:
 
 
 def flipped_block(world: World, k: Array, i: int, nonlinear: tuple[float, ...]) -> Array:
-    """The block sits turned by k in the flipped run: it meets a vector turned by −k."""
+    """(R, m) inputs, m/s² or rad/s: the block sits turned by k (3,), rad, in the flipped run, so n turns by −k."""
     n = world.vectors()
     flipped = world.session.flipped
     n[flipped] = Rotation.from_rotvec(-k).apply(n[flipped].reshape(-1, 3)).reshape(n[flipped].shape)
@@ -126,17 +127,20 @@ def flipped_block(world: World, k: Array, i: int, nonlinear: tuple[float, ...]) 
 
 
 def remounted(world: World, k: Array, i: int, nonlinear: tuple[float, ...]) -> Array:
-    """All axes turned by k."""
+    """(R, m) inputs, m/s² or rad/s, with all axes turned by k (3,), rad."""
     return world.inputs(world.vectors(), replace(world.truth, axis=Rotation.from_rotvec(k).apply(world.truth.axis)))
 
 
 def heavier(world: World, k: Array, i: int, nonlinear: tuple[float, ...]) -> Array:
-    """Gravity is larger by the share k."""
+    """(R, m) inputs, m/s² or rad/s, with gravity larger by the share k (1,), dimensionless."""
     return world.inputs(world.vectors() * (1 + k[0] * world.of_kind(ACCELEROMETER))[:, None])
 
 
 def moved_sensor(world: World, k: Array, i: int, nonlinear: tuple[float, ...]) -> Array:
-    """Relative scale, bias and the axis' two turns of one sensor, those that ``nonlinear`` lets move."""
+    """(R, m) inputs, m/s² or rad/s, of one sensor moved by k (4,): relative scale, bias, two turns of the axis, rad.
+
+    Only what ``nonlinear`` lets move moves.
+    """
     k, p = k * np.array(nonlinear), world.truth
     scale, bias, axis = p.scale.copy(), p.bias.copy(), p.axis.copy()
     bias[i] = bias[i] + k[1]

@@ -3,17 +3,8 @@
 import httpx
 import pytest
 
-from tests.conftest import Holding
-from tests.service.sessions import FAILED
-
 FLAGS = "/api/v1/units/BA-017/flags"
 WHO = {"by": "K. Ito", "why": "replacement ordered"}
-
-
-@pytest.fixture
-def flagged(holding: Holding) -> httpx.Client:
-    """A unit whose second session has A3 out of tolerance."""
-    return holding(*FAILED)
 
 
 def only(client: httpx.Client) -> dict[str, object]:

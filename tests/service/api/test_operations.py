@@ -10,7 +10,7 @@ from service.app import create_app
 from service.settings import Settings
 from service.storage.engine import open_engine
 from service.storage.schema import downgrade, upgrade
-from tests.databases import PostgresDatabases
+from tests.databases import PostgresDatabases, one_engine
 from tests.service.sessions import session_bytes
 from tests.serving import http_client
 
@@ -29,6 +29,7 @@ def test_a_schema_of_another_version_is_not_ready(client: httpx.Client, store_ur
     assert client.get("/readyz").status_code == 200
 
 
+@one_engine
 def test_figures_count_uploads_and_requests(client: httpx.Client) -> None:
     for _ in range(2):
         client.post("/api/v1/sessions", content=session_bytes())
@@ -59,6 +60,7 @@ def test_without_its_database_the_service_says_so_and_comes_back_by_itself(
     admin.dispose()
 
 
+@one_engine
 def test_a_file_where_no_database_can_be_is_away(tmp_path: Path, settings: Settings) -> None:
     nowhere = settings.model_copy(update={"database_url": f"sqlite:///{tmp_path}"})
     with http_client(create_app(nowhere)) as client:
@@ -66,6 +68,7 @@ def test_a_file_where_no_database_can_be_is_away(tmp_path: Path, settings: Setti
         assert client.get("/readyz").status_code == 503
 
 
+@one_engine
 @pytest.mark.parametrize(
     ("method", "path", "status"),
     [("GET", "/api/v1/nothing", 404), ("DELETE", "/api/v1/sessions", 405), ("GET", "/api/v1/units?page=0", 422)],

@@ -7,6 +7,7 @@ import pytest
 
 from service.app import create_app
 from service.settings import Settings
+from tests.databases import one_engine
 from tests.serving import http_client
 
 LIMIT = 100_000
@@ -25,19 +26,23 @@ def pieces() -> Iterator[bytes]:
         yield b" " * 10_000
 
 
+@one_engine
 def test_a_long_body_is_refused(small: httpx.Client) -> None:
     answer = small.post("/api/v1/sessions", content=b" " * (LIMIT + 1))
     assert (answer.status_code, answer.headers["content-type"]) == (413, "application/problem+json")
     assert "100,000 bytes" in answer.json()["detail"]
 
 
+@one_engine
 def test_a_body_of_unknown_length_is_stopped(small: httpx.Client) -> None:
     assert small.post("/api/v1/sessions", content=pieces()).status_code == 413
 
 
+@one_engine
 def test_a_long_file_in_a_form_is_refused(small: httpx.Client) -> None:
     assert small.post("/api/v1/sessions", files={"file": b" " * (LIMIT + 100_000)}).status_code == 413
 
 
+@one_engine
 def test_a_file_at_the_limit_is_read(small: httpx.Client) -> None:
     assert small.post("/api/v1/sessions", content=b" " * LIMIT).status_code == 422

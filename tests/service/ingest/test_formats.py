@@ -90,16 +90,9 @@ WRITERS = {
     "hdf5": hdf5_bytes,
     "mat": mat_bytes,
 }
-BUILDERS = (
-    builders.accelerometer_block,
-    builders.gyro_block,
-    builders.mixed_block,
-    builders.arbitrary_orientations,
-    builders.raw_log,
-)
 
 
-@pytest.mark.parametrize("build", BUILDERS)
+@pytest.mark.parametrize("build", builders.EVERY)
 @pytest.mark.parametrize("kind", WRITERS)
 def test_every_format_gives_the_same_session(kind, build):
     document = rounded(build())

@@ -5,17 +5,8 @@ import re
 import httpx
 import pytest
 
-from tests.conftest import Holding
-from tests.service.sessions import FAILED
-
 HTML = {"Accept": "text/html"}
 WHO = {"by": "K. Ito", "why": "replacement <b>ordered</b>"}
-
-
-@pytest.fixture
-def flagged(holding: Holding) -> httpx.Client:
-    """A unit whose second session has A3 out of tolerance."""
-    return holding(*FAILED)
 
 
 def form(client: httpx.Client) -> str:

@@ -14,6 +14,7 @@ from sqlalchemy import event
 from service.app import create_app
 from service.pages.assets import asset_url
 from service.settings import Settings
+from tests.databases import one_engine
 from tests.service.sessions import session_bytes
 from tests.serving import http_client, running
 
@@ -25,6 +26,7 @@ def post(client: httpx.Client, content: bytes, **headers: str) -> httpx.Response
     return client.post("/upload", files={"files": ("BA-017.json", content)}, headers=HTML | headers)
 
 
+@one_engine
 @pytest.mark.parametrize("path", ["/", "/upload", "/units/none", "/api/v1/fleet"])
 def test_nothing_foreign_may_run_or_frame(client: httpx.Client, path: str) -> None:
     policy = client.get(path, headers=HTML).headers["content-security-policy"]
@@ -33,6 +35,7 @@ def test_nothing_foreign_may_run_or_frame(client: httpx.Client, path: str) -> No
     assert "unsafe" not in policy
 
 
+@one_engine
 @pytest.mark.parametrize("header", [{"Origin": "https://elsewhere.example"}, {"Sec-Fetch-Site": "cross-site"}])
 def test_form_of_another_site_is_refused(client: httpx.Client, header: dict[str, str]) -> None:
     answer = post(client, session_bytes(), **header)
@@ -53,6 +56,7 @@ def test_same_file_again_is_said_to_be_stored_before(client: httpx.Client) -> No
     assert "already stored" in post(client, session_bytes()).text
 
 
+@one_engine
 def test_unusable_file_is_422_with_its_problems(client: httpx.Client) -> None:
     document = json.loads(session_bytes())
     document["table"]["A3"][6] = None
@@ -61,6 +65,7 @@ def test_unusable_file_is_422_with_its_problems(client: httpx.Client) -> None:
     assert '<code>A3</code></td><td data-label="Row">7</td>' in answer.text
 
 
+@one_engine
 def test_upload_beyond_the_limit_is_refused(settings: Settings) -> None:
     small = settings.model_copy(update={"max_upload_bytes": 1000})
     with http_client(create_app(small)) as client:
@@ -76,6 +81,7 @@ def test_errors_are_pages_for_people_and_problems_for_programs(client: httpx.Cli
     assert problem.headers["content-type"] == "application/problem+json"
 
 
+@one_engine
 def test_what_nobody_foresaw_is_a_page_too_and_says_nothing_of_the_inside(settings: Settings) -> None:
     app = create_app(settings)
 
@@ -101,6 +107,7 @@ def test_page_without_database_says_when_to_come_back(tmp_path: Path) -> None:
     assert "Nothing was lost" in answer.text
 
 
+@one_engine
 def test_static_files_are_kept_for_a_year(client: httpx.Client) -> None:
     for name in ("style.css", "charts.js", "upload.js", "icon.svg", "vega.js"):
         answer = client.get(asset_url(name))
@@ -109,6 +116,7 @@ def test_static_files_are_kept_for_a_year(client: httpx.Client) -> None:
     assert client.get("/static/style.css").status_code == 404
 
 
+@one_engine
 def test_static_files_come_compressed_and_plain(client: httpx.Client) -> None:
     packed = client.get(asset_url("style.css"), headers={"Accept-Encoding": "gzip"})
     plain = client.get(asset_url("style.css"), headers={"Accept-Encoding": "identity"})

@@ -5,6 +5,7 @@ import re
 import httpx
 import pytest
 
+from tests.databases import one_engine
 from tests.service.sessions import session_bytes
 from tests.service.turntable import alignment_bytes
 
@@ -19,6 +20,7 @@ def page(client: httpx.Client, **asked: object) -> str:
     return re.sub(r"\s+", " ", re.sub(r"<[^>]*>", " ", text))
 
 
+@one_engine
 def test_nothing_asked_is_a_proposal(client: httpx.Client) -> None:
     text = page(client)
     assert "24 positions in both runs, 1 h 36 min: no tolerance was given" in text
@@ -26,10 +28,12 @@ def test_nothing_asked_is_a_proposal(client: httpx.Client) -> None:
     assert "A1, A2, A3, A4, A5, A6" in text
 
 
+@one_engine
 def test_an_empty_field_is_proposed(client: httpx.Client) -> None:
     assert page(client, elevation="", positions="", bias="") == page(client)
 
 
+@one_engine
 def test_tolerances_are_judged(client: httpx.Client) -> None:
     assert "reach every tolerance" in page(client, bias=12, scale=20)
     unreachable = page(client, axis=0.5)
@@ -37,6 +41,7 @@ def test_tolerances_are_judged(client: httpx.Client) -> None:
     assert "do not reach the tolerance of axis" in unreachable
 
 
+@one_engine
 def test_what_is_asked_is_kept_in_the_form(client: httpx.Client) -> None:
     form = client.get("/plan", params={"elevation": 35, "positions": 8, "runs": "direct"}, headers=HTML).text
     assert re.search(r'name="elevation"[^>]*value="35"', form)
@@ -45,10 +50,12 @@ def test_what_is_asked_is_kept_in_the_form(client: httpx.Client) -> None:
     assert "flipped run" not in form
 
 
+@one_engine
 def test_one_run_says_what_it_does_not_see(client: httpx.Client) -> None:
     assert "scale and bias and axis of every sensor: not observable" in page(client, runs="direct", positions=12)
 
 
+@one_engine
 def test_gyros_are_planned_in_their_units(client: httpx.Client) -> None:
     text = page(client, kind="gyroscope", bias=0.05)
     assert "°/h of 0.05" in text.replace("\u202f", " ")
@@ -56,10 +63,12 @@ def test_gyros_are_planned_in_their_units(client: httpx.Client) -> None:
     assert "g sensitivity" in text
 
 
+@one_engine
 def test_accelerometers_hear_nothing_of_gyros(client: httpx.Client) -> None:
     assert "g sensitivity" not in page(client)
 
 
+@one_engine
 @pytest.mark.parametrize(
     ("field", "value"),
     [
@@ -73,6 +82,7 @@ def test_nonsense_is_refused_by_name(client: httpx.Client, field: str, value: ob
     assert field in answer.text
 
 
+@one_engine
 @pytest.mark.parametrize(
     "asked",
     [

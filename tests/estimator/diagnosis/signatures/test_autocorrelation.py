@@ -13,7 +13,7 @@ ROWS = len(WHERE.world.session.readings)
 
 
 def with_scatter(course: Array, seed: int) -> Diagnosis:
-    """One sensor's readings with something added, in its standard errors."""
+    """One sensor's readings with a course (R,) added, in its standard errors."""
     return diagnose(with_readings(WHERE.measured(seed), course[:, None] * WHERE.noise[0] * np.eye(6)[1]))
 
 
