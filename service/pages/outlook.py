@@ -85,15 +85,15 @@ def _is_said(trend: ParameterTrend, judged: int) -> bool:
 
 
 def _wandered(trend: ParameterTrend) -> str:
-    unit = deviation_measure(trend.kind, trend.parameter, abs(trend.level))
-    moved = signed(trend.level, 2 * trend.level_sigma, unit)
+    measure = deviation_measure(trend.kind, trend.parameter, abs(trend.level))
+    moved = signed(trend.level, 2 * trend.level_sigma, measure)
     allowed = in_words(trend.kind, trend.parameter, trend.tolerance)
     return f"{_place(trend)} has moved by {moved}, at no steady rate; {allowed} are allowed."
 
 
 def _drift(trend: ParameterTrend) -> str:
-    unit = deviation_measure(trend.kind, trend.parameter, abs(trend.rate_per_year))
-    a_year = Measure(f"{unit.label} a year", unit.factor)
+    measure = deviation_measure(trend.kind, trend.parameter, abs(trend.rate_per_year))
+    a_year = Measure(f"{measure.label} a year", measure.factor)
     rate = signed(trend.rate_per_year, 2 * trend.rate_sigma, a_year)
     return f"{_place(trend)} drifts by {rate}; {in_words(trend.kind, trend.parameter, trend.tolerance)} are allowed."
 

@@ -17,15 +17,8 @@ from service.records.session import StoredSession
 from service.records.unit import UnitReport
 from service.views.found_and_left import FoundAndLeft
 from service.words.conditions import NOT_JUDGED, Condition, condition_of
-from service.words.names import day_of
+from service.words.names import day_of, heading
 
-HEADINGS = {
-    "scale": "Scale factor",
-    "bias": "Bias",
-    "quadratic": "Quadratic term",
-    "axis": "Axis",
-    "misalignment": "Misalignment to the turn axis",
-}
 MEANINGS = {
     "scale": "Change of the scale factor from the reference of its time.",
     "bias": "Change of the zero offset from the reference of its time.",
@@ -141,7 +134,7 @@ def _section(
     judged = [condition for condition in latest if condition is not NOT_JUDGED]
     return ParameterSection(
         anchor=tracks[0].name,
-        heading=f"{HEADINGS[parameter]}, {kind}s" if several else HEADINGS[parameter],
+        heading=f"{heading(parameter)}, {kind}s" if several else heading(parameter),
         meaning=MEANINGS[parameter],
         unit=tracks[0].unit.label,
         tolerance=tolerance_text(tracks[0]),

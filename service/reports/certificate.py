@@ -20,12 +20,13 @@ from service.reports.results import ResultTable, result_tables
 from service.reports.typeset import typeset
 from service.views.certificate import CertifiedSession
 from service.views.found_and_left import FoundAndLeft
+from service.words.causes import cause_on
 from service.words.conditions import CONDITIONS, Condition, condition_of
-from service.words.finding import FindingView, cause_on, finding_view, in_words
+from service.words.finding import FindingView, finding_view
 from service.words.fit import FitWords, fit_in_words
 from service.words.known import combination_in_words
 from service.words.motion import motions_in_words
-from service.words.names import day_of
+from service.words.names import day_of, method_name, spaced
 from service.words.verdict import margin_of
 
 MOST_HISTORIES = 6
@@ -161,7 +162,7 @@ def certificate(found: CertifiedSession) -> Certificate:
         states=tuple(State(c.formal, c.meaning, c.key) for c in reversed(CONDITIONS)),
         tables=tuple(_with_reading_unit(t, found.source) for t in _tables(found, k)),
         together=tuple(line.text for line in motions_in_words(found.report.motions, k)),
-        stage=in_words(session.stage or ""),
+        stage=spaced(session.stage or ""),
         pair=None if found.pair is None else _pair(found.pair),
         known=tuple(Fact(name, words) for name, words in known),
         diagnosis=found.diagnosis.summary,
@@ -201,7 +202,7 @@ def _facts(found: CertifiedSession) -> list[Fact]:
         Fact("Unit", session.unit),
         Fact("Unit type", found.unit_type.name),
         Fact("Sensors", _sensors(source)),
-        Fact("Programme", in_words(session.programme)),
+        Fact("Programme", spaced(session.programme)),
         Fact("Measured", f"{day_of(session.started_at)}, {session.started_at:%H:%M} UTC"),
         Fact("Operator", session.operator or "not stated"),
         Fact("Stand", _stand(source)),
@@ -253,7 +254,7 @@ def _judged_against(found: CertifiedSession) -> str:
 def _state(found: CertifiedSession) -> str:
     """As found or as left, and what was last done to the unit."""
     last = f"last service: {found.services[-1].kind}, {day_of(found.services[-1].at)}" if found.services else ""
-    stated = [part for part in (in_words(found.report.session.stage or ""), last) if part]
+    stated = [part for part in (spaced(found.report.session.stage or ""), last) if part]
     return ", ".join(stated) or "no service recorded"
 
 
@@ -269,7 +270,7 @@ def _record(found: CertifiedSession) -> list[Fact]:
     return [
         Fact("Input file", f"{session.filename}, {size_in_words(session.size)}"),
         Fact("Uploaded", f"{day_of(session.uploaded_at)}, {session.uploaded_at:%H:%M} UTC"),
-        Fact("Method", found.report.calibration.method.replace("/", ", ").replace("-", " ")),
+        Fact("Method", method_name(found.report.calibration.method)),
         Fact("Model revision", model),
         Fact("Session", session.id),
         Fact("Software", f"imu-health {found.software}"),
@@ -277,9 +278,8 @@ def _record(found: CertifiedSession) -> list[Fact]:
 
 
 def _causes(diagnosis: StoredDiagnosis, found: CertifiedSession) -> tuple[Cause, ...]:
-    if diagnosis.document is None:
-        return ()
-    views = (finding_view(finding, found.revisions) for finding in diagnosis.document["findings"])
+    findings = () if diagnosis.found is None else diagnosis.found.findings
+    views = (finding_view(finding, found.revisions) for finding in findings)
     return tuple(
         Cause(
             sentence=view.sentence,
@@ -306,7 +306,7 @@ def _histories(found: CertifiedSession) -> tuple[Drawing, ...]:
     for tracks in tracks_of(found.history, found.services):
         charts = history_charts(tracks, found.services)
         drawn |= {
-            (track.parameter, track.sensor): _drawing(charts, place, f"{track.sensor} {in_words(track.parameter)}")
+            (track.parameter, track.sensor): _drawing(charts, place, f"{track.sensor} {spaced(track.parameter)}")
             for place, track in enumerate(tracks)
             if (track.parameter, track.sensor) in wanted and len(track.points) > 1
         }

@@ -11,7 +11,7 @@ from service.reports.certificate import title_of
 from service.reports.elements import DCC, NOT_STATED, SI, XSI, content, dcc, document
 from service.reports.quantities import ONE, deviation_measure, quantity, value_measure
 from service.views.certificate import CertifiedSession
-from service.words.finding import in_words
+from service.words.names import spaced
 
 SCHEMA = "3.2.0"
 UNKNOWN_COUNTRY = "ZZ"
@@ -104,7 +104,7 @@ def _statement(parent: Element, name: str, declaration: str, verdict: Verdict | 
 
 def _measurement(parent: Element, found: CertifiedSession) -> None:
     session, calibration = found.report.session, found.report.calibration
-    content(parent, "name", f"{title_of(session)}: {in_words(session.programme)}")
+    content(parent, "name", f"{title_of(session)}: {spaced(session.programme)}")
     method = dcc(dcc(parent, "usedMethods"), "usedMethod")
     content(method, "name", calibration.method)
     content(method, "description", f"Model revision {session.revision}; block axes held by {calibration.gauge}.")

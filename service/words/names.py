@@ -1,6 +1,8 @@
-"""Names and dates as people write them."""
+"""What parameters, programmes and methods are called, and dates as people write them."""
 
 from datetime import datetime, timedelta
+
+from estimator.parity.results import SEVERAL
 
 YEAR = timedelta(days=365.25)
 PARAMETER_NAMES = {
@@ -9,7 +11,23 @@ PARAMETER_NAMES = {
     "quadratic": "quadratic term",
     "axis": "input axis",
     "misalignment": "misalignment",
+    SEVERAL: "bias, scale factor and axis together",
 }
+
+
+def heading(parameter: str) -> str:
+    """``Scale factor``: a parameter's name at the head of a column, a chart or a section."""
+    return PARAMETER_NAMES[parameter].capitalize()
+
+
+def spaced(identifier: str) -> str:
+    """``as found`` of ``as-found``."""
+    return identifier.replace("-", " ")
+
+
+def method_name(method: str) -> str:
+    """``turntable, analytic`` of ``turntable/analytic``."""
+    return spaced(method.replace("/", ", "))
 
 
 def day_of(at: datetime) -> str:

@@ -74,7 +74,7 @@ def test_the_next_session_is_calibrated_with_the_accepted_cause(storage: Storage
     id = stored(storage)
     revision = accept_model(storage, diagnose(storage, id, NOW), ACCEPT, NOW)
     assert (revision.id, revision.subject, revision.sensors) == (1, WARM["unit"], ("A5",))
-    assert revision.evidence["gain"]["after"]["chi2_per_dof"] < revision.evidence["gain"]["before"]["chi2_per_dof"]
+    assert revision.evidence.gain.after.chi2_per_dof < revision.evidence.gain.before.chi2_per_dof
     later = stored(storage, started_at="2026-08-01T09:00:00Z")
     with storage.database.reading() as store:
         assert store.sessions.get(later).revision == 1

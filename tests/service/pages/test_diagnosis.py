@@ -5,7 +5,6 @@ import pytest
 
 from service.app import create_app
 from service.settings import Settings
-from service.words.finding import shape_in_words
 from tests.service.diagnosed import ALIASES, TEMPERATURE, UNEXPLAINED, drawn, send, send_case, warm
 from tests.service.pages.test_http import HTML, MOST_QUERIES, counted
 from tests.service.sessions import session_bytes
@@ -78,13 +77,6 @@ def test_the_page_asks_few_questions_and_stays_light(settings: Settings) -> None
         statements.clear()
         assert len(page(client, id).encode()) < 500_000
         assert len(statements) <= MOST_QUERIES
-
-
-def test_every_sensor_s_own_shape_is_said() -> None:
-    shapes = [{"row": 14.0}, {"row": 20.0}]
-    finding = {"cause": "bias-jump", "sensors": ["A1", "A2"], "nonlinear": shapes[0], "nonlinear_each": shapes}
-    assert shape_in_words(finding) == "A1: from row 14; A2: from row 20"
-    assert shape_in_words(finding | {"nonlinear_each": [shapes[0]] * 2}) == "from row 14"
 
 
 def test_an_accepted_cause_can_be_withdrawn(client: httpx.Client) -> None:
