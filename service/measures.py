@@ -31,7 +31,9 @@ class Measure:
 
 
 PPM = Measure("ppm", 1e6)
+"""Of what is relative."""
 ARCSEC = Measure("arcsec", 3600 / DEGREE)
+"""Of small angles, rad."""
 
 READABLE = 1e4
 """A number from which on a coarser measure is easier to read."""

@@ -13,7 +13,9 @@ from service.charts import DATA_FORM, ChartSet, Panel, padded, specification
 from service.measures import THIN, Measure, decimals, deviation_measure, number
 
 HEIGHT = 130
+"""Of a panel, pixels: three rows of them on a screen."""
 MOST_PANELS = 9
+"""Of one kind of sensor; the others are in the table."""
 MODELS = ("before", "after")
 RUNS = ("direct", "flipped")
 

@@ -8,6 +8,7 @@ from estimator.results import Calibration
 from service.measures import deviation_measure, number
 
 RUNS = ("direct", "flipped")
+"""By whether the head is turned over."""
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,6 @@ from service.charts.history import history_charts
 from service.charts.tracks import Track, TrackPoint, tolerance_text, tracks_of
 from service.pages.events import KINDS, Event, StageTable, events_of, stage_table
 from service.pages.flags import FlagCard, flag_cards
-from service.pages.outlook import NextCalibration, next_calibration
 from service.records.event import Note, Service
 from service.records.flag import Flag
 from service.records.history import HistoryPoint
@@ -18,6 +17,7 @@ from service.records.unit import UnitReport
 from service.views.found_and_left import FoundAndLeft
 from service.words.conditions import NOT_JUDGED, Condition, condition_of
 from service.words.names import day_of, heading
+from service.words.outlook import NextCalibration, next_calibration
 
 MEANINGS = {
     "scale": "Change of the scale factor from the reference of its time.",
@@ -26,6 +26,7 @@ MEANINGS = {
     "axis": "Angle between the input axis and its direction in the reference of its time.",
     "misalignment": "Change of the input axis' turn toward a turntable's axis from the reference of its time.",
 }
+"""What the charts of a parameter show."""
 
 
 @dataclass(frozen=True)

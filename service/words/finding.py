@@ -16,6 +16,7 @@ from service.words.rivals import Bar, Choice, choices_of, ranking_of
 SURE = 1e-12
 """Probability by chance below which the exponent tells nobody more."""
 SUPERSCRIPT = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
+"""Of a power of ten."""
 
 
 @dataclass(frozen=True)

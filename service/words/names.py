@@ -5,6 +5,7 @@ from datetime import datetime, timedelta
 from estimator.parity.results import SEVERAL
 
 YEAR = timedelta(days=365.25)
+"""The Julian year, as rates a year are counted."""
 PARAMETER_NAMES = {
     "scale": "scale factor",
     "bias": "bias",
@@ -13,6 +14,7 @@ PARAMETER_NAMES = {
     "misalignment": "misalignment",
     SEVERAL: "bias, scale factor and axis together",
 }
+"""What each parameter is called in sentences and, capitalised, in headings."""
 
 
 def heading(parameter: str) -> str:

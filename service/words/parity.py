@@ -11,6 +11,7 @@ COMMON = (
     "a bias common to all that some acceleration explains, all axes turned together, all scales by one factor, "
     "and any stretch or shear of the space"
 )
+"""What the sensors' disagreement cannot show: any motion, and any linear map of it, explains it."""
 ONE_ORIENTATION = (
     "The recording turns too little to tell a change of bias from one of scale or axis: record slow turns as well."
 )

@@ -13,6 +13,7 @@ VERDICTS = {
     "undecidable": "undecidable: U exceeds the tolerance, or nothing is observed",
     "not judged": "no tolerance was given",
 }
+"""What the verdicts of a plan mean."""
 UNSEEN = "not observable"
 OF_GYROS = frozenset(cause.identifier for cause in CATALOGUE if cause.kind == GYROSCOPE)
 """Causes that an accelerometer cannot have."""

@@ -1,10 +1,14 @@
 """The page "What the simulation gets wrong" over HTTP: what it says first, and the forms that it holds."""
 
+import zlib
+
 import httpx
 import pytest
+from sqlalchemy import text as sql
 
 from service.app import create_app
 from service.settings import Settings
+from service.storage import Storage
 from tests.service.diagnosed import ALIASES, TEMPERATURE, UNEXPLAINED, drawn, send, send_case, warm
 from tests.service.pages.test_http import HTML, MOST_QUERIES, counted
 from tests.service.sessions import session_bytes
@@ -91,3 +95,28 @@ def test_an_accepted_cause_can_be_withdrawn(client: httpx.Client) -> None:
     assert "calibrated without it" in shown.text
     again = client.post(f"/api/v1/models/{model['id']}/withdraw", json=form)
     assert again.status_code == 409
+
+
+def test_a_cause_that_this_version_does_not_know_is_shown_by_its_identifier(
+    storage: Storage, client: httpx.Client
+) -> None:
+    id = send_case(client, drawn(TEMPERATURE))
+    page(client, id)
+    rename_cause(storage, id, "bias-temperature", "bias-hum")
+    text = page(client, id)
+    assert "bias hum (A5)" in text
+    assert "not a property that a model can hold" in text
+    again = client.post(f"/api/v1/sessions/{id}/diagnosis/accept", json=ACCEPT | {"cause": "bias-hum"})
+    assert again.status_code == 422
+
+
+def rename_cause(storage: Storage, id: str, old: str, new: str) -> None:
+    """Makes a stored diagnosis one of a version that called a cause otherwise."""
+    with storage.database.reading() as store:
+        stored = store.diagnoses.get(id)
+    assert stored is not None
+    assert stored.document is not None
+    changed = zlib.compress(stored.document.replace(f'"{old}"', f'"{new}"').encode())
+    query = sql("UPDATE diagnoses SET document = :changed WHERE session_id = :id")
+    with storage.database.engine.begin() as connection:
+        connection.execute(query, {"changed": changed, "id": id})

@@ -1,7 +1,7 @@
 """When a unit must come back, in words: the date, why, what moves, and the risk of waiting."""
 
 from dataclasses import dataclass
-from datetime import datetime, timedelta
+from datetime import timedelta
 from math import floor, log10
 
 from service.measures import HARD, THIN, Measure, deviation_measure, in_words, signed
@@ -13,6 +13,7 @@ LEVEL = 0.01
 FAR = 5.0
 """Standard uncertainties from which on a distance from the reference is beyond doubt."""
 WAITS = (timedelta(days=91), timedelta(days=182), timedelta(days=365))
+"""After the due date: a quarter, half a year and a year, as calibrations are put off."""
 
 
 @dataclass(frozen=True)
@@ -47,11 +48,6 @@ def next_calibration(outlook: UnitOutlook) -> NextCalibration:
         together=outlook.together,
         waits=_waits(outlook),
     )
-
-
-def due_in_words(due: datetime | None) -> str:
-    """``14 Mar 2027``; a dash without a date."""
-    return "–" if due is None else day_of(due)
 
 
 def _headline(outlook: UnitOutlook) -> str:
