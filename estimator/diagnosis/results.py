@@ -1,6 +1,6 @@
 """Result types of the diagnosis; no algorithms. The JSON form is ``imu-diagnosis/1``."""
 
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from estimator.results import Calibration
@@ -50,6 +50,18 @@ class Rival:
 
 
 @dataclass(frozen=True)
+class ParitySplit:
+    """χ² that a cause explains in parity space and in the range of the axes: where stand and sensor differ."""
+
+    signature_in_parity: float
+    """Share of the signature's own energy that lies in parity space: 0 for an error of the stand."""
+    parity_before: float
+    parity_after: float
+    range_before: float
+    range_after: float
+
+
+@dataclass(frozen=True)
 class Finding:
     """One named cause with its evidence."""
 
@@ -70,8 +82,7 @@ class Finding:
     ranking: tuple[Rival, ...]
     sentence: str
     advice: str
-    parity: dict[str, float] | None
-    """χ² that the cause explains in parity space and in the range of the axes: where stand and sensor differ."""
+    parity: ParitySplit | None
     new: bool | None
     """Whether it came since the history; None without history or where the session cannot tell."""
 
@@ -91,7 +102,7 @@ class Finding:
             "ranking": [r.to_dict() for r in self.ranking],
             "sentence": self.sentence,
             "advice": self.advice,
-            "parity": self.parity,
+            "parity": None if self.parity is None else asdict(self.parity),
             "new": self.new,
         }
 

@@ -1,5 +1,6 @@
 """Diagnoses: what the simulation gets wrong about a session, and the acceptance of a named cause."""
 
+import json
 from typing import Any
 
 from fastapi import APIRouter, Response
@@ -36,7 +37,8 @@ def read_diagnosis(id: SessionId, diagnoser: DiagnoserOf) -> Response | Diagnosi
         )
     if found.document is None:
         raise NotFoundError(found.summary)
-    return DiagnosisDocument(**found.document, **{k: v for k, v in vars(found).items() if k != "document"})
+    made = {name: value for name, value in vars(found).items() if name in DiagnosisDocument.model_fields}
+    return DiagnosisDocument(**json.loads(found.document), **made)
 
 
 @router.post("/{id}/diagnosis/accept", status_code=201, responses=errors(400, 404, 422))

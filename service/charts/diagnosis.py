@@ -62,39 +62,39 @@ def _ways(residuals: Residuals) -> list[Across]:
 def _chart_set(sides: Sides, across: Across, columns: list[int], several: bool) -> ChartSet:
     kind = sides.sensors[columns[0]].kind
     largest = largest_edge(sides.before.value[:, columns], sides.before.sigma[:, columns])
-    unit = deviation_measure(kind, "bias", largest)
+    measure = deviation_measure(kind, "bias", largest)
     return ChartSet(
         name=f"diagnosis-{kind}-{across.name}",
         heading=f"{across.heading}, {kind}s" if several else across.heading,
-        spec=_spec(across, unit, largest * unit.factor),
-        panels=tuple(_panel(sides, i, across, unit) for i in columns),
+        spec=_spec(across, measure, largest * measure.factor),
+        panels=tuple(_panel(sides, i, across, measure) for i in columns),
     )
 
 
-def _panel(sides: Sides, column: int, across: Across, unit: Measure) -> Panel:
-    shown = [_rms(side, column, unit) for side in (sides.before, sides.after) if side is not None]
+def _panel(sides: Sides, column: int, across: Across, measure: Measure) -> Panel:
+    shown = [_rms(side, column, measure) for side in (sides.before, sides.after) if side is not None]
     return Panel(
         title=sides.sensors[column].name,
-        description=f"rms {' → '.join(shown)}{THIN}{unit.label}",
+        description=f"rms {' → '.join(shown)}{THIN}{measure.label}",
         condition=None,
-        datasets={DATA_FORM: _points(sides, column, across, unit)},
+        datasets={DATA_FORM: _points(sides, column, across, measure)},
     )
 
 
-def _rms(side: Residuals, column: int, unit: Measure) -> str:
+def _rms(side: Residuals, column: int, measure: Measure) -> str:
     value = side.value[:, column][np.isfinite(side.value[:, column])]
-    rms = float(np.sqrt(np.mean(value**2))) * unit.factor if len(value) else 0.0
+    rms = float(np.sqrt(np.mean(value**2))) * measure.factor if len(value) else 0.0
     return number(rms, decimals(rms))
 
 
-def _points(sides: Sides, column: int, across: Across, unit: Measure) -> list[dict[str, Any]]:
+def _points(sides: Sides, column: int, across: Across, measure: Measure) -> list[dict[str, Any]]:
     both = [(MODELS[0], sides.before), *([] if sides.after is None else [(MODELS[1], sides.after)])]
     flipped = sides.before.flipped
     return [
         {
             "x": float(f"{across.values[row]:.6g}"),
-            "y": float(f"{side.value[row, column] * unit.factor:.5g}"),
-            "band": float(f"{2 * sides.before.sigma[row, column] * unit.factor:.4g}"),
+            "y": float(f"{side.value[row, column] * measure.factor:.5g}"),
+            "band": float(f"{2 * sides.before.sigma[row, column] * measure.factor:.4g}"),
             "run": RUNS[int(flipped[row])] if flipped is not None else RUNS[0],
             "model": model,
             "row": row + 1,
@@ -105,26 +105,26 @@ def _points(sides: Sides, column: int, across: Across, unit: Measure) -> list[di
     ]
 
 
-def _spec(across: Across, unit: Measure, largest: float) -> dict[str, Any]:
+def _spec(across: Across, measure: Measure, largest: float) -> dict[str, Any]:
     domain = BETA_RANGE if across.name == BETA else padded(float(across.values.min()), float(across.values.max()))
     axis, scale = alt.Axis(**ticks(across.name)), alt.Scale(domain=domain, nice=False, zero=False)
     x = alt.X("x:Q", title=across.title, axis=axis, scale=scale)
     y_scale = alt.Scale(domain=padded(-largest, largest))
-    y = alt.Y("y:Q", title=unit.label, axis=alt.Axis(tickCount=5), scale=y_scale)
+    y = alt.Y("y:Q", title=measure.label, axis=alt.Axis(tickCount=5), scale=y_scale)
     base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
     band = base.transform_calculate(low="-datum.band").mark_area(color="var(--muted)", opacity=0.1)
     return specification(
         [
             band.encode(y=alt.Y("low:Q", scale=y_scale), y2="band:Q", detail="run:N"),
             zero_line(),
-            _marks(base, y, unit, MODELS[0]),
-            _marks(base, y, unit, MODELS[1]),
+            _marks(base, y, measure, MODELS[0]),
+            _marks(base, y, measure, MODELS[1]),
         ],
         HEIGHT,
     )
 
 
-def _marks(base: alt.Chart, y: alt.Y, unit: Measure, model: str) -> alt.Chart:
+def _marks(base: alt.Chart, y: alt.Y, measure: Measure, model: str) -> alt.Chart:
     """Before as empty marks, after as full ones; direct round, flipped pointed."""
     first = model == MODELS[0]
     colour = "var(--second)" if first else "var(--accent)"
@@ -140,7 +140,7 @@ def _marks(base: alt.Chart, y: alt.Y, unit: Measure, model: str) -> alt.Chart:
                 alt.Tooltip("row:Q", title="row"),
                 alt.Tooltip("run:N", title="run"),
                 alt.Tooltip("model:N", title="model"),
-                alt.Tooltip("y:Q", title=f"measured − simulated, {unit.label}"),
+                alt.Tooltip("y:Q", title=f"measured − simulated, {measure.label}"),
             ],
         )
     )

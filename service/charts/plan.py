@@ -10,11 +10,10 @@ from estimator.results import PARAMETERS
 from estimator.session import Array
 from service.charts import DATA_FORM, ChartSet, Panel, specification
 from service.measures import MEASURES, Measure
+from service.words.names import heading
 
 HEIGHT = 150
 """Pixels: two rows of panels fit on a screen."""
-NAMES = {"scale": "Scale factor", "bias": "Bias", "quadratic": "Quadratic term", "axis": "Axis"}
-"""Of the parameters, as panels are headed."""
 SERIES = ("total", "repeatability", "tolerance")
 COLOURS = ["var(--accent)", "var(--second)", "var(--tolerance)"]
 DASHES = [[1, 0], [4, 3], [5, 3]]
@@ -39,18 +38,18 @@ def _parameters(plan: Plan, kind: str, sweep: Sweep, at: Array, chosen: float) -
     wanted = plan.request.wanted.row() * plan.request.share
     panels = []
     for k, name in enumerate(PARAMETERS):
-        unit, coverage = MEASURES[kind, name], plan.request.coverage
-        pairs = [(series, getattr(sweep, series)[:, k] * coverage * unit.factor) for series in SERIES[:2]]
+        measure, coverage = MEASURES[kind, name], plan.request.coverage
+        pairs = [(series, getattr(sweep, series)[:, k] * coverage * measure.factor) for series in SERIES[:2]]
         points = [p for series, values in pairs for p in _points(series, at, values)]
         if points:
             if np.isfinite(wanted[k]):
-                points += _points(SERIES[2], at, np.full(len(at), wanted[k] * unit.factor))
-            panels.append(_panel(NAMES[name], unit, points, chosen))
+                points += _points(SERIES[2], at, np.full(len(at), wanted[k] * measure.factor))
+            panels.append(_panel(heading(name), measure, points, chosen))
     return panels
 
 
-def _panel(title: str, unit: Measure, points: list[dict[str, Any]], chosen: float) -> Panel:
-    words = f"U of the worst sensor, {unit.label}" if unit.label else "largest over smallest eigenvalue"
+def _panel(title: str, measure: Measure, points: list[dict[str, Any]], chosen: float) -> Panel:
+    words = f"U of the worst sensor, {measure.label}" if measure.label else "largest over smallest eigenvalue"
     return Panel(
         title=title,
         description=words,

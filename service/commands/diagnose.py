@@ -2,20 +2,21 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 from estimator import CalibrationSession, diagnose
+from estimator.diagnosis import Diagnosis
 from estimator.errors import SessionError
 from estimator.session import CALIBRATIONS
 from service.commands.console import UNUSABLE, AsJson, Files, for_each, print_json, problem_line, say, screen
 from service.commands.diagnosis_tables import diagnosis_view
 from service.ingest import read_file
-from service.records.diagnosis import DiagnosisState
-from service.words.diagnosis import document_of, inapplicable, state_of
+from service.storage.diagnosis_document import diagnosis_to_dict, inapplicable_to_dict
 
-Result = tuple[CalibrationSession, dict[str, Any], DiagnosisState]
+Result = tuple[CalibrationSession, Diagnosis | None]
+"""None of a programme in which no causes are looked for."""
 History = Annotated[
     list[Path] | None,
     typer.Option(help="An earlier session of the unit; repeat it for more, oldest first.", show_default=False),
@@ -42,14 +43,12 @@ def _earlier(file: Path) -> CalibrationSession:
 
 def _diagnosed(file: Path, earlier: list[CalibrationSession]) -> Result:
     session = read_file(file)
-    if session.programme not in CALIBRATIONS:
-        return session, inapplicable(session.unit), DiagnosisState.NOT_APPLICABLE
-    found = diagnose(session, history=earlier)
-    return session, document_of(found), state_of(found)
+    return session, diagnose(session, history=earlier) if session.programme in CALIBRATIONS else None
 
 
 def _print_json(result: Result) -> None:
-    print_json(result[1])
+    session, found = result
+    print_json(inapplicable_to_dict(session.unit) if found is None else diagnosis_to_dict(found))
 
 
 def _print_view(result: Result) -> None:

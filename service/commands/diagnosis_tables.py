@@ -1,92 +1,98 @@
 """A diagnosis as people read it: the cause and what to do first, then its size, rivals, gain and limits."""
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 from rich.console import Group, RenderableType
 from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
+from estimator.diagnosis import Diagnosis
+from estimator.diagnosis.results import Gain, Limit, Score, Structure
 from estimator.session import CalibrationSession
 from service.measures import number
-from service.pages.limits import limits_view
-from service.records.diagnosis import DiagnosisState
+from service.records.diagnosis import DiagnosisState, state_of
 from service.words.diagnosis import NOT_APPLICABLE, NOTHING, UNEXPLAINED
-from service.words.finding import FindingView, finding_view
+from service.words.finding import FindingView, finding_view, standard_errors
+from service.words.limits import blind_causes
 
 COLOURS = {
+    DiagnosisState.NOTHING: "green",
     DiagnosisState.NAMED: "dark_orange",
     DiagnosisState.UNDECIDED: "blue",
     DiagnosisState.UNEXPLAINED: "magenta",
 }
-UNNAMED = {DiagnosisState.NOTHING: (NOTHING, "green"), DiagnosisState.NOT_APPLICABLE: (NOT_APPLICABLE, "yellow")}
+NEXT = slice(1, 3)
+"""Lines of the ranking that are shown beside the named cause."""
 
 
-def diagnosis_view(session: CalibrationSession, document: dict[str, Any], state: DiagnosisState) -> RenderableType:
-    """The whole diagnosis of one session."""
-    findings = [finding_view(finding) for finding in document["findings"]]
+def diagnosis_view(session: CalibrationSession, diagnosis: Diagnosis | None) -> RenderableType:
+    """The whole diagnosis of one session; None of a programme in which no causes are looked for."""
     when = f", {session.started_at}" if session.started_at else ""
-    parts: list[RenderableType] = [Text.assemble((session.unit, "bold"), when)]
-    for finding in findings:
-        parts += _finding(finding, COLOURS[state])
-    for structure in document["structures"]:
-        parts.append(Text(_structure(structure), COLOURS[DiagnosisState.UNEXPLAINED]))
-    if state in UNNAMED:
-        parts.append(Text(*UNNAMED[state]))
-    if findings:
-        parts.append(Text(_gain(document["gain"])))
-    return Group(*parts, *_unseen(document["limits"]), Text(""))
+    heading = Text.assemble((session.unit, "bold"), when)
+    told = [Text(NOT_APPLICABLE, "yellow")] if diagnosis is None else _told(diagnosis)
+    return Group(heading, *told, Text(""))
+
+
+def _told(diagnosis: Diagnosis) -> Iterator[RenderableType]:
+    state = state_of(diagnosis)
+    for finding in diagnosis.findings:
+        yield from _finding(finding_view(finding), COLOURS[state])
+    for structure in diagnosis.structures:
+        yield Text(_structure(structure), COLOURS[DiagnosisState.UNEXPLAINED])
+    if state is DiagnosisState.NOTHING:
+        yield Text(NOTHING, COLOURS[state])
+    if diagnosis.findings:
+        yield Text(_gain(diagnosis.gain))
+    yield from _unseen(diagnosis.limits)
 
 
 def _finding(finding: FindingView, colour: str) -> Iterator[RenderableType]:
     """The name or the choice, then the evidence."""
+    yield Text(finding.statement, f"bold {colour}")
     if finding.doubtful:
-        yield Text("Cannot tell which of these it is:", f"bold {colour}")
         yield _choices(finding)
     else:
-        yield Text(finding.sentence, f"bold {colour}")
         yield Text(f"  What to do: {finding.advice}")
     size = ", ".join(finding.amplitudes)
     parts = [f"size {size}" if size else "", finding.shape, finding.evidence, finding.since]
     yield Text("  " + "; ".join(part.rstrip(".") for part in parts if part))
     if len(finding.ranking) > 1 and not finding.doubtful:
-        listed = ", ".join(f"{bar.name} {bar.percent}" for bar in finding.ranking[1:3])
-        yield Text(f"  Next in the ranking: {listed}", "dim")
+        others = ", ".join(f"{bar.name} {bar.percent}" for bar in finding.ranking[NEXT])
+        yield Text(f"  Next in the ranking: {others}", "dim")
 
 
 def _choices(finding: FindingView) -> Table:
     table = Table(box=None, pad_edge=True, header_style="bold", padding=(0, 2, 0, 0))
-    for heading in ("cause", "share", "distance now", "what would tell it from the first"):
+    for heading in ("cause", "share", "distance now", "what would distinguish it from the first"):
         table.add_column(heading)
     for choice in finding.choices:
         table.add_row(escape(choice.name), choice.share, choice.now or "–", choice.measurement or "–")
     return table
 
 
-def _structure(structure: dict[str, Any]) -> str:
-    who = ", ".join(structure["sensors"]) or "all sensors together"
-    return f"{UNEXPLAINED}: {who}, {structure['where']} ({number(structure['strength'], 1)} standard errors)"
+def _structure(structure: Structure) -> str:
+    who = ", ".join(structure.sensors) or "all sensors together"
+    return f"{UNEXPLAINED}: {who}, {structure.where} ({standard_errors(structure.strength)})"
 
 
-def _gain(gain: dict[str, Any]) -> str:
-    lines = [_scores("Predicting positions held out of the fit", gain)]
-    if gain["session"] is not None:
-        started = gain["session"]["started_at"] or "no stated date"
-        lines.append(_scores(f"Predicting the session before ({started})", gain["session"]))
+def _gain(gain: Gain) -> str:
+    lines = [_scores("Predicting positions held out of the fit", gain.before, gain.after)]
+    if gain.session is not None:
+        started = gain.session.started_at or "no stated date"
+        lines.append(_scores(f"Predicting the session before ({started})", gain.session.before, gain.session.after))
     return "\n".join(lines)
 
 
-def _scores(what: str, gain: dict[str, Any]) -> str:
-    before, after = gain["before"], gain["after"]
-    chi2 = " → ".join(number(part["chi2_per_dof"], 2) for part in (before, after))
-    log = " → ".join(number(part["log_score"], 2) for part in (before, after))
+def _scores(what: str, before: Score, after: Score) -> str:
+    chi2 = " → ".join(number(score.chi2_per_dof, 2) for score in (before, after))
+    log = " → ".join(number(score.log_score, 2) for score in (before, after))
     return f"  {what}: χ² per degree of freedom {chi2}, log score {log}"
 
 
-def _unseen(limits: list[dict[str, Any]]) -> Iterator[Text]:
+def _unseen(limits: Sequence[Limit]) -> Iterator[Text]:
     """What this session cannot see, by reason; and how many limits --json states."""
-    view = limits_view(limits)
-    for row in view.blind:
+    for row in blind_causes(limits):
         yield Text(f"  Not seen ({row.reason}): {row.causes}", "dim")
-    yield Text(f"  Smallest effects that would have been found: {len(view.seen)} causes, see --json", "dim")
+    seen = sum(bool(limit.amplitude) for limit in limits)
+    yield Text(f"  Smallest effects that would have been found: {seen} causes, see --json", "dim")

@@ -23,7 +23,6 @@ from service.words.plan import (
     UNSEEN,
     blind,
     headline,
-    limit_in_words,
     seen,
     sigma_in_words,
     tolerance_in_words,
@@ -166,20 +165,16 @@ def _parameters(found: Plan, coverage: str) -> Table:
 
 
 def _limits(found: Plan) -> Table:
-    kind = head_kind(found.schedule)
     table = Table(box=None, pad_edge=False, title="Smallest effect that would be detected", title_justify="left")
     table.add_column("cause")
     table.add_column("size")
-    for limit in seen(found):
-        table.add_row(limit.cause.replace("-", " "), limit_in_words(limit, kind))
+    for line in seen(found):
+        table.add_row(line.cause, line.size)
     return table
 
 
 def _blind(found: Plan) -> list[Text]:
-    reasons: dict[str, list[str]] = {}
-    for limit in blind(found):
-        reasons.setdefault(limit_in_words(limit, ""), []).append(limit.cause.replace("-", " "))
-    lines = [Text(f"Cannot see {', '.join(causes)}: {reason}.", "yellow") for reason, causes in reasons.items()]
+    lines = [Text(f"Cannot see {line.causes}: {line.reason}.", "yellow") for line in blind(found)]
     if missing := unobserved(found):
         lines.append(Text(f"{UNSEEN.capitalize()}: {missing}.", "yellow"))
     return lines

@@ -8,10 +8,11 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from estimator.results import Calibration, Estimate, Fit, SensorCalibration
+from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import CALIBRATIONS, CalibrationSession, Sensor
 from service.measures import deviation_measure, in_measure, measured, number
-from service.words.advice import what_to_add
+from service.words.fit import fit_in_words
+from service.words.names import method_name
 
 UNSEEN = "not observable"
 """Stands for a value that the session does not show."""
@@ -27,10 +28,11 @@ def calibration_view(session: CalibrationSession, calibration: Calibration) -> R
 
 
 def _heading(session: CalibrationSession, calibration: Calibration) -> Text:
-    method = calibration.method.replace("/", ", ").replace("-", " ")
     place = f" on {session.stand.id}" if session.stand else ""
     when = f", {session.started_at}" if session.started_at else ""
-    return Text.assemble((session.unit, "bold"), f"{when}{place}: {method}; ± is one sigma, all sources")
+    return Text.assemble(
+        (session.unit, "bold"), f"{when}{place}: {method_name(calibration.method)}; ± is one sigma, all sources"
+    )
 
 
 def _parameters(session: CalibrationSession, calibration: Calibration) -> RenderableType:
@@ -95,7 +97,8 @@ def _off_nominal(scale: Estimate, nominal: float) -> Estimate:
 
 def _notes(calibration: Calibration) -> Iterator[Text]:
     """Sentences: how well the model fits, and what this session cannot see."""
-    yield Text(fit_in_words(calibration.fit))
+    fit = fit_in_words(calibration)
+    yield Text(f"{fit.headline} {fit.detail}")
     sensors: dict[str, list[str]] = {}
     for sensor in calibration.sensors:
         unseen = ", ".join(name for name, seen in sensor.observable.items() if not seen)
@@ -103,26 +106,5 @@ def _notes(calibration: Calibration) -> Iterator[Text]:
     for unseen, names in sensors.items():
         if unseen:
             yield Text(f"{', '.join(names)}: this session does not observe {unseen}.", "yellow")
-    fit = calibration.fit
-    if fit.rank < fit.parameters:
-        advice = what_to_add(calibration)
-        yield Text(f"{fit.rank} of {fit.parameters} parameters are told, {fit.weakest[0]} least: {advice}.", "yellow")
-
-
-def fit_in_words(fit: Fit) -> str:
-    """What χ² says of the fit, in a sentence."""
-    ratio = number(fit.chi2 / fit.dof, 2) if fit.dof else number(None)
-    detail = f"χ² per degree of freedom {ratio}, {fit.dof} degrees of freedom"
-    if not fit.converged:
-        return f"The fit did not converge: do not use these numbers ({detail})."
-    if fit.p_value is None:
-        return f"The file states no standard errors: the noise was taken from the residuals ({detail})."
-    return f"{_judgement(fit.p_value)} ({detail}, p = {number(fit.p_value)})."
-
-
-def _judgement(p_value: float) -> str:
-    if p_value < UNLIKELY:
-        return "The model does not explain the readings within their stated noise; the uncertainties were enlarged"
-    if p_value < DOUBTFUL:
-        return "The readings fit the model less well than their stated noise suggests"
-    return "The readings fit the model within their stated noise"
+    for warning in fit.warnings:
+        yield Text(warning, "yellow")

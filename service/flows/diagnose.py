@@ -6,10 +6,9 @@ service makes those that were interrupted. So an acknowledged upload is never le
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from threading import Lock
-from typing import Any
 
 from estimator.diagnosis import Diagnosis
 from estimator.diagnosis import diagnose as find_causes
@@ -21,12 +20,13 @@ from service.ingest import read_upload
 from service.judging.judge import judge
 from service.judging.reference import reference_of
 from service.records.decision import Verdict
-from service.records.diagnosis import DiagnosisState, StoredDiagnosis
+from service.records.diagnosis import DiagnosisState, StoredDiagnosis, state_of
 from service.records.session import StoredSession
 from service.settings import VERSION
 from service.storage import Files, Storage
+from service.storage.diagnosis_document import diagnosis_to_dict, inapplicable_to_dict, read_diagnosis, written
 from service.storage.store import Store
-from service.words.diagnosis import NOT_APPLICABLE, document_of, inapplicable, state_of, summary_of
+from service.words.diagnosis import NOT_APPLICABLE, summary_of
 
 MOST_EARLIER = 10
 """Earlier sessions of the unit that a diagnosis looks at."""
@@ -124,32 +124,34 @@ def _known(store: Store, id: str) -> StoredDiagnosis | None:
 def _made(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
     """Reads the stored bytes again and looks for causes, where the programme is one that calibrates."""
     if task.session.programme not in CALIBRATIONS:
-        nothing = inapplicable(task.session.unit)
-        return _stored(task, DiagnosisState.NOT_APPLICABLE, NOT_APPLICABLE, nothing, None, now)
+        nothing = written(inapplicable_to_dict(task.session.unit))
+        return replace(_failed(task, now, NOT_APPLICABLE), state=DiagnosisState.NOT_APPLICABLE, document=nothing)
     try:
         session = _read(storage.files, task.session)
         found = find_causes(session, _comparable(storage.files, task, session))
         verdict = _verdict_after(storage, task, session, found)
     except BREAKDOWNS as fault:
-        return _stored(task, DiagnosisState.FAILED, f"The session cannot be diagnosed: {fault}", None, None, now)
-    return _stored(task, state_of(found), summary_of(found), document_of(found), verdict, now)
+        return _failed(task, now, f"The session cannot be diagnosed: {fault}")
+    document = written(diagnosis_to_dict(found))
+    return replace(
+        _failed(task, now, summary_of(found)),
+        state=state_of(found),
+        found=read_diagnosis(document),
+        document=document,
+        verdict_after=verdict,
+    )
 
 
-def _stored(
-    task: Task,
-    state: DiagnosisState,
-    summary: str,
-    document: dict[str, Any] | None,
-    verdict: Verdict | None,
-    now: datetime,
-) -> StoredDiagnosis:
+def _failed(task: Task, now: datetime, summary: str) -> StoredDiagnosis:
+    """A diagnosis that found nothing to say but its one line."""
     return StoredDiagnosis(
         session=task.session.id,
         model_revision=task.model_revision,
-        state=state,
+        state=DiagnosisState.FAILED,
         summary=summary,
-        document=document,
-        verdict_after=verdict,
+        found=None,
+        document=None,
+        verdict_after=None,
         estimator_version=VERSION,
         created_at=now,
     )

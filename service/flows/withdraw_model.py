@@ -1,5 +1,6 @@
 """Flow: an engineer withdraws an accepted cause; a new revision says so, and the old one stays on record."""
 
+from dataclasses import replace
 from datetime import datetime
 
 from service.errors import ConflictError
@@ -14,7 +15,9 @@ def withdraw_model(storage: Storage, revision: int, by: str, why: str, now: date
         known = store.models.get(revision)
         if known not in in_force(store.models.of_subject(known.scope, known.subject)):
             raise ConflictError(f"Revision {known.id} is not in force: withdrawn before, or a withdrawal itself.")
-        made = store.models.withdraw(known, by, why, now)
+        made = store.models.add(
+            replace(known, evidence=None, accepted_by=by, note=why, accepted_at=now, withdraws=known.id)
+        )
         details = {"revision": made.id, "withdraws": known.id, "cause": known.cause, "why": why}
         store.log.audit(now, by, "withdraw model", f"{known.scope} {known.subject}", details)
         return made

@@ -2,30 +2,23 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
+from estimator.diagnosis.results import Structure
 from service.charts import ChartSet
 from service.charts.diagnosis import MOST_PANELS, Sides, diagnosis_charts
 from service.judging.model_in_force import in_force
-from service.measures import number
 from service.pages.gain import GainView, gain_view
-from service.pages.limits import LimitsView, limits_view
 from service.pages.residual_table import ResidualTable, residual_table
-from service.records.diagnosis import DiagnosisReport, DiagnosisState
+from service.records.diagnosis import Diagnosed, DiagnosisReport, DiagnosisState, StoredDiagnosis
 from service.records.model import ModelRevision, Scope
 from service.records.session import StoredSession
-from service.words.diagnosis import listed
-from service.words.finding import FindingView, cause_on, chance, finding_view, in_words
+from service.words.causes import cause_on
+from service.words.diagnosis import HEADLINES, headline, what_to_do
+from service.words.finding import FindingView, evidence, finding_view
+from service.words.limits import BlindCauses, SeenCause, blind_causes, seen_causes
 
 PENDING = "Still being found out"
-HEADLINES = {
-    DiagnosisState.NOTHING: "Nothing wrong found",
-    DiagnosisState.UNDECIDED: "Cannot tell which",
-    DiagnosisState.UNEXPLAINED: "Something is there that no known cause explains",
-    DiagnosisState.FAILED: "This session cannot be diagnosed",
-    DiagnosisState.NOT_APPLICABLE: "Not applicable to this programme",
-}
-"""A named cause speaks for itself."""
+WAIT = "A large session takes some seconds; this page reads itself again."
 TONES = {
     DiagnosisState.NOTHING: "pass",
     DiagnosisState.NAMED: "conditional-fail",
@@ -35,10 +28,6 @@ TONES = {
     DiagnosisState.NOT_APPLICABLE: "none",
 }
 """Style and icon, in the tones of the verdicts: how much it asks for attention."""
-SOUND = "Measurement and simulation agree within the noise: no cause of the catalogue and no other structure shows."
-CHOOSE = "This session cannot tell these causes apart. Measure what would separate them before acting on one."
-UNKNOWN = "Do not force a name on it: look where it lives, repeat the session, and compare with another unit or stand."
-REFRESH_SECONDS = 3
 
 
 @dataclass(frozen=True)
@@ -64,6 +53,25 @@ class RevisionView:
 
 
 @dataclass(frozen=True)
+class EvidenceView:
+    """What a diagnosis rests on: absent while it is pending, and where none could be made."""
+
+    findings: tuple[FindingView, ...]
+    structures: tuple[StructureView, ...]
+    charts: tuple[ChartSet, ...]
+    beta: bool
+    """Whether the session has angles and runs of a stand."""
+    left_out: int
+    """Sensors that are not drawn."""
+    residuals: ResidualTable
+    gain: GainView | None
+    """None where no cause is named."""
+    seen: tuple[SeenCause, ...]
+    blind: tuple[BlindCauses, ...]
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class DiagnosisPage:
     """Everything the page shows."""
 
@@ -72,17 +80,7 @@ class DiagnosisPage:
     headline: str
     what_to_do: str
     pending: bool
-    findings: tuple[FindingView, ...]
-    structures: tuple[StructureView, ...]
-    charts: tuple[ChartSet, ...]
-    both_models: bool
-    beta: bool
-    left_out: int
-    """Sensors that are not drawn."""
-    residuals: ResidualTable | None
-    gain: GainView | None
-    limits: LimitsView | None
-    notes: tuple[str, ...]
+    evidence: EvidenceView | None
     revisions: tuple[RevisionView, ...]
     scopes: tuple[tuple[str, str], ...]
     made: str
@@ -90,84 +88,58 @@ class DiagnosisPage:
 
 def diagnosis_page(report: DiagnosisReport) -> DiagnosisPage:
     """The page of a session's diagnosis, pending or made."""
-    found, session = report.diagnosis, report.session
-    document = None if found is None else found.document
-    page = DiagnosisPage(
+    made, session = report.diagnosis, report.session
+    pending = DiagnosisPage(
         session=session,
-        tone="none" if found is None else TONES[found.state],
-        headline=PENDING if found is None else HEADLINES.get(found.state, found.summary),
-        what_to_do="A large session takes some seconds; this page reads itself again." if found is None else "",
-        pending=found is None,
-        findings=(), structures=(), charts=(), both_models=False, beta=False, left_out=0,
-        residuals=None, gain=None, limits=None, notes=(),
+        tone="none",
+        headline=PENDING,
+        what_to_do=WAIT,
+        pending=True,
+        evidence=None,
         revisions=tuple(_revision(r, session, report.revisions) for r in report.revisions if r.withdraws is None),
         scopes=_scopes(session),
-        made="" if found is None else f"Made by estimator {found.estimator_version}",
-    )  # fmt: skip
-    if found is None:
-        return page
-    if document is None or found.state is DiagnosisState.NOT_APPLICABLE:
-        return replace(page, what_to_do=found.summary)
-    return _with_evidence(page, report, document)
+        made="",
+    )
+    return pending if made is None else _made(pending, report, made)
 
 
-def _with_evidence(page: DiagnosisPage, report: DiagnosisReport, document: dict[str, Any]) -> DiagnosisPage:
-    found, before, after = report.diagnosis, report.before, report.after
-    assert found is not None
-    assert before is not None
-    assert after is not None
-    named = [sensor for part in (*document["findings"], *document["structures"]) for sensor in part["sensors"]]
-    sides = Sides(after.sensors, before, after.residuals if document["findings"] else None)
-    findings = tuple(finding_view(f, in_force(report.revisions)) for f in document["findings"])
+def _made(pending: DiagnosisPage, report: DiagnosisReport, made: StoredDiagnosis) -> DiagnosisPage:
+    found = made.found
     return replace(
-        page,
-        headline=_headline(page.headline, findings),
-        what_to_do=_what_to_do(found.state, findings),
-        findings=findings,
-        structures=_structures(document["structures"]),
-        charts=diagnosis_charts(sides, named),
-        both_models=sides.after is not None,
-        beta=before.beta is not None,
-        left_out=max(0, len(after.sensors) - MOST_PANELS),
-        residuals=residual_table(replace(after, residuals=before)),
-        gain=gain_view(document, found, report.session, report.calibration, after) if findings else None,
-        limits=limits_view(document["limits"]),
-        notes=tuple(document["notes"]),
+        pending,
+        tone=TONES[made.state],
+        headline=HEADLINES[made.state] if found is None else headline(made.state, found.findings),
+        what_to_do=made.summary if found is None else what_to_do(made.state, found.findings),
+        pending=False,
+        evidence=None if found is None else _evidence(report, made, found),
+        made=f"Made by estimator {made.estimator_version}",
     )
 
 
-def _headline(otherwise: str, findings: Sequence[FindingView]) -> str:
-    """The sentence of the first cause, or the choice that cannot be made."""
-    if not findings:
-        return otherwise
-    first = findings[0]
-    if not first.doubtful:
-        return first.sentence
-    names = [in_words(choice.cause) for choice in first.choices]
-    who = f" ({', '.join(first.sensors)})" if first.sensors else ""
-    return f"Cannot tell which: {listed(names)}{who}"
+def _evidence(report: DiagnosisReport, made: StoredDiagnosis, found: Diagnosed) -> EvidenceView:
+    before, after, is_named = found.residuals_before, found.calibration, bool(found.findings)
+    places = (*(f.sensors for f in found.findings), *(structure.sensors for structure in found.structures))
+    named = [sensor for sensors in places for sensor in sensors]
+    verdicts = report.session.verdict, made.verdict_after
+    return EvidenceView(
+        findings=tuple(finding_view(f, in_force(report.revisions)) for f in found.findings),
+        structures=tuple(map(_structure, found.structures)),
+        charts=diagnosis_charts(Sides(after.sensors, before, after.residuals if is_named else None), named),
+        beta=before.beta is not None,
+        left_out=max(0, len(after.sensors) - MOST_PANELS),
+        residuals=residual_table(replace(after, residuals=before)),
+        gain=gain_view(found.gain, report.calibration, after, *verdicts) if is_named else None,
+        seen=seen_causes(found.limits, {sensor.kind for sensor in after.sensors}),
+        blind=blind_causes(found.limits),
+        notes=found.notes,
+    )
 
 
-def _what_to_do(state: DiagnosisState, findings: Sequence[FindingView]) -> str:
-    match state:
-        case DiagnosisState.NAMED:
-            return findings[0].advice
-        case DiagnosisState.UNDECIDED:
-            return CHOOSE
-        case DiagnosisState.UNEXPLAINED:
-            return UNKNOWN
-        case _:
-            return SOUND
-
-
-def _structures(structures: Sequence[dict[str, Any]]) -> tuple[StructureView, ...]:
-    return tuple(
-        StructureView(
-            where=s["where"],
-            who=", ".join(s["sensors"]) or "all sensors together",
-            evidence=f"{number(s['strength'], 1)} standard errors; {chance(s['p_value'])}",
-        )
-        for s in structures
+def _structure(structure: Structure) -> StructureView:
+    return StructureView(
+        where=structure.where,
+        who=", ".join(structure.sensors) or "all sensors together",
+        evidence=evidence(structure.strength, structure.p_value),
     )
 
 

@@ -81,19 +81,19 @@ def stage_table(pair: FoundAndLeft | None) -> StageTable | None:
 
 def _row(found: Decision, left: Decision | None) -> StageRow:
     largest = max(abs(d.deviation or 0.0) for d in (found, left) if d is not None)
-    unit = deviation_measure(found.kind, found.parameter, max(largest, found.tolerance))
+    measure = deviation_measure(found.kind, found.parameter, max(largest, found.tolerance))
     is_angle = found.parameter == "axis"
 
     def cell(decision: Decision) -> StageCell:
         if decision.deviation is None:
             return StageCell("not observable", NOT_JUDGED)
         write = measured if is_angle else signed
-        return StageCell(write(decision.deviation, decision.expanded, unit), condition_of(decision.verdict))
+        return StageCell(write(decision.deviation, decision.expanded, measure), condition_of(decision.verdict))
 
     return StageRow(
         found.sensor,
         found.parameter,
-        limit(found.tolerance, unit, is_angle),
+        limit(found.tolerance, measure, is_angle),
         cell(found),
         None if left is None else cell(left),
     )

@@ -1,22 +1,19 @@
 """What naming the causes is worth, and what moved because of it."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
-from math import isclose
-from typing import Any
+from math import isclose, isfinite
 
 import numpy as np
 
+from estimator.diagnosis.results import Gain, Score
 from estimator.results import Calibration, Estimate, SensorCalibration
-from estimator.session import ACCELEROMETER, GYROSCOPE
-from service.measures import deviation_measure, measured, number
-from service.records.diagnosis import StoredDiagnosis
-from service.records.session import StoredSession
+from service.measures import deviation_measure, leading_kind, measured, number
+from service.records.decision import Verdict
 from service.words.conditions import Condition, condition_of
 
 WORTH_A_LINE = 0.02
-
+"""Shift, in the parameter's own standard uncertainties, below which nobody would miss the line."""
 SAME = 1e-3
 """Relative change of a score that nobody would call a gain."""
 
@@ -59,52 +56,47 @@ class GainView:
 
 
 def gain_view(
-    document: dict[str, Any], found: StoredDiagnosis, session: StoredSession, before: Calibration, after: Calibration
+    gain: Gain, before: Calibration, after: Calibration, verdict: Verdict, verdict_after: Verdict | None
 ) -> GainView:
-    """Before is the calibration in force, after the one with the named causes."""
-    gain = document["gain"]
-    earlier = gain.get("session")  # absent from documents of earlier versions
-    kind = GYROSCOPE if {sensor.kind for sensor in after.sensors} == {GYROSCOPE} else ACCELEROMETER
+    """Before is the calibration in force, after the one with the named causes; each with its verdict."""
+    earlier, kind = gain.session, leading_kind({sensor.kind for sensor in after.sensors})
     return GainView(
-        is_none=all(isclose(gain["before"][key], gain["after"][key], rel_tol=SAME) for key in gain["before"]),
-        rows=_rows(gain, kind),
-        earlier_rows=() if earlier is None else _rows(earlier, kind),
-        earlier_at=None if earlier is None else at(earlier["started_at"]),
+        is_none=_is_same(gain.before, gain.after),
+        rows=_rows(gain.before, gain.after, kind),
+        earlier_rows=() if earlier is None else _rows(earlier.before, earlier.after, kind),
+        earlier_at=None if earlier is None else _at(earlier.started_at),
         moved=tuple(
             _moved(a, b)
             for a, b in zip(before.sensors, after.sensors, strict=False)
             if a.name == b.name and _has_moved(a, b)
         ),
-        verdict_before=condition_of(session.verdict),
-        verdict_after=None if found.verdict_after is None else condition_of(found.verdict_after),
+        verdict_before=condition_of(verdict),
+        verdict_after=None if verdict_after is None else condition_of(verdict_after),
     )
 
 
-def at(started_at: str | None) -> datetime | None:
+def _at(started_at: str | None) -> datetime | None:
     """When a session began; None where its file does not say."""
     return None if started_at is None else datetime.fromisoformat(started_at)
 
 
-def _rows(gain: dict[str, Any], kind: str) -> tuple[GainRow, ...]:
-    before, after = gain["before"], gain["after"]
-    unit = deviation_measure(kind, "bias", max(_known(before["rms"]), _known(after["rms"])))
-    measures: Sequence[tuple[str, str, str, float]] = (
-        ("rms", f"error of prediction, {unit.label}", "rms", unit.factor),
-        ("χ² per degree of freedom", "1 where the noise explains the errors", "chi2_per_dof", 1.0),
-        ("log score", "of a reading; higher is better", "log_score", 1.0),
+def _is_same(before: Score, after: Score) -> bool:
+    pairs = zip(vars(before).values(), vars(after).values(), strict=True)
+    return all(isclose(a, b, rel_tol=SAME) for a, b in pairs)
+
+
+def _rows(before: Score, after: Score, kind: str) -> tuple[GainRow, ...]:
+    measure = deviation_measure(
+        kind, "bias", max((abs(x) for x in (before.rms, after.rms) if isfinite(x)), default=0.0)
     )
-    return tuple(
-        GainRow(name, meaning, *(number(_scaled(part[key], factor), 3) for part in (before, after)))
-        for name, meaning, key, factor in measures
+    rms = (number(score.rms * measure.factor, 3) for score in (before, after))
+    chi2 = (number(score.chi2_per_dof, 3) for score in (before, after))
+    log_score = (number(score.log_score, 3) for score in (before, after))
+    return (
+        GainRow("rms", f"error of prediction, {measure.label}", *rms),
+        GainRow("χ² per degree of freedom", "1 where the noise explains the errors", *chi2),
+        GainRow("log score", "of a reading; higher is better", *log_score),
     )
-
-
-def _known(value: float | None) -> float:
-    return 0.0 if value is None else abs(value)
-
-
-def _scaled(value: float | None, factor: float) -> float | None:
-    return None if value is None else value * factor
 
 
 def _has_moved(before: SensorCalibration, after: SensorCalibration) -> bool:

@@ -1,18 +1,13 @@
-"""What a recording in service tells: how it agrees with the calibration, what would have been seen, what never is."""
+"""What a recording in service would have shown: from what size a change of one sensor is seen."""
 
 from dataclasses import dataclass
-from typing import Any
 
-from service.measures import in_words, number
-from service.words.fit import FitWords
+from estimator.parity import ParityResult
+from estimator.parity.results import Sight
+from service.measures import in_words
 
-COMMON = (
-    "a bias common to all that some acceleration explains, all axes turned together, all scales by one factor, "
-    "and any stretch or shear of the space"
-)
-ONE_ORIENTATION = (
-    "The recording turns too little to tell a change of bias from one of scale or axis: record slow turns as well."
-)
+PARAMETERS = ("bias", "scale", "axis")
+"""In the order of the table."""
 
 
 @dataclass(frozen=True)
@@ -21,8 +16,8 @@ class SightRow:
 
     name: str
     share: str
-    limits: tuple[str, str, str]
-    """Of bias, scale and axis."""
+    limits: tuple[tuple[str, str], ...]
+    """A parameter and the size."""
 
 
 @dataclass(frozen=True)
@@ -30,53 +25,22 @@ class ParityView:
     """What parity sees of a block."""
 
     level: str
+    parameters: tuple[str, ...]
     rows: tuple[SightRow, ...]
 
 
-def parity_view(document: dict[str, Any]) -> ParityView:
-    """The table of `imu-parity/1`."""
-    kind = document["kind"]
+def parity_view(result: ParityResult) -> ParityView:
+    """The table of a recording."""
     rows = tuple(
         SightRow(
-            sensor["name"],
-            f"{100 * sensor['visible_share']:.0f} %",
-            (_limit(kind, "bias", sensor), _limit(kind, "scale", sensor), _limit(kind, "axis", sensor)),
+            name=sensor.name,
+            share=f"{100 * sensor.visible_share:.0f} %",
+            limits=tuple((name, _limit(result.kind, name, getattr(sensor, name))) for name in PARAMETERS),
         )
-        for sensor in document["sensors"]
+        for sensor in result.sensors
     )
-    return ParityView(f"{100 * document['false_alarm']:g} %", rows)
+    return ParityView(f"{100 * result.false_alarm:g} %", PARAMETERS, rows)
 
 
-def _limit(kind: str, parameter: str, sensor: dict[str, Any]) -> str:
-    size = sensor[parameter]["detectable"]
-    return "not seen" if size is None else in_words(kind, parameter, size)
-
-
-def parity_in_words(document: dict[str, Any]) -> FitWords:
-    """How the recording agrees with the calibration, and what to be careful of."""
-    chance = "less than 0.01" if document["p_value"] < 1e-4 else number(100 * document["p_value"], 1)
-    headline = "agree with one another as they did at the calibration"
-    if document["detected"]:
-        headline = "do not agree with one another as they did at the calibration"
-    detail = (
-        f"χ² = {number(document['chi2'], 1)} for {document['dof']} numbers; an unchanged block gives this much or more "
-        f"in {chance} % of recordings."
-    )
-    return FitWords(f"The sensors {headline}.", detail, tuple(_warnings(document)))
-
-
-def _warnings(document: dict[str, Any]) -> list[str]:
-    can = 4 * len(document["sensors"])
-    found = [f"Parity sees {document['dof']} of {can} numbers that can change. It never sees {COMMON}."]
-    if not document["complete"]:
-        found.append(ONE_ORIENTATION)
-    left = [f"{count} {_why(why, document)}" for why, count in document["left_out"].items() if count]
-    if left:
-        found.append(f"Left out of {document['blocks']} blocks: {', '.join(left)}.")
-    return found
-
-
-def _why(reason: str, document: dict[str, Any]) -> str:
-    if reason == "saturated":
-        return f"in which {', '.join(document['saturated'])} stood at the end of the range"
-    return "in which the block moved, because its sensors do not sit in one point"
+def _limit(kind: str, parameter: str, sight: Sight) -> str:
+    return "not seen" if sight.detectable is None else in_words(kind, parameter, sight.detectable)

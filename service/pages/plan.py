@@ -11,17 +11,18 @@ from estimator.planning.expected import head_kind
 from estimator.results import PARAMETERS
 from estimator.session import ACCELEROMETER
 from service.charts import ChartSet
-from service.charts.plan import NAMES, plan_charts
+from service.charts.plan import plan_charts
 from service.measures import MEASURES, number
 from service.planning.question import NOISE, VARIATION, PlanQuestion
 from service.words.conditions import Condition
+from service.words.limits import BlindCauses, SeenCause
+from service.words.names import heading
 from service.words.plan import (
     UNSEEN,
     VERDICTS,
     blind,
     duration,
     headline,
-    limit_in_words,
     seen,
     sigma_in_words,
     tolerance_in_words,
@@ -69,7 +70,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Line:
-    """A cause and its size, or a reason and its causes."""
+    """A fact of the plan: what, and in words."""
 
     name: str
     words: str
@@ -94,8 +95,8 @@ class PlanPage:
     charts: tuple[ChartSet, ...]
     over_positions: tuple[tuple[str, ...], ...]
     over_elevation: tuple[tuple[str, ...], ...]
-    detected: tuple[Line, ...]
-    unseen: tuple[Line, ...]
+    detected: tuple[SeenCause, ...]
+    unseen: tuple[BlindCauses, ...]
     optimal: tuple[Line, ...]
     orientations: tuple[tuple[str, ...], ...]
     """Without a stand: directions of up that identify everything; none for gyros."""
@@ -119,16 +120,12 @@ def plan_page(question: PlanQuestion, plan: Plan, types: Sequence[str] = ()) -> 
         charts=plan_charts(plan, kind),
         over_positions=_sweep(plan, kind, "over_positions"),
         over_elevation=_sweep(plan, kind, "over_elevation"),
-        detected=tuple(Line(_words(one.cause), limit_in_words(one, kind)) for one in seen(plan)),
-        unseen=_unseen(plan, kind),
+        detected=seen(plan),
+        unseen=_unseen(plan),
         optimal=_optimal(plan),
         orientations=_orientations(plan),
-        headings=tuple(f"{NAMES[name]}, {MEASURES[kind, name].label}" for name in PARAMETERS),
+        headings=tuple(f"{heading(name)}, {MEASURES[kind, name].label}" for name in PARAMETERS),
     )
-
-
-def _words(identifier: str) -> str:
-    return identifier.replace("-", " ")
 
 
 def _field(question: PlanQuestion, name: str, label: str, hint: str = "") -> Field:
@@ -158,7 +155,9 @@ def _session(q: PlanQuestion) -> tuple[Field, ...]:
 
 
 def _tolerances(q: PlanQuestion) -> tuple[Field, ...]:
-    return tuple(_field(q, name, f"{NAMES[name]}, {MEASURES[q.kind, name].label}", "not judged") for name in PARAMETERS)
+    return tuple(
+        _field(q, name, f"{heading(name)}, {MEASURES[q.kind, name].label}", "not judged") for name in PARAMETERS
+    )
 
 
 def _facts(question: PlanQuestion, plan: Plan) -> tuple[Line, ...]:
@@ -185,7 +184,7 @@ def _rows(plan: Plan) -> tuple[Row, ...]:
 
 def _cell(one: Judged, coverage: float) -> Cell:
     return Cell(
-        NAMES[one.parameter], sigma_in_words(one, coverage), tolerance_in_words(one), CONDITIONS.get(one.verdict)
+        heading(one.parameter), sigma_in_words(one, coverage), tolerance_in_words(one), CONDITIONS.get(one.verdict)
     )
 
 
@@ -200,14 +199,10 @@ def _sweep(plan: Plan, kind: str, name: str) -> tuple[tuple[str, ...], ...]:
     )
 
 
-def _unseen(plan: Plan, kind: str) -> tuple[Line, ...]:
-    """Reasons with their causes, and the parameters that are not observed."""
-    reasons: dict[str, list[str]] = {}
-    for one in blind(plan):
-        reasons.setdefault(limit_in_words(one, kind), []).append(_words(one.cause))
-    lines = [Line(", ".join(causes), reason) for reason, causes in reasons.items()]
+def _unseen(plan: Plan) -> tuple[BlindCauses, ...]:
+    """The causes that are not seen, and first the parameters that are not observed."""
     missing = unobserved(plan)
-    return (*([Line(missing, UNSEEN)] if missing else []), *lines)
+    return (*([BlindCauses(missing, UNSEEN)] if missing else []), *blind(plan))
 
 
 def _optimal(plan: Plan) -> tuple[Line, ...]:

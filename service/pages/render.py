@@ -11,7 +11,7 @@ from markupsafe import Markup
 
 from service.pages.assets import asset_url
 from service.words.conditions import CONDITIONS, REFERENCE
-from service.words.names import day_of
+from service.words.names import day_of, heading, spaced
 
 TEMPLATES = Path(__file__).parent / "templates"
 
@@ -31,8 +31,7 @@ def _environment() -> Environment:
         lstrip_blocks=True,
     )
     environment.globals.update(asset=asset_url, conditions=CONDITIONS, explained=(*CONDITIONS, REFERENCE))
-    environment.filters["day"] = day_of
-    environment.filters["embed"] = embed
+    environment.filters.update(day=day_of, heading=heading, spaced=spaced, embed=embed)
     return environment
 
 

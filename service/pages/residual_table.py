@@ -8,6 +8,7 @@ from estimator.results import Calibration
 from service.measures import deviation_measure, number
 
 RUNS = ("direct", "flipped")
+"""By whether the head is turned over."""
 
 
 @dataclass(frozen=True)
@@ -31,14 +32,14 @@ class ResidualTable:
 
 
 def residual_table(calibration: Calibration) -> ResidualTable:
-    """Residuals with the unit in each column's head."""
+    """Residuals with the measure in each column's head."""
     found = calibration.residuals
     largest = np.nanmax(np.abs(found.value), axis=0, initial=0.0)
-    units = [deviation_measure(s.kind, "bias", x) for s, x in zip(calibration.sensors, largest, strict=True)]
-    shown = found.value * [unit.factor for unit in units]
+    measures = [deviation_measure(s.kind, "bias", x) for s, x in zip(calibration.sensors, largest, strict=True)]
+    shown = found.value * [measure.factor for measure in measures]
     beta, flipped = found.beta, found.flipped
     return ResidualTable(
-        heads=tuple(f"{s.name}, {u.label}" for s, u in zip(calibration.sensors, units, strict=True)),
+        heads=tuple(f"{s.name}, {u.label}" for s, u in zip(calibration.sensors, measures, strict=True)),
         beta=beta is not None,
         rows=tuple(
             ResidualRow(

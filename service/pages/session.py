@@ -23,15 +23,18 @@ from service.measures import (
     value_measure,
 )
 from service.pages.diagnosis import PENDING, TONES
-from service.pages.parity import ParityView, parity_in_words, parity_view
+from service.pages.parity import ParityView, parity_view
 from service.pages.residual_table import ResidualTable, residual_table
 from service.records.decision import Decision, Verdict
 from service.records.diagnosis import DiagnosisSummary
 from service.records.session import ALL_PARAMETERS, SessionReport, StoredSession
+from service.storage.parity_document import parity_from_dict
 from service.words.conditions import Condition, condition_of
 from service.words.fit import FitWords, fit_in_words
 from service.words.known import combination_in_words
 from service.words.motion import MotionLine, motions_in_words
+from service.words.names import method_name
+from service.words.parity import agreement_in_words
 
 
 @dataclass(frozen=True)
@@ -98,16 +101,17 @@ def session_page(report: SessionReport, diagnosis: DiagnosisSummary | None = Non
     judged = {(d.sensor, d.parameter): d for d in decisions}
     parameters = parameters_of(calibration)
     coverage = decisions[0].coverage_factor if decisions else COVERAGE
+    parity = None if calibration.parity is None else parity_from_dict(calibration.parity)
     return SessionPage(
         session=report.session,
         condition=condition_of(report.session.verdict, is_reference=report.session.is_reference),
         parameters=parameters,
         sensors=tuple(_sensor(s, parameters, judged, coverage) for s in calibration.sensors),
-        fit=fit_in_words(calibration) if calibration.parity is None else parity_in_words(calibration.parity),
-        parity=None if calibration.parity is None else parity_view(calibration.parity),
+        fit=fit_in_words(calibration) if parity is None else agreement_in_words(parity),
+        parity=None if parity is None else parity_view(parity),
         charts=residual_charts(calibration),
         residuals=residual_table(calibration),
-        method=_method(calibration),
+        method=method_name(calibration.method),
         rule=decisions[0].rule if decisions else "",
         coverage=number(coverage),
         size=size_in_words(report.session.size),
@@ -119,10 +123,6 @@ def session_page(report: SessionReport, diagnosis: DiagnosisSummary | None = Non
 
 def _diagnosis(found: DiagnosisSummary | None) -> DiagnosisLine:
     return DiagnosisLine("none", PENDING) if found is None else DiagnosisLine(TONES[found.state], found.summary)
-
-
-def _method(calibration: Calibration) -> str:
-    return calibration.method.replace("/", ", ").replace("-", " ")
 
 
 def parameters_of(calibration: Calibration) -> tuple[str, ...]:
@@ -171,13 +171,13 @@ def _value(sensor: SensorCalibration, parameter: str, coverage: float) -> str:
 
 def _scale(value: float | None, spread: float | None, kind: str) -> str:
     """A scale factor is read with its relative uncertainty: ``1.1792038 per g ± 4.0 ppm``."""
-    unit = value_measure(kind, "scale", 0.0)
+    measure = value_measure(kind, "scale", 0.0)
     if value is None or not spread or not value:
-        return measured(value, None, unit)
+        return measured(value, None, measure)
     relative = deviation_measure(kind, "scale", spread / abs(value))
     share = spread / abs(value) * relative.factor
-    shown = number(in_measure(value, unit), decimals(in_measure(spread, unit)))
-    return f"{shown} {unit.label} ±{HARD}{number(share, decimals(share))}{THIN}{relative.label}"
+    shown = number(in_measure(value, measure), decimals(in_measure(spread, measure)))
+    return f"{shown} {measure.label} ±{HARD}{number(share, decimals(share))}{THIN}{relative.label}"
 
 
 def _axis(sensor: SensorCalibration, coverage: float) -> str:
@@ -185,12 +185,12 @@ def _axis(sensor: SensorCalibration, coverage: float) -> str:
         return "not observable"
     vector = ", ".join(number(float(x), 6) for x in sensor.axis)
     spread = coverage * sensor.axis_sigma
-    unit = deviation_measure(sensor.kind, "axis", spread)
-    share = spread * unit.factor
-    return f"({vector}) ±{HARD}{number(share, decimals(share))}{THIN}{unit.label}"
+    measure = deviation_measure(sensor.kind, "axis", spread)
+    share = spread * measure.factor
+    return f"({vector}) ±{HARD}{number(share, decimals(share))}{THIN}{measure.label}"
 
 
-def _decision_unit(decision: Decision) -> Measure:
+def _decision_measure(decision: Decision) -> Measure:
     sizes = (decision.deviation, decision.expanded, decision.tolerance)
     return deviation_measure(decision.kind, decision.parameter, max(abs(x or 0.0) for x in sizes))
 
@@ -199,13 +199,13 @@ def _deviation(decision: Decision | None) -> str:
     if decision is None or decision.deviation is None:
         return ""
     write = measured if decision.parameter == "axis" else signed
-    return write(decision.deviation, decision.expanded, _decision_unit(decision))
+    return write(decision.deviation, decision.expanded, _decision_measure(decision))
 
 
 def _tolerance(decision: Decision | None) -> str:
     if decision is None:
         return ""
-    return limit(decision.tolerance, _decision_unit(decision), decision.parameter == "axis")
+    return limit(decision.tolerance, _decision_measure(decision), decision.parameter == "axis")
 
 
 def _probability(decision: Decision | None) -> str:

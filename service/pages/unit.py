@@ -8,7 +8,6 @@ from service.charts.history import history_charts
 from service.charts.tracks import Track, TrackPoint, tolerance_text, tracks_of
 from service.pages.events import KINDS, Event, StageTable, events_of, stage_table
 from service.pages.flags import FlagCard, flag_cards
-from service.pages.outlook import NextCalibration, next_calibration
 from service.records.event import Note, Service
 from service.records.flag import Flag
 from service.records.history import HistoryPoint
@@ -17,15 +16,9 @@ from service.records.session import StoredSession
 from service.records.unit import UnitReport
 from service.views.found_and_left import FoundAndLeft
 from service.words.conditions import NOT_JUDGED, Condition, condition_of
-from service.words.names import day_of
+from service.words.names import day_of, heading
+from service.words.outlook import NextCalibration, next_calibration
 
-HEADINGS = {
-    "scale": "Scale factor",
-    "bias": "Bias",
-    "quadratic": "Quadratic term",
-    "axis": "Axis",
-    "misalignment": "Misalignment to the turn axis",
-}
 MEANINGS = {
     "scale": "Change of the scale factor from the reference of its time.",
     "bias": "Change of the zero offset from the reference of its time.",
@@ -33,6 +26,7 @@ MEANINGS = {
     "axis": "Angle between the input axis and its direction in the reference of its time.",
     "misalignment": "Change of the input axis' turn toward a turntable's axis from the reference of its time.",
 }
+"""What the charts of a parameter show."""
 
 
 @dataclass(frozen=True)
@@ -142,7 +136,7 @@ def _section(
     judged = [condition for condition in latest if condition is not NOT_JUDGED]
     return ParameterSection(
         anchor=tracks[0].name,
-        heading=f"{HEADINGS[parameter]}, {kind}s" if several else HEADINGS[parameter],
+        heading=f"{heading(parameter)}, {kind}s" if several else heading(parameter),
         meaning=MEANINGS[parameter],
         unit=tracks[0].unit.label,
         tolerance=tolerance_text(tracks[0]),

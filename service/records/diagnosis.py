@@ -1,10 +1,11 @@
 """What the simulation gets wrong about a stored session."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from enum import StrEnum
-from typing import Any
 
+from estimator.diagnosis import Diagnosis, Finding
+from estimator.diagnosis.results import Gain, Limit, Structure
 from estimator.results import Calibration, Residuals
 from service.records.decision import Verdict
 from service.records.model import ModelRevision
@@ -27,12 +28,34 @@ class DiagnosisState(StrEnum):
         return self in (DiagnosisState.NAMED, DiagnosisState.UNDECIDED, DiagnosisState.UNEXPLAINED)
 
 
+def state_of(diagnosis: Diagnosis) -> DiagnosisState:
+    """What people hear first: a name, a choice, structure without a name, or nothing."""
+    if diagnosis.findings:
+        return DiagnosisState.UNDECIDED if diagnosis.findings[0].alternatives else DiagnosisState.NAMED
+    return DiagnosisState.UNEXPLAINED if diagnosis.unexplained else DiagnosisState.NOTHING
+
+
 @dataclass(frozen=True)
 class DiagnosisSummary:
     """A session's diagnosis in one line."""
 
     state: DiagnosisState
     summary: str
+
+
+@dataclass(frozen=True)
+class Diagnosed:
+    """What imu-diagnosis/1 says; a number that is null there, because it was not finite, is NaN."""
+
+    findings: tuple[Finding, ...]
+    structures: tuple[Structure, ...]
+    gain: Gain
+    limits: tuple[Limit, ...]
+    notes: tuple[str, ...]
+    calibration: Calibration = field(compare=False)
+    """With the named causes in the model."""
+    residuals_before: Residuals = field(compare=False)
+    """Measured minus simulated under the baseline model."""
 
 
 @dataclass(frozen=True)
@@ -44,8 +67,10 @@ class StoredDiagnosis:
     """In force when it was made."""
     state: DiagnosisState
     summary: str
-    document: dict[str, Any] | None
-    """imu-diagnosis/1; None where the session could not be diagnosed."""
+    found: Diagnosed | None
+    """None where the session could not be diagnosed, or where no causes are looked for."""
+    document: str | None
+    """imu-diagnosis/1, JSON as it was written: what the API hands out; None where there was nothing to write."""
     verdict_after: Verdict | None
     """The verdict that the session would have with the named causes in the model."""
     estimator_version: str
@@ -61,9 +86,5 @@ class DiagnosisReport:
     """None while it is being made."""
     calibration: Calibration
     """In force."""
-    before: Residuals | None
-    """Measured minus simulated under the baseline model; None without a diagnosis."""
-    after: Calibration | None
-    """With the named causes in the model."""
     revisions: tuple[ModelRevision, ...]
     """That concern the session, oldest first."""

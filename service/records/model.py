@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
-from typing import Any
+
+from estimator.diagnosis.results import Gain
 
 
 class Scope(StrEnum):
@@ -25,18 +26,35 @@ class NewModel:
 
 
 @dataclass(frozen=True)
+class Evidence:
+    """The finding that a cause was accepted on, and what naming it was worth."""
+
+    p_value: float
+    strength: float
+    amplitude: tuple[float, ...]
+    """SI, with ``sigma`` and ``units``; empty where the cause was an equal alternative of the named one."""
+    sigma: tuple[float, ...]
+    units: tuple[str, ...]
+    nonlinear: dict[str, float]
+    alternatives: tuple[str, ...]
+    sentence: str
+    gain: Gain
+
+
+@dataclass(frozen=True)
 class ModelRevision:
     """One accepted cause. Revisions are numbered through, so that a number says which model a result rests on."""
 
     id: int
+    """0 before it is stored."""
     scope: Scope
     subject: str
     """Serial number of the unit, or name of the unit type or of the stand."""
     cause: str
     sensors: tuple[str, ...]
     session: str
-    evidence: dict[str, Any]
-    """Of the finding: p_value, strength, amplitude, sigma, units, and the gain."""
+    evidence: Evidence | None
+    """None of a revision that withdraws another."""
     accepted_by: str
     note: str
     accepted_at: datetime

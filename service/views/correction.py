@@ -17,6 +17,7 @@ from service.records.model import ModelRevision
 from service.records.session import StoredSession
 from service.settings import VERSION
 from service.storage import Storage
+from service.storage.diagnosis_document import evidence_to_dict
 
 FORMULA = (
     "y = (reading - offset) / (count_time * scale) - bias, with count_time = 1 where it is null",
@@ -174,12 +175,11 @@ def _assumed(block: BlockCorrection) -> str:
 
 def _revision(revision: ModelRevision) -> dict[str, Any]:
     """An accepted cause: the parameters were estimated with it in the model, the formula does not contain it."""
+    evidence = evidence_to_dict(revision.evidence)
     return {
         "revision": revision.id,
         "cause": revision.cause,
         "sensors": list(revision.sensors),
-        "amplitude": revision.evidence.get("amplitude"),
-        "sigma": revision.evidence.get("sigma"),
-        "units": revision.evidence.get("units"),
+        **{name: evidence.get(name) for name in ("amplitude", "sigma", "units")},
         "note": "taken out of the readings before the parameters were estimated; the formula does not correct it",
     }

@@ -1,4 +1,4 @@
-"""Step: how well the model explains the readings, in words."""
+"""How well the model explains the readings, in words."""
 
 from dataclasses import dataclass
 from math import isfinite, sqrt
@@ -6,6 +6,15 @@ from math import isfinite, sqrt
 from estimator.results import Calibration, Fit
 from service.measures import number
 from service.words.advice import what_to_add
+
+UNLIKELY = 0.001
+"""Probability of χ² below which the model does not explain the readings: the calibration's own bound."""
+DOUBTFUL = 0.05
+"""Probability of χ² below which a fit is unusual: one sound session in twenty."""
+TOO_GOOD = 0.999
+"""Probability of χ² above which the noise must have been overstated."""
+SMALLEST = 1e-4
+"""Probability below which its size tells nobody more."""
 
 
 @dataclass(frozen=True)
@@ -26,11 +35,11 @@ def fit_in_words(calibration: Calibration) -> FitWords:
 def _headline(fit: Fit) -> str:
     if fit.p_value is None:
         return "The file states no standard errors: the noise was estimated from the residuals."
-    if fit.p_value < 0.001:
+    if fit.p_value < UNLIKELY:
         return "The readings scatter more than the stated noise allows."
-    if fit.p_value < 0.05:
+    if fit.p_value < DOUBTFUL:
         return "The model fits, but the residuals are larger than usual."
-    if fit.p_value > 0.999:
+    if fit.p_value > TOO_GOOD:
         return "The model fits; the stated noise looks too large."
     return "The model explains the readings within the stated noise."
 
@@ -38,8 +47,8 @@ def _headline(fit: Fit) -> str:
 def _detail(fit: Fit) -> str:
     chance = ""
     if fit.p_value is not None:
-        share = "less than 0.01 %" if fit.p_value < 1e-4 else f"{number(100 * fit.p_value, 1 + (fit.p_value < 0.01))} %"
-        chance = f"; a sound model would give this much or more in {share} of sessions"
+        percent = "less than 0.01" if fit.p_value < SMALLEST else number(100 * fit.p_value, 1 + (fit.p_value < 0.01))
+        chance = f"; a sound model would give this much or more in {percent} % of sessions"
     return f"χ² = {number(fit.chi2, 1)} for {fit.dof} degrees of freedom{chance}."
 
 
@@ -48,7 +57,7 @@ def _warnings(fit: Fit) -> list[str]:
     if fit.covariance_factor > 1 and isfinite(fit.covariance_factor):
         found.append(
             f"All uncertainties were enlarged {number(sqrt(fit.covariance_factor), 2)} times, because the stated "
-            "noise cannot explain the residuals. Look for structure in them below."
+            "noise cannot explain the residuals. Look for structure in them."
         )
     if not fit.converged:
         found.append(f"The fit did not settle within {fit.iterations} iterations: do not rely on these numbers.")

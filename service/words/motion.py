@@ -7,6 +7,7 @@ from estimator.health.common_motion import AXES, SEPARATED, UNCLEAR, CommonMotio
 from service.measures import deviation_measure, measured, number, signed
 
 SIGNIFICANT = 0.01
+"""Chance of saying so of a block that did not move."""
 NEARLY = 0.94
 """Cosine of 20°: a turn this near to an axis of the block is named after it."""
 

@@ -1,15 +1,35 @@
-"""Names and dates as people write them."""
+"""What parameters, programmes and methods are called, and dates as people write them."""
 
 from datetime import datetime, timedelta
 
+from estimator.parity.results import SEVERAL
+
 YEAR = timedelta(days=365.25)
+"""The Julian year, as rates a year are counted."""
 PARAMETER_NAMES = {
     "scale": "scale factor",
     "bias": "bias",
     "quadratic": "quadratic term",
     "axis": "input axis",
     "misalignment": "misalignment",
+    SEVERAL: "bias, scale factor and axis together",
 }
+"""What each parameter is called in sentences and, capitalised, in headings."""
+
+
+def heading(parameter: str) -> str:
+    """``Scale factor``: a parameter's name at the head of a column, a chart or a section."""
+    return PARAMETER_NAMES[parameter].capitalize()
+
+
+def spaced(identifier: str) -> str:
+    """``as found`` of ``as-found``."""
+    return identifier.replace("-", " ")
+
+
+def method_name(method: str) -> str:
+    """``turntable, analytic`` of ``turntable/analytic``."""
+    return spaced(method.replace("/", ", "))
 
 
 def day_of(at: datetime) -> str:

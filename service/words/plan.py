@@ -1,12 +1,11 @@
-"""A plan in words and people's units: verdicts, detection limits, time."""
+"""A plan in words: verdicts, what it would find and cannot see, time."""
 
-from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.causes import CATALOGUE
-from estimator.diagnosis.results import Limit
 from estimator.planning import Judged, Plan
 from estimator.results import PARAMETERS
-from estimator.session import ACCELEROMETER, GYROSCOPE
-from service.measures import DEGREE, MEASURES, THIN, Measure, in_measure, number
+from estimator.session import GYROSCOPE
+from service.measures import MEASURES, THIN, in_measure, number
+from service.words.limits import BlindCauses, SeenCause, blind_causes, seen_causes
 
 VERDICTS = {
     "enough": "enough: U leaves the tolerance the share that was asked for",
@@ -14,54 +13,21 @@ VERDICTS = {
     "undecidable": "undecidable: U exceeds the tolerance, or nothing is observed",
     "not judged": "no tolerance was given",
 }
-HOUR = 3600.0
-ANGLE = MEASURES["accelerometer", "axis"]
+"""What the verdicts of a plan mean."""
 UNSEEN = "not observable"
-OF_GYROS = {cause.identifier for cause in CATALOGUE if cause.kind == GYROSCOPE}
+OF_GYROS = frozenset(cause.identifier for cause in CATALOGUE if cause.kind == GYROSCOPE)
+"""Causes that an accelerometer cannot have."""
 
 
-def _limit_measures(kind: str) -> dict[str, Measure]:
-    """People's unit of every SI unit of a cause's amplitude; the input is m/s² or rad/s."""
-    zero = MEASURES[kind, "bias"]
-    per = ("g", STANDARD_GRAVITY) if kind == ACCELEROMETER else ("(°/s)", DEGREE)
-    top = ("µg", 1e6 / STANDARD_GRAVITY) if kind == ACCELEROMETER else ("µ°/s", 1e6 / DEGREE)
-    return {
-        "m/s²": zero,
-        "rad": ANGLE,
-        "1": Measure("ppm", 1e6),
-        "m/s²/K": Measure(f"{zero.label}/°C", zero.factor),
-        "1/K": Measure("ppm/°C", 1e6),
-        "m/s²/(K/s)": Measure(f"{zero.label}/(°C/h)", zero.factor / HOUR),
-        "m/s²/s": Measure(f"{zero.label}/h" if kind == ACCELEROMETER else "°/h²", zero.factor * HOUR),
-        "1/s": Measure("ppm/h", 1e6 * HOUR),
-        "rad/s": Measure(f"{ANGLE.label}/h", ANGLE.factor * HOUR),
-        "(m/s²)⁻¹": Measure(f"{top[0]}/{per[0]}²", top[1] * per[1] ** 2),
-        "(m/s²)⁻²": Measure(f"{top[0]}/{per[0]}³", top[1] * per[1] ** 3),
-        "(rad/s)/(m/s²)": Measure("°/h/g", STANDARD_GRAVITY * 3600 / DEGREE),
-    }
+def seen(plan: Plan) -> tuple[SeenCause, ...]:
+    """Causes that the plan would find, with the size from which on."""
+    return seen_causes(plan.limits, {sensor.kind for sensor in plan.schedule.sensors})
 
 
-def limit_in_words(limit: Limit, kind: str) -> str:
-    """``12 µg``, or why the plan cannot see the cause."""
-    if limit.amplitude is None:
-        return limit.reason.replace("the session", "the plan")
-    if not limit.amplitude:
-        return "corrected where it is found"
-    units = _limit_measures(kind)
-    worst = max(limit.amplitude)
-    unit = units[limit.units[limit.amplitude.index(worst)]] if limit.units else Measure("", 1.0)
-    return f"{number(float(f'{worst * unit.factor:.2g}'))}{THIN}{unit.label}"
-
-
-def seen(plan: Plan) -> tuple[Limit, ...]:
-    """Causes that the plan would find, with a size."""
-    return tuple(limit for limit in plan.limits if limit.amplitude)
-
-
-def blind(plan: Plan) -> tuple[Limit, ...]:
+def blind(plan: Plan) -> tuple[BlindCauses, ...]:
     """Causes that the plan cannot see; what only gyros have is left out where there are none."""
     has_gyros = any(s.kind == GYROSCOPE for s in plan.schedule.sensors)
-    return tuple(one for one in plan.limits if one.amplitude is None and (has_gyros or one.cause not in OF_GYROS))
+    return blind_causes([one for one in plan.limits if has_gyros or one.cause not in OF_GYROS])
 
 
 def unobserved(plan: Plan) -> str:
@@ -82,16 +48,16 @@ def sigma_in_words(judged: Judged, coverage: float) -> str:
     """``±2.1 µg``: the expanded uncertainty."""
     if judged.sigma is None:
         return UNSEEN
-    unit = MEASURES[judged.kind, judged.parameter]
-    return f"±{number(float(f'{coverage * judged.sigma * unit.factor:.2g}'))}{THIN}{unit.label}"
+    measure = MEASURES[judged.kind, judged.parameter]
+    return f"±{number(float(f'{coverage * judged.sigma * measure.factor:.2g}'))}{THIN}{measure.label}"
 
 
 def tolerance_in_words(judged: Judged) -> str:
     """``of 50 µg``, empty where none was given."""
     if judged.tolerance is None:
         return ""
-    unit = MEASURES[judged.kind, judged.parameter]
-    return f"of {number(in_measure(judged.tolerance, unit))}{THIN}{unit.label}"
+    measure = MEASURES[judged.kind, judged.parameter]
+    return f"of {number(in_measure(judged.tolerance, measure))}{THIN}{measure.label}"
 
 
 def duration(seconds: float) -> str:

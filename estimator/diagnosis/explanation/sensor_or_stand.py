@@ -10,12 +10,13 @@ more. So *before* is taken at the parameters of the extended model: what that le
 import numpy as np
 
 from estimator.diagnosis.explanation.rivals import amplitude
+from estimator.diagnosis.results import ParitySplit
 from estimator.diagnosis.selection.search_state import Found, Search
 from estimator.diagnosis.signatures.scores import Scored
 from estimator.session import Array
 
 
-def parity_split(state: Search, found: Found) -> dict[str, float] | None:
+def parity_split(state: Search, found: Found) -> ParitySplit | None:
     """χ² in parity space and in the range of the axes, with the effect left in and taken out.
 
     None for three sensors, which have no parity.
@@ -32,13 +33,13 @@ def parity_split(state: Search, found: Found) -> dict[str, float] | None:
     own = signature_share(state, found.best)
     parity_before, range_before = energies(state, before)
     parity_after, range_after = energies(state, after)
-    return {
-        "signature_in_parity": own,
-        "parity_before": parity_before,
-        "parity_after": parity_after,
-        "range_before": range_before,
-        "range_after": range_after,
-    }
+    return ParitySplit(
+        signature_in_parity=own,
+        parity_before=parity_before,
+        parity_after=parity_after,
+        range_before=range_before,
+        range_after=range_after,
+    )
 
 
 def energies(state: Search, z: Array) -> tuple[float, float]:

@@ -9,6 +9,7 @@ from service.api.schemas.fields import LongText, Name
 from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState
 from service.records.model import Scope
+from service.storage.diagnosis_document import evidence_to_dict
 
 
 def _with_a_space(scope: Any) -> Any:
@@ -17,6 +18,7 @@ def _with_a_space(scope: Any) -> Any:
 
 
 AnyScope = Annotated[Scope, BeforeValidator(_with_a_space)]
+AnyEvidence = Annotated[dict[str, Any], BeforeValidator(evidence_to_dict)]
 
 
 class DiagnosisDocument(BaseModel):
@@ -26,7 +28,7 @@ class DiagnosisDocument(BaseModel):
     unit: str = Field(description="Serial number of the unit.")
     findings: list[dict[str, Any]] = Field(
         description="Named causes, strongest first: cause, sensors, amplitude and sigma in SI, p_value, alternatives, "
-        "what would tell them apart, ranking, sentence, advice."
+        "what would distinguish them, ranking, sentence, advice."
     )
     unexplained: bool = Field(description="Whether there is structure that no known cause explains.")
     structures: list[dict[str, Any]] = Field(description="Where that structure lives.")
@@ -84,7 +86,7 @@ class ModelSchema(BaseModel):
     cause: str = Field(description="Identifier of the cause.")
     sensors: list[str] = Field(description="Sensors that it acts on; none for a cause of stand or fixture.")
     session: str = Field(description="The session that showed it.")
-    evidence: dict[str, Any] = Field(description="p-value, strength, amplitude with sigma, and gain of the finding.")
+    evidence: AnyEvidence = Field(description="p-value, strength, amplitude with sigma, and gain of the finding.")
     accepted_by: str = Field(description="Who accepted it.")
     note: str = Field(description="Why.")
     accepted_at: datetime = Field(description="When, UTC.")

@@ -2,17 +2,18 @@
 
 from collections.abc import Iterator
 from datetime import datetime
-from typing import Any
 
-from estimator.causes.catalogue import cause
+from estimator.causes import cause
+from estimator.diagnosis import Finding
 from service.flows.flagging.settle import Found, Occasion, settle
 from service.judging.model_in_force import in_force
-from service.records.diagnosis import StoredDiagnosis
+from service.records.diagnosis import Diagnosed, DiagnosisState, StoredDiagnosis
 from service.records.flag import Concern, Flag, Matter
 from service.records.model import ModelRevision
 from service.records.session import StoredSession
 from service.storage.store import Store
-from service.words.diagnosis import UNEXPLAINED, in_words, listed
+from service.words.causes import what_is_wrong
+from service.words.diagnosis import unexplained_in
 from service.words.names import day_of
 
 MATTERS = (Matter.CAUSE, Matter.UNEXPLAINED, Matter.STAND)
@@ -23,11 +24,12 @@ def flag_diagnosis(store: Store, made: StoredDiagnosis, at: datetime) -> None:
     """Settles the unit's flags; the diagnosis of an older session than its latest, or a failed one, says nothing."""
     session = store.sessions.get(made.session)
     summary = store.fleet.unit(session.unit)
-    if made.document is None or summary is None or summary.last_session != session.id:
+    if made.state is DiagnosisState.FAILED or summary is None or summary.last_session != session.id:
         return
     unit = store.units.hold(session.unit)
     opened = tuple(flag for flag in store.flags.open_of(unit) if flag.matter in MATTERS)
-    concerns = tuple(_concerns(made.document, session, in_force(in_force(store.models.of_session(session.id)))))
+    accepted = in_force(store.models.of_session(session.id))
+    concerns = () if made.found is None else tuple(_concerns(made.found, session, accepted))
     gone = GONE.format(day=day_of(session.started_at))
     clear = {flag.key: gone for flag in opened if _speaks_of(session, flag)}
     settle(store, Occasion(unit, session.id, at), opened, Found(concerns, clear))
@@ -38,45 +40,29 @@ def _speaks_of(session: StoredSession, flag: Flag) -> bool:
     return flag.matter is not Matter.STAND or flag.place == session.stand
 
 
-def _concerns(
-    document: dict[str, Any], session: StoredSession, accepted: tuple[ModelRevision, ...]
-) -> Iterator[Concern]:
+def _concerns(found: Diagnosed, session: StoredSession, accepted: tuple[ModelRevision, ...]) -> Iterator[Concern]:
     """At most one a matter and place; what an engineer accepted into the model is known and raises nothing."""
     known = {(revision.cause, sensor) for revision in accepted for sensor in revision.sensors or ("",)}
     done: set[tuple[str, str]] = set()
-    for finding in document["findings"]:
+    for finding in found.findings:
         for concern in _of_finding(finding, session, known):
             if concern.key not in done:
                 done.add(concern.key)
                 yield concern
-    if document["unexplained"]:
-        yield Concern(Matter.UNEXPLAINED, "", 1, _unexplained(document["structures"]))
+    if found.structures:
+        yield Concern(Matter.UNEXPLAINED, "", 1, unexplained_in(found.structures))
 
 
-def _of_finding(finding: dict[str, Any], session: StoredSession, known: set[tuple[str, str]]) -> Iterator[Concern]:
+def _of_finding(finding: Finding, session: StoredSession, known: set[tuple[str, str]]) -> Iterator[Concern]:
     """Where several causes are equally possible, all of them must act on the sensor, or all on the stand.
 
     A mere change since earlier sessions is left to the tolerances: they say whether it matters.
     """
-    name = finding["cause"]
-    possible = [cause(identifier) for identifier in (name, *finding["alternatives"])]
+    name = finding.cause
+    possible = [cause(identifier) for identifier in (name, *finding.alternatives)]
     if all(one.is_of_sensor for one in possible):
-        for sensor in finding["sensors"]:
+        for sensor in finding.sensors:
             if (name, sensor) not in known:
-                yield Concern(Matter.CAUSE, sensor, 1, _sentence(finding))
+                yield Concern(Matter.CAUSE, sensor, 1, what_is_wrong(finding))
     elif all(one.scope == "stand" for one in possible) and session.stand is not None and (name, "") not in known:
-        yield Concern(Matter.STAND, session.stand, 1, _sentence(finding))
-
-
-def _sentence(finding: dict[str, Any]) -> str:
-    """What is wrong; of several equal causes their names."""
-    if not finding["alternatives"]:
-        return str(finding["sentence"])
-    names = [in_words(name) for name in (finding["cause"], *finding["alternatives"])]
-    who = f" ({', '.join(finding['sensors'])})" if finding["sensors"] else ""
-    return f"Cannot tell which: {listed(names)}{who}."
-
-
-def _unexplained(structures: list[dict[str, Any]]) -> str:
-    sensors = sorted({sensor for structure in structures for sensor in structure["sensors"]})
-    return f"{UNEXPLAINED}{' in ' + ', '.join(sensors) if sensors else ''}."
+        yield Concern(Matter.STAND, session.stand, 1, what_is_wrong(finding))

@@ -12,11 +12,10 @@ from service.reports.certificate.results import ResultTable, result_tables
 from service.reports.typeset import typeset
 from service.views.certificate import CertifiedSession
 from service.words.conditions import CONDITIONS, Condition, condition_of
-from service.words.finding import in_words
 from service.words.fit import FitWords, fit_in_words
 from service.words.known import combination_in_words
 from service.words.motion import motions_in_words
-from service.words.names import day_of
+from service.words.names import day_of, spaced
 
 
 @dataclass(frozen=True)
@@ -89,7 +88,7 @@ def certificate(found: CertifiedSession) -> Certificate:
         states=tuple(reversed(CONDITIONS)),
         tables=result_tables(found, k),
         together=tuple(line.text for line in motions_in_words(found.report.motions, k)),
-        stage=in_words(session.stage or ""),
+        stage=spaced(session.stage or ""),
         pair=None if found.pair is None else pair_of(found.pair),
         known=tuple(Fact(name, words) for name, words in known),
         diagnosis=found.diagnosis.summary,

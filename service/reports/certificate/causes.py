@@ -21,8 +21,8 @@ class Cause:
 
 def causes_of(found: CertifiedSession) -> tuple[Cause, ...]:
     """The findings of the diagnosis, in their order; none where there is no diagnosis yet."""
-    document = found.diagnosis.document
-    findings = () if document is None else document["findings"]
+    diagnosis = found.diagnosis.found
+    findings = () if diagnosis is None else diagnosis.findings
     views = (finding_view(finding, found.revisions) for finding in findings)
     return tuple(
         Cause(

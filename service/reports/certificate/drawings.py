@@ -9,7 +9,7 @@ from service.charts.tracks import tracks_of
 from service.records.decision import Decision
 from service.reports.pictures import picture
 from service.views.certificate import CertifiedSession
-from service.words.finding import in_words
+from service.words.names import spaced
 
 MOST_HISTORIES = 6
 """Histories that are drawn, of the parameters closest to their tolerance."""
@@ -36,7 +36,7 @@ def histories_of(found: CertifiedSession) -> tuple[Drawing, ...]:
     for tracks in tracks_of(found.history, found.services):
         charts = history_charts(tracks, found.services)
         drawn |= {
-            (track.parameter, track.sensor): _drawing(charts, place, f"{track.sensor} {in_words(track.parameter)}")
+            (track.parameter, track.sensor): _drawing(charts, place, f"{track.sensor} {spaced(track.parameter)}")
             for place, track in enumerate(tracks)
             if (track.parameter, track.sensor) in wanted and len(track.points) > 1
         }

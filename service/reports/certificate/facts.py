@@ -8,8 +8,8 @@ from estimator.session import ACCELEROMETER, IN_SERVICE, CalibrationSession
 from service.measures import THIN, number, size_in_words
 from service.records.session import StoredSession
 from service.views.certificate import CertifiedSession
-from service.words.finding import cause_on, in_words
-from service.words.names import day_of
+from service.words.causes import cause_on
+from service.words.names import day_of, method_name, spaced
 
 STEADY = 0.05
 """°C: a temperature that moved by less is one number, as it is printed to a tenth."""
@@ -36,7 +36,7 @@ def facts_of(found: CertifiedSession) -> tuple[Fact, ...]:
         Fact("Unit", session.unit),
         Fact("Unit type", found.unit_type.name),
         Fact("Sensors", _sensors(source)),
-        Fact("Programme", in_words(session.programme)),
+        Fact("Programme", spaced(session.programme)),
         Fact("Measured", f"{day_of(session.started_at)}, {session.started_at:%H:%M} UTC"),
         Fact("Operator", session.operator or "not stated"),
         Fact("Stand", _stand(source)),
@@ -87,7 +87,7 @@ def _judged_against(found: CertifiedSession) -> str:
 def _state(found: CertifiedSession) -> str:
     """As found or as left, and what was last done to the unit."""
     last = f"last service: {found.services[-1].kind}, {day_of(found.services[-1].at)}" if found.services else ""
-    stated = [part for part in (in_words(found.report.session.stage or ""), last) if part]
+    stated = [part for part in (spaced(found.report.session.stage or ""), last) if part]
     return ", ".join(stated) or "no service recorded"
 
 
@@ -99,7 +99,7 @@ def record_of(found: CertifiedSession) -> tuple[Fact, ...]:
     return (
         Fact("Input file", f"{session.filename}, {size_in_words(session.size)}"),
         Fact("Uploaded", f"{day_of(session.uploaded_at)}, {session.uploaded_at:%H:%M} UTC"),
-        Fact("Method", found.report.calibration.method.replace("/", ", ").replace("-", " ")),
+        Fact("Method", method_name(found.report.calibration.method)),
         Fact("Model revision", model),
         Fact("Session", session.id),
         Fact("Software", f"imu-health {found.software}"),

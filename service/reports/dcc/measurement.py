@@ -13,7 +13,7 @@ from service.reports.dcc.elements import DCC, conformity, english, software
 from service.reports.dcc.quantities import ONE, deviation_measure, quantity, value_measure
 from service.reports.xml import Element
 from service.views.certificate import CertifiedSession
-from service.words.finding import in_words
+from service.words.names import spaced
 
 
 def measurement(found: CertifiedSession) -> Element:
@@ -24,7 +24,7 @@ def measurement(found: CertifiedSession) -> Element:
     equipment = () if stand is None else (english("name", f"Stand {stand.id}"),)
     decisions = {(d.sensor, d.parameter): d for d in found.report.decisions if not session.is_reference}
     return DCC.measurementResult(
-        english("name", f"{title_of(session)}: {in_words(session.programme)}"),
+        english("name", f"{title_of(session)}: {spaced(session.programme)}"),
         DCC.usedMethods(method),
         DCC.usedSoftware(software(found.software)),
         *(DCC.measuringEquipments(DCC.measuringEquipment(name)) for name in equipment),

@@ -1,13 +1,12 @@
 """Diagnoses as they were made: the whole imu-diagnosis/1, deflated, and its line."""
 
-import json
 import zlib
-from typing import Any
 
 from sqlalchemy import delete, select
 
 from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState, DiagnosisSummary, StoredDiagnosis
+from service.storage.diagnosis_document import read_diagnosis
 from service.storage.queries.base import Queries
 from service.storage.tables import DiagnosisRow
 
@@ -29,7 +28,7 @@ class Diagnoses(Queries):
             model_revision=found.model_revision,
             state=found.state,
             summary=found.summary,
-            document=None if found.document is None else _deflated(found.document),
+            document=None if found.document is None else zlib.compress(found.document.encode()),
             verdict_after=found.verdict_after,
             estimator_version=found.estimator_version,
             created_at=found.created_at,
@@ -40,12 +39,14 @@ class Diagnoses(Queries):
         row = self._session.get(DiagnosisRow, session)
         if row is None:
             return None
+        document = None if row.document is None else zlib.decompress(row.document).decode()
         return StoredDiagnosis(
             session=row.session_id,
             model_revision=row.model_revision,
             state=DiagnosisState(row.state),
             summary=row.summary,
-            document=None if row.document is None else json.loads(zlib.decompress(row.document)),
+            found=None if document is None else read_diagnosis(document),
+            document=document,
             verdict_after=None if row.verdict_after is None else Verdict(row.verdict_after),
             estimator_version=row.estimator_version,
             created_at=row.created_at,
@@ -60,7 +61,3 @@ class Diagnoses(Queries):
     def exists(self, session: str) -> bool:
         """Whether a session was diagnosed."""
         return self.summary(session) is not None
-
-
-def _deflated(document: dict[str, Any]) -> bytes:
-    return zlib.compress(json.dumps(document, separators=(",", ":"), allow_nan=False).encode())

@@ -1,13 +1,12 @@
 """Accepted causes: numbered revisions of the models of units, unit types and stands."""
 
 from dataclasses import dataclass
-from datetime import datetime
-from typing import Any
 
 from sqlalchemy import and_, func, or_, select
 
 from service.errors import NotFoundError
-from service.records.model import ModelRevision, NewModel, Scope
+from service.records.model import ModelRevision, Scope
+from service.storage.diagnosis_document import evidence_from_dict, evidence_to_dict
 from service.storage.queries.base import Queries
 from service.storage.tables import ModelRow, SessionRow, StandRow, UnitRow, UnitTypeRow
 
@@ -25,27 +24,19 @@ class ModelQuery:
 class Models(Queries):
     """Numbered revisions; a row is written once."""
 
-    def add(
-        self,
-        new: NewModel,
-        subject: str,
-        sensors: tuple[str, ...],
-        *,
-        session: str,
-        evidence: dict[str, Any],
-        at: datetime,
-    ) -> ModelRevision:
-        """Stores an accepted cause under the next number."""
+    def add(self, new: ModelRevision) -> ModelRevision:
+        """Stores a revision under the next number."""
         row = ModelRow(
             scope=new.scope,
-            subject=subject,
+            subject=new.subject,
             cause=new.cause,
-            sensors=list(sensors),
-            session_id=session,
-            evidence=evidence,
-            accepted_by=new.by,
+            sensors=list(new.sensors),
+            session_id=new.session,
+            evidence=evidence_to_dict(new.evidence),
+            accepted_by=new.accepted_by,
             note=new.note,
-            accepted_at=at,
+            accepted_at=new.accepted_at,
+            withdraws=new.withdraws,
         )
         self._session.add(row)
         self._session.flush()
@@ -62,24 +53,6 @@ class Models(Queries):
         """All revisions of one model, oldest first."""
         query = select(ModelRow).where(ModelRow.scope == scope, ModelRow.subject == subject).order_by(ModelRow.id)
         return tuple(map(_revision, self._session.scalars(query)))
-
-    def withdraw(self, known: ModelRevision, by: str, note: str, at: datetime) -> ModelRevision:
-        """Stores under the next number that a revision is withdrawn."""
-        row = ModelRow(
-            scope=known.scope,
-            subject=known.subject,
-            cause=known.cause,
-            sensors=list(known.sensors),
-            session_id=known.session,
-            evidence={},
-            accepted_by=by,
-            note=note,
-            accepted_at=at,
-            withdraws=known.id,
-        )
-        self._session.add(row)
-        self._session.flush()
-        return _revision(row)
 
     def page(self, wanted: ModelQuery) -> tuple[ModelRevision, ...]:
         """Revisions, newest first."""
@@ -133,7 +106,7 @@ def _revision(row: ModelRow) -> ModelRevision:
         cause=row.cause,
         sensors=tuple(row.sensors),
         session=row.session_id,
-        evidence=row.evidence,
+        evidence=evidence_from_dict(row.evidence),
         accepted_by=row.accepted_by,
         note=row.note,
         accepted_at=row.accepted_at,

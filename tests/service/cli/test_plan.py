@@ -42,7 +42,7 @@ def test_people_read_tables(run: Run) -> None:
     ran = run("plan", "--alpha", 40, "--tolerance", "bias=50", "--runs", "direct", "-n", 12)
     assert "do not reach the tolerance of bias" in ran.out
     assert "of 50\u202fµg, undecidable" in ran.out
-    assert "the plan lacks both runs" in ran.out
+    assert "the session lacks both runs" in ran.out
     assert "Not observable: scale and bias and axis of every sensor" in ran.out
 
 

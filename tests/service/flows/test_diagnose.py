@@ -97,7 +97,7 @@ def test_one_session_is_not_diagnosed_twice_at_once() -> None:
 def test_the_next_session_is_calibrated_with_the_accepted_cause(warm: Storage) -> None:
     revision = accept(warm)
     assert (revision.id, revision.subject, revision.sensors) == (1, WARM["unit"], ("A5",))
-    assert revision.evidence["gain"]["after"]["chi2_per_dof"] < revision.evidence["gain"]["before"]["chi2_per_dof"]
+    assert revision.evidence.gain.after.chi2_per_dof < revision.evidence.gain.before.chi2_per_dof
     later = stored(warm, started_at="2026-08-01T09:00:00Z")
     with warm.database.reading() as store:
         assert store.sessions.get(later).revision == 1

@@ -1,5 +1,6 @@
 """Alignments, rate tables and recordings in service through the flows that were made for calibrations."""
 
+from dataclasses import replace
 from datetime import UTC, datetime
 
 import pytest
@@ -9,7 +10,7 @@ from service.flows.recalibrate import recalibrate
 from service.flows.receive import upload
 from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState
-from service.records.model import NewModel, Scope
+from service.records.model import ModelRevision, Scope
 from service.storage import Storage
 from tests.conftest import Holding
 from tests.service.recordings import recording_bytes
@@ -17,7 +18,10 @@ from tests.service.sessions import session_bytes, session_id
 from tests.service.turntable import alignment_bytes, rate_table_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
-CUBIC = NewModel("cubic-nonlinearity", Scope.UNIT, "K. Ito", "seen in three sessions")
+CUBIC = ModelRevision(
+    id=0, scope=Scope.UNIT, subject="BA-017", cause="cubic-nonlinearity", sensors=("A3",), session="", evidence=None,
+    accepted_by="K. Ito", note="seen in three sessions", accepted_at=NOW,
+)  # fmt: skip
 OTHERS = {"alignment": alignment_bytes(unit="BA-017"), "rate table": rate_table_bytes(unit="BA-017")}
 OTHERS["recording"] = recording_bytes()
 
@@ -30,7 +34,7 @@ def stored(storage: Storage, content: bytes) -> str:
 def accepted(storage: Storage, session: str) -> None:
     """A cause of A3 in the unit's model."""
     with storage.database.writing() as store:
-        store.models.add(CUBIC, "BA-017", ("A3",), session=session, evidence={}, at=NOW)
+        store.models.add(replace(CUBIC, session=session))
 
 
 @pytest.mark.parametrize("programme", OTHERS)

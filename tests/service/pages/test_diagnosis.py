@@ -1,17 +1,20 @@
 """The page "What the simulation gets wrong" over HTTP: what it says first, and the forms that it holds."""
 
 import json
+import zlib
 
 import httpx
 import pytest
+from sqlalchemy import text as sql
 
 from service.app import create_app
-from service.words.finding import shape_in_words
+from service.storage import Storage
 from tests.conftest import Holding, SettingsHolding
 from tests.service.diagnosed import ALIASES, TEMPERATURE, UNEXPLAINED, drawn, files_of, held, warm
 from tests.service.pages.test_http import HTML, MOST_QUERIES, counted
 from tests.service.sessions import session_bytes, session_id
 from tests.serving import http_client
+from tests.stock import stores
 
 ACCEPT = {"cause": "bias-temperature", "scope": "unit", "by": "K. Ito", "note": "seen twice"}
 FIRST = {
@@ -94,13 +97,6 @@ def test_the_page_asks_few_questions_and_stays_light(settings_holding: SettingsH
     assert 0 < len(statements) <= MOST_QUERIES
 
 
-def test_every_sensor_s_own_shape_is_said() -> None:
-    shapes = [{"row": 14.0}, {"row": 20.0}]
-    finding = {"cause": "bias-jump", "sensors": ["A1", "A2"], "nonlinear": shapes[0], "nonlinear_each": shapes}
-    assert shape_in_words(finding) == "A1: from row 14; A2: from row 20"
-    assert shape_in_words(finding | {"nonlinear_each": [shapes[0]] * 2}) == "from row 14"
-
-
 def test_an_accepted_cause_can_be_withdrawn(holding: Holding) -> None:
     client, id = held(holding, TEMPERATURE)
     client.post(f"/sessions/{id}/diagnosis/accept", data=ACCEPT, headers=HTML)
@@ -113,3 +109,28 @@ def test_an_accepted_cause_can_be_withdrawn(holding: Holding) -> None:
     assert "calibrated without it" in shown.text
     again = client.post(f"/api/v1/models/{model['id']}/withdraw", json=form)
     assert again.status_code == 409
+
+
+def test_a_cause_that_this_version_does_not_know_is_shown_by_its_identifier(settings_holding: SettingsHolding) -> None:
+    files = files_of(drawn(TEMPERATURE))
+    settings, id = settings_holding(*files), session_id(files[-1])
+    with stores(settings) as storage, http_client(create_app(settings)) as client:
+        page(client, id)
+        rename_cause(storage, id, "bias-temperature", "bias-hum")
+        text = page(client, id)
+        again = client.post(f"/api/v1/sessions/{id}/diagnosis/accept", json=ACCEPT | {"cause": "bias-hum"})
+    assert "bias hum (A5)" in text
+    assert "not a property that a model can hold" in text
+    assert again.status_code == 422
+
+
+def rename_cause(storage: Storage, id: str, old: str, new: str) -> None:
+    """Makes a stored diagnosis one of a version that called a cause otherwise."""
+    with storage.database.reading() as store:
+        stored = store.diagnoses.get(id)
+    assert stored is not None
+    assert stored.document is not None
+    changed = zlib.compress(stored.document.replace(f'"{old}"', f'"{new}"').encode())
+    query = sql("UPDATE diagnoses SET document = :changed WHERE session_id = :id")
+    with storage.database.engine.begin() as connection:
+        connection.execute(query, {"changed": changed, "id": id})

@@ -6,11 +6,11 @@ from datetime import timedelta
 from service.charts.history import history_charts
 from service.charts.tracks import tracks_of
 from service.pages.fleet import FleetView, fleet_page
-from service.pages.outlook import next_calibration
 from service.records.decision import Verdict
 from service.records.outlook import FanPoint, ParameterTrend, Rate, RiskPoint, UnitOutlook
 from service.records.unit import FleetCondition
 from service.views.standouts import standouts
+from service.words.outlook import next_calibration
 from tests.service.pages.records import NOON, bias_point, unit_summary
 
 MICRO_G = 9.80665e-6

@@ -1,7 +1,7 @@
 """When a unit must come back, in words: the date, why, what moves, and the risk of waiting."""
 
 from dataclasses import dataclass
-from datetime import datetime, timedelta
+from datetime import timedelta
 from math import floor, log10
 
 from service.measures import HARD, THIN, Measure, deviation_measure, in_words, signed
@@ -13,6 +13,7 @@ LEVEL = 0.01
 FAR = 5.0
 """Standard uncertainties from which on a distance from the reference is beyond doubt."""
 WAITS = (timedelta(days=91), timedelta(days=182), timedelta(days=365))
+"""After the due date: a quarter, half a year and a year, as calibrations are put off."""
 
 
 @dataclass(frozen=True)
@@ -49,11 +50,6 @@ def next_calibration(outlook: UnitOutlook) -> NextCalibration:
     )
 
 
-def due_in_words(due: datetime | None) -> str:
-    """``14 Mar 2027``; a dash without a date."""
-    return "–" if due is None else day_of(due)
-
-
 def _headline(outlook: UnitOutlook) -> str:
     if outlook.due is None:
         return "Next calibration: not known"
@@ -85,15 +81,15 @@ def _is_said(trend: ParameterTrend, judged: int) -> bool:
 
 
 def _wandered(trend: ParameterTrend) -> str:
-    unit = deviation_measure(trend.kind, trend.parameter, abs(trend.level))
-    moved = signed(trend.level, 2 * trend.level_sigma, unit)
+    measure = deviation_measure(trend.kind, trend.parameter, abs(trend.level))
+    moved = signed(trend.level, 2 * trend.level_sigma, measure)
     allowed = in_words(trend.kind, trend.parameter, trend.tolerance)
     return f"{_place(trend)} has moved by {moved}, at no steady rate; {allowed} are allowed."
 
 
 def _drift(trend: ParameterTrend) -> str:
-    unit = deviation_measure(trend.kind, trend.parameter, abs(trend.rate_per_year))
-    a_year = Measure(f"{unit.label} a year", unit.factor)
+    measure = deviation_measure(trend.kind, trend.parameter, abs(trend.rate_per_year))
+    a_year = Measure(f"{measure.label} a year", measure.factor)
     rate = signed(trend.rate_per_year, 2 * trend.rate_sigma, a_year)
     return f"{_place(trend)} drifts by {rate}; {in_words(trend.kind, trend.parameter, trend.tolerance)} are allowed."
 

@@ -1,0 +1,158 @@
+"""imu-diagnosis/1: written from what the estimator found, and read back, as this version or an earlier one wrote it."""
+
+import json
+from dataclasses import asdict
+from math import isfinite, nan
+from typing import Any
+
+from estimator.diagnosis import Diagnosis, Finding
+from estimator.diagnosis.results import Gain, Limit, ParitySplit, Rival, Score, Separation, Structure, Transfer
+from service.records.diagnosis import Diagnosed
+from service.records.model import Evidence
+from service.storage.calibration_document import calibration_from_dict, residuals_from_dict
+from service.words.diagnosis import NOT_APPLICABLE
+
+
+def diagnosis_to_dict(diagnosis: Diagnosis) -> dict[str, Any]:
+    """imu-diagnosis/1; a number that is not finite becomes null."""
+    document: dict[str, Any] = _finite(diagnosis.to_dict())
+    return document
+
+
+def inapplicable_to_dict(unit: str) -> dict[str, Any]:
+    """imu-diagnosis/1 of a session of a programme in which no causes are looked for."""
+    empty: dict[str, Any] = {"findings": [], "unexplained": False, "structures": [], "limits": []}
+    unmade = dict.fromkeys(("gain", "calibration", "residuals_before"))
+    return {"format": "imu-diagnosis/1", "unit": unit, **empty, **unmade, "notes": [NOT_APPLICABLE]}
+
+
+def written(document: dict[str, Any]) -> str:
+    """The document as it is stored and handed out."""
+    return json.dumps(document, separators=(",", ":"), allow_nan=False)
+
+
+def read_diagnosis(text: str) -> Diagnosed | None:
+    """What was written, null as NaN; None of a programme in which no causes are looked for."""
+    document = json.loads(text)
+    if document["gain"] is None:
+        return None
+    return Diagnosed(
+        findings=tuple(_finding(entry) for entry in document["findings"]),
+        structures=tuple(_structure(entry) for entry in document.get("structures", ())),
+        gain=_gain(document["gain"]),
+        limits=tuple(_limit(entry) for entry in document["limits"]),
+        notes=tuple(document.get("notes", ())),
+        calibration=calibration_from_dict(document["calibration"]),
+        residuals_before=residuals_from_dict(document["residuals_before"]),
+    )
+
+
+def evidence_to_dict(evidence: Evidence | None) -> dict[str, Any]:
+    """What a model revision rests on; empty of one that withdraws another."""
+    return {} if evidence is None else _finite(asdict(evidence))
+
+
+def evidence_from_dict(entry: dict[str, Any]) -> Evidence | None:
+    """What `evidence_to_dict` wrote."""
+    if not entry:
+        return None
+    return Evidence(
+        p_value=_number(entry["p_value"]),
+        strength=_number(entry["strength"]),
+        amplitude=_numbers(entry["amplitude"]),
+        sigma=_numbers(entry["sigma"]),
+        units=tuple(entry["units"]),
+        nonlinear=_named(entry["nonlinear"]),
+        alternatives=tuple(entry["alternatives"]),
+        sentence=entry["sentence"],
+        gain=_gain(entry["gain"]),
+    )
+
+
+def _finite(value: Any) -> Any:
+    match value:
+        case dict():
+            return {key: _finite(inner) for key, inner in value.items()}
+        case list() | tuple():
+            return [_finite(inner) for inner in value]
+        case float():
+            return value if isfinite(value) else None
+        case _:
+            return value
+
+
+def _number(value: float | None) -> float:
+    return nan if value is None else value
+
+
+def _numbers(values: list[float | None]) -> tuple[float, ...]:
+    return tuple(map(_number, values))
+
+
+def _named(values: dict[str, float | None]) -> dict[str, float]:
+    return {name: _number(value) for name, value in values.items()}
+
+
+def _finding(entry: dict[str, Any]) -> Finding:
+    return Finding(
+        cause=entry["cause"],
+        sensors=tuple(entry["sensors"]),
+        amplitude=_numbers(entry["amplitude"]),
+        sigma=_numbers(entry["sigma"]),
+        units=tuple(entry["units"]),
+        nonlinear=_named(entry["nonlinear"]),
+        nonlinear_each=tuple(map(_named, entry.get("nonlinear_each", ()))),  # absent from earlier versions
+        p_value=_number(entry["p_value"]),
+        strength=_number(entry["strength"]),
+        alternatives=tuple(entry["alternatives"]),
+        separations=tuple(map(_separation, entry["separations"])),
+        ranking=tuple(map(_rival, entry["ranking"])),
+        sentence=entry["sentence"],
+        advice=entry["advice"],
+        parity=None if entry["parity"] is None else ParitySplit(**_named(entry["parity"])),
+        new=entry["new"],
+    )
+
+
+def _separation(entry: dict[str, Any]) -> Separation:
+    return Separation(
+        cause=entry["cause"],
+        sensors=tuple(entry["sensors"]),
+        now=_number(entry["separation"]),
+        measurement=entry["measurement"],
+        then=entry["expected_separation"],
+    )
+
+
+def _rival(entry: dict[str, Any]) -> Rival:
+    share, strength = _number(entry["probability"]), _number(entry["strength"])
+    return Rival(entry["cause"], tuple(entry["sensors"]), share, strength)
+
+
+def _structure(entry: dict[str, Any]) -> Structure:
+    p_value, strength = _number(entry["p_value"]), _number(entry["strength"])
+    return Structure(entry["where"], tuple(entry["sensors"]), p_value, strength)
+
+
+def _gain(entry: dict[str, Any]) -> Gain:
+    before, after = _score(entry["before"]), _score(entry["after"])
+    earlier = entry.get("session")  # absent from earlier versions
+    return Gain(before, after, entry["held_out"], None if earlier is None else _transfer(earlier))
+
+
+def _transfer(entry: dict[str, Any]) -> Transfer:
+    return Transfer(entry["started_at"], _score(entry["before"]), _score(entry["after"]))
+
+
+def _score(entry: dict[str, float | None]) -> Score:
+    return Score(**_named(entry))
+
+
+def _limit(entry: dict[str, Any]) -> Limit:
+    amplitude = entry["amplitude"]
+    return Limit(
+        cause=entry["cause"],
+        amplitude=None if amplitude is None else _numbers(amplitude),
+        units=tuple(entry["units"]),
+        reason=entry["reason"],
+    )

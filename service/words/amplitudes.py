@@ -1,0 +1,58 @@
+"""How large a cause is, and where it sits, in people's measures."""
+
+from collections.abc import Iterator
+from math import isfinite
+
+from estimator.causes import find
+from estimator.diagnosis import Finding
+from service.measures import THIN, measured, number
+from service.words.amplitude_measures import amplitude_measure
+
+
+def amplitudes_of(finding: Finding) -> Iterator[str]:
+    """Every amplitude with its standard uncertainty; named by sensor where several share the cause."""
+    each = max(1, len(finding.amplitude) // max(1, len(finding.sensors)))
+    stated = zip(finding.amplitude, finding.sigma, finding.units, strict=False)
+    for k, (value, sigma, si_unit) in enumerate(stated):
+        if not _is_stated(value) and not _is_stated(sigma):
+            continue
+        largest = max(abs(x) if isfinite(x) else 0.0 for x in (value, sigma))
+        who = f"{finding.sensors[k // each]}: " if len(finding.sensors) > 1 else ""
+        which = f"{_part(finding.cause, k % each)} " if each > 1 else ""
+        yield f"{who}{which}{measured(value, sigma, amplitude_measure(finding.cause, si_unit, largest))}"
+
+
+def _is_stated(value: float) -> bool:
+    """Whether a number says anything: an amplitude that took no part is 0 ± 0."""
+    return isfinite(value) and value != 0
+
+
+def _part(cause: str, k: int) -> str:
+    """What one of several amplitudes is."""
+    known = find(cause)
+    return known.amplitude_words[k] if known and known.amplitude_words else f"k{k + 1} ="
+
+
+def shape_of(finding: Finding) -> str:
+    """``time constant 812 s``, ``from row 14``; ``A1: from row 14; A2: from row 20`` where they differ."""
+    each = finding.nonlinear_each
+    if len(each) < 2 or all(one == each[0] for one in each):
+        return _shape(finding.cause, finding.nonlinear)
+    shapes = (_shape(finding.cause, one) for one in each)
+    return "; ".join(f"{who}: {shape}" for who, shape in zip(finding.sensors, shapes, strict=False) if shape)
+
+
+def _shape(cause: str, nonlinear: dict[str, float]) -> str:
+    text = " and ".join(filter(None, (_place(cause, unit, value) for unit, value in nonlinear.items())))
+    known = find(cause)
+    return f"{known.shape_words if known else ''} {text}".strip() if text else ""
+
+
+def _place(cause: str, si_unit: str, value: float) -> str:
+    """One nonlinear parameter: a row, a side of the range, or a quantity."""
+    if si_unit.startswith("row"):
+        return f"row {number(value, 0)}"
+    if si_unit == "side":
+        return "upper side" if value > 0 else "lower side" if value < 0 else ""
+    measure = amplitude_measure(cause, si_unit, value)
+    return f"{number(value * measure.factor)}{THIN}{measure.label}"

@@ -1,0 +1,75 @@
+"""What else a finding could be: its equal alternatives, how to distinguish them, and the ranking of all causes."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from estimator.diagnosis import Finding
+from estimator.diagnosis.results import Separation
+from service.measures import HARD, number
+from service.words.causes import cause_on
+
+DISTINGUISHED = 3.0
+"""Expected separation, standard errors, below which a measurement would not help: the estimator's own bound."""
+SHOWN_SHARE = 5e-4
+"""Share of probability that is still shown: what rounds to a tenth of a per cent."""
+ALWAYS_SHOWN = 3
+"""Lines of the ranking that are shown however small their share."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of several causes that this session cannot distinguish."""
+
+    cause: str
+    name: str
+    share: str
+    now: str
+    """How far it is from the first one in this session."""
+    measurement: str
+    """What would distinguish it from the first one."""
+
+
+@dataclass(frozen=True)
+class Bar:
+    """One line of the ranking of causes."""
+
+    name: str
+    percent: str
+    width: float
+    """0 to 100."""
+
+
+def choices_of(finding: Finding) -> Iterator[Choice]:
+    """The named cause and its alternatives, as equals."""
+    apart = {separation.cause: separation for separation in finding.separations}
+    for name in (finding.cause, *finding.alternatives) if finding.alternatives else ():
+        share = sum(rival.probability for rival in finding.ranking if rival.cause == name)
+        yield Choice(name, cause_on(name, finding.sensors), _percent(share), *_apart(apart.get(name)))
+
+
+def _apart(separation: Separation | None) -> tuple[str, str]:
+    """How far a rival is now, and the measurement that would distinguish it with what to expect of it."""
+    if separation is None:
+        return "", ""
+    expected = separation.then or 0.0
+    if not separation.measurement or expected < DISTINGUISHED:
+        return _sigmas(separation.now), "no further session of this kind would; look at the hardware"
+    return _sigmas(separation.now), f"{separation.measurement} (expected {_sigmas(expected)} apart)"
+
+
+def _sigmas(value: float) -> str:
+    return f"{number(value, 1)}{HARD}σ"
+
+
+def ranking_of(finding: Finding) -> Iterator[Bar]:
+    """Rival causes with their shares; those that are out of the question are left out."""
+    for place, rival in enumerate(finding.ranking):
+        if place < ALWAYS_SHOWN or rival.probability > SHOWN_SHARE:
+            name = cause_on(rival.cause, rival.sensors)
+            yield Bar(name, _percent(rival.probability), 100 * rival.probability)
+
+
+def _percent(share: float) -> str:
+    if share > 1 - SHOWN_SHARE:
+        return f"over 99.9{HARD}%"
+    return f"{number(100 * share, 1)}{HARD}%" if share > SHOWN_SHARE else f"under 0.1{HARD}%"

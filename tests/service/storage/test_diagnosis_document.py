@@ -1,0 +1,70 @@
+"""A stored diagnosis comes back typed, whichever version wrote it."""
+
+import json
+from math import isnan
+from typing import Any
+
+import pytest
+
+from estimator import diagnose
+from estimator.reading import read_session
+from service.records.diagnosis import Diagnosed
+from service.storage.diagnosis_document import (
+    diagnosis_to_dict,
+    evidence_from_dict,
+    evidence_to_dict,
+    inapplicable_to_dict,
+    read_diagnosis,
+    written,
+)
+from tests.service.diagnosed import ALIASES, TEMPERATURE, UNEXPLAINED, drawn
+from tests.service.findings import earlier_document
+
+
+def read(**changes: Any) -> Diagnosed:
+    """An earlier document with something changed in its finding."""
+    found = read_diagnosis(json.dumps(earlier_document(**changes)))
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize("what", [TEMPERATURE, ALIASES, UNEXPLAINED])
+def test_what_was_found_comes_back(what: tuple[str, tuple[int, ...], str | None]) -> None:
+    before = diagnose(read_session(drawn(what).session))
+    after = read_diagnosis(written(diagnosis_to_dict(before)))
+    assert after is not None
+    assert (after.findings, after.structures) == (before.findings, before.structures)
+    assert (after.gain, after.limits, after.notes) == (before.gain, before.limits, before.notes)
+    assert after.calibration.to_dict() == before.calibration.to_dict()
+    assert after.residuals_before.to_dict() == before.baseline.residuals.to_dict()
+
+
+def test_an_earlier_version_gave_one_shape_for_all_sensors() -> None:
+    (finding,) = read().findings
+    assert (finding.nonlinear, finding.nonlinear_each) == ({"row": 14.0}, ())
+
+
+def test_an_earlier_version_looked_at_no_session_before() -> None:
+    assert read().gain.session is None
+
+
+def test_a_number_that_was_not_finite_is_no_number_again() -> None:
+    (finding,) = read(p_value=None, sigma=[None, 1e-5], amplitude=[None, 2e-4]).findings
+    assert (isnan(finding.p_value), isnan(finding.sigma[0]), finding.sigma[1]) == (True, True, 1e-5)
+
+
+def test_a_programme_without_causes_has_no_diagnosis() -> None:
+    assert read_diagnosis(written(inapplicable_to_dict("BA-017"))) is None
+
+
+def test_evidence_of_an_earlier_version_keeps_all_it_states() -> None:
+    finding = earlier_document()["findings"][0]
+    names = ("p_value", "strength", "amplitude", "sigma", "units", "nonlinear", "alternatives", "sentence")
+    stored = {name: finding[name] for name in names} | {"gain": earlier_document()["gain"]}
+    again = evidence_to_dict(evidence_from_dict(stored))
+    assert {name: again[name] for name in names} == {name: stored[name] for name in names}
+    assert again["gain"] == stored["gain"] | {"session": None}
+
+
+def test_a_withdrawal_rests_on_no_evidence() -> None:
+    assert evidence_from_dict(evidence_to_dict(None)) is None

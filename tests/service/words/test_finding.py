@@ -1,0 +1,75 @@
+"""A finding in words: sizes and shapes by sensor, chance, and what would distinguish equal causes."""
+
+from dataclasses import replace
+from math import nan
+
+import pytest
+
+from service.words.amplitudes import amplitudes_of, shape_of
+from service.words.causes import cause_name, cause_on, what_is_wrong
+from service.words.finding import evidence, finding_view
+from tests.service.findings import JUMP
+
+NAMED = replace(JUMP, alternatives=())
+
+
+def test_a_named_cause_is_said_in_its_sentence() -> None:
+    assert what_is_wrong(NAMED) == "The zero of A1 and A2 jumped."
+
+
+def test_equal_causes_are_listed() -> None:
+    assert what_is_wrong(JUMP) == "Cannot tell which: bias jump or warm up (A1, A2)."
+
+
+def test_of_many_equal_causes_three_are_listed_and_the_rest_is_counted() -> None:
+    many = replace(JUMP, alternatives=("warm-up", "bias-ramp", "hysteresis", "saturation"), sensors=())
+    assert what_is_wrong(many) == "Cannot tell which: bias jump, warm up, bias ramp or 2 more."
+
+
+def test_a_cause_that_this_version_does_not_know_is_called_by_its_identifier() -> None:
+    assert cause_name("bias-hum") == "bias hum"
+    assert cause_on("bias-hum", ["A5"]) == "bias hum (A5)"
+    assert finding_view(replace(NAMED, cause="bias-hum")).acceptable == ()
+
+
+def test_every_sensor_s_own_shape_is_said() -> None:
+    assert shape_of(JUMP) == "A1: from row 14; A2: from row 20"
+    assert shape_of(replace(JUMP, nonlinear_each=({"row": 14.0},) * 2)) == "from row 14"
+
+
+def test_every_sensor_s_own_size_is_said() -> None:
+    assert list(amplitudes_of(JUMP)) == ["A1: 30.6\u00a0±\u00a01.0\u202fµg", "A2: 20.4\u00a0±\u00a01.0\u202fµg"]
+
+
+def test_a_size_that_is_not_known_is_left_out() -> None:
+    assert len(list(amplitudes_of(replace(JUMP, amplitude=(nan, 2e-4), sigma=(nan, 1e-5))))) == 1
+    assert list(amplitudes_of(replace(JUMP, amplitude=(0.0, 0.0), sigma=(0.0, 0.0)))) == []
+
+
+@pytest.mark.parametrize(
+    ("p_value", "chance"),
+    [
+        (0.02, "as much by chance in 2.00\u00a0% of sound sessions"),
+        (2.5e-5, "as much by chance in fewer than 1 of 10⁴ sound sessions"),
+        (1e-30, "as much by chance in fewer than 1 of 10¹² sound sessions"),
+        (nan, "no probability is known"),
+    ],
+)
+def test_the_chance_of_a_sound_session_is_said(p_value: float, chance: str) -> None:
+    assert evidence(8.0, p_value) == f"8.0 standard errors; {chance}"
+
+
+def test_equal_causes_come_with_what_would_distinguish_them() -> None:
+    first, second = finding_view(JUMP).choices
+    assert (first.name, first.share, first.measurement) == ("bias jump (A1, A2)", "70.0\u00a0%", "")
+    assert (second.now, second.measurement) == ("1.5\u00a0σ", "repeat the session (expected 4.5\u00a0σ apart)")
+
+
+def test_a_measurement_that_would_not_help_is_not_proposed() -> None:
+    near = replace(JUMP.separations[0], then=2.0)
+    assert finding_view(replace(JUMP, separations=(near,))).choices[1].measurement.endswith("look at the hardware")
+
+
+def test_redundancy_says_stand_or_sensor() -> None:
+    assert finding_view(JUMP).parity.startswith("χ² in parity space 900 → 40, along the axes 800 → 30.")
+    assert finding_view(replace(JUMP, parity=None)).parity == ""
