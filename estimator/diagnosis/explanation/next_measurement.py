@@ -1,4 +1,4 @@
-"""Measurements that could tell causes apart: each proposal gives words and the session it would lead to.
+"""Measurements that could distinguish causes: each proposal gives words and the session it would lead to.
 
 A proposal plans a session of the same block on the same stand: more positions, another order, a temperature cycle, the
 other run, another elevation, a longer session. The planned session is a `Baseline` without readings, at the fitted
@@ -18,7 +18,7 @@ Proposal = Callable[[Baseline], Iterator[tuple[str, Baseline]]]
 
 
 def schedule(baseline: Baseline, beta: Array, flipped: Array, **changes: object) -> Baseline:
-    """The planned session with rows (β, flipped), spaced in time as before."""
+    """The planned session with rows ``beta`` (R,), rad, and ``flipped`` (R,), spaced in time as before."""
     session = baseline.session
     rows = len(beta)
     period = 120.0
@@ -51,7 +51,7 @@ def steps(session: CalibrationSession) -> int:
 
 
 def full_turns(positions: int, which: list[bool]) -> tuple[Array, Array]:
-    """Equal β steps over a turn for each run."""
+    """β (R,), rad, in equal steps over a turn for each run, and flipped (R,)."""
     turn = 2 * np.pi * np.arange(positions) / positions
     return np.tile(turn, len(which)), np.repeat(np.array(which), positions)
 

@@ -5,7 +5,6 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from service.views.outlook import outlooks_of_fleet
 
 from estimator.reading import read_session
 from service.demo.cast import CAST, END
@@ -16,6 +15,7 @@ from service.records.decision import Verdict
 from service.storage import Database, Files, Storage
 from service.views.flag_list import flag_list
 from service.views.fleet import fleet_overview
+from service.views.outlook import outlooks_of_fleet
 from service.views.stands import stand_conditions
 from tests.databases import Databases
 

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from estimator.diagnosis.record.errors import exchanged_rows, expected_axes, turned_record
 
 from estimator import CalibrationSession, diagnose, read_session
 from estimator.causes import CATALOGUE, Correction, cause
-from estimator.diagnosis.record.errors import exchanged_rows, expected_axes, turned_record
 from estimator.diagnosis.residuals.between_sessions import between_sessions, inverse_root
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import Evidence
