@@ -7,7 +7,7 @@ from estimator.session import Array
 
 
 def turned(n: Array) -> Array:
-    """(R, m, 3, 3) m/s² (rad/s) per rad: change −k×n of applied vectors n (R, m, 3) with each component of a small turn k."""
+    """(R, m, 3, 3) change −k×n of applied vectors n (R, m, 3), m/s² (rad/s) per rad of each component of a turn k."""
     basis = np.eye(3)
     return np.stack([-np.cross(basis[q], n) for q in range(3)], axis=-1)
 
