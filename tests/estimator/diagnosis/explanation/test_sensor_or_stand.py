@@ -19,16 +19,16 @@ def finding_of(cause: str) -> Finding:
 def test_a_stand_error_leaves_nothing_in_parity_space(cause: str) -> None:
     split = finding_of(cause).parity
     assert split is not None
-    assert split["signature_in_parity"] < 1e-6
-    assert split["range_before"] - split["range_after"] > 20 * abs(split["parity_before"] - split["parity_after"])
+    assert split.signature_in_parity < 1e-6
+    assert split.range_before - split.range_after > 20 * abs(split.parity_before - split.parity_after)
 
 
 @pytest.mark.parametrize("cause", SENSOR)
 def test_a_fault_of_one_sensor_of_six_leaves_half_its_energy_there(cause: str) -> None:
     split = finding_of(cause).parity
     assert split is not None
-    assert abs(split["signature_in_parity"] - 0.5) < 0.01
-    assert split["parity_before"] - split["parity_after"] > 400
+    assert abs(split.signature_in_parity - 0.5) < 0.01
+    assert split.parity_before - split.parity_after > 400
 
 
 def test_excess_noise_is_no_mean_effect() -> None:

@@ -79,6 +79,23 @@ def test_unknown_directions_take_two_readings_a_row() -> None:
     assert residuals.freedom == R * m - 2 * R - (3 * 5 - 3) - 3
 
 
+def test_a_direction_that_the_sensors_feel_alike_takes_one_reading_a_row() -> None:
+    """Two parallel sensors see one of the two turns of an unknown direction: rounding makes no second one."""
+    baseline = baseline_of(scene("orientations", 0).measured(1))
+    row = np.zeros_like(baseline.row)
+    row[:, 0], row[:, 1] = baseline.row[:, 0], 0.3 * baseline.row[:, 0]
+    assert np.all(Whitener.of(replace(baseline, row=row)).projected_out.sum(axis=1) == 1)
+
+
+def test_what_the_session_does_not_observe_takes_no_degree_of_freedom() -> None:
+    """At one elevation scale and bias of a sensor along the axis of rotation are one: rounding makes no second one."""
+    baseline = at_truth(STAND[0])
+    n = np.broadcast_to(baseline.setting.n[:1], baseline.setting.n.shape)
+    still = replace(baseline, setting=replace(baseline.setting, n=n))
+    m = len(still.unstated)
+    assert WhitenedResiduals.of(still).freedom == still.residual.size - m
+
+
 def test_gyros_alone_keep_their_readings_when_nothing_is_known_of_directions() -> None:
     sensors = gyros(3, scale=1.0, unit="rad/s")
     session = replace(orientation_schedule(sensors, SITE, sphere(12)), directions=None)

@@ -51,9 +51,15 @@ def start(
     return begin(baseline_of(measured(added)), [baseline_of(h) for h in history], [cause(i) for i in identifiers])
 
 
-def candidate(state: SearchState, identifier: str, sensors: tuple[int, ...] = (SENSOR,)) -> Found:
-    """A cause at its best shape, as if it had been selected."""
-    traces = [t for t in state.traces if t.cause.identifier == identifier]
+def candidate(
+    state: SearchState, identifier: str, sensors: tuple[int, ...] = (SENSOR,), *, open_change: bool = False
+) -> Found:
+    """A cause at its best shape, as if it had been selected; with the sensor's change since the history left open."""
+    traces = [
+        t
+        for t in state.traces
+        if t.cause.identifier == identifier and (t.columns.shape[-1] > len(t.cause.units)) == open_change
+    ]
     own = [s for s in score(state.residuals, traces, state.attributed()) if s.sensors == sensors]
     best = max(own, key=lambda s: s.log_evidence)
     return Found(best, best.p_value, ((best, best.log_evidence),))

@@ -51,11 +51,11 @@ def test_an_unknown_time_constant_costs_amplitude_precision() -> None:
 
 
 def test_a_change_left_open_stays_open() -> None:
-    before = grown((1.0, 0.0))
-    open_change = [s for s in before.found[0].ranking if s[0].trace.shape[1] == 6]
-    state = replace(before, found=(replace(before.found[0], best=open_change[0][0]),)) if open_change else before
+    state = grown((1.0, 0.0))
+    state = replace(state, found=(candidate(state, "warm-up", open_change=True),))
     (found,) = with_refined_shapes(state).found
-    assert found.best.trace.shape[1] == state.found[0].best.trace.shape[1] + 1
+    assert found.best.trace.shape[1] == found.best.shape.columns.shape[-1] == 1 + 5 + 1
+    assert np.array_equal(found.best.trace[:, 1:6], state.found[0].best.trace[:, 1:6])
 
 
 def test_what_has_no_continuous_parameter_stays_as_it_is() -> None:
