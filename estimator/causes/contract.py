@@ -124,7 +124,7 @@ class Cause(ABC):
     kind: ClassVar[str | None] = None
     """Kind of sensor it acts on; None for both."""
     between: ClassVar[bool] = False
-    """Whether it is told by what moved since the history (or from nominal), not by what is left in the session."""
+    """Whether it shows in what changed since the history (or from nominal), not in the session's residuals."""
     repeats: ClassVar[int] = 1
     """How often it may happen to one sensor in a session; what needs more of them is no such cause."""
     passing: ClassVar[bool] = False

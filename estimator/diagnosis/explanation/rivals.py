@@ -6,7 +6,7 @@ import numpy as np
 from scipy.special import logsumexp
 
 from estimator.diagnosis.explanation.extended_model import amplitude_beside
-from estimator.diagnosis.explanation.next_measurement import PROPOSALS
+from estimator.diagnosis.explanation.next_measurement import proposals
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.results import Rival, Separation
@@ -81,7 +81,7 @@ def proposal(baseline: Baseline, named: Scored, amplitude: Array, rival: Scored)
     """The first proposed measurement that distinguishes two causes, else the best of them; in words, with what to
     expect. ``amplitude`` (q,) of the named one, SI."""
     best: tuple[str, float | None] = ("", None)
-    for words, planned in (p for propose in PROPOSALS for p in propose(baseline)):
+    for words, planned in proposals(baseline):
         expected = expected_separation(planned, named, amplitude, rival)
         if expected is not None and (best[1] is None or expected > best[1]):
             best = (words, expected)
