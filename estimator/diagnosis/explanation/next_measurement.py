@@ -15,10 +15,10 @@ from estimator.diagnosis.residuals.fitted import planned_on_stand
 from estimator.session import TWO_AXIS_STAND, Array, CalibrationSession
 
 PERIOD = 120.0
-"""s from row to row where the session does not record its times: usual on the stands of the papers."""
+"""s from row to row where the session does not record its times: a usual dwell with the turn to it."""
 
 FINE = 12
-"""β steps a turn that a proposal makes at least: what the papers' programmes have."""
+"""β steps a turn that a proposal makes at least: the 30° steps of a usual programme."""
 
 Proposal = Callable[[Baseline], Iterator[tuple[str, Baseline]]]
 

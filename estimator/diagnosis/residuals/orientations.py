@@ -10,8 +10,8 @@ from estimator.parameters import SensorParameters
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
 SHARP = np.radians(0.1)
-"""Stated directions are taken as the applied vector when they are known better than this, rad: ten
-times below what the readings' own noise leaves of a direction, they would be free again."""
+"""Stated directions are taken as the applied vector when they are known better than this, rad; worse ones are
+estimated from the readings, with what is stated as prior."""
 
 
 @dataclass(frozen=True, eq=False)

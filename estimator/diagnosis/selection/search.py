@@ -22,7 +22,7 @@ from estimator.diagnosis.signatures.lasting import MANY
 from estimator.diagnosis.signatures.scores import score
 
 ROUNDS = 4
-"""Times that every finding is selected anew; sessions settle in one or two."""
+"""Times that every finding is selected anew: it bounds the search where two choices alternate."""
 
 
 def search(start: SearchState) -> SearchState:
