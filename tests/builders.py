@@ -78,7 +78,7 @@ def stand_vectors(norm: float, elevation_deg: float, beta_deg: Array, flipped: A
 
 
 def response(sensor: TrueSensor, vectors: Array) -> Array:
-    """(R,) readings without noise of one sensor, reading units, for applied vectors (R, 3), block axes, m/s² or rad/s."""
+    """(R,) readings without noise of one sensor, in its reading unit, for applied vectors (R, 3), m/s² or rad/s."""
     a = vectors @ np.asarray(sensor.axis)
     return sensor.scale * (a + sensor.bias + sensor.quadratic * a**2)
 

@@ -4,7 +4,8 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from estimator.diagnosis import Finding
 from estimator.diagnosis.results import Diagnosis, Gain, Score
-from service.measures import amplitude_measure, measured, number
+from service.measures import measured, number
+from service.words.amplitude_measures import amplitude_measure
 
 NOTHING = "Nothing wrong found."
 

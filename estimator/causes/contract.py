@@ -28,17 +28,17 @@ class Setting:
     parameters: SensorParameters
     """(m,) at which the signatures are taken."""
     n: Array
-    """(R, m, 3) applied vectors, block axes."""
+    """(R, m, 3) applied vectors, block axes, m/s² (rad/s)."""
     norm: Array
-    """(m,) length of the applied vector."""
+    """(m,) length of the applied vector, m/s² (rad/s)."""
     beta: Array | None
     """(R,) rad; None without a stand."""
     flipped: Array | None
     """(R,) bool; None without a stand."""
     d_alpha: Array | None
-    """(R, m, 3) change of n per rad of elevation; None without a stand."""
+    """(R, m, 3) change of n, m/s² (rad/s) per rad of elevation; None without a stand."""
     d_beta: Array | None
-    """(R, m, 3) change of n per rad of β; None without a stand."""
+    """(R, m, 3) change of n, m/s² (rad/s) per rad of β; None without a stand."""
     time: Array | None
     """(R,) s."""
     temperature: Array | None
@@ -54,12 +54,12 @@ class Setting:
 
     @property
     def a(self) -> Array:
-        """(R, m) component along each input axis."""
+        """(R, m) component along each input axis, m/s² (rad/s)."""
         return projected(self.parameters.axis, self.n)
 
     @property
     def first_of_run(self) -> Array:
-        """(R,) bool: rows that no row of the same run precedes."""
+        """(R,) bool, dimensionless: rows that no row of the same run precedes."""
         first = np.zeros(self.rows, dtype=bool)
         first[0] = True
         if self.flipped is not None:
@@ -67,7 +67,7 @@ class Setting:
         return first
 
     def through(self, change: Array) -> Array:
-        """Input change (R, m, q) of changes of the applied vector (R, m, 3, q)."""
+        """Input change (R, m, q) of changes of the applied vector (R, m, 3, q), m/s² (rad/s) per unit amplitude."""
         along = (self.parameters.axis[:, :, None] * change).sum(axis=-2)
         return slope(self.parameters, self.n)[..., None] * along
 
@@ -97,7 +97,7 @@ class Shape:
     sensors: tuple[int, ...]
     """The sensors it is blamed on; empty for a cause of stand, fixture or record."""
     columns: Array
-    """(R, m, q) input change per unit of each amplitude."""
+    """(R, m, q) input change, m/s² (rad/s) per unit of each amplitude."""
     nonlinear: tuple[float, ...] = ()
     """Values of the nonlinear parameters, in the order of `Cause.nonlinear_units`."""
 
@@ -124,7 +124,7 @@ class Cause(ABC):
     kind: ClassVar[str | None] = None
     """Kind of sensor it acts on; None for both."""
     between: ClassVar[bool] = False
-    """Whether it is told by what moved since the history (or from nominal), not by what is left in the session."""
+    """Whether it shows in what changed since the history (or from nominal), not in the session's residuals."""
     repeats: ClassVar[int] = 1
     """How often it may happen to one sensor in a session; what needs more of them is no such cause."""
     passing: ClassVar[bool] = False
@@ -177,7 +177,7 @@ class Signature(Cause):
         """Every signature the cause could leave in this session."""
 
     def columns(self, setting: Setting, shape: Shape) -> Array:
-        """(R, m, q) what the effect of some shape adds in another session."""
+        """(R, m, q) what the effect of some shape adds in another session, m/s² (rad/s) per unit amplitude."""
         known = (s for s in self.shapes(setting) if (s.sensors, s.nonlinear) == (shape.sensors, shape.nonlinear))
         return next(known).columns
 
@@ -185,16 +185,19 @@ class Signature(Cause):
         """Whether the cause can have this amplitude (one amplitude)."""
         return True
 
-    def polished(self, setting: Setting, shape: Shape) -> Iterator[Shape]:
+    def neighbours(self, setting: Setting, shape: Shape) -> Iterator[Shape]:
         """Shapes beside one of the grid, to find the best nonlinear parameters between its points."""
         yield from ()
 
-    def bend(self, setting: Setting, shape: Shape) -> Array:
-        """(R, m, r) change of the columns by each continuous nonlinear parameter; its own error belongs to sigma."""
+    def derivative(self, setting: Setting, shape: Shape) -> Array:
+        """(R, m, r) change of the columns, m/s² (rad/s), per unit of each continuous nonlinear parameter.
+
+        The parameter's own error belongs to the amplitude's sigma.
+        """
         return np.zeros((*shape.columns.shape[:2], 0))
 
     def reported(self, setting: Setting, shape: Shape, amplitude: Array, sigma: Array) -> tuple[Array, Array]:
-        """Amplitude and sigma as `units` names them, from those of the signature's columns."""
+        """Amplitude (q,) and sigma (q,) in SI as `units` names them, from those of the signature's columns."""
         return amplitude, sigma
 
 
@@ -222,7 +225,7 @@ class SensorCause(Signature):
 
     @abstractmethod
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
-        """(R, q) what a unit amplitude adds inside the bracket of sensor i."""
+        """(R, q) what a unit amplitude adds inside the bracket of sensor i, m/s² (rad/s)."""
 
     def shapes(self, setting: Setting) -> Iterator[Shape]:
         m = len(setting.kinds)
@@ -233,13 +236,14 @@ class SensorCause(Signature):
                 yield Shape((i,), self.placed(setting, i, nonlinear), nonlinear)
 
     def placed(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
-        """(R, m, q) the term on sensor i."""
+        """(R, m, q) the term on sensor i, m/s² (rad/s) per unit amplitude."""
         term = self.term(setting, i, nonlinear)
         columns = np.zeros((setting.rows, len(setting.kinds), term.shape[1]))
         columns[:, i, :] = term
         return columns
 
     def columns(self, setting: Setting, shape: Shape) -> Array:
+        """(R, m, q) m/s² (rad/s) per unit amplitude."""
         return self.placed(setting, shape.sensors[0], shape.nonlinear)
 
 
@@ -248,12 +252,13 @@ class CommonCause(Signature):
 
     @abstractmethod
     def change(self, setting: Setting) -> Array:
-        """(R, m, 3, q) change of the applied vector per unit amplitude."""
+        """(R, m, 3, q) change of the applied vector, m/s² (rad/s) per unit amplitude."""
 
     def shapes(self, setting: Setting) -> Iterator[Shape]:
         yield Shape((), setting.through(self.change(setting)))
 
     def columns(self, setting: Setting, shape: Shape) -> Array:
+        """(R, m, q) m/s² (rad/s) per unit amplitude."""
         return setting.through(self.change(setting))
 
 
@@ -266,5 +271,5 @@ class Entry(CommonCause):
 
 
 def column(*terms: Array) -> Array:
-    """Stack (R,) terms as columns (R, q)."""
+    """Stack terms (R,) as columns (R, q), in the terms' own unit, such as m/s²."""
     return np.stack(terms, axis=-1)

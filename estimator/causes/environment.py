@@ -10,13 +10,13 @@ from estimator.session import Array
 
 
 def elapsed(setting: Setting) -> Array:
-    """t − t̄, s."""
+    """(R,) t − t̄, s."""
     assert setting.time is not None
     return setting.time - setting.time.mean()
 
 
 def warmth(setting: Setting) -> Array:
-    """T − T̄, K."""
+    """(R,) T − T̄, °C."""
     assert setting.temperature is not None
     return setting.temperature - setting.temperature.mean()
 
@@ -31,6 +31,7 @@ class BiasTemperature(SensorCause):
     advice = "Model the temperature coefficient of the bias, or hold the temperature during the session."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 1) T − T̄, °C."""
         return column(warmth(setting))
 
 
@@ -44,6 +45,7 @@ class ScaleTemperature(SensorCause):
     advice = "Model the temperature coefficient of the scale factor, or hold the temperature during the session."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 1) (T − T̄)·a, °C·m/s²."""
         return column(warmth(setting) * setting.a[:, i])
 
 
@@ -60,6 +62,7 @@ class TemperatureRate(SensorCause):
         return super().available(setting) and setting.time is not None and bool(np.all(np.diff(setting.time) > 0))
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 1) dT/dt, °C/s, by differences of neighbouring rows."""
         assert setting.temperature is not None
         assert setting.time is not None
         return column(np.gradient(setting.temperature, setting.time))
@@ -75,6 +78,7 @@ class BiasRamp(SensorCause):
     advice = "Repeat the first position at the end; let the unit warm up longer; watch this sensor."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 1) t − t̄, s."""
         return column(elapsed(setting))
 
 
@@ -88,6 +92,7 @@ class ScaleRamp(SensorCause):
     advice = "Let the unit warm up longer; check the voltage reference and the loop current of this sensor."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 1) (t − t̄)·a, m/s."""
         return column(elapsed(setting) * setting.a[:, i])
 
 
@@ -102,6 +107,7 @@ class AxisCreep(SensorCause):
     advice = "Check the sensor's fastening and adhesive; repeat after a thermal soak."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 2) (p·n)·(t − t̄) and (o·n)·(t − t̄), m/s."""
         p, o = across(setting, i)
         return column(p * elapsed(setting), o * elapsed(setting))
 
@@ -129,18 +135,19 @@ class WarmUp(SensorCause):
             yield (float(tau),)
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 1) exp(−t/τ), dimensionless."""
         assert setting.time is not None
         return column(np.exp(-setting.time / nonlinear[0]))
 
-    def polished(self, setting: Setting, shape: Shape) -> Iterator[Shape]:
+    def neighbours(self, setting: Setting, shape: Shape) -> Iterator[Shape]:
         (tau,) = shape.nonlinear
         for factor in np.geomspace(0.6, 1.7, 23):
             columns = np.zeros_like(shape.columns)
             columns[:, shape.sensors[0], :1] = self.term(setting, shape.sensors[0], (tau * factor,))
             yield Shape(shape.sensors, columns, (float(tau * factor),))
 
-    def bend(self, setting: Setting, shape: Shape) -> Array:
-        """By ln τ."""
+    def derivative(self, setting: Setting, shape: Shape) -> Array:
+        """(R, m, 1) by ln τ, dimensionless."""
         assert setting.time is not None
         (tau,) = shape.nonlinear
         bent = np.zeros((*shape.columns.shape[:2], 1))
@@ -166,4 +173,5 @@ class BiasJump(SensorCause):
             yield (float(row),)
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 1) 0 before the jump, 1 from it on, dimensionless."""
         return column((np.arange(setting.rows) >= nonlinear[0]).astype(float))

@@ -7,7 +7,7 @@ from estimator.session import Array
 
 
 def turned(n: Array) -> Array:
-    """(R, m, 3, 3) change −k×n of the applied vector per unit of each component of a small rotation vector k."""
+    """(R, m, 3, 3) change −k×n of applied vectors n (R, m, 3), m/s² (rad/s) per rad of each component of a turn k."""
     basis = np.eye(3)
     return np.stack([-np.cross(basis[q], n) for q in range(3)], axis=-1)
 
@@ -22,6 +22,7 @@ class FlipMisalignment(CommonCause):
     advice = "Clean the mounting faces, seat the block against its stops and repeat the flipped run."
 
     def change(self, setting: Setting) -> Array:
+        """(R, m, 3, 3) −k×n in the flipped run, m/s² (rad/s) per rad."""
         assert setting.flipped is not None
         return turned(setting.n) * setting.flipped.astype(float)[:, None, None, None]
 
@@ -37,5 +38,5 @@ class RemountRotation(CommonCause):
     advice = "Reseat the block and repeat, or take the rotation into the mounting; the sensors need no attention."
 
     def change(self, setting: Setting) -> Array:
-        """e·(n − k×n) = (e + k×e)·n."""
+        """(R, m, 3, 3) −k×n, m/s² (rad/s) per rad, since e·(n − k×n) = (e + k×e)·n."""
         return turned(setting.n)

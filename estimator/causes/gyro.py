@@ -17,6 +17,7 @@ class GSensitivity(SensorCause):
     advice = "Model the three g-sensitivity coefficients of this gyro; mass unbalance is the usual origin."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 3) specific force, m/s²."""
         assert setting.force is not None
         return setting.force
 
@@ -29,7 +30,7 @@ class SeenByGyros(CommonCause):
     units = ("rad",)
 
     def on_gyros(self, change: Array, setting: Setting) -> Array:
-        """(R, m, 3, 1) the change (R, m, 3) where the sensor is a gyro, zero elsewhere."""
+        """(R, m, 3, 1) rad/s per rad: the change (R, m, 3) where the sensor is a gyro, zero elsewhere."""
         acts = np.array([kind == GYROSCOPE for kind in setting.kinds], dtype=float)
         return (change * acts[None, :, None])[..., None]
 
@@ -43,6 +44,7 @@ class LatitudeEntry(SeenByGyros):
     advice = "Correct the latitude (and χ) in the record and upload it anew."
 
     def change(self, setting: Setting) -> Array:
+        """(R, m, 3, 1) change of ω with its elevation, rad/s per rad."""
         assert setting.d_alpha is not None
         return self.on_gyros(setting.d_alpha, setting)
 
@@ -55,6 +57,7 @@ class OffMeridian(SeenByGyros):
     advice = "Align the stand with true north again (gyrocompass or star sight) and repeat the session."
 
     def change(self, setting: Setting) -> Array:
+        """(R, m, 3, 1) change of ω with the heading, rad/s per rad."""
         assert setting.d_beta is not None
         cos = np.linalg.norm(setting.d_beta, axis=-1, keepdims=True) / np.linalg.norm(setting.n, axis=-1, keepdims=True)
         return self.on_gyros(-setting.d_beta / cos * np.cos(setting.latitude), setting)

@@ -22,7 +22,7 @@ class AlphaEntry(Entry):
     advice = "Read the elevation off the stand again, correct the record and upload it anew."
 
     def change(self, setting: Setting) -> Array:
-        """α counts for accelerometers; a block of gyros alone has χ in its place."""
+        """(R, m, 3, 1) m/s² (rad/s) per rad: α acts on accelerometers; a block of gyros alone has χ in its place."""
         assert setting.d_alpha is not None
         acts = np.array([kind == ACCELEROMETER or ACCELEROMETER not in setting.kinds for kind in setting.kinds])
         return (setting.d_alpha * acts[None, :, None])[..., None]
@@ -49,6 +49,7 @@ class GravityEntry(CommonCause):
     advice = "Check the site's latitude, height and gravity in the record; the sensors need no attention."
 
     def change(self, setting: Setting) -> Array:
+        """(R, m, 3, 1) n itself, m/s², per relative change of g."""
         acts = np.array([kind == ACCELEROMETER for kind in setting.kinds], dtype=float)
         return (setting.n * acts[None, :, None])[..., None]
 
@@ -74,6 +75,7 @@ class SensorDrift(SensorCause):
         yield from self.moves
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 4) m/s² (rad/s) per relative scale, unit of bias and rad of each tangent; zero where nothing moved."""
         columns = jacobian(setting.parameters, setting.n, setting.norm)[:, i, :]
         columns[:, 1] = 1.0
         return columns[:, [0, 1, 3, 4]] * np.array(nonlinear)

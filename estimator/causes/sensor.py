@@ -12,7 +12,7 @@ from estimator.session import Array
 
 
 def across(setting: Setting, i: int) -> tuple[Array, Array]:
-    """p·n and o·n (R,) of sensor i: the components across its input axis."""
+    """p·n and o·n (R,) of sensor i, m/s² (rad/s): the components across its input axis."""
     frame = tangents(setting.parameters.axis[i])
     both = setting.n[:, i, :] @ frame
     return both[:, 0], both[:, 1]
@@ -29,6 +29,7 @@ class CubicNonlinearity(SensorCause):
     )
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 1) a³, (m/s²)³."""
         return column(setting.a[:, i] ** 3)
 
 
@@ -41,6 +42,7 @@ class OddQuadratic(SensorCause):
     advice = "Model the odd quadratic term for this sensor; inputs beyond 1 g tell it from a cubic term."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 1) a·|a|, (m/s²)²."""
         a = setting.a[:, i]
         return column(a * np.abs(a))
 
@@ -54,6 +56,7 @@ class ScaleAsymmetry(SensorCause):
     advice = "Check the sensor's loop electronics for unequal gains; model the asymmetry until then."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 1) |a|, m/s²."""
         return column(np.abs(setting.a[:, i]))
 
 
@@ -66,6 +69,7 @@ class BiasAsymmetry(SensorCause):
     advice = "Check for friction, a dead zone or crossover distortion in the sensor's output stage."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 1) sign a, dimensionless."""
         return column(np.sign(setting.a[:, i]))
 
 
@@ -78,6 +82,7 @@ class CrossCoupling(SensorCause):
     advice = "Model the cross-coupling of this sensor; a pendulum hung off its plane is the usual origin."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 2) a·(p·n) and a·(o·n), (m/s²)²."""
         p, o = across(setting, i)
         a = setting.a[:, i]
         return column(a * p, a * o)
@@ -92,6 +97,7 @@ class CrossAxisQuadratic(SensorCause):
     advice = "Model the cross-axis quadratic terms of this sensor; check its mounting for stress."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 2) (p·n)² and (p·n)(o·n), (m/s²)²."""
         p, o = across(setting, i)
         return column(p * p, p * o)
 
@@ -105,6 +111,7 @@ class Hysteresis(SensorCause):
     advice = "Approach each position from both sides and average; check the suspension for friction."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 1) sign of the rise of a, dimensionless."""
         a = setting.a[:, i]
         rise = np.diff(a, prepend=a[0])
         rise = np.where(np.abs(rise) < 1e-9 * setting.norm[i], 0.0, np.sign(rise))
@@ -121,6 +128,7 @@ class BiasPerPosition(SensorCause):
     advice = "Secure the cables, look for magnets and ferrous parts near the head, check the slip rings' supply."
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 2) sin β and cos β, dimensionless."""
         assert setting.beta is not None
         return column(np.sin(setting.beta), np.cos(setting.beta))
 
@@ -148,7 +156,7 @@ class Saturation(SensorCause):
         return (0.0, 0.0, 0.1, 0.4)[min(cut, 3)] < amplitude < 2.5
 
     def beyond(self, setting: Setting, i: int, side: float) -> tuple[Array, Array]:
-        """Size (R,) of what sensor i should have read on a side, at the input, and its sign."""
+        """Size (R,) of what sensor i should have read on a side, at the input, m/s² (rad/s), and its sign (R,)."""
         h = input_of(setting.parameters, setting.n)[:, i]
         return (np.abs(h) if side == 0 else side * h), np.sign(h)
 
@@ -161,11 +169,13 @@ class Saturation(SensorCause):
                     yield (float(limit * setting.norm[i]), side)
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 1) what the limit cuts off, m/s²."""
         size, sign = self.beyond(setting, i, nonlinear[1])
         return column(-sign * np.maximum(size - nonlinear[0], 0.0))
 
     def reported(self, setting: Setting, shape: Shape, amplitude: Array, sigma: Array) -> tuple[Array, Array]:
-        """The limit: what is cut off on average, moved from the tried limit to where the amplitude is one."""
+        """The limit (1,) and its sigma (1,), m/s² (rad/s): what is cut off on average, moved from the
+        tried limit to where the amplitude is one."""
         (i,), (limit, side) = shape.sensors, shape.nonlinear
         size, _ = self.beyond(setting, i, side)
         depth = float((size - limit)[size > limit].mean())
@@ -189,6 +199,7 @@ class ReadingOutlier(SensorCause):
             yield (float(row),)
 
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, 1) 1 in one row, else 0, dimensionless."""
         spike = np.zeros(setting.rows)
         spike[int(nonlinear[0])] = 1.0
         return column(spike)

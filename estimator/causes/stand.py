@@ -13,9 +13,11 @@ class BetaPattern(CommonCause):
     needs = frozenset({"stand"})
 
     def pattern(self, setting: Setting) -> Array:
+        """(R, q) β error, rad per unit amplitude."""
         raise TypeError(f"{self.identifier} states no pattern")
 
     def change(self, setting: Setting) -> Array:
+        """(R, m, 3, q) m/s² (rad/s) per unit amplitude."""
         assert setting.d_beta is not None
         return setting.d_beta[..., None] * self.pattern(setting)[:, None, None, :]
 
@@ -24,12 +26,13 @@ class AlphaPattern(BetaPattern):
     """A cause that is a pattern of α errors: `pattern` (R, q), rad per unit amplitude."""
 
     def change(self, setting: Setting) -> Array:
+        """(R, m, 3, q) m/s² (rad/s) per unit amplitude."""
         assert setting.d_alpha is not None
         return setting.d_alpha[..., None] * self.pattern(setting)[:, None, None, :]
 
 
 def harmonic(setting: Setting, order: int) -> Array:
-    """(R, 2) sin and cos of a multiple of β."""
+    """(R, 2) sin and cos of a multiple of β, dimensionless."""
     assert setting.beta is not None
     return np.stack([np.sin(order * setting.beta), np.cos(order * setting.beta)], axis=-1)
 
@@ -42,6 +45,7 @@ class BetaEccentricity(BetaPattern):
     advice = "Read the scale at two opposite places and average, or enter the head's correction table."
 
     def pattern(self, setting: Setting) -> Array:
+        """(R, 2) sin β and cos β, rad per rad."""
         return harmonic(setting, 1)
 
 
@@ -53,6 +57,7 @@ class BetaSecondHarmonic(BetaPattern):
     advice = "Enter the head's correction table; have the angle scale checked."
 
     def pattern(self, setting: Setting) -> Array:
+        """(R, 2) sin 2β and cos 2β, rad per rad."""
         return harmonic(setting, 2)
 
 
@@ -64,6 +69,7 @@ class BetaScale(BetaPattern):
     advice = "Check the angle steps over a full turn; look for slip or a wrong divider setting."
 
     def pattern(self, setting: Setting) -> Array:
+        """(R, 1) β − β̄, rad."""
         assert setting.beta is not None
         return (setting.beta - setting.beta.mean())[:, None]
 
@@ -76,6 +82,7 @@ class AxisWobble(AlphaPattern):
     advice = "Check the head's bearings and the clamping of the platform."
 
     def pattern(self, setting: Setting) -> Array:
+        """(R, 2) sin β and cos β, rad per rad."""
         return harmonic(setting, 1)
 
 
@@ -88,7 +95,10 @@ class LevellingY(BetaPattern):
     advice = "Level the stand again with the cross level and repeat the session."
 
     def change(self, setting: Setting) -> Array:
-        """−1/cos α per rad of β: cos α is read off the length of dn/dβ against that of n."""
+        """(R, m, 3, 1) −1/cos α of the change with β, m/s² (rad/s) per rad.
+
+        cos α is read off the length of dn/dβ against that of n.
+        """
         assert setting.d_beta is not None
         cos = np.linalg.norm(setting.d_beta, axis=-1, keepdims=True) / np.linalg.norm(setting.n, axis=-1, keepdims=True)
         gyro = np.array([kind == "gyroscope" for kind in setting.kinds])
@@ -105,6 +115,7 @@ class AlphaShift(AlphaPattern):
     advice = "Lock the elevation before turning the block and check it after; repeat the flipped run."
 
     def pattern(self, setting: Setting) -> Array:
+        """(R, 1) 1 in the flipped run, rad per rad."""
         assert setting.flipped is not None
         return setting.flipped.astype(float)[:, None]
 
@@ -119,5 +130,6 @@ class StandDrift(AlphaPattern):
     advice = "Check the stand's foundation and clamps; level it before and after the session."
 
     def pattern(self, setting: Setting) -> Array:
+        """(R, 1) t − t̄, s."""
         assert setting.time is not None
         return (setting.time - setting.time.mean())[:, None]

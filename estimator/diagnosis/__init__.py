@@ -1,4 +1,4 @@
-"""Diagnosis: measured session → baseline simulation → what is left → causes → extended model → gain."""
+"""Diagnosis: measured session → baseline simulation → residuals → causes → extended model → gain."""
 
 from estimator.diagnosis.diagnose import diagnose
 from estimator.diagnosis.explanation.accepted import calibrate_extended

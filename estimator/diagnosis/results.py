@@ -8,7 +8,7 @@ from estimator.results import Calibration
 
 @dataclass(frozen=True)
 class Separation:
-    """How far a rival cause is from the named one, and what would tell them apart."""
+    """How far a rival cause is from the named one, and what would distinguish them."""
 
     cause: str
     sensors: tuple[str, ...]
@@ -51,10 +51,10 @@ class Rival:
 
 @dataclass(frozen=True)
 class ParitySplit:
-    """χ² that a cause explains in parity space and in the range of the axes: where stand and sensor differ."""
+    """χ² in parity space and in the range of the axes, with the effect left in and taken out."""
 
     signature_in_parity: float
-    """Share of the signature's own energy that lies in parity space: 0 for an error of the stand."""
+    """Share of the signature's energy, before any fit, in parity space: 0 for a pure stand error."""
     parity_before: float
     parity_after: float
     range_before: float
@@ -66,25 +66,31 @@ class Finding:
     """One named cause with its evidence."""
 
     cause: str
+    sentence: str
+    advice: str
     sensors: tuple[str, ...]
-    amplitude: tuple[float, ...]
-    sigma: tuple[float, ...]
-    units: tuple[str, ...]
-    nonlinear: dict[str, float]
-    """Shape parameters of the first sensor, such as τ or the row of a jump (counted from 1)."""
-    nonlinear_each: tuple[dict[str, float], ...]
-    """The same of every sensor in turn; one entry where the cause acts on none."""
     p_value: float
     """Of this or anything as strong anywhere in the catalogue, were there no effect (family-wise)."""
     strength: float
-    alternatives: tuple[str, ...]
-    separations: tuple[Separation, ...]
-    ranking: tuple[Rival, ...]
-    sentence: str
-    advice: str
-    parity: ParitySplit | None
-    new: bool | None
+    """In standard errors of a reading."""
+    amplitude: tuple[float, ...] = ()
+    sigma: tuple[float, ...] = ()
+    units: tuple[str, ...] = ()
+    nonlinear_each: tuple[dict[str, float], ...] = ({},)
+    """Shape parameters of every sensor in turn, such as τ or the row of a jump (counted from 1), by unit; one entry
+    where the cause acts on none."""
+    alternatives: tuple[str, ...] = ()
+    separations: tuple[Separation, ...] = ()
+    ranking: tuple[Rival, ...] = ()
+    parity: ParitySplit | None = None
+    """Where stand and sensor differ; None where there is no redundancy."""
+    new: bool | None = None
     """Whether it came since the history; None without history or where the session cannot tell."""
+
+    @property
+    def nonlinear(self) -> dict[str, float]:
+        """Shape parameters of the first sensor."""
+        return self.nonlinear_each[0]
 
     def to_dict(self) -> dict[str, Any]:
         return {

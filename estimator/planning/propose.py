@@ -15,7 +15,7 @@ from estimator.causes import CATALOGUE
 from estimator.diagnosis.explanation.detection_limits import limits
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.results import Limit
-from estimator.diagnosis.selection.search_state import begin
+from estimator.diagnosis.selection.start import begin
 from estimator.errors import Problem, ScheduleError
 from estimator.planning.elevation import conditioning, gyro_errors, optimal_elevation
 from estimator.planning.expected import (
@@ -190,4 +190,4 @@ def detectable(session: CalibrationSession) -> tuple[Limit, ...]:
     """Detection limits of the whole catalogue for a planned session; none beyond `MOST_READINGS`."""
     if session.readings.size > MOST_READINGS:
         return ()
-    return limits(begin(baseline_of(session), ()), CATALOGUE)
+    return limits(begin(baseline_of(session), (), CATALOGUE))

@@ -4,12 +4,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from estimator.calibration.calibrate import averaged, calibrate
-from estimator.causes import cause
+from estimator.causes.catalogue import cause
 from estimator.diagnosis.explanation.extended_model import amplitudes, extended_calibration
 from estimator.diagnosis.record.clipping import unclipped
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.selection.refinement import polished
-from estimator.diagnosis.selection.search_state import Found, Search, begin
+from estimator.diagnosis.selection.refinement import with_refined_shapes
+from estimator.diagnosis.selection.search_state import Found, SearchState
+from estimator.diagnosis.selection.start import begin
 from estimator.diagnosis.signatures.scores import score
 from estimator.results import Calibration
 from estimator.session import CalibrationSession
@@ -41,7 +42,7 @@ def calibrate_extended(session: CalibrationSession, causes: Sequence[Accepted]) 
                 state = with_cause(state, identifier, place)
     if not state.found:
         return calibrate(whole)
-    state = polished(state)
+    state = with_refined_shapes(state)
     return extended_calibration(state, amplitudes(state))
 
 
@@ -51,10 +52,10 @@ def places(session: CalibrationSession, sensors: Sequence[str]) -> list[tuple[in
     return [(names.index(s),) for s in sensors if s in names] if sensors else [()]
 
 
-def with_cause(state: Search, identifier: str, place: tuple[int, ...]) -> Search:
+def with_cause(state: SearchState, identifier: str, place: tuple[int, ...]) -> SearchState:
     """The state with one more cause, at the nonlinear parameters that fit best beside the others."""
     own = [t for t in state.traces if t.cause.identifier == identifier]
-    found = [s for s in score(state.evidence, own, state.taken()) if s.shape.sensors == place]
+    found = [s for s in score(state.residuals, own, state.attributed()) if s.sensors == place]
     if not found:
         return state
     best = max(found, key=lambda s: s.statistic)

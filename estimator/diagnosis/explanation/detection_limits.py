@@ -4,24 +4,24 @@ A signature of q amplitudes whose trace has norm s per unit amplitude is found w
 level when amplitude·s reaches the root of the noncentrality at which χ²_q exceeds the threshold with that power.
 """
 
-from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
 from scipy import optimize
 from scipy.special import chdtri, chndtr
 
-from estimator.causes import Cause, Correction, Signature
+from estimator.causes.contract import Cause, Correction, Signature
 from estimator.diagnosis.results import Limit
-from estimator.diagnosis.selection.search_state import LEVEL, Search
-from estimator.diagnosis.signatures.scores import INVISIBLE, Traces
+from estimator.diagnosis.selection.search_state import LEVEL, SearchState
+from estimator.diagnosis.signatures.traces import INVISIBLE, Traces
 
 POWER = 0.95
+"""Share of sessions in which an effect at its limit is found: the usual power of a detection limit (ISO 11843)."""
 
 
 @lru_cache(maxsize=4096)
 def required(q: int, p_single: float) -> float:
-    """Strength that a test of q amplitudes at level ``p_single`` finds with `POWER`."""
+    """Strength, standard errors, that a test of q amplitudes at level ``p_single`` finds with `POWER`."""
     threshold = float(chdtri(q, p_single))
 
     def shortfall(strength: float) -> float:
@@ -30,13 +30,13 @@ def required(q: int, p_single: float) -> float:
     return float(optimize.brentq(shortfall, 1e-3, 200.0))
 
 
-def limits(state: Search, catalogue: Sequence[Cause]) -> tuple[Limit, ...]:
+def limits(state: SearchState) -> tuple[Limit, ...]:
     """One limit a cause of the catalogue."""
     traces = {t.cause.identifier: t for t in state.traces}
-    return tuple(limit(state, c, traces.get(c.identifier)) for c in catalogue)
+    return tuple(limit(state, c, traces.get(c.identifier)) for c in state.catalogue)
 
 
-def limit(state: Search, cause: Cause, traces: Traces | None) -> Limit:
+def limit(state: SearchState, cause: Cause, traces: Traces | None) -> Limit:
     """The limit of one cause; ``traces`` None where the session lacks what the cause needs."""
     if isinstance(cause, Correction):
         lacking = missing(state, cause)
@@ -56,20 +56,20 @@ def limit(state: Search, cause: Cause, traces: Traces | None) -> Limit:
     return Limit(cause.identifier, tuple(w for w in worst if np.isfinite(w)), cause.units, "")
 
 
-def missing(state: Search, cause: Cause) -> str:
+def missing(state: SearchState, cause: Cause) -> str:
     """What a cause needs and the session lacks."""
     lacking = sorted(n for n in cause.needs if not state.baseline.setting.has(n))
-    if state.between is None and "history" in cause.needs:
+    if state.residuals.change is None and "history" in cause.needs:
         lacking.append("history")
     return ", ".join(lacking)
 
 
-def excess_limit(state: Search, cause: Cause) -> Limit:
+def excess_limit(state: SearchState, cause: Cause) -> Limit:
     """Extra standard deviation of one reading that would be called excess noise, at the quietest sensor's noise."""
-    evidence, m = state.evidence, len(state.baseline.unstated)
+    m = state.sensor_count
     if state.baseline.unstated.all():
         return Limit(cause.identifier, None, cause.units, "the file states no noise to exceed")
-    freedom = max(evidence.freedom / m, 2.0)
+    freedom = max(state.residuals.freedom / m, 2.0)
     threshold = chdtri(freedom, LEVEL / (m * state.families))
     ratio = threshold / chdtri(freedom, POWER)
     sigma = float(np.sqrt(np.median(state.baseline.variance)))

@@ -1,7 +1,7 @@
-"""What naming the causes is worth on another session: amplitudes found here, held against what was left there.
+"""What naming the causes is worth on another session: amplitudes found here, held against that one's residuals.
 
 The latest earlier session keeps its own parameters, fitted anew with and without; the effect with its amplitude and
-covariance V comes from this session alone. What the baseline there leaves, z, is of unit covariance without the
+covariance V comes from this session alone. The residuals of the baseline there, z, are of unit covariance without the
 effect, and with it of mean X·a and covariance 1 + X V X' (X the trace of the signature there).
 """
 
@@ -11,117 +11,107 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from estimator.diagnosis.explanation.extended_model import Amplitudes
-from estimator.diagnosis.explanation.rivals import matching
-from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.whitened import Evidence
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.results import Score, Transfer
-from estimator.diagnosis.selection.search_state import Search
-from estimator.diagnosis.signatures.scores import Scored
+from estimator.diagnosis.selection.search_state import SearchState
+from estimator.diagnosis.signatures.traces import Scored
 from estimator.session import Array
 
 CLEAR = 3.0
-"""ln evidence by which the earlier session says that it had an effect, or had not."""
+"""ln evidence by which the earlier session says that it had an effect, or had not: odds of twenty."""
 
 LN_2PI = float(np.log(2 * np.pi))
+"""Of the normal density."""
 
 
 @dataclass(frozen=True, eq=False)
-class Carried:
-    """Findings as they would show in another session. f amplitudes."""
+class Effect:
+    """Findings as they would show in another session. f amplitudes, in the causes' SI units."""
 
     columns: Array
-    """(R, m, f)"""
-    value: Array
-    """(f,)"""
+    """(R, m, f) m/s² (rad/s) per unit amplitude."""
+    amplitude: Array
+    """(f,) SI."""
     covariance: Array
-    """(f, f)"""
-    places: Array
-    """(f,) which of all fitted amplitudes these are."""
+    """(f, f) SI."""
+
+    @property
+    def absent(self) -> "Effect":
+        """The same with no effect."""
+        return replace(self, amplitude=0 * self.amplitude, covariance=0 * self.covariance)
 
 
-def transfer(state: Search, fitted: Amplitudes, new: Sequence[bool | None]) -> Transfer | None:
+def transfer(state: SearchState, fitted: Amplitudes, new: Sequence[bool | None]) -> Transfer | None:
     """Scores of the latest earlier session before and after; None where no finding can have acted there.
 
     ``new``: `newness` of every finding.
     """
     if not state.history:
         return None
-    earlier = state.history[-1]
-    carried = carried_to(earlier, state, fitted, new)
-    if carried is None:
+    residuals = WhitenedResiduals.of(state.history[-1])
+    lasted = [(f.best, part) for f, part, n in zip(state.found, fitted.slices, new, strict=True) if not n]
+    effect = effect_in(residuals, lasted, fitted)
+    if effect is None:
         return None
-    evidence = Evidence.of(earlier)
-    before, after = agreement(evidence, nothing_of(carried)), agreement(evidence, carried)
-    return Transfer(earlier.session.started_at, before, after)
+    started_at = state.history[-1].session.started_at
+    return Transfer(started_at, predicted(residuals, effect.absent), predicted(residuals, effect))
 
 
-def carried_to(earlier: Baseline, state: Search, fitted: Amplitudes, new: Sequence[bool | None]) -> Carried | None:
-    """The findings that an earlier session had too, together."""
-    parts = [
-        part
-        for k, found in enumerate(state.found)
-        if not new[k] and (part := alone(earlier, found.best, fitted, k)) is not None
-    ]
-    if not parts:
+def effect_in(residuals: WhitenedResiduals, found: Sequence[tuple[Scored, slice]], fitted: Amplitudes) -> Effect | None:
+    """Some findings, with their places among the amplitudes, in the session of ``residuals``; None if none can show.
+
+    What acts in one session only, or cannot show in that one, is left out.
+    """
+    columns, places = [], []
+    for scored, part in found:
+        if not scored.cause.can_be_modelled:
+            continue
+        there, own = scored.columns_in(residuals.baseline.setting), len(scored.cause.units)
+        if there is not None:
+            columns.append(there[..., :own])
+            places.append(part.start + np.arange(own))
+    if not columns:
         return None
-    places = np.concatenate([p.places for p in parts])
-    columns = np.concatenate([p.columns for p in parts], axis=-1)
-    return Carried(columns, fitted.value[places], fitted.covariance[np.ix_(places, places)], places)
+    chosen = np.concatenate(places)
+    return Effect(np.concatenate(columns, axis=-1), fitted.value[chosen], fitted.covariance[np.ix_(chosen, chosen)])
 
 
-def alone(earlier: Baseline, scored: Scored, fitted: Amplitudes, k: int) -> Carried | None:
-    """One finding in an earlier session; None where it acts in one session only or cannot show in that one."""
-    if not scored.cause.can_be_modelled:
-        return None
-    columns = matching(earlier, scored)
-    if columns is None:
-        return None
-    places = fitted.slices[k].start + np.arange(len(scored.cause.units))
-    covariance = fitted.covariance[np.ix_(places, places)]
-    return Carried(columns[..., : len(places)], fitted.value[places], covariance, places)
-
-
-def newness(state: Search, fitted: Amplitudes) -> tuple[bool | None, ...]:
+def newness(state: SearchState, fitted: Amplitudes) -> tuple[bool | None, ...]:
     """Whether each finding came since the latest earlier session; None without history or for what moved since.
 
-    The readings of that session say it: with the effect or without. Where they are of two minds, it is how the
-    parameters moved.
+    The readings of that session say it: with the effect or without. Where they are undecided, it is how the
+    parameters changed.
     """
     if not state.history:
         return (None,) * len(state.found)
-    earlier, evidence = state.history[-1], Evidence.of(state.history[-1])
+    residuals = WhitenedResiduals.of(state.history[-1])
     return tuple(
-        None if f.best.cause.between else is_new(f.best, evidence, alone(earlier, f.best, fitted, k))
-        for k, f in enumerate(state.found)
+        None if f.best.cause.between else is_new(f.best, residuals, effect_in(residuals, [(f.best, part)], fitted))
+        for f, part in zip(state.found, fitted.slices, strict=True)
     )
 
 
-def is_new(scored: Scored, evidence: Evidence, carried: Carried | None) -> bool:
-    """Whether one finding came since the session that ``evidence`` is of; ``carried`` as it would show there."""
-    if carried is not None:
-        gained = agreement(evidence, carried).log_score - agreement(evidence, nothing_of(carried)).log_score
-        if abs(gained) * evidence.freedom > CLEAR:
+def is_new(scored: Scored, residuals: WhitenedResiduals, effect: Effect | None) -> bool:
+    """Whether one finding came since the session of ``residuals``; ``effect`` as it would show there."""
+    if effect is not None:
+        gained = predicted(residuals, effect).log_score - predicted(residuals, effect.absent).log_score
+        if abs(gained) * residuals.freedom > CLEAR:
             return gained < 0
     return not scored.lasting
 
 
-def nothing_of(carried: Carried) -> Carried:
-    """The same with no effect."""
-    return replace(carried, value=0 * carried.value, covariance=0 * carried.covariance)
-
-
-def agreement(evidence: Evidence, carried: Carried) -> Score:
-    """How well the readings of a session agree with a carried effect."""
-    trace = evidence.trace(carried.columns)
-    left = evidence.z - trace @ carried.value
-    inner = np.eye(trace.shape[1]) + carried.covariance @ (trace.T @ trace)
-    along = trace.T @ left
-    square = float(left @ left - along @ np.linalg.solve(inner, carried.covariance @ along))
+def predicted(residuals: WhitenedResiduals, effect: Effect) -> Score:
+    """How well an effect predicts the readings of a session."""
+    trace = residuals.trace(effect.columns)
+    rest = residuals.z - trace @ effect.amplitude
+    inner = np.eye(trace.shape[1]) + effect.covariance @ (trace.T @ trace)
+    along = trace.T @ rest
+    square = float(rest @ rest - along @ np.linalg.solve(inner, effect.covariance @ along))
     volume = float(np.linalg.slogdet(inner)[1])
-    R, m = evidence.baseline.residual.shape
-    errors = left[: R * m].reshape(R, m) / evidence.whiten.weight
+    R, m = residuals.baseline.residual.shape
+    errors = rest[: R * m].reshape(R, m) / residuals.whiten.weight
     return Score(
         rms=float(np.sqrt(np.mean(errors**2))),
-        chi2_per_dof=square / evidence.freedom,
-        log_score=-0.5 * (square + volume) / evidence.freedom - 0.5 * LN_2PI,
+        chi2_per_dof=square / residuals.freedom,
+        log_score=-0.5 * (square + volume) / residuals.freedom - 0.5 * LN_2PI,
     )

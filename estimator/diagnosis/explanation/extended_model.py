@@ -3,7 +3,7 @@
 Theory
 ------
 With the baseline's normal matrix and a signature X, block inversion gives for the parameters the covariance
-C + L·V·L', where V = (X'PX)⁻¹ is the amplitudes' covariance and L the parameters' answer to X. So the extended
+C + L·V·L', where V = (X'PX)⁻¹ is the amplitudes' covariance and L the parameters' response to X. So the extended
 calibration is the ordinary one of the readings with the effect taken out, its covariance enlarged by L·V·L'.
 """
 
@@ -14,101 +14,104 @@ from itertools import pairwise
 import numpy as np
 
 from estimator.calibration.calibrate import calibrate
-from estimator.diagnosis.selection.search_state import Excess, Search
-from estimator.diagnosis.signatures.autocorrelation import Serial
-from estimator.diagnosis.signatures.scores import INVISIBLE, Scored
+from estimator.diagnosis.selection.search_state import Found, SearchState
+from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance
+from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
+
+RIDGE = 1e-12
+"""Added to the correlation matrix of the traces, so that two equal ones (lasting and new) can be fitted together."""
 
 
 @dataclass(frozen=True, eq=False)
 class Amplitudes:
-    """Joint estimate of all findings' amplitudes, finding after finding. f amplitudes."""
+    """Joint estimate of all findings' amplitudes, finding after finding. f amplitudes, in the causes' SI units."""
 
     value: Array
-    """(f,)"""
+    """(f,) SI."""
     covariance: Array
-    """(f, f)"""
+    """(f, f) SI."""
     slices: tuple[slice, ...]
+    """Of each finding."""
 
 
-def amplitudes(state: Search) -> Amplitudes:
-    """Least squares of the left-over on the traces of all findings together."""
+def amplitudes(state: SearchState) -> Amplitudes:
+    """Least squares of the residuals on the traces of all findings together."""
     found = [f.best for f in state.found]
-    widths = np.cumsum([0, *(s.columns.shape[1] for s in found)])
+    widths = np.cumsum([0, *(s.trace.shape[1] for s in found)])
     slices = tuple(slice(int(a), int(b)) for a, b in pairwise(widths))
     if not found:
         return Amplitudes(np.zeros(0), np.zeros((0, 0)), slices)
-    columns = np.concatenate([s.columns for s in found], axis=1)
-    z = state.evidence.z
+    columns = np.concatenate([s.trace for s in found], axis=1)
+    z = state.residuals.z
     if state.structures:
-        pattern = np.concatenate([s.best.columns for s in state.structures], axis=1)
-        left, size, _ = np.linalg.svd(pattern, full_matrices=False)
-        left = left[:, size > 1e-9 * size[0]]
-        z = z - left @ (left.T @ z)
-    white = [np.linalg.norm(state.evidence.raw(s.shape.columns), axis=0) for s in found]
-    raw = np.concatenate(white)
+        pattern = np.concatenate([s.best.trace for s in state.structures], axis=1)
+        basis, size, _ = np.linalg.svd(pattern, full_matrices=False)
+        basis = basis[:, size > 1e-9 * size[0]]
+        z = z - basis @ (basis.T @ z)
+    raw = np.concatenate([np.linalg.norm(state.residuals.whitened(s.shape.columns), axis=0) for s in found])
     shown = np.maximum(np.linalg.norm(columns, axis=0), INVISIBLE * raw)
     scale = np.where(shown > 0, shown, 1.0)
     gram = (columns / scale).T @ (columns / scale)
-    covariance = np.linalg.inv(gram + 1e-12 * np.eye(len(gram))) / scale[:, None] / scale
+    covariance = np.linalg.inv(gram + RIDGE * np.eye(len(gram))) / scale[:, None] / scale
     covariance *= np.outer(shown > 0, shown > 0)
     return Amplitudes(covariance @ (columns.T @ z), covariance, slices)
 
 
-def effect(found: Sequence[Scored], fitted: Amplitudes) -> Array:
-    """(R, m) what the findings add at the input."""
-    return np.sum([s.shape.columns @ fitted.value[part] for s, part in zip(found, fitted.slices, strict=True)], axis=0)
+def amplitude_beside(state: SearchState, found: Found) -> tuple[Array, Array]:
+    """(q,) SI: the amplitudes of one finding given the others; and (n, q) its trace with theirs projected out,
+    standard errors per unit amplitude."""
+    attributed = state.attributed(without=found)
+    columns = found.best.trace - attributed @ (attributed.T @ found.best.trace)
+    value, *_ = np.linalg.lstsq(columns, state.residuals.z, rcond=1e-6)
+    return np.asarray(value), columns
 
 
-def without_effects(state: Search, fitted: Amplitudes) -> CalibrationSession:
+def without_effects(state: SearchState, fitted: Amplitudes) -> CalibrationSession:
     """The session with the named effects taken out of the readings and the true noise stated.
 
     A sensor's drift stays in: its parameters really are what they are now.
     """
     session, p = state.baseline.session, state.baseline.parameters
-    taken = [f.best for f in state.found]
-    stays = [s.cause.moves_parameters for s in taken]
+    inside = [
+        f.best.shape.columns @ fitted.value[part]
+        for f, part in zip(state.found, fitted.slices, strict=True)
+        if not f.best.cause.moves_parameters
+    ]
     readings = session.readings
-    if not all(stays):
-        inside = [
-            s.shape.columns @ fitted.value[part]
-            for s, part, stay in zip(taken, fitted.slices, stays, strict=True)
-            if not stay
-        ]
+    if inside:
         pulsed = np.array([s.kind != ACCELEROMETER for s in session.sensors])
         period = np.where(pulsed, session.count_time or 1.0, 1.0)
         readings = readings - np.sum(inside, axis=0) * p.scale * period
     return replace(session, readings=readings, standard_errors=true_errors(state, state.scatter))
 
 
-def true_errors(state: Search, excess: Sequence[Excess | Serial]) -> Array:
+def true_errors(state: SearchState, scatter: Sequence[ExcessVariance | Autocorrelation]) -> Array:
     """(R, m) standard errors with the excess noise in them, reading units."""
     session, scale = state.baseline.session, state.baseline.parameters.scale
     errors = session.standard_errors.copy()
-    for noisy in excess:
+    for noisy in scatter:
         i = noisy.sensor
         repeated = (scale[i] * session.sensors[i].bias_repeatability) ** 2
         errors[:, i] = np.sqrt(noisy.ratio * (errors[:, i] ** 2 + repeated) - repeated)
     return errors
 
 
-def extended_calibration(state: Search, fitted: Amplitudes) -> Calibration:
+def extended_calibration(state: SearchState, fitted: Amplitudes) -> Calibration:
     """The calibration under the extended model, its covariance enlarged by the amplitudes' own."""
     plain = calibrate(without_effects(state, fitted))
-    taken = [f.best for f in state.found]
-    if not taken:
+    if not state.found:
         return plain
-    keep = [not s.cause.moves_parameters for s in taken]
-    columns = np.concatenate([s.shape.columns * k for s, k in zip(taken, keep, strict=True)], axis=-1)
-    answer = state.evidence.absorb @ state.evidence.raw(columns)
+    columns = [f.best.shape.columns * (not f.best.cause.moves_parameters) for f in state.found]
+    response = state.residuals.response @ state.residuals.whitened(np.concatenate(columns, axis=-1))
     factors = state.baseline.parameters.si_factors(state.baseline.setting.norm)
-    answer = answer * factors[:, None]
-    return enlarged(plain, answer @ fitted.covariance @ answer.T)
+    response = response * factors[:, None]
+    return enlarged(plain, response @ fitted.covariance @ response.T)
 
 
 def enlarged(calibration: Calibration, more: Array) -> Calibration:
-    """The calibration with ``more`` (P, P) added to both covariances."""
+    """The calibration with ``more`` (P, P), SI, added to both covariances."""
     total = calibration.covariance + more
     steady = calibration.repeatability + more
     return replace(
@@ -120,7 +123,7 @@ def enlarged(calibration: Calibration, more: Array) -> Calibration:
 
 
 def with_sigmas(sensor: SensorCalibration, i: int, total: Array, steady: Array) -> SensorCalibration:
-    """One sensor's estimates with the sigmas of new covariances."""
+    """The i-th sensor's estimates with the sigmas of new covariances ``total`` and ``steady`` (P, P), SI."""
 
     def estimate(old: Estimate, element: int) -> Estimate:
         if old.value is None:

@@ -14,19 +14,25 @@ import numpy as np
 
 from estimator.diagnosis.explanation.earlier_sessions import LN_2PI, transfer
 from estimator.diagnosis.explanation.extended_model import Amplitudes
-from estimator.diagnosis.residuals.baseline import Baseline, spread
+from estimator.diagnosis.residuals.baseline import Baseline, block_columns
 from estimator.diagnosis.residuals.whitened import Whitener
 from estimator.diagnosis.results import Gain, Score
-from estimator.diagnosis.selection.search_state import Search
+from estimator.diagnosis.selection.search_state import SearchState
 from estimator.session import Array
 
 FOLDS = 6
+"""Parts of the positions, each held out once: every sixth row, so that five sixths fit the model and every part
+reaches around the circle."""
+
+FLAT = 1e-8
+"""Prior information of a parameter's unit column: none to speak of, yet what is not observed stays put."""
 
 
-def gain(state: Search, given: Baseline | None, fitted: Amplitudes, new: Sequence[bool | None]) -> Gain:
+def gain(state: SearchState, given: Baseline | None, fitted: Amplitudes, new: Sequence[bool | None]) -> Gain:
     """Scores of held-out positions and of an earlier session, before and after.
 
-    ``given``: of the record as it came, where it had to be put right; ``new``: `newness` of every finding.
+    ``given``: of the record as it came, where it had to be put right; ``new``: of every finding, whether it came since
+    the history.
     """
     columns = [f.best.shape.columns for f in state.found if not f.best.cause.between]
     given = given or as_stated(state)
@@ -36,7 +42,7 @@ def gain(state: Search, given: Baseline | None, fitted: Amplitudes, new: Sequenc
     return Gain(before, after, "positions", transfer(state, fitted, new))
 
 
-def as_stated(state: Search) -> Baseline:
+def as_stated(state: SearchState) -> Baseline:
     """The baseline with the noise that the file states."""
     variance = state.baseline.variance.copy()
     for scatter in state.scatter:
@@ -55,15 +61,15 @@ def volume(baseline: Baseline) -> float:
 
 
 def counted(baseline: Baseline) -> Array:
-    """(R,) readings of every row less the directions that they serve to estimate."""
-    return np.asarray(baseline.residual.shape[1] - (Whitener.of(baseline).removed == 1).sum(axis=1))
+    """(R,) number of readings of every row less the directions that they serve to estimate."""
+    return np.asarray(baseline.residual.shape[1] - Whitener.of(baseline).projected_out.sum(axis=1))
 
 
 def score(baseline: Baseline, signatures: Sequence[Array]) -> Score:
-    """Predict every row from the folds that do not hold it."""
+    """Predict every row from the folds that do not hold it; ``signatures`` (R, m, q), m/s² (rad/s), in the model."""
     R, m = baseline.residual.shape
     whiten, number = Whitener.of(baseline), counted(baseline)
-    parts = [spread(baseline.design), baseline.constant, *signatures]
+    parts = [block_columns(baseline.design), baseline.constant, *signatures]
     design = whiten(np.concatenate(parts, axis=-1)).reshape(R, m, -1)
     data = whiten(baseline.residual[..., None]).reshape(R, m)
     size = np.maximum(np.linalg.norm(design, axis=(0, 1)), 1e-300)
@@ -76,12 +82,12 @@ def score(baseline: Baseline, signatures: Sequence[Array]) -> Score:
             continue
         own, rest = (design[r].reshape(-1, design.shape[-1]) for r in (rows, ~rows))
         inverse = np.linalg.pinv(whole - own.T @ own, hermitian=True)
-        left = data[rows].reshape(-1) - own @ (inverse @ (rest.T @ data[~rows].reshape(-1)))
+        error = data[rows].reshape(-1) - own @ (inverse @ (rest.T @ data[~rows].reshape(-1)))
         covariance = np.eye(len(own)) + own @ inverse @ own.T
-        square = float(left @ np.linalg.solve(covariance, left))
+        square = float(error @ np.linalg.solve(covariance, error))
         squares += square
         logs -= 0.5 * (square + float(np.linalg.slogdet(covariance)[1]) + float(number[rows].sum()) * LN_2PI)
-        errors[rows] = left.reshape(-1, m)
+        errors[rows] = error.reshape(-1, m)
     return Score(
         rms=float(np.sqrt(np.mean((errors / whiten.weight) ** 2))),
         chi2_per_dof=squares / float(number.sum()),
@@ -90,8 +96,11 @@ def score(baseline: Baseline, signatures: Sequence[Array]) -> Score:
 
 
 def priors(baseline: Baseline, size: Array) -> Array:
-    """(p,) prior information of every scaled column: of the constant nuisances theirs, of the rest next to none."""
-    prior = np.full(len(size), 1e-8)
+    """(p,) prior information of every unit column, dimensionless, from the columns' norms ``size`` (p,).
+
+    Of the constant nuisances theirs, of the rest next to none.
+    """
+    prior = np.full(len(size), FLAT)
     P, k = 5 * baseline.residual.shape[1], len(baseline.constant_sigma)
     prior[P : P + k] = (baseline.constant_sigma * size[P : P + k]) ** -2.0
     return prior

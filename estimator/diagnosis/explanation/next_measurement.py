@@ -1,4 +1,4 @@
-"""Measurements that could tell causes apart: each proposal gives words and the session it would lead to.
+"""Measurements that could distinguish causes: each proposal gives words and the session it would lead to.
 
 A proposal plans a session of the same block on the same stand: more positions, another order, a temperature cycle, the
 other run, another elevation, a longer session. The planned session is a `Baseline` without readings, at the fitted
@@ -14,113 +14,114 @@ from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import planned_on_stand
 from estimator.session import TWO_AXIS_STAND, Array, CalibrationSession
 
+PERIOD = 120.0
+"""s from row to row where the session does not record its times: a usual dwell with the turn to it."""
+
+FINE = 12
+"""β steps a turn that a proposal makes at least: the 30° steps of a usual programme."""
+
 Proposal = Callable[[Baseline], Iterator[tuple[str, Baseline]]]
 
 
-def schedule(baseline: Baseline, beta: Array, flipped: Array, **changes: object) -> Baseline:
-    """The planned session with rows (β, flipped), spaced in time as before."""
-    session = baseline.session
-    rows = len(beta)
-    period = 120.0
+def proposals(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
+    """Every proposal for a session on a stand, in the order in which a technician would rather make them."""
+    if baseline.session.programme == TWO_AXIS_STAND:
+        for proposal in PROPOSALS:
+            yield from proposal(baseline)
+
+
+def schedule(session: CalibrationSession, beta: Array, flipped: Array) -> CalibrationSession:
+    """The planned session with rows ``beta`` (R,), rad, and ``flipped`` (R,), spaced in time as before."""
+    rows, period = len(beta), PERIOD
     if session.time is not None and len(session.time) > 1:
         period = max(float(np.median(np.diff(session.time))), 1e-3)
-    temperature = None if session.temperature is None else np.full(rows, float(session.temperature.mean()))
-    planned = replace(
+    nothing = np.zeros((rows, len(session.sensors)))
+    return replace(
         session,
         beta=beta,
         flipped=flipped,
-        readings=np.zeros((rows, len(session.sensors))),
-        standard_errors=np.zeros((rows, len(session.sensors))),
+        readings=nothing,
+        standard_errors=nothing,
         time=None if session.time is None else period * np.arange(rows),
-        temperature=temperature,
+        temperature=None if session.temperature is None else np.full(rows, float(session.temperature.mean())),
         position=None,
     )
-    return planned_on_stand(replace(planned, **changes), baseline)  # type: ignore[arg-type]  # changes name fields
 
 
-def runs(session: CalibrationSession) -> list[bool]:
-    """The runs the session has, in order."""
+def rows_of(session: CalibrationSession) -> tuple[Array, Array]:
+    """β (R,), rad, and flipped (R,) of a session on a stand."""
+    assert session.beta is not None
     assert session.flipped is not None
-    return [bool(f) for f in dict.fromkeys(session.flipped.tolist())]
+    return session.beta, session.flipped
 
 
 def steps(session: CalibrationSession) -> int:
     """Number of different β settings."""
-    assert session.beta is not None
-    return len(np.unique(np.round(np.mod(session.beta, 2 * np.pi), 6)))
+    return len(np.unique(np.round(np.mod(rows_of(session)[0], 2 * np.pi), 6)))
 
 
-def full_turns(positions: int, which: list[bool]) -> tuple[Array, Array]:
-    """Equal β steps over a turn for each run."""
+def full_turns(positions: int) -> tuple[Array, Array]:
+    """β (R,), rad, in equal steps over a turn in both runs, and flipped (R,)."""
     turn = 2 * np.pi * np.arange(positions) / positions
-    return np.tile(turn, len(which)), np.repeat(np.array(which), positions)
+    return np.tile(turn, 2), np.repeat(np.array([False, True]), positions)
 
 
 def other_run(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
     """Add the flipped (direct) run."""
     session = baseline.session
-    if len(runs(session)) == 1:
-        name = "direct" if runs(session)[0] else "flipped"
-        beta, flipped = full_turns(max(steps(session), 12), [False, True])
-        yield f"add the {name} run at the same positions", schedule(baseline, beta, flipped)
+    runs = set(rows_of(session)[1].tolist())
+    if len(runs) == 1:
+        name = "direct" if True in runs else "flipped"
+        planned = schedule(session, *full_turns(max(steps(session), FINE)))
+        yield f"add the {name} run at the same positions", planned_on_stand(planned, baseline)
 
 
 def repeat_reversed(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
     """Go back through the same positions, so that time and position part."""
-    session = baseline.session
-    assert session.beta is not None
-    assert session.flipped is not None
-    beta = np.concatenate([session.beta, session.beta[::-1]])
-    flipped = np.concatenate([session.flipped, session.flipped[::-1]])
-    yield "repeat all positions in the reverse order, ending at the first", schedule(baseline, beta, flipped)
+    beta, flipped = (np.concatenate([x, x[::-1]]) for x in rows_of(baseline.session))
+    planned = schedule(baseline.session, beta, flipped)
+    yield "repeat all positions in the reverse order, ending at the first", planned_on_stand(planned, baseline)
 
 
 def mixed_order(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
     """Visit the positions in a scattered order (golden-ratio steps), twice."""
-    session = baseline.session
-    assert session.beta is not None
-    assert session.flipped is not None
-    order = np.concatenate(
-        [np.argsort((np.arange(len(session.beta)) * ratio) % 1.0) for ratio in (0.618034, 0.4142136)]
-    )
-    yield (
-        "visit the same positions twice in a scattered order",
-        schedule(baseline, session.beta[order], session.flipped[order]),
-    )
+    beta, flipped = rows_of(baseline.session)
+    order = np.concatenate([np.argsort((np.arange(len(beta)) * ratio) % 1.0) for ratio in (0.618034, 0.4142136)])
+    planned = schedule(baseline.session, beta[order], flipped[order])
+    yield "visit the same positions twice in a scattered order", planned_on_stand(planned, baseline)
 
 
 def more_positions(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
     """More β steps in both runs."""
     for factor in (2, 4):
-        positions = max(steps(baseline.session), 12) * factor
-        beta, flipped = full_turns(positions, [False, True])
-        yield f"measure {positions} equal steps of β in both runs", schedule(baseline, beta, flipped)
+        positions = max(steps(baseline.session), FINE) * factor
+        planned = schedule(baseline.session, *full_turns(positions))
+        yield f"measure {positions} equal steps of β in both runs", planned_on_stand(planned, baseline)
 
 
 def temperature_cycle(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
     """Cycle the temperature against time and position."""
     session = baseline.session
-    assert session.beta is not None
-    assert session.flipped is not None
-    rows = 2 * len(session.beta)
+    beta, flipped = (np.tile(x, 2) for x in rows_of(session))
+    rows = len(beta)
     mean = 20.0 if session.temperature is None else float(session.temperature.mean())
     span = 5.0 if session.temperature is None else max(float(np.ptp(session.temperature)), 5.0)
     cycle = mean + span / 2 * np.sin(2 * np.pi * 2.7 * np.arange(rows) / rows)
-    beta, flipped = np.tile(session.beta, 2), np.tile(session.flipped, 2)
-    planned = schedule(baseline, beta, flipped, temperature=cycle, time=120.0 * np.arange(rows))
-    yield f"repeat the session while the temperature is cycled by {span:.0f} °C, almost three times", planned
+    planned = replace(schedule(session, beta, flipped), temperature=cycle, time=PERIOD * np.arange(rows))
+    words = f"repeat the session while the temperature is cycled by {span:.0f} °C, almost three times"
+    yield words, planned_on_stand(planned, baseline)
 
 
 def other_elevation(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
     """Set the head to another elevation."""
     session = baseline.session
     assert session.stand is not None
-    positions = max(steps(session), 24)
-    beta, flipped = full_turns(positions, [False, True])
+    positions = max(steps(session), 2 * FINE)
     for degrees in (20.0, 60.0):
         stand = replace(session.stand, alpha=np.radians(degrees), chi=np.radians(degrees))
+        planned = replace(schedule(session, *full_turns(positions)), stand=stand)
         words = f"repeat with the head at {degrees:.0f}°, {positions} positions in both runs"
-        yield words, schedule(baseline, beta, flipped, stand=stand)
+        yield words, planned_on_stand(planned, baseline)
 
 
 def repeated(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
@@ -128,34 +129,18 @@ def repeated(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
 
     Longer readings would not do: a zero that differs from position to position stays what it is while it is read.
     """
-    session = baseline.session
-    assert session.beta is not None
-    assert session.flipped is not None
+    planned = planned_on_stand(schedule(baseline.session, *rows_of(baseline.session)), baseline)
     for times in (4, 16, 64):
-        planned = schedule(baseline, session.beta, session.flipped)
         yield f"repeat the session {times} times over", replace(planned, variance=planned.variance / times)
 
 
-def _on_stand(proposal: Proposal) -> Proposal:
-    """The proposal, made only for sessions on a stand."""
-
-    def guarded(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
-        if baseline.session.programme == TWO_AXIS_STAND:
-            yield from proposal(baseline)
-
-    return guarded
-
-
-PROPOSALS: tuple[Proposal, ...] = tuple(
-    _on_stand(p)
-    for p in (
-        other_run,
-        repeat_reversed,
-        mixed_order,
-        more_positions,
-        temperature_cycle,
-        other_elevation,
-        repeated,
-    )
+PROPOSALS: tuple[Proposal, ...] = (
+    other_run,
+    repeat_reversed,
+    mixed_order,
+    more_positions,
+    temperature_cycle,
+    other_elevation,
+    repeated,
 )
-"""In the order in which a technician would rather do them."""
+"""In the order in which a technician would rather make them."""

@@ -1,24 +1,30 @@
-"""Which causes fit as well as the named one, and the measurement that would tell them apart."""
+"""Which causes fit as well as the named one, and the measurement that would distinguish them."""
 
 from collections.abc import Sequence
 
 import numpy as np
 from scipy.special import logsumexp
 
-from estimator.causes import Signature
-from estimator.diagnosis.explanation.next_measurement import PROPOSALS
+from estimator.diagnosis.explanation.extended_model import amplitude_beside
+from estimator.diagnosis.explanation.next_measurement import proposals
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.whitened import Evidence
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.results import Rival, Separation
-from estimator.diagnosis.selection.search_state import Found, Search
-from estimator.diagnosis.signatures.scores import WORTH, Scored
+from estimator.diagnosis.selection.search_state import Found, SearchState
+from estimator.diagnosis.signatures.scores import WORTH
+from estimator.diagnosis.signatures.traces import Scored
 from estimator.session import Array
 
 CREDIBLE = 0.995
-"""Share of the probability that the named cause and its alternatives hold together."""
+"""Share of the probability that the named cause and its alternatives hold together: a true cause is then missing from
+the list in one session of two hundred; the study measures 0.4 % (docs/diagnosis/study.md)."""
 
-APART = 5.0
-"""Separation, standard errors, at which two causes are told apart."""
+DISTINGUISHED = 5.0
+"""Separation, standard errors, at which two causes are distinguished: a likelihood ratio of e^12.5, beyond what the
+choice among a catalogue and its shapes can make up."""
+
+SHOWN = 8
+"""Lines of the ranking that people see."""
 
 
 def probabilities(found: Found) -> list[tuple[Scored, float]]:
@@ -28,7 +34,7 @@ def probabilities(found: Found) -> list[tuple[Scored, float]]:
 
 
 def alternatives(found: Found) -> list[Scored]:
-    """Rivals that the session cannot tell from the named cause, most likely first.
+    """Rivals that the session cannot distinguish from the named cause, most likely first.
 
     A rival with more amplitudes that contains the named cause pays for each of them in its share (`bayes_factor`):
     it is listed where it is still likely after that, and else parsimony has ruled it out. What by itself would be no
@@ -46,79 +52,58 @@ def alternatives(found: Found) -> list[Scored]:
     return kept
 
 
-def fitted_trace(state: Search, found: Found, taken: Array) -> Array:
-    """(n,) what the named cause leaves in the whitened readings at its fitted amplitude."""
-    columns = found.best.columns - taken @ (taken.T @ found.best.columns)
-    value, *_ = np.linalg.lstsq(columns, state.evidence.z, rcond=1e-6)
-    return np.asarray(columns @ value)
+def separation(signature: Array, rival: Array, attributed: Array) -> float:
+    """Norm of the residual of a signature (n,), standard errors, after the best fit of a rival's trace (n, q).
 
-
-def separation(signature: Array, rival: Array, taken: Array) -> float:
-    """Norm of what is left of a signature (n,) after the best fit of a rival's trace (n, q)."""
-    columns = rival - taken @ (taken.T @ rival)
+    ``attributed`` (n, f) orthonormal traces of the other findings, projected out of the rival's.
+    """
+    columns = rival - attributed @ (attributed.T @ rival)
     scale = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
     value, *_ = np.linalg.lstsq(columns / scale, signature, rcond=1e-9)
     return float(np.linalg.norm(signature - columns / scale @ value))
 
 
-def separations(state: Search, found: Found, others: Sequence[Scored]) -> tuple[Separation, ...]:
-    """For every alternative: how far it is now, and what would bring it to `APART`."""
-    taken = state.taken(without=found)
-    signature = fitted_trace(state, found, taken)
-    names = [s.name for s in state.baseline.session.sensors]
+def separations(state: SearchState, found: Found, others: Sequence[Scored]) -> tuple[Separation, ...]:
+    """For every alternative: how far it is now, and what would bring it to `DISTINGUISHED`."""
+    attributed = state.attributed(without=found)
+    amplitude, columns = amplitude_beside(state, found)
+    signature = columns @ amplitude
     answers = []
     for rival in others:
-        now = separation(signature, rival.columns, taken)
-        measurement, then = proposal(state, found, rival)
-        sensors = tuple(names[i] for i in rival.shape.sensors)
+        now = separation(signature, rival.trace, attributed)
+        measurement, then = proposal(state.baseline, found.best, amplitude, rival)
+        sensors = tuple(state.names[i] for i in rival.sensors)
         answers.append(Separation(rival.cause.identifier, sensors, now, measurement, then))
     return tuple(answers)
 
 
-def amplitude(state: Search, found: Found) -> Array:
-    """(q,) fitted amplitudes of one finding, given the others."""
-    taken = state.taken(without=found)
-    columns = found.best.columns - taken @ (taken.T @ found.best.columns)
-    value, *_ = np.linalg.lstsq(columns, state.evidence.z, rcond=1e-6)
-    return np.asarray(value)
-
-
-def proposal(state: Search, found: Found, rival: Scored) -> tuple[str, float | None]:
-    """The first proposed measurement that tells the two apart, else the best of them; in words, with what to expect."""
+def proposal(baseline: Baseline, named: Scored, amplitude: Array, rival: Scored) -> tuple[str, float | None]:
+    """The first proposed measurement that distinguishes two causes, else the best of them; in words, with what to
+    expect. ``amplitude`` (q,) of the named one, SI."""
     best: tuple[str, float | None] = ("", None)
-    value = amplitude(state, found)
-    for words, planned in (p for propose in PROPOSALS for p in propose(state.baseline)):
-        expected = expected_separation(planned, found.best, value, rival)
+    for words, planned in proposals(baseline):
+        expected = expected_separation(planned, named, amplitude, rival)
         if expected is not None and (best[1] is None or expected > best[1]):
             best = (words, expected)
-        if expected is not None and expected >= APART:
+        if expected is not None and expected >= DISTINGUISHED:
             break
     return best
 
 
-def expected_separation(planned: Baseline, named: Scored, value: Array, rival: Scored) -> float | None:
-    """Separation of the named cause, at its amplitude, from the rival in a planned session."""
-    evidence = Evidence.of(planned)
-    own, other = (matching(planned, s) for s in (named, rival))
+def expected_separation(planned: Baseline, named: Scored, amplitude: Array, rival: Scored) -> float | None:
+    """Separation of the named cause, at its ``amplitude`` (q,), SI, from the rival in a planned session."""
+    residuals = WhitenedResiduals.of(planned)
+    own, other = (s.columns_in(planned.setting) for s in (named, rival))
     if own is None or other is None:
         return None
-    signature = evidence.trace(own) @ value[: own.shape[-1]]
+    signature = residuals.trace(own) @ amplitude[: own.shape[-1]]
     nothing = np.zeros((len(signature), 0))
-    return separation(signature, evidence.trace(other), nothing)
+    return separation(signature, residuals.trace(other), nothing)
 
 
-def matching(planned: Baseline, scored: Scored) -> Array | None:
-    """The cause's columns (R, m, q) in a planned session, at the same sensors and nonlinear parameters."""
-    cause = scored.cause
-    if not isinstance(cause, Signature) or not cause.available(planned.setting):
-        return None
-    return cause.columns(planned.setting, scored.shape)
-
-
-def ranking(state: Search, found: Found, most: int = 8) -> tuple[Rival, ...]:
+def ranking(state: SearchState, found: Found) -> tuple[Rival, ...]:
     """The strongest causes, as people see them."""
-    names = [s.name for s in state.baseline.session.sensors]
     return tuple(
-        Rival(s.cause.identifier, tuple(names[i] for i in s.shape.sensors), p, s.strength)
-        for s, p in probabilities(found)[:most]
+        Rival(s.cause.identifier, tuple(state.names[i] for i in s.sensors), p, s.strength)
+        for s, p in probabilities(found)[:SHOWN]
     )

@@ -13,26 +13,27 @@ import numpy as np
 from scipy.special import fdtrc
 
 from estimator.applied_vector import stand_geometry
-from estimator.causes import Cause
+from estimator.causes.contract import Cause
 from estimator.session import TWO_AXIS_STAND, Array, CalibrationSession
 
 FEWEST = 2
 """Rows at one extreme; a single one is as well a reading that does not belong to the rest."""
 
 SPARE = 3
-"""Degrees of freedom that the sensor's other rows must leave."""
+"""Degrees of freedom that the sensor's other rows must leave: fewer hardly tell their own scatter."""
 
 LEVEL = 1e-6
-"""p-value below which a sensor is clipped; the shares of sensors and sides included."""
+"""p-value below which a sensor is clipped, shared among sensors and sides: its readings are left out, which must not
+happen by chance once in the life of a fleet."""
 
 SEEN = 1e-6
-"""Share of the strongest direction above which the other rows see one."""
+"""Share of the strongest direction above which the other rows see one: rounding lies far below."""
 
 SHORT = 3.0
-"""Standard errors by which a clipped row may be expected short of the limit."""
+"""Standard errors by which a clipped row may be expected short of the limit: noise alone does so at the margin."""
 
 EXACT = 1e-9
-"""Least scatter of the readings, of their range."""
+"""Least scatter of the readings relative to their range: simulated readings may have none."""
 
 FREE = 1e3
 """Standard error given to a clipped reading, in ranges of the sensor's readings: it takes no part any more."""
@@ -48,13 +49,13 @@ class Clip:
     """+1 or −1."""
     rows: tuple[int, ...]
     expected: Array
-    """Readings to expect in those rows, in the file's unit."""
+    """(k,) readings to expect in those rows, reading units."""
     p_value: float
     strength: float
     """In standard errors."""
 
     def put_right(self, session: CalibrationSession) -> CalibrationSession:
-        """The session with the clipped readings replaced by what the other rows let expect, and left without weight.
+        """The session with the clipped readings replaced by what the other rows predict, and left without weight.
 
         Where the file states no noise, they cannot be left without weight.
         """
@@ -85,7 +86,7 @@ def clips_of(session: CalibrationSession, i: int, cause: Cause) -> list[Clip]:
     if not tied:
         return []
     left_out = np.concatenate(list(tied.values()))
-    expected, covariance, freedom = foretold(session, i, left_out)
+    expected, covariance, freedom = predicted(session, i, left_out)
     if freedom < SPARE:
         return []
     clips, start = [], 0
@@ -97,8 +98,9 @@ def clips_of(session: CalibrationSession, i: int, cause: Cause) -> list[Clip]:
     return clips
 
 
-def foretold(session: CalibrationSession, i: int, left_out: Array) -> tuple[Array, Array, int]:
-    """What sensor i should read in some rows (k,) by its others, with covariance (k, k) and degrees of freedom.
+def predicted(session: CalibrationSession, i: int, left_out: Array) -> tuple[Array, Array, int]:
+    """Readings (k,) that sensor i should have in rows ``left_out`` (k,) by its others, reading units; with their
+    covariance (k, k) and the degrees of freedom.
 
     u = c₀ + c·n + c₂·a², a along the nominal axis, fitted by least squares; no freedom where the others leave it open.
     """
@@ -121,7 +123,8 @@ def foretold(session: CalibrationSession, i: int, left_out: Array) -> tuple[Arra
 
 
 def significance(beyond: Array, covariance: Array, freedom: int) -> tuple[float, float]:
-    """Strength and p-value of readings (k,) beyond a limit; p = 1 where one of them stays short of it."""
+    """Strength, standard errors, and p-value of readings ``beyond`` (k,) a limit, reading units, with their covariance
+    (k, k); p = 1 where one of them stays short of it."""
     if np.any(beyond < -SHORT * np.sqrt(np.diagonal(covariance))) or beyond.sum() <= 0:
         return 0.0, 1.0
     square = float(beyond @ np.linalg.solve(covariance, beyond))

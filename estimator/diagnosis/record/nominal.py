@@ -4,21 +4,22 @@ The axes of a block stray from nominal, nobody knows how far; a wrong α moves t
 are regressed on that pattern and judged by F: the strays themselves are the noise.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import fdtrc
 
 from estimator.arrays import tangents
-from estimator.causes import Entry
+from estimator.causes.contract import Cause, Entry
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.residuals.whitened import Evidence, parameter_covariance
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals, parameter_covariance
 from estimator.parameters import LIMIT
-from estimator.session import CalibrationSession
+from estimator.session import TWO_AXIS_STAND, CalibrationSession
 
 LEVEL = 1e-3
-"""Of one cause against the nominal axes."""
+"""p-value of one cause against the nominal axes: a third of the family-wise level, for it is one test of its own."""
 
 LEAST = np.radians(0.005)
 """rad; how near to nominal no maker claims to mount his axes."""
@@ -33,40 +34,23 @@ class WrongEntry:
 
     cause: Entry
     amplitude: float
+    """In the cause's unit."""
     sigma: float
     p_value: float
     strength: float
+    """Standard errors."""
 
     def corrected(self, session: CalibrationSession) -> CalibrationSession:
         """The session with the entry corrected."""
         return self.cause.corrected_by(session, self.amplitude)
 
 
-def regression(baseline: Baseline, cause: Entry) -> tuple[float, float, float, int]:
-    """Amplitude, its sigma, F and the degrees of freedom left, from the axes' deviations from nominal."""
-    evidence = Evidence.of(baseline)
-    (shape,) = cause.shapes(baseline.setting)
-    m = len(baseline.setting.kinds)
-    axes = (5 * np.arange(m)[:, None] + np.array([3, 4])).ravel()
-    answer = (evidence.absorb @ evidence.raw(shape.columns))[axes, 0]
-    nominal = np.stack([s.nominal_axis for s in baseline.session.sensors])
-    frame = tangents(baseline.parameters.axis)
-    stray = (np.swapaxes(frame, -1, -2) @ (baseline.parameters.axis - nominal)[..., None]).ravel()
-    known = np.sqrt(np.diagonal(parameter_covariance(baseline))[axes]) < LIMIT
-    answer, stray = answer[known], stray[known]
-    size = float(answer @ answer)
-    if size == 0 or len(stray) < 4:
-        return 0.0, np.inf, 0.0, 0
-    amount = float(answer @ stray) / size
-    freedom = len(stray) - 1
-    rest = max(float(((stray - answer * amount) ** 2).sum()) / freedom, LEAST**2)
-    return amount, float(np.sqrt(rest / size)), amount**2 * size / rest, freedom
-
-
-def wrong_entry(session: CalibrationSession, cause: Entry) -> WrongEntry | None:
-    """The amount that brings the axes back to nominal, or None where the strays explain them as they are."""
-    baseline = baseline_of(session)
-    amount, sigma, f, freedom = regression(baseline, cause)
+def wrong_entry(session: CalibrationSession, catalogue: Sequence[Cause]) -> WrongEntry | None:
+    """The entry whose correction brings the axes back to nominal; None where the strays explain them as they are."""
+    cause = next((c for c in catalogue if isinstance(c, Entry)), None)
+    if cause is None or session.programme != TWO_AXIS_STAND:
+        return None
+    amount, sigma, f, freedom = regression(baseline_of(session), cause)
     if freedom < 3 or (p_value := float(fdtrc(1, freedom, f))) > LEVEL:
         return None
     total, right = 0.0, session
@@ -75,3 +59,24 @@ def wrong_entry(session: CalibrationSession, cause: Entry) -> WrongEntry | None:
         right = cause.corrected_by(session, total)
         amount, sigma, _, _ = regression(baseline_of(right), cause)
     return WrongEntry(cause, total, sigma, p_value, float(np.sqrt(f)))
+
+
+def regression(baseline: Baseline, cause: Entry) -> tuple[float, float, float, int]:
+    """Amplitude, its sigma, F and the degrees of freedom of the axes' deviations from nominal."""
+    residuals = WhitenedResiduals.of(baseline)
+    (shape,) = cause.shapes(baseline.setting)
+    m = len(baseline.setting.kinds)
+    axes = (5 * np.arange(m)[:, None] + np.array([3, 4])).ravel()
+    pattern = (residuals.response @ residuals.whitened(shape.columns))[axes, 0]
+    nominal = np.stack([s.nominal_axis for s in baseline.session.sensors])
+    frame = tangents(baseline.parameters.axis)
+    stray = (np.swapaxes(frame, -1, -2) @ (baseline.parameters.axis - nominal)[..., None]).ravel()
+    known = np.sqrt(np.diagonal(parameter_covariance(baseline))[axes]) < LIMIT
+    pattern, stray = pattern[known], stray[known]
+    size = float(pattern @ pattern)
+    if size == 0 or len(stray) < 4:
+        return 0.0, np.inf, 0.0, 0
+    amount = float(pattern @ stray) / size
+    freedom = len(stray) - 1
+    rest = max(float(((stray - pattern * amount) ** 2).sum()) / freedom, LEAST**2)
+    return amount, float(np.sqrt(rest / size)), amount**2 * size / rest, freedom

@@ -8,7 +8,7 @@ from estimator.applied_vector import EARTH_RATE, Geometry, elevation, gravity, s
 from estimator.arrays import tangents
 from estimator.calibration.noise import typical
 from estimator.calibration.stand import solved
-from estimator.causes import Setting
+from estimator.causes.contract import Setting
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.orientations import fitted_state
 from estimator.forward import input_of, measured, projected, slope
@@ -19,13 +19,13 @@ from estimator.session import ACCELEROMETER, GYROSCOPE, TWO_AXIS_STAND, Array, C
 def baseline_of(session: CalibrationSession, start: SensorParameters | None = None) -> Baseline:
     """The baseline simulation fitted to an averaged session, its noise as stated (or estimated where it is not).
 
-    ``start`` (m,): where what the session does not observe stays; by default near the nominal values.
+    ``start``, of m sensors: where what the session does not observe stays; by default near the nominal values.
     """
     return on_stand(session, start) if session.programme == TWO_AXIS_STAND else in_orientations(session)
 
 
 def unstated_noise(session: CalibrationSession) -> Array:
-    """(m,) bool: sensors for which the file states no standard errors."""
+    """(m,) bool, no unit: sensors for which the file states no standard errors."""
     return np.asarray(np.isnan(session.standard_errors).any(axis=0))
 
 
@@ -42,8 +42,8 @@ def on_stand(session: CalibrationSession, start: SensorParameters | None) -> Bas
     asked = found.unstated & np.isfinite(variance[0])
     if not asked.any():
         return found
-    expected = typical(variance[:1], asked[np.newaxis], found.setting.norm)[0] / variance[0]
-    return replace(found, expected=np.nan_to_num(expected))
+    ratio = typical(variance[:1], asked[np.newaxis], found.setting.norm)[0] / variance[0]
+    return replace(found, expected_ratio=np.nan_to_num(ratio))
 
 
 def stand_baseline(
@@ -53,7 +53,10 @@ def stand_baseline(
     residual: Array,
     variance: Array,
 ) -> Baseline:
-    """The baseline at given parameters of a session on a stand."""
+    """The baseline at given parameters of a session on a stand.
+
+    ``residual`` (R, m) at the input, m/s² (rad/s), and its ``variance`` (R, m), (m/s²)² ((rad/s)²).
+    """
     steep = slope(own, g.n)
     rows = len(residual)
     constant = [steep * projected(own.axis, d) for d in g.constant]
@@ -64,7 +67,7 @@ def stand_baseline(
         norm=g.norm,
         beta=session.beta,
         flipped=session.flipped,
-        d_alpha=raised(session),
+        d_alpha=elevation_derivative(session),
         d_beta=g.beta,
         time=session.time,
         temperature=session.temperature,
@@ -93,8 +96,8 @@ def planned_on_stand(session: CalibrationSession, like: Baseline) -> Baseline:
     return stand_baseline(session, like.parameters, geometry, nothing, variance)
 
 
-def raised(session: CalibrationSession) -> Array:
-    """(R, m, 3) change of the applied vector per rad of elevation, by the exact vector at two elevations."""
+def elevation_derivative(session: CalibrationSession) -> Array:
+    """(R, m, 3) change of the applied vector, m/s² (rad/s) per rad of elevation, by central differences."""
     assert session.stand is not None
     assert session.beta is not None
     step, change = 1e-4, {}
@@ -107,7 +110,7 @@ def raised(session: CalibrationSession) -> Array:
 
 
 def force_on_stand(session: CalibrationSession) -> Array | None:
-    """(R, 3) specific force on the block; None where the elevation above the horizon is not stated."""
+    """(R, 3) specific force on the block, m/s²; None where the elevation above the horizon is not stated."""
     assert session.stand is not None
     assert session.beta is not None
     if session.stand.alpha is None:

@@ -1,31 +1,26 @@
-"""The common turn of all axes, which arbitrary orientations cannot observe: every applied vector may turn with it."""
+"""Gauge freedom: in arbitrary orientations all axes may turn together, and every applied vector with them, unseen."""
 
 import numpy as np
 
 from estimator.arrays import tangents
-from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.parameters import SensorParameters
-from estimator.session import ACCELEROMETER, Array
+from estimator.session import Array
 
 
-def free_to_turn(baseline: Baseline) -> Array:
-    """(m,) bool: sensors whose axes may turn together unseen, because no row's applied vector is known."""
-    unseen = baseline.row_sigma.size > 0 and bool(np.isinf(baseline.row_sigma).all())
-    return np.array([unseen and kind == ACCELEROMETER for kind in baseline.setting.kinds])
+def observable_directions(free: Array, parameters: SensorParameters) -> Array:
+    """(P, q) orthonormal, dimensionless: every direction of the P = 5 m parameters but a common turn of free axes.
 
-
-def comparable_directions(now: Baseline) -> Array:
-    """(P, q) orthonormal: every direction of the parameters but a common turn of what is free to turn."""
-    free, parameters = free_to_turn(now), now.parameters
+    ``free`` (m,) bool, `Baseline.gauge_free`.
+    """
     if not free.any():
         return np.eye(5 * len(free))
     turn = np.zeros((len(free), 5, 3))
-    turn[:, 3:] = turned_axes(parameters) * free[:, None, None]
-    left, _, _ = np.linalg.svd(turn.reshape(-1, 3))
-    return np.asarray(left[:, 3:])
+    turn[:, 3:] = axis_response(parameters) * free[:, None, None]
+    directions, _, _ = np.linalg.svd(turn.reshape(-1, 3))
+    return np.asarray(directions[:, 3:])
 
 
-def turned_axes(parameters: SensorParameters) -> Array:
-    """(m, 2, 3) tangent components of every axis' answer k×e to a small rotation vector k."""
+def axis_response(parameters: SensorParameters) -> Array:
+    """(m, 2, 3) rad per rad: tangent components of every axis' response k×e to a small rotation vector k."""
     cross = np.stack([np.cross(k, parameters.axis) for k in np.eye(3)], axis=-1)
     return np.asarray(np.swapaxes(tangents(parameters.axis), -1, -2) @ cross)

@@ -10,7 +10,8 @@ from estimator.parameters import SensorParameters
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
 SHARP = np.radians(0.1)
-"""Stated directions are taken as the applied vector when they are known better than this, rad."""
+"""Stated directions are taken as the applied vector when they are known better than this, rad; worse ones are
+estimated from the readings, with what is stated as prior."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,12 +19,12 @@ class OrientationState:
     """R orientations, m sensors (accelerometers and gyros)."""
 
     directions: Array
-    """(R, 3)"""
+    """(R, 3) unit vectors, block axes."""
     direction_sigma: Array
     """(R,) rad; infinite where the direction is estimated from the readings themselves."""
     parameters: SensorParameters
     variance: Array
-    """(R, m) of the independent noise at the input."""
+    """(R, m) of the independent noise at the input, (m/s²)² ((rad/s)²)."""
     felt: bool
     """Whether there are accelerometers, so that gyros' specific force is known."""
 
@@ -54,7 +55,7 @@ def fitted_state(session: CalibrationSession) -> OrientationState:
     if is_gyro.any():
         rest = gyro_biases(session, is_gyro)
         bias[is_gyro] = rest.bias
-        variance[:, is_gyro] = rest.noise**2 + EARTH_RATE**2 / 3
+        variance[:, is_gyro] = rest.noise**2 + EARTH_RATE**2 / 3  # one component of the Earth rate, direction unknown
     return OrientationState(
         directions, sigma, SensorParameters(scale, bias, quadratic, axis), variance, not bool(is_gyro.all())
     )

@@ -4,14 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from estimator.causes import Setting, Shape
-from estimator.diagnosis.selection.search_state import Found, Search
-from estimator.diagnosis.signatures.lasting import before
-from estimator.diagnosis.signatures.scores import Scored, rescored
+from estimator.causes.contract import Setting, Shape
+from estimator.diagnosis.selection.search_state import Found, SearchState
+from estimator.diagnosis.signatures.lasting import absorbed_before
+from estimator.diagnosis.signatures.scores import rescored
+from estimator.diagnosis.signatures.traces import Scored
 from estimator.session import Array
 
 
-def polished(state: Search) -> Search:
+def with_refined_shapes(state: SearchState) -> SearchState:
     """Every finding with a continuous nonlinear parameter moved to its best value, the parameter left free there."""
     for found in state.found:
         best = refined(state, found)
@@ -21,27 +22,29 @@ def polished(state: Search) -> Search:
     return state
 
 
-def refined(state: Search, found: Found) -> Scored:
-    """The best shape near the one found, bent columns appended; the same where nothing is continuous."""
-    setting, cause, own = state.baseline.setting, found.best.cause, len(found.best.cause.units)
-    near = list(cause.polished(setting, found.best.shape.first(own)))
+def refined(state: SearchState, found: Found) -> Scored:
+    """The best shape near the one found, its derivatives appended; the same where nothing is continuous."""
+    old, setting = found.best, state.baseline.setting
+    cause, own = old.cause, len(old.cause.units)
+    near = list(cause.neighbours(setting, old.shape.first(own)))
     if not near:
-        return found.best
-    evidence, lasting = state.evidence, found.best.lasting
-    taken, rest = state.taken(without=found), found.best.columns[:, own:]
-    padding = found.best.shape.columns[..., own:]
+        return old
+    attributed, padding = state.attributed(without=found), old.shape.columns[..., own:]
 
-    def bend(where: Setting, shape: Shape) -> Array:
-        return cause.bend(where, replace(shape, columns=cause.columns(where, shape)))
+    def derivative(where: Setting, shape: Shape) -> Array:
+        """(R, m, r) m/s² (rad/s)."""
+        return cause.derivative(where, replace(shape, columns=cause.columns(where, shape)))
 
     def scored(shape: Shape) -> Scored:
-        trace = evidence.trace(shape.columns, before(evidence, cause, [shape]) if lasting else 0.0)
+        before = absorbed_before(state.residuals, cause, [shape]) if old.lasting else 0.0
+        trace = np.concatenate([state.residuals.trace(shape.columns, before), old.trace[:, own:]], axis=1)
         padded = replace(shape, columns=np.concatenate([shape.columns, padding], axis=-1))
-        new = replace(found.best, shape=padded, columns=np.concatenate([trace, rest], axis=1))
-        return rescored(evidence, new, taken)
+        return rescored(state.residuals, replace(old, shape=padded, trace=trace), attributed)
 
     best = max(map(scored, near), key=lambda s: s.statistic)
-    bent = bend(setting, best.shape)
-    trace = evidence.trace(bent, before(evidence, cause, [best.shape], bend) if lasting else 0.0)
-    shape = replace(best.shape, columns=np.concatenate([best.shape.columns, bent], axis=-1))
-    return replace(best, shape=shape, columns=np.concatenate([best.columns, trace], axis=1))
+    bent = derivative(setting, best.shape)
+    before = absorbed_before(state.residuals, cause, [best.shape], derivative) if old.lasting else 0.0
+    trace = np.concatenate([best.trace, state.residuals.trace(bent, before)], axis=1)
+    return replace(
+        best, shape=replace(best.shape, columns=np.concatenate([best.shape.columns, bent], axis=-1)), trace=trace
+    )

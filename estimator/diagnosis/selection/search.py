@@ -1,18 +1,112 @@
-"""The search for causes: one after another, each weighed against all others, confirmed together."""
+"""The search for causes: forward selection, every finding weighed again given the others, backward elimination.
+
+A cause found later may change what was named earlier. Every finding is selected anew given the others until nothing
+changes; drift that another effect explains, two causes of the stand in place of which a third was selected first, and
+names that structure without a name explains better are taken back.
+"""
+
+from dataclasses import replace
+from itertools import combinations
 
 from estimator.diagnosis.selection.backward import (
-    best_pair,
-    confirmed,
-    judge_courses,
-    judge_structures,
-    settle,
+    NAMELESS,
+    backward_elimination,
+    without_names_on_courses,
     without_needless_drift,
 )
-from estimator.diagnosis.selection.forward import causes, structures, unevenness
-from estimator.diagnosis.selection.search_state import Search
+from estimator.diagnosis.selection.excess_noise import with_autocorrelation
+from estimator.diagnosis.selection.forward import forward_selection, with_structures
+from estimator.diagnosis.selection.ranking import joint_log_evidence, strongest
+from estimator.diagnosis.selection.search_state import Found, SearchState
+from estimator.diagnosis.signatures.lasting import MANY
+from estimator.diagnosis.signatures.scores import score
+
+ROUNDS = 4
+"""Times that every finding is selected anew: it bounds the search where two choices alternate."""
 
 
-def search(start: Search) -> Search:
-    """Causes, then what they leave."""
-    state = confirmed(best_pair(without_needless_drift(settle(causes(start)))))
-    return unevenness(confirmed(judge_courses(judge_structures(structures(state)))))
+def search(start: SearchState) -> SearchState:
+    """Causes, then the structure that they leave."""
+    state = reselected(forward_selection(start))
+    state = backward_elimination(best_common_pair(without_needless_drift(state)))
+    state = without_names_on_courses(structures_or_names(with_structures(state)))
+    return with_autocorrelation(backward_elimination(state))
+
+
+def reselected(state: SearchState) -> SearchState:
+    """Select every finding anew given the others, until nothing changes; drop what loses its significance."""
+    rounds = 1 if state.sensor_count > MANY else ROUNDS
+    for _ in range(rounds if state.found else 0):
+        groups = [f.best.group for f in state.found]
+        for old in state.found:
+            new = strongest(state, state.traces, without=old)
+            kept = tuple(new if f is old else f for f in state.found)
+            state = replace(state, found=tuple(f for f in kept if f is not None))
+        state = forward_selection(state)
+        if [f.best.group for f in state.found] == groups:
+            break
+    return state
+
+
+def best_common_pair(state: SearchState) -> SearchState:
+    """Two causes of stand or fixture selected together: one after another, the first may stand in for both."""
+    common = [f for f in state.found if not f.best.sensors]
+    if len(common) != 2:
+        return state
+    others = replace(state, found=tuple(f for f in state.found if f not in common))
+    scored = score(state.residuals, state.traces, others.attributed())
+    known = {f.best.group for f in common}
+    best, log_evidence = state, joint_log_evidence(state)
+    for first, second in combinations([s for s in scored if not s.sensors], 2):
+        if {first.group, second.group} == known or first.group == second.group:
+            continue
+        pair = tuple(Found(s, 0.0, ((s, s.log_evidence),)) for s in (first, second))
+        rival = replace(others, found=(*others.found, *pair))
+        if (value := joint_log_evidence(rival)) > log_evidence:
+            best, log_evidence = rival, value
+    return best if best is state else reselected(best)
+
+
+def structures_or_names(state: SearchState) -> SearchState:
+    """Withdraw names when structure without them explains the session better.
+
+    Tried for every name alone, for all names of one sensor together, for those of no sensor, and for all names; in a
+    block of many sensors only where structure was left.
+    """
+    crowded = state.sensor_count > MANY
+    for group in groups(state):
+        if not all(f in state.found for f in group) or (crowded and not overlaps(group, state.structures)):
+            continue
+        rival = without_names(state, group)
+        if rival.structures and joint_log_evidence(rival) > joint_log_evidence(state) + NAMELESS:
+            state = rival
+    return state
+
+
+def overlaps(group: tuple[Found, ...], structures: tuple[Found, ...]) -> bool:
+    """Whether structure was left on a sensor of the group."""
+    return bool({f.best.sensors for f in group} & {s.best.sensors for s in structures})
+
+
+def without_names(state: SearchState, names: tuple[Found, ...]) -> SearchState:
+    """The search without some findings, and structure where they were; elsewhere as it was.
+
+    What stand or fixture does is replaced by structure common to all sensors, not by a patchwork of single ones.
+    """
+    kept, touched = tuple(f for f in state.found if f not in names), {f.best.sensors for f in names}
+    if len(touched) > 1:
+        return with_structures(replace(state, found=kept, structures=()))
+    (own,) = touched
+    elsewhere = tuple(s for s in state.structures if s.best.sensors != own)
+    there = tuple(t.at(own) for t in state.patterns if own or t.common)
+    searched = with_structures(replace(state, found=kept, structures=elsewhere, patterns=there))
+    return replace(searched, patterns=state.patterns)
+
+
+def groups(state: SearchState) -> list[tuple[Found, ...]]:
+    """The sets of findings that structure may replace, the largest first."""
+    by_sensor: dict[tuple[int, ...], list[Found]] = {}
+    for f in state.found:
+        by_sensor.setdefault(f.best.sensors, []).append(f)
+    sets = [state.found, *map(tuple, by_sensor.values()), *((f,) for f in state.found)]
+    return list(dict.fromkeys(s for s in sets if s))

@@ -1,35 +1,25 @@
-"""Where a search for causes stands: the evidence, every signature that could explain it, and what was found so far.
+"""Where the search for causes stands: the residuals, every signature that could explain them, and what was found.
 
 The family-wise level is held over the whole catalogue: Bonferroni over causes, and over the places and shapes of each.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.causes import CATALOGUE, Cause, Signature
+from estimator.causes.contract import Cause
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.between_sessions import between_sessions
-from estimator.diagnosis.residuals.whitened import Between, Evidence
-from estimator.diagnosis.signatures.autocorrelation import Serial
-from estimator.diagnosis.signatures.lasting import traces_of
-from estimator.diagnosis.signatures.patterns import STRUCTURES
-from estimator.diagnosis.signatures.scores import Scored, Traces, ranked, rescored, score
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance
+from estimator.diagnosis.signatures.traces import Group, Scored, Traces
 from estimator.session import Array
 
 LEVEL = 0.003
-"""Family-wise level: sessions without an effect that get a name; a third of what is allowed, for safety."""
+"""Family-wise level: share of sessions without an effect that get a name. A third of the 1 % that is allowed, because
+several looks are taken at one session; docs/diagnosis/study.md measures 0.3 % (`make study`)."""
 
-
-NEW = 1e-6
-"""Share of a trace that must lie outside the others' span to count as a direction of its own."""
-
-PLAIN = 1.0
-"""ln evidence from which on a sensor's left-over is plainly a smooth course, beside which no cause can be told."""
-
-Group = tuple[str, tuple[int, ...]]
-"""What is named: a cause and the indices of its sensors."""
+NEW_DIRECTION = 1e-6
+"""Share of a trace that must lie outside the others' span to count as a direction of its own: rounding lies below."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,155 +28,82 @@ class Found:
 
     best: Scored
     p_family: float
+    """Family-wise p-value."""
     ranking: tuple[tuple[Scored, float], ...]
     """Every (cause, sensors) with its ln evidence, strongest first, given the other findings."""
 
-    def ranking_of(self, scored: Scored) -> tuple[tuple[Scored, float], ...]:
-        """The ranking as another sensor sees it: its own causes and those of no sensor."""
-        return tuple(pair for pair in self.ranking if pair[0].shape.sensors in ((), scored.shape.sensors))
+    @property
+    def cause_log_evidence(self) -> float:
+        """ln evidence of the cause that leads the ranking, all its shapes together."""
+        return self.ranking[0][1]
 
-
-@dataclass(frozen=True)
-class Excess:
-    """A sensor noisier than stated."""
-
-    sensor: int
-    ratio: float
-    """Variance over the stated one."""
-    freedom: float
-    evidence: float
-    p_family: float
+    def ranking_on(self, sensors: tuple[int, ...]) -> tuple[tuple[Scored, float], ...]:
+        """The ranking as other sensors see it: their own causes and those of no sensor."""
+        return tuple(pair for pair in self.ranking if pair[0].sensors in ((), sensors))
 
 
 @dataclass(frozen=True, eq=False)
-class Search:
-    """Where the search stands, and at its end what was found."""
+class SearchState:
+    """Where the search stands, and at its end what was found. n rows, f directions."""
 
-    baseline: Baseline
     history: tuple[Baseline, ...]
     catalogue: tuple[Cause, ...]
-    evidence: Evidence
+    residuals: WhitenedResiduals
     traces: tuple[Traces, ...]
+    """Of the catalogue's causes."""
     patterns: tuple[Traces, ...]
+    """Of structure without a name."""
     found: tuple[Found, ...] = ()
     structures: tuple[Found, ...] = ()
-    excess: tuple[Excess, ...] = ()
-    serial: tuple[Serial, ...] = ()
-    """Sensors whose left-over is not white, though no pattern fits it; where that is plain, no cause is named there."""
+    """Patterns found."""
+    excess: tuple[ExcessVariance, ...] = ()
+    autocorrelated: tuple[Autocorrelation, ...] = ()
+    """Sensors whose residual is not white, though no pattern fits it; where that is plain, no cause is named there."""
     refuted: frozenset[Group] = frozenset()
     """Causes on sensors that would have to act more often than they can."""
 
     @property
-    def between(self) -> Between | None:
-        return self.evidence.between
+    def baseline(self) -> Baseline:
+        """The fitted session."""
+        return self.residuals.baseline
 
     @property
-    def scatter(self) -> tuple[Excess | Serial, ...]:
-        """Sensors whose left-over is larger than stated or not white."""
-        return (*self.excess, *self.serial)
+    def sensor_count(self) -> int:
+        """m, number of sensors."""
+        return len(self.baseline.unstated)
 
     @property
-    def spoken_for(self) -> set[int]:
-        """Sensors whose scatter is already known to be excess noise or uneven."""
+    def names(self) -> tuple[str, ...]:
+        """Of the sensors, in their order."""
+        return tuple(s.name for s in self.baseline.session.sensors)
+
+    @property
+    def scatter(self) -> tuple[ExcessVariance | Autocorrelation, ...]:
+        """Sensors whose residual is larger than stated or not white."""
+        return (*self.excess, *self.autocorrelated)
+
+    @property
+    def scatter_attributed(self) -> set[int]:
+        """Sensors whose scatter is already known to be excess noise or autocorrelated."""
         return {s.sensor for s in self.scatter}
 
     @property
-    def left(self) -> Array:
-        """(n,) what findings and structures leave."""
-        taken = self.taken()
-        return np.asarray(self.evidence.z - taken @ (taken.T @ self.evidence.z))
+    def remaining(self) -> Array:
+        """(n,) standard errors: the residuals that findings and structures leave."""
+        attributed = self.attributed()
+        return np.asarray(self.residuals.z - attributed @ (attributed.T @ self.residuals.z))
 
     @property
     def families(self) -> int:
         """Number of causes that this session puts to the test."""
         return len(self.traces) + 1
 
-    def taken(self, without: Found | None = None) -> Array:
-        """(n, f) orthonormal traces of the findings and structures, one left out."""
-        parts = [f.best.columns for f in (*self.found, *self.structures) if f is not without]
+    def attributed(self, without: Found | None = None) -> Array:
+        """(n, f) orthonormal, dimensionless: the span of the traces of findings and structures, one left out."""
+        parts = [f.best.trace for f in (*self.found, *self.structures) if f is not without]
         if not parts:
-            return np.zeros((len(self.evidence.z), 0))
+            return np.zeros((len(self.residuals.z), 0))
         columns = np.concatenate(parts, axis=1)
         norms = np.linalg.norm(columns, axis=0)
-        left, size, _ = np.linalg.svd(columns[:, norms > 0] / norms[norms > 0], full_matrices=False)
-        return left[:, size > NEW * size[0]]
-
-
-def begin(baseline: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause] = CATALOGUE) -> Search:
-    """A search with nothing found yet."""
-    evidence = Evidence.of(baseline, between_sessions(baseline, history))
-    signatures = [c for c in catalogue if isinstance(c, Signature)]
-    return Search(
-        baseline,
-        tuple(history),
-        tuple(catalogue),
-        evidence,
-        tuple(traces_of(evidence, signatures)),
-        tuple(traces_of(evidence, STRUCTURES)),
-    )
-
-
-def family_level(scored: Scored, families: int) -> float:
-    """p-value of a signature or anything as strong among so many families, were there no effect."""
-    return min(1.0, scored.p_value * scored.places * families)
-
-
-def strongest(state: Search, traces: Sequence[Traces], without: Found | None = None) -> Found | None:
-    """The signature with the strongest evidence given the other findings; None if it is not significant.
-
-    ``without``: one finding is taken back and chosen anew, on its own sensor or common to all.
-    """
-    families = state.families if traces is state.traces else len(traces)
-    if without is not None and without.best.shape.sensors:
-        traces = [t.at(without.best.shape.sensors) for t in traces]
-    uneven = {s.sensor for s in state.serial if s.evidence > PLAIN}
-    scored = score(state.evidence, traces, state.taken(without))
-    order = ranked([s for s in scored if uneven.isdisjoint(s.shape.sensors) and s.group not in state.refuted])
-    for best, _ in order[:3]:
-        p_family = family_level(best, families)
-        if p_family < LEVEL:
-            return Found(best, p_family, tuple(order))
-    return None
-
-
-def companions(state: Search, best: Found, traces: Sequence[Traces]) -> list[Found]:
-    """The same cause on other sensors, where it leads that sensor's own ranking and is significant beside the rest."""
-    leads: dict[tuple[int, ...], Scored] = {}
-    for scored, _ in best.ranking:
-        leads.setdefault(scored.shape.sensors, scored)
-    same = [s for sensors, s in leads.items() if sensors and sensors != best.best.shape.sensors]
-    families = state.families if traces is state.traces else len(traces)
-    others: list[Found] = []
-    known = spanned(state.taken(), best.best.columns)
-    for scored in same:
-        if scored.cause is not best.best.cause or family_level(scored, families) >= LEVEL:
-            continue
-        level = family_level(rescored(state.evidence, scored, known), families)
-        if level < LEVEL:
-            others.append(Found(scored, level, best.ranking_of(scored)))
-            known = spanned(known, scored.columns)
-    return others
-
-
-def total(state: Search) -> float:
-    """ln evidence of everything found together, each weighed on what those before it leave."""
-    return beside(state, np.zeros((len(state.evidence.z), 0)), (*state.found, *state.structures))
-
-
-def beside(state: Search, taken: Array, members: Sequence[Found]) -> float:
-    """ln evidence of some findings beside others whose traces are ``taken`` (n, f), each on what those before leave."""
-    weight = 0.0
-    for member in members:
-        weight += rescored(state.evidence, member.best, taken).evidence
-        taken = spanned(taken, member.best.columns)
-    return weight
-
-
-def spanned(taken: Array, columns: Array) -> Array:
-    """(n, f + …) orthonormal columns ``taken`` (n, f) continued by what is new in others (n, q)."""
-    norms = np.linalg.norm(columns, axis=0)
-    new = columns[:, norms > 0] / norms[norms > 0]
-    for _ in range(2):
-        new = new - taken @ (taken.T @ new)
-    left, size, _ = np.linalg.svd(new, full_matrices=False)
-    return np.concatenate([taken, left[:, size > NEW]], axis=1)
+        basis, size, _ = np.linalg.svd(columns[:, norms > 0] / norms[norms > 0], full_matrices=False)
+        return basis[:, size > NEW_DIRECTION * size[0]]

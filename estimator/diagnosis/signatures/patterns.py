@@ -8,16 +8,17 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from estimator.causes import Setting, Shape, Signature
+from estimator.causes.contract import Setting, Shape, Signature
 from estimator.causes.stand import harmonic
 from estimator.session import Array
 
 HIGHEST = 8
-"""Harmonic of β up to which structure is looked for (half the positions of a run where those are fewer)."""
-
+"""Harmonic of β up to which structure is looked for (half the positions of a run where those are fewer): what
+the terms of baseline and catalogue make of β is small beyond the fifth."""
 
 EVEN = 0.1
-"""Share of a row's step by which rows may come early or late and still count as even."""
+"""Share of a row's step by which rows may come early or late and still count as even: a wave of half as many periods
+as rows is then off by a twentieth of its own period."""
 
 
 def highest(setting: Setting) -> int:
@@ -28,7 +29,7 @@ def highest(setting: Setting) -> int:
 
 
 def one_sensor(setting: Setting, patterns: Array, label: tuple[float, ...]) -> Iterator[Shape]:
-    """A pattern (R, q) placed on every sensor in turn."""
+    """Patterns (R, q), m/s² (rad/s) per unit amplitude, placed on every sensor in turn."""
     m = len(setting.kinds)
     for i in range(m):
         columns = np.zeros((setting.rows, m, patterns.shape[1]))
@@ -36,7 +37,7 @@ def one_sensor(setting: Setting, patterns: Array, label: tuple[float, ...]) -> I
         yield Shape((i,), columns, label)
 
 
-class Structure(Signature):
+class Pattern(Signature):
     """A family of patterns; ``nonlinear`` of its shapes says which member."""
 
     scope = "unexplained"
@@ -50,7 +51,7 @@ class Structure(Signature):
         return self.sentence.format(*(f"{v:g}" for v in shape.nonlinear))
 
 
-class SensorHarmonic(Structure):
+class SensorHarmonic(Pattern):
     identifier = "sensor-harmonic"
     needs = frozenset({"stand"})
     sentence = "harmonic {0} of β"
@@ -60,7 +61,7 @@ class SensorHarmonic(Structure):
             yield from one_sensor(setting, harmonic(setting, order), (float(order),))
 
 
-class RunHarmonic(Structure):
+class RunHarmonic(Pattern):
     identifier = "run-harmonic"
     needs = frozenset({"stand", "both runs"})
     sentence = "harmonic {0} of β, opposite in the two runs"
@@ -72,7 +73,7 @@ class RunHarmonic(Structure):
             yield from one_sensor(setting, sign * harmonic(setting, order), (float(order),))
 
 
-class HarmonicSeries(Structure):
+class HarmonicSeries(Pattern):
     identifier = "harmonic-series"
     needs = frozenset({"stand"})
     sentence = "several harmonics of β together"
@@ -83,19 +84,19 @@ class HarmonicSeries(Structure):
             yield from one_sensor(setting, np.concatenate([harmonic(setting, k) for k in orders], axis=1), ())
 
 
-class SensorPeriodic(Structure):
+class SensorPeriodic(Pattern):
     identifier = "sensor-periodic"
     sentence = "a wave of {0} periods over the session"
 
     def shapes(self, setting: Setting) -> Iterator[Shape]:
-        for place in courses(setting):
+        for place in places_in_session(setting):
             for periods in np.arange(2, setting.rows + 1) / 2:
                 wave = 2 * np.pi * periods * place
                 yield from one_sensor(setting, np.stack([np.sin(wave), np.cos(wave)], axis=-1), (float(periods),))
 
 
-def courses(setting: Setting) -> list[Array]:
-    """(R,) place of every row in the session, by count and, where rows do not come evenly, by time."""
+def places_in_session(setting: Setting) -> list[Array]:
+    """(R,) relative place of every row in the session, by count and, where rows do not come evenly, by time."""
     count = np.arange(setting.rows) / setting.rows
     if setting.time is None or not np.ptp(setting.time) > 0:
         return [count]
@@ -103,7 +104,7 @@ def courses(setting: Setting) -> list[Array]:
     return [count] if np.abs(elapsed - count).max() < EVEN / setting.rows else [count, elapsed]
 
 
-class SensorTrend(Structure):
+class SensorTrend(Pattern):
     identifier = "sensor-trend"
     sentence = "a smooth course over the session"
 
@@ -113,7 +114,7 @@ class SensorTrend(Structure):
             yield from one_sensor(setting, np.polynomial.legendre.legvander(place, 6)[:, 1:], ())
 
 
-class TemperatureCurve(Structure):
+class TemperatureCurve(Pattern):
     identifier = "temperature-curve"
     needs = frozenset({"temperature"})
     sentence = "a curve over temperature"
@@ -126,7 +127,7 @@ class TemperatureCurve(Structure):
             yield from one_sensor(setting, np.polynomial.legendre.legvander(scaled, 4)[:, 1:], ())
 
 
-class TemperatureWave(Structure):
+class TemperatureWave(Pattern):
     identifier = "temperature-wave"
     needs = frozenset({"temperature"})
     sentence = "a wave of {0} half periods over the temperature's range"
@@ -141,7 +142,7 @@ class TemperatureWave(Structure):
             )
 
 
-class TemperatureStep(Structure):
+class TemperatureStep(Pattern):
     identifier = "temperature-step"
     needs = frozenset({"temperature"})
     sentence = "a step at {0} °C"
@@ -153,7 +154,7 @@ class TemperatureStep(Structure):
             yield from one_sensor(setting, (setting.temperature > threshold)[:, None] * 1.0, (float(threshold),))
 
 
-class InputCurve(Structure):
+class InputCurve(Pattern):
     identifier = "input-curve"
     sentence = "a curve over the sensor's own input"
 
@@ -167,7 +168,7 @@ class InputCurve(Structure):
                 yield Shape((i,), columns)
 
 
-class TurningScale(Structure):
+class TurningScale(Pattern):
     identifier = "turning-scale"
     needs = frozenset({"stand"})
     sentence = "the scale factor, harmonic {0} of β"
@@ -181,7 +182,7 @@ class TurningScale(Structure):
                 yield Shape((i,), columns, (float(order),))
 
 
-class CommonHarmonic(Structure):
+class CommonHarmonic(Pattern):
     identifier = "common-harmonic"
     needs = frozenset({"stand"})
     sentence = "the applied vector, common to all sensors: harmonic {0} of β"
@@ -195,7 +196,7 @@ class CommonHarmonic(Structure):
                 yield Shape((), setting.through(change), (float(order),))
 
 
-class CommonPeriodic(Structure):
+class CommonPeriodic(Pattern):
     identifier = "common-periodic"
     needs = frozenset({"stand"})
     sentence = "the applied vector, common to all sensors: a wave of {0} periods over the session"
@@ -211,7 +212,7 @@ class CommonPeriodic(Structure):
                 yield Shape((), setting.through(turn[..., None] * both[:, None, None, :]), (float(periods),))
 
 
-STRUCTURES: tuple[Structure, ...] = (
+PATTERNS: tuple[Pattern, ...] = (
     SensorHarmonic(),
     RunHarmonic(),
     HarmonicSeries(),

@@ -11,68 +11,65 @@ import numpy as np
 from scipy.special import chdtri, fdtrc
 
 from estimator.calibration.noise import with_the_others
-from estimator.causes import Shape
-from estimator.diagnosis.residuals.whitened import Evidence
+from estimator.causes.contract import Shape
+from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.session import ACCELEROMETER, Array
 
 FAINTEST_TAIL = 1e-280
-"""Tail probability below which its logarithm is taken from the residuals themselves."""
+"""Tail probability below which its logarithm is taken from the ratio itself; doubles end at 1e-308."""
 
 
 @dataclass(frozen=True, eq=False)
-class Left:
-    """What the findings so far leave of the evidence."""
+class ReadingScatter:
+    """What the findings so far leave of the readings. N reading and prior rows, m sensors."""
 
-    evidence: Evidence
-    taken: Array
-    """(n, f) orthonormal traces of the findings."""
-    z: Array
-    """(n,)"""
+    baseline: Baseline
+    residual: Array
+    """(N,) standard errors."""
+    freedom: Array
+    """(N,) degrees of freedom of every row."""
+    sensor_of_row: Array
+    """(N,) int; −1 for priors."""
 
-    @classmethod
-    def of(cls, evidence: Evidence, taken: Array) -> "Left":
-        return cls(evidence, taken, evidence.z - taken @ (taken.T @ evidence.z))
+    def without(self, shapes: Sequence[Shape], basis: Array, along: Array) -> tuple[Array, Array]:
+        """(S,) energy and (S,) degrees of freedom of the readings that each of S signatures must stand out of.
 
-    def scatter(self, shapes: Sequence[Shape], basis: Array, along: Array) -> tuple[Array, Array]:
-        """(S,) energy and degrees of freedom of the readings that each signature must stand out of, it taken out.
-
-        ``basis`` (S, n, q) orthonormal traces, ``along`` (S, q) what is left along them. NaN where the noise is stated.
-        What other sensors of the kind let expect is added where the sensor's own scatter does not gainsay it.
+        ``basis`` (S, n, q) orthonormal traces, ``along`` (S, q) residual along them, standard errors: both are taken
+        out. NaN where the noise is stated. What other sensors of the kind suggest is added, unless the sensor's own
+        scatter contradicts it.
         """
-        evidence = self.evidence
-        m = len(evidence.baseline.unstated)
-        owners = np.zeros((len(shapes), m))
+        N, m = len(self.residual), len(self.baseline.unstated)
+        sharing = np.zeros((len(shapes), m))
         for k, shape in enumerate(shapes):
-            owners[k, sharing(evidence, shape.sensors)] = 1.0
-        unknown = owners @ evidence.baseline.unstated > 0
+            sharing[k, sharing_scatter(self.baseline, shape.sensors)] = 1.0
+        unknown = sharing @ self.baseline.unstated > 0
         energy, freedom = np.full(len(shapes), np.nan), np.full(len(shapes), np.nan)
         if not unknown.any():
             return energy, freedom
-        own = evidence.owner[: evidence.readings, None] == np.arange(m)
-        fitted = (basis[unknown] @ along[unknown, :, None])[:, : evidence.readings, 0]
-        used = (basis[unknown, : evidence.readings] ** 2).sum(axis=-1)
-        spare = evidence.spare - (self.taken[: evidence.readings] ** 2).sum(axis=-1)
-        energy[unknown] = (((self.z[: evidence.readings] - fitted) ** 2 @ own) * owners[unknown]).sum(axis=-1)
-        freedom[unknown] = (((spare - used) @ own) * owners[unknown]).sum(axis=-1)
-        if evidence.baseline.expected is None:
+        own = self.sensor_of_row[:, None] == np.arange(m)
+        fitted = (basis[unknown] @ along[unknown, :, None])[:, :N, 0]
+        used = (basis[unknown, :N] ** 2).sum(axis=-1)
+        energy[unknown] = (((self.residual - fitted) ** 2 @ own) * sharing[unknown]).sum(axis=-1)
+        freedom[unknown] = (((self.freedom - used) @ own) * sharing[unknown]).sum(axis=-1)
+        if self.baseline.expected_ratio is None:
             return energy, freedom
-        expected = np.where(owners.sum(axis=-1) == 1, owners @ evidence.baseline.expected, np.nan)
+        expected = np.where(sharing.sum(axis=-1) == 1, sharing @ self.baseline.expected_ratio, np.nan)
         return with_the_others(energy, freedom, expected)
 
 
-def sharing(evidence: Evidence, sensors: tuple[int, ...]) -> list[int]:
+def sharing_scatter(baseline: Baseline, sensors: tuple[int, ...]) -> list[int]:
     """The sensors out of whose scatter a signature must stand: its own, or all accelerometers that share the estimate
-    of a row's direction, since what one of them has moves the left-over of the others."""
-    setting = evidence.baseline.setting
-    chosen = list(sensors) or list(range(len(setting.kinds)))
-    coupled = [i for i, kind in enumerate(setting.kinds) if kind == ACCELEROMETER]
-    if np.isinf(evidence.baseline.row_sigma).any() and not set(chosen).isdisjoint(coupled):
+    of a row's direction, since what one of them has moves the residuals of the others."""
+    kinds = baseline.setting.kinds
+    chosen = list(sensors) or list(range(len(kinds)))
+    coupled = [i for i, kind in enumerate(kinds) if kind == ACCELEROMETER]
+    if np.isinf(baseline.row_sigma).any() and not set(chosen).isdisjoint(coupled):
         return sorted({*chosen, *coupled})
     return chosen
 
 
-def equivalent(power: Array, q: Array, energy: Array, freedom: Array) -> Array:
-    """(S,) χ² of signatures that are as unlikely as the power (S,) that each takes out with its q (S,) amplitudes.
+def equivalent_chi2(power: Array, q: Array, energy: Array, freedom: Array) -> Array:
+    """(S,) χ², dimensionless, as unlikely as the ``power`` (S,) that signatures of q (S,) amplitudes explain.
 
     Where the noise of its sensors is estimated from what it leaves of their readings (``energy`` with ``freedom``,
     (S,); else NaN), F = (power/q)/(energy/freedom) takes the place of χ², carried over at the same tail probability.

@@ -1,4 +1,4 @@
-"""Every signature that could explain the left-over, with its score.
+"""The score of every signature that could explain the residuals.
 
 Theory
 ------
@@ -19,138 +19,112 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import chdtrc
 
-from estimator.causes import Shape, Signature
-from estimator.diagnosis.residuals.whitened import Evidence
-from estimator.diagnosis.signatures.scatter import Left, equivalent
+from estimator.causes.contract import Setting, Shape, Signature
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.diagnosis.signatures.scatter import ReadingScatter, equivalent_chi2
+from estimator.diagnosis.signatures.traces import INVISIBLE, Group, Scored, Traces
 from estimator.session import Array
 
 FAINT = 0.02
-"""A direction of a signature counts when its trace is above this share of the strongest direction's."""
+"""Share of the strongest direction's trace above which a direction of a signature counts as an amplitude of its own:
+a weaker one would cost a degree of freedom for an amplitude that the session hardly shows."""
 
 LARGEST = 0.3
-"""Largest part of the applied vector that an effect on a stand may be."""
+"""Largest part of the applied vector that an effect on a stand may be: beyond it linear signatures no longer hold, and
+a record error or a clipped channel, both put right before, is the likelier explanation."""
 
 WORTH = 1e-3
-"""p-value below which a signature is looked at as an explanation: is its amplitude within reason, is it a rival?"""
+"""p-value below which a signature is looked at as an explanation: is its amplitude within reason, is it a rival?
+It screens and names nothing: a name needs `LEVEL` over the whole catalogue."""
 
 OCCAM = 0.7
-"""ln evidence that every amplitude beyond the first costs: the simpler of two causes is the likelier one."""
-
-INVISIBLE = 1e-3
-"""Share of a signature that must be left by the baseline for it to be visible at all."""
+"""ln evidence that every amplitude beyond the first costs, a factor of two: it balances simple causes against richer
+ones that contain them, so that alternatives stay few (docs/diagnosis/study.md, alternatives)."""
 
 
 @dataclass(frozen=True, eq=False)
-class Traces:
-    """The traces of all shapes of one cause. S shapes, n data rows, q amplitudes."""
+class Projected:
+    """Residuals with the traces of earlier findings projected out. n rows, f directions."""
 
-    cause: Signature
-    shapes: tuple[Shape, ...]
-    lasting: tuple[bool, ...]
-    """(S,)"""
-    columns: Array
-    """(S, n, q)"""
-    raw: Array
-    """(S, q) norm of every column before the baseline absorbed its share; 0 for columns that are no amplitude."""
-    places: int
-    """Number of shapes that are visible at all: what the cause's prior is shared among."""
+    residuals: WhitenedResiduals
+    attributed: Array
+    """(n, f) orthonormal traces of the findings."""
+    z: Array
+    """(n,) standard errors: what the findings leave."""
 
-    def at(self, sensors: tuple[int, ...]) -> "Traces":
-        """The shapes on some sensors, and those of no sensor; the prior is still shared among all."""
-        own = [k for k, s in enumerate(self.shapes) if s.sensors in ((), sensors)]
-        kept = tuple(self.shapes[k] for k in own), tuple(self.lasting[k] for k in own)
-        return replace(self, shapes=kept[0], lasting=kept[1], columns=self.columns[own], raw=self.raw[own])
-
-
-@dataclass(frozen=True, eq=False)
-class Scored:
-    """One shape's score after earlier findings were taken out."""
-
-    cause: Signature
-    shape: Shape
-    lasting: bool
-    columns: Array
-    """(n, q) trace."""
-    statistic: float
-    """Equivalent χ²."""
-    freedom: int
-    evidence: float
-    """ln Bayes factor, the share of the cause's prior included."""
-    p_value: float
-    """Of this shape alone."""
-    places: int
-    """Number of shapes the cause was tried with."""
+    @classmethod
+    def of(cls, residuals: WhitenedResiduals, attributed: Array) -> "Projected":
+        """``attributed`` (n, f) orthonormal traces of the findings, dimensionless."""
+        return cls(residuals, attributed, residuals.z - attributed @ (attributed.T @ residuals.z))
 
     @property
-    def group(self) -> tuple[str, tuple[int, ...]]:
-        """What is named: the cause and its sensors."""
-        return self.cause.identifier, self.shape.sensors
-
-    @property
-    def strength(self) -> float:
-        return float(np.sqrt(self.statistic))
+    def scatter(self) -> ReadingScatter:
+        """The same of the readings alone."""
+        r = self.residuals
+        freedom = r.row_freedom - (self.attributed[: r.rows] ** 2).sum(axis=-1)
+        return ReadingScatter(r.baseline, self.z[: r.rows], freedom, r.sensor_of_row[: r.rows])
 
 
-def score(evidence: Evidence, traces: Sequence[Traces], taken: Array) -> list[Scored]:
-    """Score every shape on what the findings so far leave.
-
-    ``taken`` (n, f) orthonormal traces of the findings so far.
-    """
-    left = Left.of(evidence, taken)
-    return [scored for t in traces for scored in _score(left, t)]
+def score(residuals: WhitenedResiduals, traces: Sequence[Traces], attributed: Array) -> list[Scored]:
+    """Score every shape on what the findings leave: ``attributed`` (n, f) orthonormal traces, dimensionless."""
+    projected = Projected.of(residuals, attributed)
+    return [scored for t in traces for scored in _score(projected, t)]
 
 
-def rescored(evidence: Evidence, scored: Scored, taken: Array) -> Scored:
-    """One shape scored anew on what other findings leave."""
-    raw = np.linalg.norm(evidence.raw(scored.shape.columns), axis=0)
-    alone = Traces(scored.cause, (scored.shape,), (scored.lasting,), scored.columns[None], raw[None], scored.places)
-    again = next(iter(_score(Left.of(evidence, taken), alone)), None)
+def rescored(residuals: WhitenedResiduals, scored: Scored, attributed: Array) -> Scored:
+    """One shape scored anew on what other findings leave: ``attributed`` (n, f) orthonormal traces, dimensionless."""
+    raw = np.linalg.norm(residuals.whitened(scored.shape.columns), axis=0)
+    alone = Traces(scored.cause, (scored.shape,), (scored.lasting,), scored.trace[None], raw[None], scored.places)
+    again = next(iter(_score(Projected.of(residuals, attributed), alone)), None)
     if again is None:
-        return replace(scored, statistic=0.0, evidence=-float(np.log(scored.places)), p_value=1.0)
+        return replace(scored, statistic=0.0, log_evidence=-float(np.log(scored.places)), p_value=1.0)
     return again
 
 
-def _score(left: Left, traces: Traces) -> Iterable[Scored]:
-    columns = traces.columns - left.taken @ (left.taken.T @ traces.columns)
+def _score(projected: Projected, traces: Traces) -> Iterable[Scored]:
+    """The visible shapes of one cause whose amplitude is within reason."""
+    columns = traces.columns - projected.attributed @ (projected.attributed.T @ traces.columns)
     norms = np.linalg.norm(columns, axis=1)
     shown = norms > np.maximum(INVISIBLE * traces.raw, 1e-300)
     basis, size, turn = orthonormal(columns * np.where(shown, 1 / np.where(shown, norms, 1.0), 0.0)[:, None, :])
     visible = (shown & (traces.raw > 0)).any(axis=-1)
     live = (size > FAINT * size[:, :1]) & visible[:, None]
-    along = np.where(live, left.z @ basis, 0.0)
+    along = np.where(live, projected.z @ basis, 0.0)
     freedom = live.sum(axis=-1)
     inverse = np.where(live, 1 / np.where(live, size, 1.0), 0.0)
     amplitude = (turn.swapaxes(-1, -2) @ (along * inverse)[..., None])[..., 0] / np.where(shown, norms, np.inf)
-    energy, rest = left.scatter(traces.shapes, basis * live[:, None, :], along)
-    statistic = equivalent((along**2).sum(axis=-1), freedom, energy, rest)
+    energy, rest = projected.scatter.without(traces.shapes, basis * live[:, None, :], along)
+    statistic = equivalent_chi2((along**2).sum(axis=-1), freedom, energy, rest)
     p_value = np.where(freedom > 0, chdtrc(np.maximum(freedom, 1), statistic), 1.0)
     places = max(traces.places, 1)
     for s in np.flatnonzero(visible):
         shape, t, q, p = traces.shapes[s], float(statistic[s]), int(freedom[s]), float(p_value[s])
-        if p < WORTH and not within_reason(left.evidence, traces.cause, shape, amplitude[s]):
+        if p < WORTH and not within_reason(projected.residuals.baseline.setting, traces.cause, shape, amplitude[s]):
             continue
-        if (traces.raw[s] == 0).any() and not seen_within(columns[s][:, traces.raw[s] > 0], left.z, places):
+        if (traces.raw[s] == 0).any() and not seen_within(columns[s][:, traces.raw[s] > 0], projected.z, places):
             continue
-        weight = bayes_factor(t, q) - float(np.log(places))
-        yield Scored(traces.cause, shape, traces.lasting[s], traces.columns[s], t, q, weight, p, places)
+        log_evidence = bayes_factor(t, q) - float(np.log(places))
+        yield Scored(traces.cause, shape, traces.lasting[s], traces.columns[s], t, q, log_evidence, p, places)
 
 
 def seen_within(columns: Array, z: Array, places: int) -> bool:
-    """Whether a cause beside which the sensor's move is left open shows in the session itself: columns (n, q)."""
+    """Whether a cause beside which the sensor's parameter change is left open shows in the session itself.
+
+    ``columns`` (n, q) of its trace and the residuals ``z`` (n,), standard errors.
+    """
     basis, size, _ = np.linalg.svd(columns, full_matrices=False)
     live = basis[:, size > 1e-9 * max(size[0], 1e-300)]
     return float(chdtrc(live.shape[1], ((live.T @ z) ** 2).sum())) * places < WORTH
 
 
-def within_reason(evidence: Evidence, cause: Signature, shape: Shape, amplitude: Array) -> bool:
-    """Whether the amplitude (q,) that fits best is one that the cause can have.
+def within_reason(setting: Setting, cause: Signature, shape: Shape, amplitude: Array) -> bool:
+    """Whether the amplitude (q,), in the cause's SI units, that fits best is one that the cause can have.
 
     On a stand no effect may be a large part of the applied vector: what the baseline absorbs almost wholly would else
-    explain a small left-over by an enormous effect.
+    explain a small residual by an enormous effect.
     """
     if cause.bounded and not cause.plausible(shape, float(amplitude[0])):
         return False
-    setting = evidence.baseline.setting
     if setting.beta is None:
         return True
     size = np.abs(shape.columns @ amplitude).max(axis=0)
@@ -158,7 +132,7 @@ def within_reason(evidence: Evidence, cause: Signature, shape: Shape, amplitude:
 
 
 def orthonormal(columns: Array) -> tuple[Array, Array, Array]:
-    """Singular value decomposition of (S, n, q): bases (S, n, q), sizes (S, q) and turns (S, q, q)."""
+    """Singular value decomposition of dimensionless (S, n, q): bases (S, n, q), sizes (S, q) and turns (S, q, q)."""
     if columns.shape[-1] == 1:
         size = np.linalg.norm(columns, axis=1)
         return columns, size, np.ones((len(columns), 1, 1))
@@ -166,7 +140,7 @@ def orthonormal(columns: Array) -> tuple[Array, Array, Array]:
 
 
 def bayes_factor(statistic: float, q: int) -> float:
-    """ln of the local empirical Bayes factor of an effect with q amplitudes against none, less Occam's due."""
+    """ln of the local empirical Bayes factor of an effect with q amplitudes against none, less Occam's penalty."""
     if q == 0:
         return 0.0
     statistic = max(statistic, q)
@@ -175,11 +149,11 @@ def bayes_factor(statistic: float, q: int) -> float:
 
 def ranked(scored: Sequence[Scored]) -> list[tuple[Scored, float]]:
     """The best shape of every (cause, sensors) with the ln evidence of all its shapes, strongest first."""
-    groups: dict[tuple[str, tuple[int, ...]], list[Scored]] = {}
+    groups: dict[Group, list[Scored]] = {}
     for s in scored:
         groups.setdefault(s.group, []).append(s)
     best = [
-        (max(members, key=lambda s: s.evidence), float(np.logaddexp.reduce([s.evidence for s in members])))
+        (max(members, key=lambda s: s.log_evidence), float(np.logaddexp.reduce([s.log_evidence for s in members])))
         for members in groups.values()
     ]
     return sorted(best, key=lambda pair: -round(pair[1], 6))

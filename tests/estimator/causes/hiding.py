@@ -9,7 +9,7 @@ from estimator import CalibrationSession, Diagnosis, diagnose
 from estimator.applied_vector import stand_geometry
 from estimator.causes import Correction, Signature, cause
 from estimator.diagnosis.residuals.fitted import stand_baseline
-from estimator.diagnosis.residuals.whitened import Evidence
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array
 from estimator.simulate import orientation_schedule, simulate
 from tests.builders import GRAVITY
@@ -108,14 +108,14 @@ def change(identifier: str, where: Scene) -> Array:
 
 
 def strength(added: Array, where: Scene) -> float:
-    """Norm of what is left of (R, m) inputs, in standard errors; of all of it where the history tells."""
+    """Norm of what the baseline leaves of (R, m) inputs, in standard errors; of all of it where the history tells."""
     world = where.world
     repeatability = np.array([s.bias_repeatability for s in world.session.sensors])
     variance = (where.noise / world.truth.scale) ** 2 + repeatability**2
     nothing = np.zeros(added.shape)
     at = stand_baseline(world.session, world.truth, stand_geometry(world.session), nothing, nothing + variance)
-    evidence = Evidence.of(at)
-    trace = evidence.raw(added[..., None]) if where.history else evidence.trace(added[..., None])
+    residuals = WhitenedResiduals.of(at)
+    trace = residuals.whitened(added[..., None]) if where.history else residuals.trace(added[..., None])
     return float(np.linalg.norm(trace))
 
 

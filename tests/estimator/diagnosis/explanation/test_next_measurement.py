@@ -1,4 +1,4 @@
-"""What the planner promises comes true: the proposed measurement, carried out, tells the alternatives apart."""
+"""What the planner promises comes true: the proposed measurement, carried out, distinguishes the alternatives."""
 
 from dataclasses import dataclass, replace
 
@@ -7,7 +7,7 @@ import pytest
 
 from estimator import CalibrationSession, diagnose
 from estimator.diagnosis import Finding
-from estimator.diagnosis.explanation.next_measurement import PROPOSALS
+from estimator.diagnosis.explanation.next_measurement import proposals
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.results import Separation
@@ -78,7 +78,7 @@ def promise(finding: Finding, rival: str) -> Separation:
 def planned(session: CalibrationSession, words: str) -> Baseline:
     """The proposal in those words."""
     at = baseline_of(simulate(session, truth_of(session), np.random.default_rng(1), noise=VOLTS))
-    return next(p for propose in PROPOSALS for said, p in propose(at) if said == words)
+    return next(p for said, p in proposals(at) if said == words)
 
 
 @every_pair

@@ -8,7 +8,7 @@ from scipy.stats import kstest
 from estimator import diagnose
 from estimator.causes import cause
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.residuals.whitened import Evidence
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.lasting import traces_of
 from estimator.diagnosis.signatures.scores import bayes_factor, score
 from estimator.session import ACCELEROMETER
@@ -24,9 +24,9 @@ def p_values(*, stated: bool) -> list[float]:
         session = where.measured(seed)
         if not stated:
             session = replace(session, standard_errors=np.full(session.readings.shape, np.nan))
-        evidence = Evidence.of(baseline_of(session))
-        nothing = np.zeros((len(evidence.z), 0))
-        found += [s.p_value for s in score(evidence, traces_of(evidence, LINEAR), nothing)]
+        residuals = WhitenedResiduals.of(baseline_of(session))
+        nothing = np.zeros((len(residuals.z), 0))
+        found += [s.p_value for s in score(residuals, traces_of(residuals, LINEAR), nothing)]
     return found
 
 

@@ -1,0 +1,53 @@
+"""A finding in words, and the findings of one cause on several sensors put together."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from estimator.causes.contract import Cause
+from estimator.diagnosis.results import Finding
+
+
+def named_cause(cause: Cause, sensors: tuple[str, ...], p_value: float, strength: float) -> Finding:
+    """A finding in words, without a size."""
+    return Finding(cause.identifier, sentence(cause, sensors), cause.advice, sensors, p_value, strength)
+
+
+def listed(sensors: tuple[str, ...]) -> str:
+    """``A1``, ``each of A1 and A2``, ``each of A1, A2 and A3``."""
+    names = list(dict.fromkeys(sensors))
+    return f"each of {', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else "".join(names)
+
+
+def sentence(cause: Cause, sensors: tuple[str, ...]) -> str:
+    """What is wrong with some sensors, in words."""
+    text = cause.sentence.format(sensors=listed(sensors))
+    return text[:1].upper() + text[1:]
+
+
+def merged(named: Sequence[tuple[Cause, Finding]]) -> list[Finding]:
+    """Findings of one cause on several sensors put together, one sentence of all of them."""
+    kept: dict[str, Finding] = {}
+    for cause, f in named:
+        old = kept.get(f.cause)
+        kept[f.cause] = f if old is None else joined(cause, old, f)
+    return list(kept.values())
+
+
+def joined(cause: Cause, a: Finding, b: Finding) -> Finding:
+    """Two findings of one cause as one."""
+    sensors = a.sensors + b.sensors
+    return replace(
+        a,
+        sentence=sentence(cause, sensors),
+        sensors=sensors,
+        amplitude=a.amplitude + b.amplitude,
+        sigma=a.sigma + b.sigma,
+        units=a.units + b.units,
+        nonlinear_each=a.nonlinear_each + b.nonlinear_each,
+        p_value=max(a.p_value, b.p_value),
+        strength=float(np.hypot(a.strength, b.strength)),
+        alternatives=tuple(x for x in a.alternatives if x in b.alternatives),
+        new=a.new if a.new == b.new else None,
+    )

@@ -1,0 +1,76 @@
+"""Findings about the record, put right before the search: clipped channels, record errors, wrong entries."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from estimator.diagnosis.explanation.naming import merged, named_cause
+from estimator.diagnosis.explanation.rivals import CREDIBLE, SHOWN
+from estimator.diagnosis.record.clipping import Clip
+from estimator.diagnosis.record.nominal import WrongEntry
+from estimator.diagnosis.record.record_error import RecordError
+from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.results import Finding, Rival
+from estimator.forward import measured
+from estimator.session import ACCELEROMETER, CalibrationSession
+
+
+def clip_findings(clips: Sequence[Clip], session: CalibrationSession, baseline: Baseline) -> tuple[Finding, ...]:
+    """Clipped sensors of a session as it came, as one finding: every limit at the input, with the noise of a reading.
+
+    ``baseline``: of the session put right.
+    """
+    inputs = np.abs(measured(session)[0] / baseline.parameters.scale)
+    found = [(c.cause, clip_finding(c, float(inputs[c.rows[0], c.sensor]), baseline)) for c in clips]
+    return tuple(merged(found))
+
+
+def clip_finding(clip: Clip, limit: float, baseline: Baseline) -> Finding:
+    """One sensor clipped on one side at a limit, m/s² or rad/s at the input."""
+    sensor = baseline.session.sensors[clip.sensor]
+    unit = "m/s²" if sensor.kind == ACCELEROMETER else "rad/s"
+    return replace(
+        named_cause(clip.cause, (sensor.name,), clip.p_value, clip.strength),
+        amplitude=(limit,),
+        sigma=(float(np.sqrt(np.median(baseline.variance[:, clip.sensor]))),),
+        units=(unit,),
+        nonlinear_each=({unit: limit, "side": clip.side},),
+        ranking=(Rival(clip.cause.identifier, (sensor.name,), 1.0, clip.strength),),
+    )
+
+
+def record_error_finding(error: RecordError, session: CalibrationSession) -> Finding:
+    """A record error, with the other ways to put the record right that do as well."""
+    cause, places = error.undone.cause, error.undone.places
+    strength = float(np.sqrt(2 * error.undone.log_evidence))
+    reached, others, ranking = 0.0, list[str](), list[Rival]()
+    for attempt, share in error.posterior():
+        name = attempt.cause.identifier
+        ranking.append(Rival(name, concerned(attempt.places, session, of_rows=cause.of_rows), share, strength))
+        if reached < CREDIBLE and name != cause.identifier and name not in others:
+            others.append(name)
+        reached += share
+    shown = {f"row {k}": float(p + 1) for k, p in enumerate(places, 1)} if cause.of_rows else {}
+    sensors = concerned(places, session, of_rows=cause.of_rows)
+    return replace(
+        named_cause(cause, sensors, float(np.exp(-error.undone.log_evidence)), strength),
+        nonlinear_each=(shown,),
+        alternatives=tuple(others),
+        ranking=tuple(ranking[:SHOWN]),
+    )
+
+
+def concerned(places: tuple[int, ...], session: CalibrationSession, *, of_rows: bool) -> tuple[str, ...]:
+    """The names of the sensors that a correction concerns; none where it is of rows."""
+    return () if of_rows else tuple(session.sensors[i].name for i in places)
+
+
+def entry_finding(entry: WrongEntry) -> Finding:
+    """An entry of the record that the nominal axes show to be wrong."""
+    return replace(
+        named_cause(entry.cause, (), entry.p_value, entry.strength),
+        amplitude=(entry.amplitude,),
+        sigma=(entry.sigma,),
+        units=entry.cause.units,
+    )

@@ -1,0 +1,84 @@
+"""The signature with the strongest evidence given the other findings, and the evidence of several together."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.diagnosis.selection.search_state import LEVEL, NEW_DIRECTION, Found, SearchState
+from estimator.diagnosis.signatures.scores import ranked, rescored, score
+from estimator.diagnosis.signatures.traces import Scored, Traces
+from estimator.session import Array
+
+TRIED = 3
+"""Leaders of a ranking that are asked for significance: the strongest evidence need not have the smallest p-value."""
+
+
+def family_p_value(scored: Scored, families: int) -> float:
+    """p-value of a signature or anything as strong among so many families, were there no effect (Bonferroni)."""
+    return min(1.0, scored.p_value * scored.places * families)
+
+
+def strongest(state: SearchState, traces: Sequence[Traces], without: Found | None = None) -> Found | None:
+    """The signature with the strongest evidence given the other findings; None if it is not significant.
+
+    ``without``: one finding is taken back and chosen anew, on its own sensor or common to all.
+    """
+    families = state.families if traces is state.traces else len(traces)
+    if without is not None and without.best.sensors:
+        traces = [t.at(without.best.sensors) for t in traces]
+    closed = {s.sensor for s in state.autocorrelated if s.plain}
+    scored = score(state.residuals, traces, state.attributed(without))
+    order = ranked([s for s in scored if closed.isdisjoint(s.sensors) and s.group not in state.refuted])
+    for best, _ in order[:TRIED]:
+        p_family = family_p_value(best, families)
+        if p_family < LEVEL:
+            return Found(best, p_family, tuple(order))
+    return None
+
+
+def on_other_sensors(state: SearchState, best: Found, traces: Sequence[Traces]) -> list[Found]:
+    """The same cause where it leads another sensor's own ranking and is significant beside the rest."""
+    leads: dict[tuple[int, ...], Scored] = {}
+    for scored, _ in best.ranking:
+        leads.setdefault(scored.sensors, scored)
+    same = [s for sensors, s in leads.items() if sensors and sensors != best.best.sensors]
+    families = state.families if traces is state.traces else len(traces)
+    others: list[Found] = []
+    attributed = extended_basis(state.attributed(), best.best.trace)
+    for scored in same:
+        if scored.cause is not best.best.cause or family_p_value(scored, families) >= LEVEL:
+            continue
+        p_family = family_p_value(rescored(state.residuals, scored, attributed), families)
+        if p_family < LEVEL:
+            others.append(Found(scored, p_family, best.ranking_on(scored.sensors)))
+            attributed = extended_basis(attributed, scored.trace)
+    return others
+
+
+def joint_log_evidence(state: SearchState) -> float:
+    """ln evidence of everything found together, each weighed on what those before it leave."""
+    nothing = np.zeros((len(state.residuals.z), 0))
+    return log_evidence_beside(state.residuals, nothing, (*state.found, *state.structures))
+
+
+def log_evidence_beside(residuals: WhitenedResiduals, attributed: Array, members: Sequence[Found]) -> float:
+    """ln evidence of some findings, each on what others and those before it leave.
+
+    ``attributed`` (n, f) orthonormal traces of the others, dimensionless.
+    """
+    log_evidence = 0.0
+    for member in members:
+        log_evidence += rescored(residuals, member.best, attributed).log_evidence
+        attributed = extended_basis(attributed, member.best.trace)
+    return log_evidence
+
+
+def extended_basis(basis: Array, columns: Array) -> Array:
+    """(n, f + …) orthonormal, dimensionless: ``basis`` (n, f) continued by what is new in ``columns`` (n, q)."""
+    norms = np.linalg.norm(columns, axis=0)
+    new = columns[:, norms > 0] / norms[norms > 0]
+    for _ in range(2):  # once leaves rounding of what lies almost within the span
+        new = new - basis @ (basis.T @ new)
+    directions, size, _ = np.linalg.svd(new, full_matrices=False)
+    return np.concatenate([basis, directions[:, size > NEW_DIRECTION]], axis=1)

@@ -1,0 +1,38 @@
+"""A search with nothing found yet: the residuals of a session and the traces of every cause in them."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from estimator.causes.contract import Cause, Signature
+from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.between_sessions import parameter_change
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.diagnosis.selection.search_state import SearchState
+from estimator.diagnosis.signatures.lasting import traces_of
+from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance
+from estimator.diagnosis.signatures.patterns import PATTERNS
+
+
+def begin(baseline: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]) -> SearchState:
+    """The search for causes of a catalogue in a fitted session."""
+    residuals = WhitenedResiduals.of(baseline, parameter_change(baseline, history))
+    signatures = [c for c in catalogue if isinstance(c, Signature)]
+    return SearchState(
+        tuple(history),
+        tuple(catalogue),
+        residuals,
+        tuple(traces_of(residuals, signatures)),
+        tuple(traces_of(residuals, PATTERNS)),
+    )
+
+
+def begin_anew(state: SearchState, scatter: Sequence[ExcessVariance | Autocorrelation]) -> SearchState:
+    """The search begun anew with one sensor's variance as it is, known from its own residuals alone."""
+    variance, unstated = state.baseline.variance.copy(), state.baseline.unstated.copy()
+    for one in scatter:
+        variance[:, one.sensor] *= one.ratio
+        unstated[one.sensor] = True
+    again = begin(replace(state.baseline, variance=variance, unstated=unstated), state.history, state.catalogue)
+    excess = (*state.excess, *(s for s in scatter if isinstance(s, ExcessVariance)))
+    autocorrelated = (*state.autocorrelated, *(s for s in scatter if isinstance(s, Autocorrelation)))
+    return replace(again, excess=excess, autocorrelated=autocorrelated)

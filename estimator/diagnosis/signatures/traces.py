@@ -1,0 +1,83 @@
+"""What a signature leaves in the residuals: the traces of a cause's shapes, and one shape with its score."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from estimator.causes.contract import Setting, Shape, Signature
+from estimator.session import Array
+
+INVISIBLE = 1e-3
+"""Share of a signature that the baseline must leave for it to be visible: below it the effect would have to be a
+thousand times what is seen of it, beyond what the linearised model describes."""
+
+Group = tuple[str, tuple[int, ...]]
+"""What is named: a cause and the numbers of its sensors."""
+
+
+@dataclass(frozen=True, eq=False)
+class Traces:
+    """The traces of all shapes of one cause. S shapes, n rows, q amplitudes."""
+
+    cause: Signature
+    shapes: tuple[Shape, ...]
+    lasting: tuple[bool, ...]
+    """(S,) whether each is taken as having acted since before the history."""
+    columns: Array
+    """(S, n, q) standard errors per unit amplitude."""
+    raw: Array
+    """(S, q) norm of every column before the baseline absorbed its share, standard errors; 0 where a column is no
+    amplitude of the cause but a parameter change left open."""
+    places: int
+    """Number of shapes that are visible at all: what the cause's prior is shared among."""
+
+    @property
+    def common(self) -> bool:
+        """Whether they act on no sensor in particular."""
+        return not self.shapes[0].sensors
+
+    def at(self, sensors: tuple[int, ...]) -> "Traces":
+        """The shapes on some sensors, and those of no sensor; the prior is still shared among all."""
+        own = [k for k, s in enumerate(self.shapes) if s.sensors in ((), sensors)]
+        shapes, lasting = tuple(self.shapes[k] for k in own), tuple(self.lasting[k] for k in own)
+        return replace(self, shapes=shapes, lasting=lasting, columns=self.columns[own], raw=self.raw[own])
+
+
+@dataclass(frozen=True, eq=False)
+class Scored:
+    """One shape with its score given other findings. n rows, q amplitudes."""
+
+    cause: Signature
+    shape: Shape
+    lasting: bool
+    trace: Array
+    """(n, q) standard errors per unit amplitude."""
+    statistic: float
+    """Equivalent χ²."""
+    freedom: int
+    """Its degrees of freedom."""
+    log_evidence: float
+    """ln Bayes factor, the share of the cause's prior included."""
+    p_value: float
+    """Of this shape alone."""
+    places: int
+    """Number of shapes the cause was tried with."""
+
+    @property
+    def sensors(self) -> tuple[int, ...]:
+        """The sensors it is attributed to; none for a cause of stand, fixture or record."""
+        return self.shape.sensors
+
+    @property
+    def group(self) -> Group:
+        """What is named: the cause and its sensors."""
+        return self.cause.identifier, self.sensors
+
+    @property
+    def strength(self) -> float:
+        """In standard errors."""
+        return float(np.sqrt(self.statistic))
+
+    def columns_in(self, setting: Setting) -> Array | None:
+        """(R, m, q) m/s² (rad/s) per unit amplitude: the same effect in another session; None where it cannot show."""
+        return self.cause.columns(setting, self.shape) if self.cause.available(setting) else None

@@ -1,0 +1,33 @@
+"""Record errors are undone one after another, only those of the catalogue, and hide no effect."""
+
+import numpy as np
+
+from estimator import diagnose
+from estimator.causes import CATALOGUE, Correction, cause
+from estimator.causes.record import exchange_rows
+from estimator.diagnosis.record.undo import undo_record_errors
+from estimator.session import ACCELEROMETER
+from tests.estimator.causes.hiding import scene, with_readings
+
+SESSION = scene(ACCELEROMETER, 0).measured(1)
+SIGN = cause("sign-reversed")
+assert isinstance(SIGN, Correction)
+REVERSED = list(SIGN.corrected(SESSION))[2][1]
+
+
+def test_two_errors_in_one_record_are_both_undone() -> None:
+    errors, right = undo_record_errors(exchange_rows(REVERSED, 2, 11), [], CATALOGUE)
+    assert {e.undone.cause.identifier for e in errors} == {"sign-reversed", "positions-swapped"}
+    assert np.array_equal(right.readings, SESSION.readings)
+
+
+def test_an_error_missing_in_the_catalogue_is_not_named() -> None:
+    errors, left = undo_record_errors(REVERSED, [], [c for c in CATALOGUE if c is not SIGN])
+    assert SIGN not in {e.undone.cause for e in errors}
+    assert not np.array_equal(left.readings, SESSION.readings)
+
+
+def test_a_record_error_does_not_hide_an_effect() -> None:
+    jump = 0.12 * 2e-3 * (np.arange(48) >= 20)[:, None] * np.eye(6)[2]
+    wrong = next(iter(SIGN.corrected(with_readings(SESSION, jump))))[1]
+    assert [f.cause for f in diagnose(wrong).findings] == ["sign-reversed", "bias-jump"]

@@ -1,0 +1,66 @@
+"""Where no noise is stated, a signature must stand out of the scatter of its own sensors' readings."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.stats import chi2, f
+
+from estimator.causes import Shape
+from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.diagnosis.signatures.scatter import ReadingScatter, equivalent_chi2, sharing_scatter
+from estimator.session import ACCELEROMETER
+from tests.estimator.causes.hiding import scene
+
+WHERE = scene(ACCELEROMETER, 0)
+ROWS = 48 * 6
+
+
+def blind(ratio: float | None) -> Baseline:
+    """A session with no noise stated; the variance that the other sensors suggest for each, over its own."""
+    session = WHERE.measured(1)
+    fitted = baseline_of(replace(session, standard_errors=np.full(session.readings.shape, np.nan)))
+    return replace(fitted, expected_ratio=None if ratio is None else np.full(6, ratio))
+
+
+def scatter(baseline: Baseline, size: float = 1.0) -> tuple[float, float]:
+    """Energy and degrees of freedom about a signature of one sensor that explains nothing."""
+    sensor = np.tile(np.arange(6), 48)
+    own = ReadingScatter(baseline, np.full(ROWS, size), np.ones(ROWS), sensor)
+    (energy,), (freedom,) = own.without([Shape((2,), np.zeros((48, 6, 1)))], np.zeros((1, ROWS, 1)), np.zeros((1, 1)))
+    return energy, freedom
+
+
+def test_a_sensor_alone_has_its_own_rows() -> None:
+    assert scatter(blind(None)) == (48.0, 48.0)
+
+
+def test_the_other_sensors_of_its_kind_lend_six_degrees_of_freedom() -> None:
+    assert scatter(blind(0.5)) == (48.0 + 6 * 0.5, 48.0 + 6)
+
+
+def test_a_sensor_plainly_noisier_than_the_others_borrows_nothing() -> None:
+    assert scatter(blind(0.5), size=4.0) == (48.0 * 16, 48.0)
+
+
+def test_where_the_noise_is_stated_there_is_no_scatter_to_stand_out_of() -> None:
+    assert np.isnan(scatter(baseline_of(WHERE.measured(1)))).all()
+
+
+def test_an_unknown_direction_makes_its_accelerometers_share_their_scatter() -> None:
+    baseline = baseline_of(scene("orientations", 0).measured(1))
+    assert sharing_scatter(baseline, (1,)) == [0, 1, 2]
+    assert sharing_scatter(baseline, (4,)) == [4]
+
+
+@pytest.mark.parametrize(("power", "q"), [(9.0, 1), (40.0, 2)])
+def test_an_f_becomes_the_chi_square_of_the_same_tail(power: float, q: int) -> None:
+    (found,) = equivalent_chi2(np.array([power]), np.array([q]), np.array([20.0]), np.array([25.0]))
+    assert chi2.sf(found, q) == pytest.approx(f.sf(power / q / (20 / 25), q, 25))
+
+
+def test_a_tail_beyond_doubles_still_grows() -> None:
+    one = np.ones(2)
+    near, far = equivalent_chi2(np.array([1e4, 1e5]), one.astype(int), one, one * 200)
+    assert near < far < np.inf
