@@ -11,7 +11,7 @@ from tests.builders import accelerometer_block
 
 JUMP = Finding(
     cause="bias-jump", sensors=("A1", "A2"), amplitude=(3e-4, 2e-4), sigma=(1e-5, 1e-5), units=("m/s²", "m/s²"),
-    nonlinear={"row": 14.0}, nonlinear_each=({"row": 14.0}, {"row": 20.0}), p_value=2.5e-5, strength=8.0,
+    nonlinear_each=({"row": 14.0}, {"row": 20.0}), p_value=2.5e-5, strength=8.0,
     alternatives=("warm-up",), separations=(Separation("warm-up", ("A1", "A2"), 1.5, "repeat the session", 4.5),),
     ranking=(Rival("bias-jump", ("A1", "A2"), 0.7, 8.0), Rival("warm-up", ("A1", "A2"), 0.3, 7.8)),
     sentence="The zero of A1 and A2 jumped.", advice="Look for a shock.",
