@@ -11,10 +11,12 @@ from estimator.diagnosis.selection.forward import (
     forward_selection,
     holds_pattern,
     log_evidence_of_two,
+    scatter_or_cause,
     too_often,
     with_structures,
 )
 from estimator.diagnosis.selection.ranking import strongest
+from estimator.diagnosis.signatures.noise import Autocorrelation
 from tests.estimator.diagnosis.selection.small import BETA, ROWS, SENSOR, candidate, effect, names, on_sensor, start
 
 FEW = ("cubic-nonlinearity", "bias-ramp", "beta-eccentricity")
@@ -75,6 +77,26 @@ def test_noise_holds_no_pattern() -> None:
     noisy = largest_excess(state)
     assert noisy is not None
     assert not holds_pattern(state, with_unknown_noise(state, SENSOR), noisy)
+
+
+def test_a_course_likelier_than_the_cause_that_stands_out_of_it_gets_no_name() -> None:
+    state = start(("bias-jump", "bias-ramp"), on_sensor(np.repeat([0.0, 20, 60, 90, 70, 100], 4)))
+    noisy, doubting = largest_excess(state), with_unknown_noise(state, SENSOR)
+    assert noisy is not None
+    assert strongest(doubting, doubting.traces) is not None
+    (course,), best = scatter_or_cause(state, noisy)
+    assert isinstance(course, Autocorrelation)
+    assert best is None
+
+
+def test_a_cause_likelier_than_a_course_is_named() -> None:
+    state = start(("bias-ramp",), effect("bias-ramp") + on_sensor(4 * np.random.default_rng(3).standard_normal(ROWS)))
+    noisy = largest_excess(state)
+    assert noisy is not None
+    scatter, best = scatter_or_cause(state, noisy)
+    assert scatter == ()
+    assert best is not None
+    assert best.best.group == ("bias-ramp", (SENSOR,))
 
 
 def test_a_cause_named_more_often_than_it_can_act_is_too_often() -> None:
