@@ -5,7 +5,7 @@ from uuid import NAMESPACE_URL, uuid5
 from xml.etree import ElementTree
 
 import httpx
-from hypothesis import example, given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from icalendar import Calendar
 
@@ -51,6 +51,7 @@ def test_flags_and_verdicts_come_as_a_feed_newest_first(holding: Holding) -> Non
 
 
 @given(unit=TEXT, text=TEXT)
+@settings(deadline=None)
 def test_any_text_makes_a_feed_that_can_be_read(unit: str, text: str) -> None:
     notice = Notice(1, unit, 1, NoticeKind.RAISED, NOW, "w", text, None)
     feed = ElementTree.fromstring(atom_feed([notice], "http://a/", "http://a/"))
@@ -71,6 +72,7 @@ def test_due_dates_come_as_a_calendar(holding: Holding) -> None:
 
 @given(unit=TEXT, summary=TEXT, description=TEXT)
 @example(unit="A", summary="C:\\New", description="\\\\N, \\n; \n")
+@settings(deadline=None)
 def test_any_text_survives_folding_and_escaping(unit: str, summary: str, description: str) -> None:
     content = calendar([DueDay(unit, date(2026, 3, 1), summary, description, "http://a/")], NOW)
     lines = content.split(b"\r\n")

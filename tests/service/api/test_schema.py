@@ -15,7 +15,7 @@ from tests.databases import ENGINES
 from tests.service.sessions import session_bytes
 from tests.serving import serving
 
-EXAMPLES = {GenerationMode.POSITIVE: 12, GenerationMode.NEGATIVE: 8}
+EXAMPLES = {GenerationMode.POSITIVE: 12, GenerationMode.NEGATIVE: 6}
 FEWER = {"/api/v1/plan": 3}
 """A plan takes a second or more."""
 
@@ -31,7 +31,7 @@ def address(request: pytest.FixtureRequest, stock_of: StockOf) -> Iterator[str]:
 @pytest.fixture(scope="module")
 def description(address: str) -> schemathesis.BaseSchema:
     """What the service says of itself."""
-    return schemathesis.openapi.from_url(f"{address}/openapi.json")
+    return schemathesis.openapi.from_url(f"{address}/openapi.json", timeout=60)
 
 
 @pytest.mark.parametrize(
