@@ -12,7 +12,8 @@ from estimator.health.prognosis import Outlook, Prognosis, Track, prognosis
 from estimator.session import comparable
 from service.records.outlook import FanPoint, ParameterTrend, RiskPoint, UnitOutlook
 from service.storage.queries.outlooks import ChangeRow, ReferenceRow
-from service.words.names import PARAMETER_NAMES, YEAR, day_of, month_of
+from service.words.due import why_due, why_measure
+from service.words.names import YEAR
 
 FAN_AHEAD = np.linspace(0.0, 1.0, 6)
 """Years after the last session for which a trend's bounds are drawn."""
@@ -144,8 +145,7 @@ def _unit(
     """The unit as a whole: it comes back before its risk passes the level, and never after the longest interval."""
     last, since = past.last, past.since
     if last is None or (since is not None and last < since):
-        reason = "No calibration yet." if since is None else f"Serviced on {day_of(since)}: measure it again."
-        return UnitOutlook(past.serial, since, False, reason, None, None, None, None, None, ())
+        return UnitOutlook(past.serial, since, False, why_measure(since), None, None, None, None, None, ())
     longest = last + timedelta(days=past.longest_days)
     first = min((t for t in trends if t.reach_90), key=lambda t: (t.reach_90, t.reach_50 or longest), default=None)
     risk, risky = tuple[RiskPoint, ...](), None
@@ -157,7 +157,7 @@ def _unit(
         serial=past.serial,
         due=due,
         overdue=False,
-        reason=_reason(trends, first, last, past.longest_days, is_longest=due == longest),
+        reason=why_due(trends, first, last, past.longest_days, is_longest=due == longest),
         sensor=None if first is None else first.sensor,
         parameter=None if first is None else first.parameter,
         reach_50=None if first is None else first.reach_50,
@@ -167,25 +167,3 @@ def _unit(
         risk=risk,
     )
     return replace(unit, risk_at_due=unit.risk_by(due))
-
-
-def _reason(
-    trends: Sequence[ParameterTrend],
-    first: ParameterTrend | None,
-    last: datetime,
-    longest_days: float,
-    *,
-    is_longest: bool,
-) -> str:
-    """Why then, in a sentence; ``first`` is the trend that reaches its tolerance first."""
-    interval = f"calibrate every {longest_days:.0f} days at least"
-    if not trends:
-        return f"One session since the reference was set tells no trend; {interval}."
-    if first is None or first.reach_90 is None:
-        return f"No parameter is expected to reach its tolerance within twelve years; {interval}."
-    name = f"{first.sensor} {PARAMETER_NAMES[first.parameter]}"
-    if first.reach_90 <= last:
-        return f"{name} may be out of its tolerance already."
-    later = f" and as likely as not by {month_of(first.reach_50)}" if first.reach_50 else ""
-    forecast = f"{name} reaches its tolerance with 10 % probability before {month_of(first.reach_90)}{later}"
-    return f"{forecast}; {interval}." if is_longest else f"{forecast}."

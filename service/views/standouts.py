@@ -7,7 +7,7 @@ from estimator.health.population import group_standing, standing_out
 from service.records.outlook import Rate
 from service.storage.store import Store
 from service.views.outlook import population_z
-from service.words.names import PARAMETER_NAMES
+from service.words.standouts import drift_stands_out, lot_stands_out
 
 WORTH = 0.1
 """Tolerances a year: slower drifts are nobody's concern, however unlike the others they are."""
@@ -33,12 +33,7 @@ def standouts(rates: Sequence[Rate]) -> tuple[Standout, ...]:
     out = standing_out([z for _, z in placed])
     units = [pair for pair, far in zip(placed, out, strict=True) if far and abs(pair[0].value) > WORTH]
     ordered = sorted(units, key=lambda pair: -abs(pair[1]))
-    return (*(Standout(rate.serial, _words(rate)) for rate, _ in ordered), *_lots(rates))
-
-
-def _words(rate: Rate) -> str:
-    drift = f"drifts by {100 * abs(rate.value):.0f} % of its tolerance a year, unlike the other units of its type."
-    return f"{rate.sensor} {PARAMETER_NAMES[rate.parameter]} {drift}"
+    return (*(Standout(rate.serial, drift_stands_out(rate)) for rate, _ in ordered), *_lots(rates))
 
 
 def _lots(rates: Sequence[Rate]) -> list[Standout]:
@@ -53,7 +48,7 @@ def _lots(rates: Sequence[Rate]) -> list[Standout]:
         if len({rate.serial for rate in own if rate.lot == lot}) > 1
     }
     return [
-        Standout(None, f"Lot {lot} of {unit_type}: {PARAMETER_NAMES[parameter]} drifts unlike that of the other units.")
+        Standout(None, lot_stands_out(lot, unit_type, parameter))
         for (unit_type, parameter, lot), far in zip(z, standing_out(list(z.values())), strict=True)
         if far
     ]

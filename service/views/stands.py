@@ -5,15 +5,12 @@ from datetime import datetime
 
 import numpy as np
 
-from estimator.health.common_motion import AXES, sigma_of, size_of
+from estimator.health.common_motion import sigma_of, size_of
 from estimator.health.stands import Motion, StandShift, stand_shifts
-from service.measures import COVERAGE, deviation_measure, measured, signed
 from service.records.stand import MotionOnStand, StandCondition, StandEvidence
 from service.storage.store import Store
-from service.words.names import YEAR, day_of
-
-STEADY = "Nothing that all units measured on it have in common."
-TOO_FEW = "Fewer than three units tell of it."
+from service.words.names import YEAR
+from service.words.stands import STEADY, TOO_FEW, why_shifted
 
 
 def stand_conditions(store: Store) -> tuple[StandCondition, ...]:
@@ -65,13 +62,4 @@ def _condition(stand: str, sessions: int, found: Sequence[StandEvidence]) -> Sta
     if not shifted:
         return StandCondition(stand, sessions, False, STEADY if found else TOO_FEW, tuple(found))
     worst = min(shifted, key=lambda evidence: evidence.p_value)
-    return StandCondition(stand, sessions, True, _reason(worst), tuple(found))
-
-
-def _reason(worst: StandEvidence) -> str:
-    seen = f"seen on {worst.agreeing} of {worst.units} units since {day_of(worst.since)}"
-    if worst.quantity == AXES:
-        size = measured(worst.size, COVERAGE * worst.sigma, deviation_measure(worst.kind, "axis", worst.size))
-        return f"It turns every block by {size}, {seen}: check stand and fixture. The units are judged without it."
-    size = signed(worst.size, COVERAGE * worst.sigma, deviation_measure(worst.kind, "scale", worst.size))
-    return f"It changes every scale factor by {size}, {seen}: check it. The units are judged without it."
+    return StandCondition(stand, sessions, True, why_shifted(worst), tuple(found))
