@@ -13,6 +13,7 @@ from service.words.conditions import REFERENCE, UNDECIDED, Condition, condition_
 PAGE_SIZE = 50
 """Units on a page: two screens."""
 MOST_STANDOUTS = 6
+"""Lines above the list of units, so that the list stays in sight."""
 BAR_LIMIT = 150.0
 """The margin bar ends at one and a half tolerances, per cent."""
 

@@ -7,6 +7,7 @@ from fastapi import Depends, Form, HTTPException, Path, Request
 from service.pages.headers import sent_by_this_site
 
 SEE_OTHER = 303
+"""What a form answers, so that loading its page again sends nothing twice (RFC 9110)."""
 NO_NUL = r"^[^\x00]*$"
 SAYS_SOMETHING = r"^[^\x00]*\S[^\x00]*$"
 

@@ -4,27 +4,24 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.io import loadmat
 
 from estimator.applied_vector import STANDARD_GRAVITY
 from service.ingest.convert.contract import Converter, Document
 from service.ingest.convert.documents import columns, session, triad
 from service.ingest.convert.files import expect_count, read_bytes, refuse
-from service.ingest.mat import DAMAGED, of_version_5
+from service.ingest.mat import variables
 
 BYTE_ORDER = slice(126, 128)
+"""Where the header of a MAT file says how its bytes run."""
 FILES = "the MAT file that holds `ACC_meas`, three rows of orientation means in g"
 
 
-def array(path: Path) -> Any:
+def array(path: Path) -> np.ndarray[Any, Any] | None:
     """What the file holds as ``ACC_meas``; None when it holds nothing of that name."""
     content = read_bytes(path)
     if content[BYTE_ORDER] not in (b"IM", b"MI"):
         raise refuse(path, "file", "is no MAT file of version 5")
-    try:
-        return loadmat(of_version_5(content), variable_names=["ACC_meas"]).get("ACC_meas")  # type: ignore[arg-type]  # stubs lack file-likes
-    except DAMAGED as fault:
-        raise refuse(path, "file", f"is a damaged MAT file: {fault}") from fault
+    return variables(content, path.name, most_rows=3).get("ACC_meas")
 
 
 def convert(paths: list[Path]) -> list[tuple[str, Document]]:

@@ -15,6 +15,7 @@ COUNTS = 415.0
 GYRO_COUNTS = 4767.0
 """Nominal counts per rad/s."""
 HALF_RANGE = 32768.0
+"""Counts that stand for nothing: half of what 16 bits hold."""
 FILES = "the accelerometer log and the gyroscope log, with `acc` and `gyro` in their names"
 
 

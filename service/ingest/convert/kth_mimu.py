@@ -17,6 +17,7 @@ from service.ingest.convert.documents import PER_DEGREE, columns, session, triad
 from service.ingest.convert.files import read_bytes, refuse
 
 LEADING = 4
+"""Bytes before the first packet: the board's answer to the command that started it."""
 PACKET = np.dtype(
     [
         ("mark", "u1"),
@@ -28,8 +29,11 @@ PACKET = np.dtype(
     ]
 )
 MARK, LENGTH = 0xAA, 100
+"""First byte of a packet; bytes of its clock and values."""
 CLOCK_HZ = 64e6
+"""Ticks of the board's clock in a second."""
 RATE_HZ = 62.5
+"""Packets a second, as the data set states."""
 COUNTS = 2048 / STANDARD_GRAVITY
 """Counts per m/s²: 2048 per g."""
 GYRO_COUNTS = 16.4 * PER_DEGREE

@@ -22,9 +22,11 @@ from service.ingest.convert.files import expect_count, read_numbers
 GRAVITY = 9.81
 """m/s², as the publication states it."""
 RATE_HZ = 100.0
+"""As the data set states it."""
 APART_S = 1.5
 """Largest difference of the middles of one standstill in two logs."""
 FEWEST = 9
+"""Orientations that a block of accelerometers needs at least."""
 FILES = "the five logs, imu0.log to imu4.log"
 
 
