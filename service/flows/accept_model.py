@@ -61,7 +61,7 @@ def _finding(findings: tuple[Finding, ...], wanted: str) -> Finding:
 def _as_alternative(finding: Finding, wanted: str) -> Finding:
     """The finding with the sensors of the alternative; its amplitude is another quantity and is left out."""
     sensors = next((s.sensors for s in finding.separations if s.cause == wanted), finding.sensors)
-    return replace(finding, sensors=sensors, amplitude=(), sigma=(), units=(), nonlinear={})
+    return replace(finding, sensors=sensors, amplitude=(), sigma=(), units=(), nonlinear={}, nonlinear_each=({},))
 
 
 def _evidence(finding: Finding, gain: Gain) -> Evidence:

@@ -101,7 +101,9 @@ def _finding(entry: dict[str, Any]) -> Finding:
         sigma=_numbers(entry["sigma"]),
         units=tuple(entry["units"]),
         nonlinear=_named(entry["nonlinear"]),
-        nonlinear_each=tuple(map(_named, entry.get("nonlinear_each", ()))),  # absent from earlier versions
+        nonlinear_each=tuple(
+            map(_named, entry.get("nonlinear_each", [entry["nonlinear"]]))
+        ),  # absent from earlier ones
         p_value=_number(entry["p_value"]),
         strength=_number(entry["strength"]),
         alternatives=tuple(entry["alternatives"]),

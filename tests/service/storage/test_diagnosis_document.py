@@ -41,7 +41,7 @@ def test_what_was_found_comes_back(what: tuple[str, tuple[int, ...], str | None]
 
 def test_an_earlier_version_gave_one_shape_for_all_sensors() -> None:
     (finding,) = read().findings
-    assert (finding.nonlinear, finding.nonlinear_each) == ({"row": 14.0}, ())
+    assert (finding.nonlinear, finding.nonlinear_each) == ({"row": 14.0}, ({"row": 14.0},))
 
 
 def test_an_earlier_version_looked_at_no_session_before() -> None:
