@@ -14,12 +14,14 @@ PARAMETER_NAMES = {
     "misalignment": "misalignment",
     SEVERAL: "bias, scale factor and axis together",
 }
-"""What each parameter is called in sentences and, capitalised, in headings."""
+"""What each parameter is called in sentences."""
+FULLER = {"misalignment": "misalignment to the turn axis"}
+"""Where a heading, which stands alone, must say more than a sentence."""
 
 
 def heading(parameter: str) -> str:
     """``Scale factor``: a parameter's name at the head of a column, a chart or a section."""
-    return PARAMETER_NAMES[parameter].capitalize()
+    return FULLER.get(parameter, PARAMETER_NAMES[parameter]).capitalize()
 
 
 def spaced(identifier: str) -> str:

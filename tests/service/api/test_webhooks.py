@@ -39,7 +39,7 @@ def body(hook: Receiver) -> dict[str, str]:
 def test_a_flag_and_a_verdict_are_told_signed(
     settings: Settings, hook: Receiver, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.background.deliver.LOOK_EVERY", 0.01)
+    monkeypatch.setattr("service.background.deliver_messages.LOOK_EVERY", 0.01)
     allowed = settings.model_copy(update={"webhook_hosts": (hook.host,)})
     with http_client(create_app(allowed)) as client:
         registered = client.post("/api/v1/webhooks", json=body(hook))

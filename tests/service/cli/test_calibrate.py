@@ -92,7 +92,7 @@ def test_what_is_not_observable_is_said_in_words(run: Run, tmp_path: Path) -> No
 
 
 def test_the_quality_of_the_fit_is_said_in_words(run: Run, good_file: Path, tmp_path: Path) -> None:
-    assert "within the stated noise" in run("calibrate", good_file).out
+    assert "The model fits; the stated noise looks too large. χ² =" in run("calibrate", good_file).out
     unstated = write(tmp_path, "unstated.json", arbitrary_orientations(se=None))
     assert "states no standard errors" in run("calibrate", unstated).out
 
