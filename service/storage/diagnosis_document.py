@@ -102,7 +102,7 @@ def _finding(entry: dict[str, Any]) -> Finding:
         units=tuple(entry["units"]),
         nonlinear_each=tuple(
             map(_named, entry.get("nonlinear_each") or [entry["nonlinear"]])
-        ),  # absent from earlier versions
+        ),  # absent from earlier ones
         p_value=_number(entry["p_value"]),
         strength=_number(entry["strength"]),
         alternatives=tuple(entry["alternatives"]),

@@ -9,15 +9,7 @@ from service.records.decision import Decision
 from service.records.session import ALL_PARAMETERS
 from service.reports.certificate.result_rows import ResultColumn, ResultRow, result_row
 from service.views.certificate import CertifiedSession
-
-HEADINGS = {
-    "scale": "Scale factor",
-    "bias": "Bias",
-    "quadratic": "Quadratic term",
-    "axis": "Input axis",
-    "misalignment": "Misalignment to the turn axis",
-}
-"""Of the tables."""
+from service.words.names import heading as heading_of
 
 
 @dataclass(frozen=True)
@@ -56,7 +48,9 @@ def result_tables(found: CertifiedSession, k: float) -> tuple[ResultTable, ...]:
         for kind in kinds
     )
     return tuple(
-        _table(f"{HEADINGS[parameter]}, {kind}s" if len(kinds) > 1 else HEADINGS[parameter], parameter, own, results)
+        _table(
+            f"{heading_of(parameter)}, {kind}s" if len(kinds) > 1 else heading_of(parameter), parameter, own, results
+        )
         for parameter, kind, own in groups
         if own
     )
