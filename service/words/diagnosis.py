@@ -26,7 +26,7 @@ WHAT_TO_DO = {
         "Measurement and simulation agree within the noise: no cause of the catalogue and no other structure shows."
     ),
     DiagnosisState.UNDECIDED: (
-        "This session cannot distinguish these causes. Make the measurement that would before acting on one."
+        "This session cannot distinguish these causes. Take the measurement that can, before you act on one of them."
     ),
     DiagnosisState.UNEXPLAINED: (
         "Do not force a name on it: look where it lives, repeat the session, and compare with another unit or stand."
