@@ -6,7 +6,7 @@ from estimator.session import Array
 
 
 def unit(vector: Array) -> Array:
-    """(..., 3) vectors of any unit scaled to length one, dimensionless."""
+    """Vectors (n, 3), leading axes free, of any unit scaled to length one: the same shape, dimensionless."""
     return vector / np.linalg.norm(vector, axis=-1, keepdims=True)
 
 
@@ -15,11 +15,11 @@ def tangents(axis: Array) -> Array:
 
     Parameters
     ----------
-    axis : (..., 3) unit vectors, dimensionless.
+    axis : (n, 3) unit vectors, leading axes free, dimensionless.
 
     Returns
     -------
-    (..., 3, 2), dimensionless; columns p and o with p × o = axis.
+    (n, 3, 2), dimensionless; columns p and o with p × o = axis.
     """
     helper = np.eye(3)[np.abs(axis).argmin(axis=-1)]
     frame = np.empty((*axis.shape, 2))

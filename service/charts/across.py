@@ -59,6 +59,6 @@ def zero_line() -> alt.Chart:
 
 
 def largest_edge(value: Array, sigma: Array) -> float:
-    """The largest |residual| or 2σ of some sensors, both of shape (rows, sensors) and in one unit; 0 without any."""
+    """The largest |residual| or 2σ of some sensors, both (rows, sensors), m/s² or rad/s; 0 without any."""
     edges = np.abs(np.stack([value, 2 * sigma]))
     return float(np.max(edges, initial=0.0, where=np.isfinite(edges)))

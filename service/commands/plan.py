@@ -129,7 +129,7 @@ def ranked(like: CalibrationSession, wanted: int | None) -> OrientationRank:
 
 
 def stated(like: CalibrationSession) -> Array:
-    """(R, 3) directions as the session states them, else as its readings show them."""
+    """(R, 3) directions, dimensionless, as the session states them, else as its readings show them."""
     if like.directions is None or not np.isfinite(like.directions).all():
         return fitted_state(like).directions
     return like.directions

@@ -17,7 +17,7 @@ FILES = "the MAT file that holds `ACC_meas`, three rows of orientation means in 
 
 
 def array(path: Path) -> np.ndarray[Any, Any] | None:
-    """What the file holds as ``ACC_meas``; None when it holds nothing of that name."""
+    """(3, orientations) means in g that the file holds as ``ACC_meas``; None when it holds nothing of that name."""
     content = read_bytes(path)
     if content[BYTE_ORDER] not in (b"IM", b"MI"):
         raise refuse(path, "file", "is no MAT file of version 5")
