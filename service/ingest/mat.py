@@ -39,8 +39,10 @@ def read_mat(content: bytes, filename: str) -> dict[str, object]:
 
 
 def variables(content: bytes, filename: str, *, most_rows: int) -> dict[str, np.ndarray[Any, Any]]:
-    """All variables (rows, columns) by name, in the file's own units; FormatError where one is neither text nor numbers,
-    or has more than so many rows and columns."""
+    """All variables (rows, columns) by name, in the file's own units.
+
+    FormatError where one is neither text nor numbers, or has more than so many rows and columns.
+    """
     if _unpacked_size(content) > MOST_TEXT:
         raise refusal(filename, f"unpacks to more than {MOST_TEXT // 1024**2} MiB; average or split the log")
     answer = read_apart(CHILD, content, filename, str(MOST_CELLS))
