@@ -11,6 +11,7 @@ from estimator.diagnosis.selection.backward import (
     without_needless_drift,
 )
 from estimator.diagnosis.selection.search_state import SearchState
+from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance
 from tests.estimator.diagnosis.selection.small import (
     ROWS,
     SENSOR,
@@ -101,3 +102,16 @@ def test_a_course_on_one_sensor_leaves_the_names_of_others(sensor: int) -> None:
     state = selected(state, "bias-jump", "reading-outlier")
     state = replace(state, found=(*state.found, candidate(state, "bias-ramp", (sensor,))))
     assert names(without_names_on_courses(state)) == [("bias-ramp", (sensor,))]
+
+
+def test_a_course_takes_over_the_excess_of_its_sensor_and_leaves_that_of_others() -> None:
+    own, other = (ExcessVariance(sensor, 9.0, 19.0, 50.0, 1e-20) for sensor in (SENSOR, 3))
+    state = replace(selected(start(("bias-jump",), WALK), "bias-jump"), excess=(own, other))
+    elsewhere = Autocorrelation(0, "temperature", 2.0)
+    left = without_names_on_courses(replace(state, autocorrelated=(elsewhere,)))
+    assert names(left) == []
+    assert left.excess == (other,)
+    assert [(a.sensor, a.ratio, a.excess_log_evidence) for a in left.autocorrelated] == [
+        (0, 1.0, 0.0),
+        (SENSOR, 9.0, 50.0),
+    ]

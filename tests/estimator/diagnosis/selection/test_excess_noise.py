@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import chi2
 
 from estimator.diagnosis.selection.excess_noise import (
     excess_as_course,
@@ -15,6 +16,8 @@ from estimator.diagnosis.selection.excess_noise import (
     with_unknown_noise,
 )
 from estimator.diagnosis.selection.forward import forward_selection
+from estimator.diagnosis.selection.search_state import LEVEL
+from estimator.diagnosis.signatures.autocorrelation import autocorrelation
 from estimator.diagnosis.signatures.noise import PLAIN, Autocorrelation, ExcessVariance
 from tests.estimator.diagnosis.selection.small import ROWS, SENSOR, candidate, effect, on_sensor, start
 
@@ -36,6 +39,24 @@ def test_the_noisiest_sensor_is_told_with_its_ratio() -> None:
     assert excess is not None
     assert excess.sensor == SENSOR
     assert 4 < excess.ratio < 100
+
+
+def test_the_excess_is_weighed_as_a_larger_variance_of_unknown_size() -> None:
+    state = start(FEW, on_sensor(4 * np.random.default_rng(3).standard_normal(ROWS)))
+    energy, freedom = (x[SENSOR] for x in sensor_scatter(state))
+    excess = largest_excess(state)
+    assert excess is not None
+    likelier = -0.5 * freedom * np.log(energy / freedom) - 0.5 * freedom + 0.5 * energy
+    assert excess.log_evidence == pytest.approx(likelier - np.log(np.sqrt(freedom / 2)) - np.log(4))
+    assert (excess.ratio, excess.freedom) == (energy / freedom, freedom)
+
+
+def test_the_chance_of_an_excess_counts_every_sensor_and_every_cause() -> None:
+    state = start(FEW, on_sensor(4 * np.random.default_rng(3).standard_normal(ROWS)))
+    energy, freedom = (x[SENSOR] for x in sensor_scatter(state))
+    excess = largest_excess(state)
+    assert excess is not None
+    assert excess.p_family == pytest.approx(chi2.sf(energy, freedom) * 4 * state.families, rel=1e-6)
 
 
 @pytest.mark.parametrize("attributed", ["excess", "unstated"])
@@ -105,3 +126,16 @@ def test_a_residual_of_the_stated_size_that_runs_smoothly_is_told_at_the_end() -
 
 def test_white_residuals_are_not_autocorrelated() -> None:
     assert with_autocorrelation(start(FEW)).autocorrelated == ()
+
+
+def test_smoothness_must_be_significant_among_all_sensors() -> None:
+    """A course whose chance is below the level for one sensor, and above it for one of four."""
+    place = np.linspace(-1, 1, ROWS)
+    for size in np.linspace(1, 12, 200):
+        state = start(FEW, on_sensor(size * np.abs(place) ** 3))
+        found = autocorrelation(state.residuals, state.attributed(), SENSOR, known=True)
+        assert found is not None
+        if found.p_value < LEVEL:
+            break
+    assert LEVEL / 4 < found.p_value < LEVEL
+    assert with_autocorrelation(state).autocorrelated == ()
