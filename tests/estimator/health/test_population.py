@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from estimator.health.population import spread, standing
+from estimator.health.population import group_standing, spread, standing, standing_out
 
 
 def test_a_population_that_agrees_has_no_spread_of_its_own() -> None:
@@ -39,3 +39,32 @@ def test_ordinary_members_keep_the_level() -> None:
 
 def test_equal_rates_are_all_in_the_middle() -> None:
     assert standing([(1.0, 0.0), (1.0, 0.0), (1.0, 0.0)]) == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("members", [1, 10, 300])
+def test_the_furthest_of_all_stands_out_at_the_level_of_all(members: int) -> None:
+    """P(the largest of n |z| is beyond) = 1 %."""
+    beyond = stats.norm.isf((1 - 0.99 ** (1 / members)) / 2)
+    others = [0.0] * (members - 1)
+    assert standing_out([0.999 * beyond, *others])[0] is False
+    assert standing_out([-1.001 * beyond, *others])[0] is True
+
+
+def test_of_nobody_nobody_stands_out() -> None:
+    assert standing_out([]) == ()
+
+
+def test_a_group_stands_by_its_mean_and_what_its_members_are_known_to() -> None:
+    rates = [(0.0, 1.0)] * 4 + [(1.0, 1.0), (3.0, 1.0)]
+    assert group_standing(rates, ["", "", "", "", "L7", "L7"]) == {"L7": pytest.approx(2.0 / np.sqrt(2) * 2)}
+
+
+def test_a_group_of_one_and_the_rest_are_no_groups() -> None:
+    assert group_standing([(0.0, 1.0), (1.0, 1.0), (2.0, 1.0)], ["", "L1", ""]) == {}
+
+
+def test_the_spread_of_the_population_weakens_a_group() -> None:
+    rates = [(-3.0, 0.1), (3.0, 0.1), (-4.0, 0.1), (4.0, 0.1), (2.0, 0.1), (2.2, 0.1)]
+    centre, tau = spread(*np.array(rates).T)
+    found = group_standing(rates, ["", "", "", "", "L7", "L7"])
+    assert found["L7"] == pytest.approx((2.1 - centre) / np.sqrt((tau**2 + 0.01) / 2))
