@@ -26,7 +26,7 @@ def test_findings_and_structures_span_as_many_directions_as_they_have_amplitudes
 
 def test_the_unit_of_an_amplitude_does_not_matter() -> None:
     state = found()
-    small = tuple(replace(f, best=replace(f.best, trace=1e-4 * f.best.trace)) for f in state.found)
+    small = tuple(replace(f, best=replace(f.best, trace=1e-8 * f.best.trace)) for f in state.found)
     one, other = state.attributed(), replace(state, found=small).attributed()
     assert np.allclose(one @ one.T, other @ other.T)
 
