@@ -20,6 +20,7 @@ from service.records.diagnosis import DiagnosisState
 from service.records.model import ModelRevision, NewModel, Scope
 from service.storage import Storage
 from service.storage.queries.history import HistoryQuery
+from tests.builders import accelerometer_block, true_sensors
 from tests.conftest import SettingsHolding
 from tests.service.diagnosed import ECCENTRIC, TEMPERATURE, drawn
 from tests.service.sessions import session_bytes, session_id
@@ -62,6 +63,17 @@ def test_the_reference_itself_is_not_judged_again_and_a_later_session_is(storage
     assert [diagnosis.state for diagnosis in made] == [DiagnosisState.NAMED] * 2
     assert made[0].verdict_after is None
     assert made[1].verdict_after is not None
+
+
+@pytest.mark.parametrize(("prefix", "reason"), [("A", ""), ("B", "the session lacks history")])
+def test_only_sessions_of_the_same_sensors_are_a_history(storage: Storage, prefix: str, reason: str) -> None:
+    for month, names in ((1, "A"), (2, prefix)):
+        block = accelerometer_block(sensors=true_sensors(prefix=names, bias=1e-3), seed=month)
+        content = json.dumps(block | {"started_at": f"2026-0{month}-01T09:00:00Z"}).encode()
+        id = upload(storage, content, "a.json", NOW).id
+    found = diagnose(storage, id, NOW).found
+    assert found is not None
+    assert [limit.reason for limit in found.limits if limit.cause == "sensor-drift"] == [reason]
 
 
 def test_a_session_that_does_not_exist_is_not_found(storage: Storage) -> None:
