@@ -125,29 +125,28 @@ def _made(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
     """Reads the stored bytes again and looks for causes, where the programme is one that calibrates."""
     if task.session.programme not in CALIBRATIONS:
         nothing = written(inapplicable_to_dict(task.session.unit))
-        return replace(_failed(task, now, NOT_APPLICABLE), state=DiagnosisState.NOT_APPLICABLE, document=nothing)
+        return replace(_nothing_found(task, DiagnosisState.NOT_APPLICABLE, NOT_APPLICABLE, now), document=nothing)
     try:
         session = _read(storage.files, task.session)
         found = find_causes(session, _comparable(storage.files, task, session))
         verdict = _verdict_after(storage, task, session, found)
     except BREAKDOWNS as fault:
-        return _failed(task, now, f"The session cannot be diagnosed: {fault}")
+        return _nothing_found(task, DiagnosisState.FAILED, f"The session cannot be diagnosed: {fault}", now)
     document = written(diagnosis_to_dict(found))
     return replace(
-        _failed(task, now, summary_of(found)),
-        state=state_of(found),
+        _nothing_found(task, state_of(found), summary_of(found), now),
         found=read_diagnosis(document),
         document=document,
         verdict_after=verdict,
     )
 
 
-def _failed(task: Task, now: datetime, summary: str) -> StoredDiagnosis:
-    """A diagnosis that found nothing to say but its one line."""
+def _nothing_found(task: Task, state: DiagnosisState, summary: str, now: datetime) -> StoredDiagnosis:
+    """What it came to in one line, and no more."""
     return StoredDiagnosis(
         session=task.session.id,
         model_revision=task.model_revision,
-        state=DiagnosisState.FAILED,
+        state=state,
         summary=summary,
         found=None,
         document=None,

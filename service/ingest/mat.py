@@ -1,13 +1,14 @@
 """MATLAB files up to version 7: one variable a column, text as a char matrix; the metadata in `imu_session`."""
 
 import zlib
+from io import BytesIO
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 
-from service.ingest.apart import MOST_CELLS, read_apart
-from service.ingest.limits import MOST_TEXT, refusal
+from service.ingest.apart import read_apart
+from service.ingest.limits import MOST_CELLS, MOST_TEXT, refusal
 from service.ingest.metadata import with_metadata
 
 MAGIC = b"MATLAB "
@@ -45,7 +46,7 @@ def variables(content: bytes, filename: str, *, most_rows: int) -> dict[str, np.
     """
     if _unpacked_size(content) > MOST_TEXT:
         raise refusal(filename, f"unpacks to more than {MOST_TEXT // 1024**2} MiB; average or split the log")
-    answer = read_apart(CHILD, content, filename, str(MOST_CELLS))
+    answer, arrays = read_apart(CHILD, content, filename, str(MOST_CELLS))
     names, cells = [name for name, _, _ in answer["declared"]], 0
     for name, shape, kind in answer["declared"]:
         if kind not in (*NUMERIC, "char") or names.count(name) > 1:
@@ -55,7 +56,8 @@ def variables(content: bytes, filename: str, *, most_rows: int) -> dict[str, np.
         cells += shape[0] * shape[1]
     if cells > MOST_CELLS:
         raise refusal(filename, f"has {cells} cells; at most {MOST_CELLS} can be read, so average or split it", "table")
-    return {name: np.asarray(answer["values"][name]) for name in names}
+    with np.load(BytesIO(arrays), allow_pickle=False) as found:
+        return {name: found[f"arr_{place}"] for place, name in enumerate(names)}
 
 
 def _cells(column: np.ndarray[Any, Any]) -> object:

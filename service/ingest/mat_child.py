@@ -1,4 +1,4 @@
-"""Reads one MAT file from standard input and answers on standard output with its plain variables as JSON.
+"""Reads one MAT file from standard input, answers with a line of JSON, and behind it the plain variables as NPZ.
 
 A program of its own, because scipy's reader falls over on some damaged files. It imports nothing of this project, so
 that it starts quickly. Structures, cells and objects may declare any size with a few bytes: they are named, never read.
@@ -37,17 +37,17 @@ DAMAGED = (
 """What scipy raises on files cut off or written over at various places."""
 
 
-def read(content: bytes, most_cells: int) -> dict[str, Any]:
-    """Name, shape and class of all variables; the values of the plain ones, where they are not too many."""
+def read(content: bytes, most_cells: int) -> tuple[dict[str, Any], list[Any]]:
+    """Name, shape and class of all variables; the plain ones as arrays in their order, where they are not too many."""
     if matfile_version(BytesIO(content))[0] != LEVEL_5:  # type: ignore[arg-type]  # stubs lack file-likes
         raise ValueError("the header says another version than 5")
     declared = whosmat(BytesIO(content), chars_as_strings=False)  # type: ignore[arg-type]  # stubs lack file-likes
     plain = [name for name, _, kind in declared if kind in PLAIN]
     cells = sum(prod(shape) for name, shape, _ in declared if name in plain)
     if not plain or cells > most_cells:
-        return {"declared": declared, "values": {}}
+        return {"declared": declared}, []
     found = loadmat(BytesIO(content), variable_names=plain)  # type: ignore[arg-type]  # stubs lack file-likes
-    return {"declared": declared, "values": {name: np.asarray(found[name]).tolist() for name in plain}}
+    return {"declared": declared}, [np.asarray(found[name]) for name in plain]
 
 
 def main() -> None:
@@ -55,10 +55,13 @@ def main() -> None:
     if sys.platform != "win32":
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     try:
-        answer = read(sys.stdin.buffer.read(), int(sys.argv[1]))
+        answer, arrays = read(sys.stdin.buffer.read(), int(sys.argv[1]))
     except DAMAGED:
-        answer = {"refused": ("file", "is damaged or not a readable MAT file; write it again")}
-    json.dump(answer, sys.stdout)
+        answer, arrays = {"refused": ("file", "is damaged or not a readable MAT file; write it again")}, []
+    sys.stdout.buffer.write(json.dumps(answer).encode() + b"\n")
+    packed = BytesIO()
+    np.savez(packed, *arrays, allow_pickle=False)
+    sys.stdout.buffer.write(packed.getvalue())
 
 
 if __name__ == "__main__":

@@ -100,9 +100,8 @@ def _finding(entry: dict[str, Any]) -> Finding:
         amplitude=_numbers(entry["amplitude"]),
         sigma=_numbers(entry["sigma"]),
         units=tuple(entry["units"]),
-        nonlinear_each=tuple(
-            map(_named, entry.get("nonlinear_each") or [entry["nonlinear"]])
-        ),  # absent from earlier ones
+        # Earlier versions stated the shape of the first sensor alone.
+        nonlinear_each=tuple(map(_named, entry.get("nonlinear_each") or [entry["nonlinear"]])),
         p_value=_number(entry["p_value"]),
         strength=_number(entry["strength"]),
         alternatives=tuple(entry["alternatives"]),

@@ -16,6 +16,7 @@ from scipy.io import savemat
 
 from estimator.errors import FormatError, SessionError
 from service.ingest import apart, read_upload
+from service.ingest.mat import variables
 from tests import builders
 from tests.service.ingest.test_formats import WRITERS, metadata, parquet_bytes, xlsx_bytes
 
@@ -57,6 +58,13 @@ def test_damaged_bytes_are_never_more_than_refused(content):
 @settings(max_examples=30, deadline=None, derandomize=True)
 def test_damaged_bytes_read_apart_are_never_more_than_refused(content):
     read_or_refused(content)
+
+
+def test_a_library_that_ends_its_process_ends_no_other(tmp_path):
+    program = tmp_path / "falls.py"
+    program.write_text("import os, signal\nos.kill(os.getpid(), signal.SIGSEGV)\n")
+    with pytest.raises(FormatError, match=r"x\.mat: file: is damaged"):
+        apart.read_apart(program, b"", "x.mat")
 
 
 def test_hdf5_that_its_library_reads_for_ever(monkeypatch):
@@ -182,6 +190,11 @@ def test_mat_whose_header_says_another_version(version):
     content = bytearray(mat_with(A1=[1.0, 2.0]))
     content[125 if content[126:128] == b"IM" else 124] = version
     refused(bytes(content), "damaged")
+
+
+def test_a_long_mat_column_comes_back_whole():
+    long = np.arange(5_000_001.0)
+    assert np.array_equal(variables(mat_with(A1=long), "x.mat", most_rows=1)["A1"].ravel(), long)
 
 
 def test_mat_without_metadata():
