@@ -11,17 +11,23 @@ from estimator.causes.contract import Cause
 from estimator.diagnosis.explanation.detection_limits import limits
 from estimator.diagnosis.explanation.earlier_sessions import newness
 from estimator.diagnosis.explanation.extended_model import amplitudes, extended_calibration, without_effects
-from estimator.diagnosis.explanation.findings import findings, structures
+from estimator.diagnosis.explanation.findings import findings, noise_scales, structures
 from estimator.diagnosis.explanation.gain import gain
-from estimator.diagnosis.explanation.record_findings import clip_findings, entry_finding, record_error_finding
+from estimator.diagnosis.explanation.record_findings import (
+    clip_findings,
+    entry_finding,
+    record_error_finding,
+    wrong_record,
+)
 from estimator.diagnosis.record.clipping import unclipped
+from estimator.diagnosis.record.implausible import implausible_axes
 from estimator.diagnosis.record.nominal import wrong_entry
+from estimator.diagnosis.record.turned import expected_axes
 from estimator.diagnosis.record.undo import undo_record_errors
 from estimator.diagnosis.residuals.common_start import baselines
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.results import Diagnosis
-from estimator.diagnosis.selection.refinement import with_refined_shapes
-from estimator.diagnosis.selection.search import search
+from estimator.diagnosis.selection.acceptance import accepted
 from estimator.diagnosis.selection.search_state import SearchState
 from estimator.diagnosis.selection.start import begin
 from estimator.session import CalibrationSession
@@ -48,9 +54,11 @@ def diagnose(
     rows = averaged(session)
     clips, right = unclipped(rows, catalogue)
     earlier = [unclipped(averaged(h), catalogue)[1] for h in history]
-    errors, right = undo_record_errors(right, [baseline_of(h) for h in earlier], catalogue)
-    state = searched(right, earlier, catalogue)
-    entry = None if earlier else wrong_entry(without_effects(state, amplitudes(state)), catalogue)
+    before = [baseline_of(h) for h in earlier]
+    errors, right = undo_record_errors(right, before, catalogue)
+    wrong = implausible_axes(baseline_of(right), expected_axes(before, right))
+    state = unsearched(right, earlier, catalogue) if wrong else searched(right, earlier, catalogue)
+    entry = None if earlier or wrong else wrong_entry(without_effects(state, amplitudes(state)), catalogue)
     if entry is not None:
         state = searched(entry.corrected(right), earlier, catalogue)
     fitted = amplitudes(state)
@@ -63,9 +71,10 @@ def diagnose(
             *([] if entry is None else [entry_finding(entry)]),
             *findings(state, fitted, new),
         ),
-        structures=structures(state),
+        structures=(*wrong_record(wrong, right), *structures(state)),
         gain=gain(state, baseline_of(rows) if clips or errors else None, fitted, new),
         limits=limits(state),
+        noise=noise_scales(state),
         baseline=calibrate(rows),
         calibration=extended_calibration(state, fitted),
     )
@@ -75,5 +84,12 @@ def searched(
     session: CalibrationSession, history: Sequence[CalibrationSession], catalogue: Sequence[Cause]
 ) -> SearchState:
     """The causes found in a session whose record is right."""
+    return accepted(unsearched(session, history, catalogue))
+
+
+def unsearched(
+    session: CalibrationSession, history: Sequence[CalibrationSession], catalogue: Sequence[Cause]
+) -> SearchState:
+    """The residuals of a session, and nothing sought in them yet."""
     baseline, earlier = baselines(session, history)
-    return with_refined_shapes(search(begin(baseline, earlier, catalogue)))
+    return begin(baseline, earlier, catalogue)

@@ -114,6 +114,29 @@ class Finding:
 
 
 @dataclass(frozen=True)
+class Course:
+    """How the applied vector must have run for all sensors to read what they did. R rows, c components."""
+
+    order: str
+    """Along which it is smooth."""
+    components: tuple[str, ...]
+    """What changes: ``β``, ``α``, ``size``; empty where the whole vector turned once."""
+    values: tuple[tuple[float, ...], ...]
+    """(R, c), rad; the size relative."""
+
+
+@dataclass(frozen=True)
+class NoiseScale:
+    """Stated standard errors of a kind of sensor that its readings contradict."""
+
+    kind: str
+    factor: float
+    """By which they are too small; below one they are too large."""
+    freedom: float
+    """Degrees of freedom that tell it."""
+
+
+@dataclass(frozen=True)
 class Structure:
     """Structure that no cause of the catalogue explains, and where it lives."""
 
@@ -122,6 +145,8 @@ class Structure:
     sensors: tuple[str, ...]
     p_value: float
     strength: float
+    course: Course | None = None
+    """Of the applied vector, where it is common to all sensors and in no pattern."""
 
     def to_dict(self) -> dict[str, Any]:
         return {
@@ -129,6 +154,7 @@ class Structure:
             "sensors": list(self.sensors),
             "p_value": self.p_value,
             "strength": self.strength,
+            "course": None if self.course is None else asdict(self.course),
         }
 
 
@@ -137,13 +163,15 @@ class Score:
     """How well a model predicts readings it has not seen."""
 
     rms: float
-    """m/s² (rad/s)."""
+    """Of the sensors of the block's kind, m/s² (rad/s)."""
     chi2_per_dof: float
     log_score: float
     """Mean log predictive density of a reading, in units of its own sigma."""
+    rms_by_kind: dict[str, float] = field(default_factory=dict)
+    """The same of every kind of sensor, each in its own unit."""
 
-    def to_dict(self) -> dict[str, float]:
-        return {"rms": self.rms, "chi2_per_dof": self.chi2_per_dof, "log_score": self.log_score}
+    def to_dict(self) -> dict[str, Any]:
+        return asdict(self)
 
 
 @dataclass(frozen=True)
@@ -213,6 +241,8 @@ class Diagnosis:
     """Under the baseline model."""
     calibration: Calibration
     """Under the extended model."""
+    noise: tuple[NoiseScale, ...] = ()
+    """Kinds of sensor whose stated standard errors the readings contradict."""
     notes: tuple[str, ...] = field(default=())
 
     @property
@@ -232,5 +262,6 @@ class Diagnosis:
             "limits": [limit.to_dict() for limit in self.limits],
             "calibration": self.calibration.to_dict(),
             "residuals_before": self.baseline.residuals.to_dict(),
+            "noise": [asdict(n) for n in self.noise],
             "notes": list(self.notes),
         }

@@ -5,7 +5,7 @@ from datetime import datetime
 from enum import StrEnum
 
 from estimator.diagnosis import Diagnosis, Finding
-from estimator.diagnosis.results import Gain, Limit, Structure
+from estimator.diagnosis.results import Gain, Limit, NoiseScale, Structure
 from estimator.results import Calibration, Residuals
 from service.records.decision import Verdict
 from service.records.model import ModelRevision
@@ -51,6 +51,8 @@ class Diagnosed:
     structures: tuple[Structure, ...]
     gain: Gain
     limits: tuple[Limit, ...]
+    noise: tuple[NoiseScale, ...]
+    """Kinds of sensor whose stated standard errors the readings contradict."""
     notes: tuple[str, ...]
     calibration: Calibration = field(compare=False)
     """With the named causes in the model."""

@@ -6,7 +6,18 @@ from math import isfinite, nan
 from typing import Any
 
 from estimator.diagnosis import Diagnosis, Finding
-from estimator.diagnosis.results import Gain, Limit, ParitySplit, Rival, Score, Separation, Structure, Transfer
+from estimator.diagnosis.results import (
+    Course,
+    Gain,
+    Limit,
+    NoiseScale,
+    ParitySplit,
+    Rival,
+    Score,
+    Separation,
+    Structure,
+    Transfer,
+)
 from service.records.diagnosis import Diagnosed
 from service.records.model import Evidence
 from service.storage.calibration_document import calibration_from_dict, residuals_from_dict
@@ -41,6 +52,7 @@ def read_diagnosis(text: str) -> Diagnosed | None:
         structures=tuple(_structure(entry) for entry in document.get("structures", ())),
         gain=_gain(document["gain"]),
         limits=tuple(_limit(entry) for entry in document["limits"]),
+        noise=tuple(_noise(entry) for entry in document.get("noise", ())),
         notes=tuple(document.get("notes", ())),
         calibration=calibration_from_dict(document["calibration"]),
         residuals_before=residuals_from_dict(document["residuals_before"]),
@@ -131,7 +143,18 @@ def _rival(entry: dict[str, Any]) -> Rival:
 
 def _structure(entry: dict[str, Any]) -> Structure:
     p_value, strength = _number(entry["p_value"]), _number(entry["strength"])
-    return Structure(entry["where"], tuple(entry["sensors"]), p_value, strength)
+    course = entry.get("course")  # absent from earlier versions
+    return Structure(
+        entry["where"], tuple(entry["sensors"]), p_value, strength, None if course is None else _course(course)
+    )
+
+
+def _course(entry: dict[str, Any]) -> Course:
+    return Course(entry["order"], tuple(entry["components"]), tuple(map(_numbers, entry["values"])))
+
+
+def _noise(entry: dict[str, Any]) -> NoiseScale:
+    return NoiseScale(entry["kind"], _number(entry["factor"]), _number(entry["freedom"]))
 
 
 def _gain(entry: dict[str, Any]) -> Gain:
@@ -144,8 +167,9 @@ def _transfer(entry: dict[str, Any]) -> Transfer:
     return Transfer(entry["started_at"], _score(entry["before"]), _score(entry["after"]))
 
 
-def _score(entry: dict[str, float | None]) -> Score:
-    return Score(**_named(entry))
+def _score(entry: dict[str, Any]) -> Score:
+    rms, square, score = (_number(entry[name]) for name in ("rms", "chi2_per_dof", "log_score"))
+    return Score(rms, square, score, _named(entry.get("rms_by_kind", {})))  # absent from earlier versions
 
 
 def _limit(entry: dict[str, Any]) -> Limit:

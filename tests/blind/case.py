@@ -42,7 +42,7 @@ class Case:
 
     label: str
     kind: str
-    """single, weak, none, outside, two."""
+    """single, weak, none, outside, two, left out."""
     session: dict[str, Any]
     history: list[dict[str, Any]]
     truths: tuple[Truth, ...]
@@ -59,15 +59,19 @@ class Draw:
     """Most positions of a run."""
 
 
-def truth_of(field: Field, effect: Effect, strength: float, readings: Array) -> Truth:
-    """The truth with its nearest rival among the field's explanations; readings (R, m), reading units."""
+def truth_of(field: Field, effect: Effect, strength: float, readings: Array, *, known: bool = True) -> Truth:
+    """The truth with its nearest rival among the field's explanations; readings (R, m), reading units.
+
+    Of a cause that is not ``known``, left out of the catalogue, parsimony spares no rival, and it is none itself.
+    """
     session = field.lens.session
     names = tuple(session.unit.names[i] for i in effect.sensors)
     if effect.cause == "excess-noise":
         noise = field.lens.left((readings - mean_readings(session)).reshape(-1, 1))[:, 0]
         return Truth(effect, names, strength, field.nearest_to_noise(effect, noise))
     left = field.lens.left(signature(session, effect).reshape(-1, 1))[:, 0]
-    rivals = field.rivals(left, effect.cause, effect.sensors, parameters_of(effect))
+    rivals = field.rivals(left, effect.cause, effect.sensors, parameters_of(effect) if known else None)
+    rivals = [rival for rival in rivals if known or rival.cause != effect.cause]
     comparable = len(effect.amplitude) < 2 or _all_seen(field.lens.left(effect_columns(session, effect)))
     return Truth(effect, names, strength, rivals[0] if rivals else None, comparable)
 

@@ -18,6 +18,7 @@ FAINTEST = 2.0
 """Weak cases, for the detection curve only, reach down to here."""
 ENTRY_FACTOR = 3.0
 """Errors of the record that only the nominal axes show are drawn so much stronger: the maker's tolerance is vague."""
+LEFT_OUT = "left out"
 PASSING = ("bias-jump", "reading-outlier")
 """Effects of one sensor that belong to one session."""
 TRIES = 80
@@ -69,6 +70,11 @@ def _weak(draw: Draw, cause: str | None) -> Case:
     return _hidden(draw, "weak", cause, (FAINTEST, WEAKEST))
 
 
+def _left_out(draw: Draw, cause: str | None) -> Case:
+    """A strong effect, to be looked for with a catalogue that lacks it: every other explanation is its rival."""
+    return _hidden(draw, LEFT_OUT, cause, (0.99 * STRONGEST, STRONGEST))
+
+
 def _hidden(draw: Draw, kind: str, cause: str | None, strengths: tuple[float, float]) -> Case:
     rng = draw.rng
     cause = cause or str(rng.choice(list(CATALOGUE)))
@@ -82,7 +88,7 @@ def _hidden(draw: Draw, kind: str, cause: str | None, strengths: tuple[float, fl
     if strength < strengths[0]:
         raise UnhideableError(cause)
     readings = measure(session, [effect], rng)[0]
-    truth = truth_of(Field(lens, between), effect, strength, readings)
+    truth = truth_of(Field(lens, between), effect, strength, readings, known=kind != LEFT_OUT)
     lasting = hidden.scope == SENSOR and cause not in PASSING and rng.random() < 0.5
     history = history_files(draw, session, earlier, (effect,), lasting)
     return written(draw, kind, session, readings, (truth,), history)
@@ -139,4 +145,11 @@ def _nearest(field: Field, session: Session, effect: Effect) -> Rival:
     return field.rivals(left, effect.cause, effect.sensors, None)[0]
 
 
-KINDS = {"none": _none, "single": _single, "weak": _weak, "two": _two, "outside": _outside}
+KINDS = {
+    "none": _none,
+    "single": _single,
+    "weak": _weak,
+    "two": _two,
+    "outside": _outside,
+    LEFT_OUT: _left_out,
+}

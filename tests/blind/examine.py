@@ -6,7 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from estimator import diagnose, read_session
+from estimator.causes.catalogue import CATALOGUE
 from tests.blind.case import Case
+from tests.blind.cases import LEFT_OUT
 from tests.blind.score import Outcome, score
 
 
@@ -24,7 +26,9 @@ def diagnosed(case: Case) -> dict[str, Any]:
     """What the diagnosis says, from the files alone; a failure of the numerics counts as a wrong name and goes on."""
     try:
         session = read_session(case.session)
-        return diagnose(session, history=[read_session(h) for h in case.history]).to_dict()
+        left_out = {t.effect.cause for t in case.truths} if case.kind == LEFT_OUT else set()
+        known = [cause for cause in CATALOGUE if cause.identifier not in left_out]
+        return diagnose(session, history=[read_session(h) for h in case.history], catalogue=known).to_dict()
     except (ArithmeticError, ValueError) as error:
         wrong = {"cause": f"failure: {error}", "sensors": [], "alternatives": []}
         return {"findings": [wrong], "unexplained": False}

@@ -62,6 +62,8 @@ def candidates(session: Session, between: bool) -> Iterator[Candidate]:
                 yield Candidate(cause, (i,), _numerical(session, cause, (i,))[None])
         else:
             yield Candidate(cause, (), _numerical(session, cause, ())[None])
+            if cause == "latitude-entry" and session.unit.gyro.all():
+                yield Candidate("alpha-entry", (), _numerical(session, cause, ())[None])  # the head's angle to the pole
 
 
 def _sensors_of(session: Session, cause: str) -> list[int]:

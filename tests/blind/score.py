@@ -14,6 +14,8 @@ UNCOMPARED = DISCRETE | {"excess-noise", "saturation", "sensor-drift"}
 ENTRIES = frozenset({"alpha-entry", "gravity-entry", "latitude-entry"})
 """Entered minus true, or true minus entered: either sign is right."""
 SEPARATED = 5.0
+FAR = 10.0
+"""Separation from every rival beyond which a cause left out of the catalogue must not be given another's name."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +49,10 @@ class Outcome:
     offered: tuple[bool, ...]
     """For each truth, whether some finding is it or lists it among its alternatives."""
     unexplained: bool
+    unexplained_listed: bool
+    """Said, or among the alternatives of a name."""
+    beliefs: tuple[tuple[float, bool], ...]
+    """Every stated probability that a cause acts, and whether it does; of a single effect."""
     pulls: tuple[Pull, ...]
     unstated_noise: bool
     history: int
@@ -64,6 +70,8 @@ class Outcome:
             return not self.findings
         if self.kind == "outside":
             return self.unexplained
+        if self.kind == "left out":
+            return min(self.separations) < FAR or (self.unexplained_listed and not self.findings)
         if self.kind == "two":
             return all(self.named) if self.separated else all(self.offered)
         if self.kind == "weak":
@@ -96,6 +104,8 @@ def score(case: Case, found: dict[str, Any], seconds: float) -> Outcome:
             for t, ok in zip(case.truths, named, strict=True)
         ),
         unexplained=bool(found["unexplained"]),
+        unexplained_listed=bool(found["unexplained"]) or any("unexplained" in f["alternatives"] for f in findings),
+        beliefs=tuple(belief for f in findings for belief in beliefs(case, f)),
         pulls=tuple(p for t in case.truths for f in findings if _is(t, f) for p in pulls(t, f, case)),
         unstated_noise=not case.world.noise.stated,
         history=len(case.history),
@@ -106,6 +116,14 @@ def score(case: Case, found: dict[str, Any], seconds: float) -> Outcome:
 def _is(truth: Truth, finding: dict[str, Any]) -> bool:
     """Whether a finding is the truth: its cause, on its sensors."""
     return truth.effect.cause == finding["cause"] and set(truth.names) == set(finding["sensors"])
+
+
+def beliefs(case: Case, finding: dict[str, Any]) -> list[tuple[float, bool]]:
+    """The probabilities of a finding's ranking, each with whether it is of the truth; none where there are two."""
+    if case.kind not in ("single", "weak"):
+        return []
+    (truth,) = case.truths
+    return [(r["probability"], _is(truth, r)) for r in finding.get("ranking", [])]
 
 
 def pulls(truth: Truth, finding: dict[str, Any], case: Case) -> list[Pull]:

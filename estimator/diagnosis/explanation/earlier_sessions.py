@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from estimator.diagnosis.explanation.extended_model import Amplitudes
+from estimator.diagnosis.residuals.prediction import LN_2PI, root_mean_square
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.results import Score, Transfer
 from estimator.diagnosis.selection.search_state import SearchState
@@ -19,9 +20,6 @@ from estimator.session import Array
 
 CLEAR = 3.0
 """ln evidence by which the earlier session says that it had an effect, or had not: odds of twenty."""
-
-LN_2PI = float(np.log(2 * np.pi))
-"""Of the normal density."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,8 +108,10 @@ def predicted(residuals: WhitenedResiduals, effect: Effect) -> Score:
     volume = float(np.linalg.slogdet(inner)[1])
     R, m = residuals.baseline.residual.shape
     errors = rest[: R * m].reshape(R, m) / residuals.whiten.weight
+    each = root_mean_square(errors, residuals.baseline)
     return Score(
-        rms=float(np.sqrt(np.mean(errors**2))),
+        rms=each[residuals.baseline.session.block],
         chi2_per_dof=square / residuals.freedom,
         log_score=-0.5 * (square + volume) / residuals.freedom - 0.5 * LN_2PI,
+        rms_by_kind=each,
     )

@@ -7,7 +7,6 @@ C + L·V·L', where V = (X'PX)⁻¹ is the amplitudes' covariance and L the para
 calibration is the ordinary one of the readings with the effect taken out, its covariance enlarged by L·V·L'.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -15,7 +14,6 @@ import numpy as np
 
 from estimator.calibration.calibrate import calibrate
 from estimator.diagnosis.selection.search_state import Found, SearchState
-from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance
 from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
@@ -84,17 +82,19 @@ def without_effects(state: SearchState, fitted: Amplitudes) -> CalibrationSessio
         pulsed = np.array([s.kind != ACCELEROMETER for s in session.sensors])
         period = np.where(pulsed, session.count_time or 1.0, 1.0)
         readings = readings - np.sum(inside, axis=0) * p.scale * period
-    return replace(session, readings=readings, standard_errors=true_errors(state, state.scatter))
+    return replace(session, readings=readings, standard_errors=true_errors(state))
 
 
-def true_errors(state: SearchState, scatter: Sequence[ExcessVariance | Autocorrelation]) -> Array:
-    """(R, m) standard errors with the excess noise in them, reading units."""
+def true_errors(state: SearchState) -> Array:
+    """(R, m) standard errors with the excess noise in them, reading units; no claim makes them smaller than stated."""
     session, scale = state.baseline.session, state.baseline.parameters.scale
+    larger = {n.sensor: n.ratio for n in state.scatter}
+    for claim in state.noise_claims:
+        larger |= {i: claim.ratio for i, kind in enumerate(state.baseline.setting.kinds) if kind == claim.kind}
     errors = session.standard_errors.copy()
-    for noisy in scatter:
-        i = noisy.sensor
+    for i, ratio in larger.items():
         repeated = (scale[i] * session.sensors[i].bias_repeatability) ** 2
-        errors[:, i] = np.sqrt(noisy.ratio * (errors[:, i] ** 2 + repeated) - repeated)
+        errors[:, i] = np.sqrt(max(ratio, 1.0) * (errors[:, i] ** 2 + repeated) - repeated)
     return errors
 
 

@@ -9,11 +9,12 @@ from estimator.causes.contract import Cause
 from estimator.causes.noise import ExcessNoise
 from estimator.diagnosis.explanation.extended_model import Amplitudes
 from estimator.diagnosis.explanation.naming import merged, named_cause
-from estimator.diagnosis.explanation.rivals import alternatives, ranking, separations
+from estimator.diagnosis.explanation.rivals import CREDIBLE, alternatives, ranking, separations
 from estimator.diagnosis.explanation.sensor_or_stand import parity_split
-from estimator.diagnosis.results import Finding, Structure
+from estimator.diagnosis.results import Course, Finding, NoiseScale, Structure
 from estimator.diagnosis.selection.search_state import Found, SearchState
-from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance
+from estimator.diagnosis.signatures.applied_course import AppliedCourse
+from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance, UnlikeNoise
 from estimator.diagnosis.signatures.patterns import Pattern
 from estimator.session import ACCELEROMETER
 
@@ -39,7 +40,7 @@ def finding(state: SearchState, found: Found, fitted: Amplitudes, part: slice, n
     amplitude, sigma = cause.reported(
         state.baseline.setting, best.shape, fitted.value[own], np.sqrt(np.diagonal(fitted.covariance)[own])
     )
-    others = alternatives(found)
+    others = alternatives(state, found)
     gyro = cause.kind is None and any(state.baseline.setting.kinds[i] != ACCELEROMETER for i in best.sensors)
     return replace(
         named_cause(cause, tuple(state.names[i] for i in best.sensors), found.p_family, best.strength),
@@ -47,7 +48,10 @@ def finding(state: SearchState, found: Found, fitted: Amplitudes, part: slice, n
         sigma=tuple(map(float, sigma)),
         units=tuple(u.replace("m/s²", "rad/s") if gyro else u for u in cause.units),
         nonlinear_each=(nonlinear(found),),
-        alternatives=tuple(r.cause.identifier for r in others),
+        alternatives=(
+            *(r.cause.identifier for r in others),
+            *(("unexplained",) if found.unnamed > 1 - CREDIBLE else ()),
+        ),
         separations=separations(state, found, others),
         ranking=ranking(state, found),
         parity=parity_split(state, found),
@@ -94,7 +98,37 @@ def structures(state: SearchState) -> tuple[Structure, ...]:
     courses = [Structure(place(a), (state.names[a.sensor],), a.p_value, a.strength) for a in state.autocorrelated]
     unnamed = state.excess if noise_cause(state) is None else ()
     larger = [Structure("larger than stated", (state.names[e.sensor],), e.p_family, e.strength) for e in unnamed]
-    return (*patterns, *courses, *larger)
+    return (
+        *patterns,
+        *map(common_course, state.courses),
+        *courses,
+        *larger,
+        *(unlike_noise(state, u) for u in state.unlike_noise),
+    )
+
+
+def common_course(course: AppliedCourse) -> Structure:
+    """A course of the applied vector that no cause describes."""
+    what = " and ".join(course.components) or "the vector"
+    return Structure(
+        f"an error of stand, fixture or reference that no known cause explains ({what}, along {course.order})",
+        (),
+        course.p_value,
+        course.strength,
+        Course(course.order, course.components, tuple(map(tuple, course.value.tolist()))),
+    )
+
+
+def noise_scales(state: SearchState) -> tuple[NoiseScale, ...]:
+    """Kinds of sensor whose stated standard errors the readings contradict."""
+    return tuple(NoiseScale(c.kind, float(np.sqrt(c.ratio)), c.freedom) for c in state.noise_claims)
+
+
+def unlike_noise(state: SearchState, unlike: UnlikeNoise) -> Structure:
+    """A sensor whose scatter is not distributed as noise is."""
+    return Structure(
+        "scatter that is not distributed as noise is", (state.names[unlike.sensor],), unlike.p_value, unlike.strength
+    )
 
 
 def place(course: Autocorrelation) -> str:

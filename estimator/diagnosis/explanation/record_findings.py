@@ -8,10 +8,12 @@ import numpy as np
 from estimator.diagnosis.explanation.naming import merged, named_cause
 from estimator.diagnosis.explanation.rivals import CREDIBLE, SHOWN
 from estimator.diagnosis.record.clipping import Clip
+from estimator.diagnosis.record.implausible import ImplausibleAxes
 from estimator.diagnosis.record.nominal import WrongEntry
 from estimator.diagnosis.record.record_error import RecordError
+from estimator.diagnosis.record.turned import LEAST
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.results import Finding, Rival
+from estimator.diagnosis.results import Finding, Rival, Structure
 from estimator.forward import measured
 from estimator.session import ACCELEROMETER, CalibrationSession
 
@@ -74,3 +76,13 @@ def entry_finding(entry: WrongEntry) -> Finding:
         sigma=(entry.sigma,),
         units=entry.cause.units,
     )
+
+
+def wrong_record(axes: ImplausibleAxes | None, session: CalibrationSession) -> tuple[Structure, ...]:
+    """Axes that no sensor can have: the record is wrong, nothing says how."""
+    if axes is None:
+        return ()
+    names = tuple(session.sensors[i].name for i in axes.sensors)
+    who = "input axes" if names else "the whole block"
+    where = f"{who} {np.degrees(axes.angle):.0f}° off: columns, runs or angles of the record are mixed up"
+    return (Structure(where, names, 0.0, axes.angle / float(np.sqrt(LEAST))),)

@@ -33,21 +33,23 @@ def probabilities(found: Found) -> list[tuple[Scored, float]]:
     return [(s, float(p)) for (s, _), p in zip(found.ranking, np.exp(values - logsumexp(values)), strict=True)]
 
 
-def alternatives(found: Found) -> list[Scored]:
+def alternatives(state: SearchState, found: Found) -> list[Scored]:
     """Rivals that the session cannot distinguish from the named cause, most likely first.
 
     A rival with more amplitudes that contains the named cause pays for each of them in its share (`bayes_factor`):
     it is listed where it is still likely after that, and else parsimony has ruled it out. What by itself would be no
-    evidence of an effect explains nothing and is no alternative.
+    evidence of an effect explains nothing and is no alternative, nor is what lies too far from the named cause.
     """
     kept: list[Scored] = []
-    reached = 0.0
+    reached, attributed = 0.0, state.attributed(without=found)
+    amplitude, columns = amplitude_beside(state, found)
     for rival, share in probabilities(found):
         if reached >= CREDIBLE:
             break
         reached += share
         known = {found.best.cause.identifier, *(k.cause.identifier for k in kept)}
-        if rival.cause.identifier not in known and rival.p_value < WORTH:
+        near = separation(columns @ amplitude, rival.trace, attributed) < DISTINGUISHED
+        if rival.cause.identifier not in known and rival.p_value < WORTH and near:
             kept.append(rival)
     return kept
 

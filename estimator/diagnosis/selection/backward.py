@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+from scipy.special import expit
 
 from estimator.diagnosis.selection.excess_noise import overdispersed
 from estimator.diagnosis.selection.ranking import (
@@ -22,6 +23,10 @@ causes against names for what is outside the catalogue (docs/diagnosis/study.md,
 TWO_FAULTS = 3.0
 """ln evidence by which a cause together with more noise must beat one smooth course: two faults at once on one sensor
 are so much rarer than one."""
+
+FURTHER = float(np.log(100))
+"""ln evidence that every name beyond the first costs: one misfortune in a hundred sessions has another, independent
+one beside it."""
 
 NEEDLESS = 4.0
 """ln evidence by which a sensor's drift must improve on an effect that lasted to be kept beside it: odds of fifty,
@@ -57,22 +62,30 @@ def without_needless_drift(state: SearchState) -> SearchState:
 def without_names_on_courses(state: SearchState) -> SearchState:
     """Withdraw names on one sensor where its residual without them is as likely a smooth course of no name.
 
-    Asked where they are several, or one that leaves more scatter than the sensor's noise: both are two faults at once.
+    Of several names every further one is a misfortune of its own, and a name that leaves more scatter than the sensor's
+    noise is two faults at once. Where the names are kept, the course's probability stays beside them.
     """
     m, noisy = state.sensor_count, overdispersed(state)
     for i in range(m):
         names = tuple(f for f in state.found if f.best.sensors == (i,))
-        if not names or (len(names) == 1 and not noisy[i]):
+        if not names:
             continue
         rest = replace(state, found=tuple(f for f in state.found if f not in names))
         attributed = rest.attributed()
         course = autocorrelation(rest.residuals, attributed, i, known=not state.baseline.unstated[i])
-        need = log_evidence_beside(rest.residuals, attributed, names) + (-TWO_FAULTS if noisy[i] else NAMELESS)
-        if course is not None and course.log_evidence - np.log(m) > need:
+        if course is None:
+            continue
+        need = log_evidence_beside(rest.residuals, attributed, names) - FURTHER * (len(names) - 1)
+        gained = course.log_evidence - np.log(m) - need
+        if gained > (-TWO_FAULTS if noisy[i] else NAMELESS):
             own = [e for e in state.excess if e.sensor == i]
             ratio, larger = float(np.prod([e.ratio for e in own])), float(sum(e.log_evidence for e in own))
             excess = tuple(e for e in rest.excess if e.sensor != i)
             others = tuple(s for s in rest.autocorrelated if s.sensor != i)
             course = replace(course, ratio=ratio, excess_log_evidence=larger)
             state = replace(rest, excess=excess, autocorrelated=(*others, course))
+        else:
+            doubt = float(expit(gained))
+            kept = tuple(replace(f, unnamed=max(f.unnamed, doubt)) if f in names else f for f in state.found)
+            state = replace(state, found=kept)
     return state

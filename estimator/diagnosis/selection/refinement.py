@@ -11,15 +11,49 @@ from estimator.diagnosis.signatures.scores import rescored
 from estimator.diagnosis.signatures.traces import Scored
 from estimator.session import Array
 
+VAGUE = 2.0
+"""Sigmas of its own below which an amplitude is not known, though its signature stands out: the likelihood is then flat
+along shape and amplitude together, and neither means anything."""
+
+AS_LIKELY = 5.3
+"""ln evidence within which a rival without a free shape takes the place of a cause whose shape is not known: it is
+among the causes that are listed anyway."""
+
 
 def with_refined_shapes(state: SearchState) -> SearchState:
-    """Every finding with a continuous nonlinear parameter moved to its best value, the parameter left free there."""
+    """Every finding with a continuous nonlinear parameter moved to its best value, the parameter left free there.
+
+    Where the session does not tell the parameter, the likeliest cause that has none is named first instead, and failing
+    that the parameter keeps its value of the grid.
+    """
     for found in state.found:
         best = refined(state, found)
-        if best is not found.best:
-            new = replace(found, best=best)
-            state = replace(state, found=tuple(new if f is found else f for f in state.found))
+        if best is found.best:
+            continue
+        new = plainer(state, found) if vague(state, found, best) else replace(found, best=best)
+        state = replace(state, found=tuple(new if f is found else f for f in state.found))
     return state
+
+
+def vague(state: SearchState, found: Found, best: Scored) -> bool:
+    """Whether a refined shape leaves the amplitudes unknown."""
+    attributed = state.attributed(without=found)
+    columns = best.trace - attributed @ (attributed.T @ best.trace)
+    scale = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    covariance = np.linalg.pinv((columns / scale).T @ (columns / scale), rcond=1e-12, hermitian=True)
+    value = covariance @ ((columns / scale).T @ state.residuals.z)
+    own = slice(0, len(best.cause.units))
+    return bool(np.all(np.abs(value[own]) < VAGUE * np.sqrt(np.diagonal(covariance)[own])))
+
+
+def plainer(state: SearchState, found: Found) -> Found:
+    """The finding as the likeliest rival on its sensors that has no free shape; as it is where none is as likely."""
+    for rival, log_evidence in found.ranking:
+        if found.ranking[0][1] - log_evidence > AS_LIKELY:
+            break
+        if rival.sensors == found.best.sensors and not rival.cause.nonlinear_units and not rival.cause.between:
+            return replace(found, best=rescored(state.residuals, rival, state.attributed(without=found)))
+    return found
 
 
 def refined(state: SearchState, found: Found) -> Scored:

@@ -10,7 +10,8 @@ import numpy as np
 from estimator.causes.contract import Cause
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance
+from estimator.diagnosis.signatures.applied_course import AppliedCourse
+from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance, NoiseClaim, UnlikeNoise
 from estimator.diagnosis.signatures.traces import Group, Scored, Traces
 from estimator.session import Array
 
@@ -31,6 +32,8 @@ class Found:
     """Family-wise p-value."""
     ranking: tuple[tuple[Scored, float], ...]
     """Every (cause, sensors) with its ln evidence, strongest first, given the other findings."""
+    unnamed: float = 0.0
+    """Probability that no cause of the catalogue acts here, but something that only a free course describes."""
 
     @property
     def cause_log_evidence(self) -> float:
@@ -59,6 +62,12 @@ class SearchState:
     excess: tuple[ExcessVariance, ...] = ()
     autocorrelated: tuple[Autocorrelation, ...] = ()
     """Sensors whose residual is not white, though no pattern fits it; where that is plain, no cause is named there."""
+    courses: tuple[AppliedCourse, ...] = ()
+    """Of the applied vector, common to all sensors, that no cause describes."""
+    unlike_noise: tuple[UnlikeNoise, ...] = ()
+    """Sensors whose scatter is not distributed as noise is."""
+    noise_claims: tuple[NoiseClaim, ...] = ()
+    """Kinds of sensor whose stated noise is taken as known up to a factor only."""
     refuted: frozenset[Group] = frozenset()
     """Causes on sensors that would have to act more often than they can."""
 

@@ -35,4 +35,4 @@ def begin_anew(state: SearchState, scatter: Sequence[ExcessVariance | Autocorrel
     again = begin(replace(state.baseline, variance=variance, unstated=unstated), state.history, state.catalogue)
     excess = (*state.excess, *(s for s in scatter if isinstance(s, ExcessVariance)))
     autocorrelated = (*state.autocorrelated, *(s for s in scatter if isinstance(s, Autocorrelation)))
-    return replace(again, excess=excess, autocorrelated=autocorrelated)
+    return replace(again, excess=excess, autocorrelated=autocorrelated, noise_claims=state.noise_claims)

@@ -3,7 +3,8 @@
 Theory
 ------
 A residual y (n,), white under noise, is weighed against courses that are smooth along an order of the rows: the
-order measured, temperature, β, the sensor's own input. A course is a Gaussian process of covariance λ·G: a Wiener
+order measured, temperature, β (in each run for itself, or together with order or temperature), the sensor's own input.
+A course is a Gaussian process of covariance λ·G: a Wiener
 process (what wanders), a Matérn process (what bends), or one of alternating sign. With G = U·diag(d)·U' and v = U'y
 the Bayes factor against noise of unknown variance (Jeffreys' prior) is
 
@@ -14,6 +15,8 @@ mean over the orders (`USUAL`), the kernels and λ. A mean of Bayes factors has 
 1/p in no more than a share p of sound sessions (Markov); in simulation it does so in 0.08 p of them at most, of 11 to
 49 rows, and `CHANCE`/B is taken as the p-value, the choice of the order included.
 """
+
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.special import logsumexp
@@ -31,8 +34,19 @@ SIGNAL = 10.0 ** np.arange(-1, 4.1, 0.5)
 KEPT_NOISE = 0.1
 """Share of a direction's noise that must remain for it to count; less would magnify rounding and model error."""
 
-USUAL = {"the order measured": 0.5, "temperature": 0.25, "β": 0.125, "the sensor's input": 0.125}
+USUAL = {
+    "the order measured": 0.4,
+    "temperature": 0.2,
+    "β": 0.1,
+    "the sensor's input": 0.1,
+    "β, each run for itself": 0.1,
+    "β and the order measured": 0.05,
+    "β and temperature": 0.05,
+}
 """Prior share of the orders: what wanders, wanders in time."""
+
+ROUND = (0.4, 1.0)
+"""Length, rad, over which a course around β keeps its value: some six harmonics, or two."""
 
 LENGTHS = (0.08, 0.25)
 """Share of the order's range over which a bending course keeps its value: shorter ones look like noise over some
@@ -50,12 +64,35 @@ def orders(residuals: WhitenedResiduals, sensor: int) -> dict[str, Array]:
     return {name: (key - key.min()) / np.ptp(key) for name, key in keys.items() if np.ptp(key) > 0}
 
 
-def kernels(place: Array) -> list[Array]:
+def kernels(residuals: WhitenedResiduals, sensor: int) -> dict[str, list[Array]]:
+    """(R, R) dimensionless covariances of courses along each order; where there is a stand, also around β together
+    with another order, as whatever depends on both is smooth in both."""
+    setting, places = residuals.baseline.setting, orders(residuals, sensor)
+    found = {name: along(place) for name, place in places.items()}
+    if setting.beta is None or setting.flipped is None:
+        return found
+    half = np.sin((setting.beta[:, None] - setting.beta) / 2)
+    around = [np.exp(-2 * (half / length) ** 2) for length in ROUND]
+    same_run = setting.flipped[:, None] == setting.flipped
+    if not same_run.all():
+        found["β, each run for itself"] = [kernel * same_run for kernel in around]
+    for name in ("the order measured", "temperature"):
+        if name in places:
+            found[f"β and {name}"] = [bending(places[name], LENGTHS[-1]) * kernel for kernel in around]
+    return found
+
+
+def along(place: Array) -> list[Array]:
     """(R, R) dimensionless covariances of courses along places (R,) in 0 … 1: wandering, bending, alternating."""
-    distance = np.sqrt(3) * np.abs(place[:, None] - place)
-    bending = [(1 + distance / length) * np.exp(-distance / length) for length in LENGTHS]
+    bent = [bending(place, length) for length in LENGTHS]
     sign = (-1.0) ** np.argsort(np.argsort(place, kind="stable"), kind="stable")
-    return [np.minimum(place[:, None], place), *bending, bending[-1] * np.outer(sign, sign)]
+    return [np.minimum(place[:, None], place), *bent, bent[-1] * np.outer(sign, sign)]
+
+
+def bending(place: Array, length: float) -> Array:
+    """(R, R) dimensionless covariance of a course along places (R,) that keeps its value over a length (Matérn 3/2)."""
+    distance = np.sqrt(3) * np.abs(place[:, None] - place) / length
+    return np.asarray((1 + distance) * np.exp(-distance))
 
 
 def own_covariance(residuals: WhitenedResiduals, attributed: Array, sensor: int) -> Array:
@@ -88,22 +125,29 @@ def autocorrelation(
     root = turn[:, kept] * np.sqrt(size[kept])
     y = (turn[:, kept] / np.sqrt(size[kept])).T @ remaining[: R * m].reshape(R, m)[:, sensor]
     factors = {
-        name: [bayes_factor(root.T @ kernel @ root, y, known=known) for kernel in kernels(place)]
-        for name, place in orders(residuals, sensor).items()
+        name: logmeanexp([bayes_factor(root.T @ kernel @ root, y, known=known) for kernel in tried])
+        for name, tried in kernels(residuals, sensor).items()
     }
-    prior = np.repeat([USUAL[name] for name in factors], len(factors["the order measured"]))
-    together = np.concatenate(list(factors.values())) + np.log(prior / prior.sum())
-    return Autocorrelation(sensor, max(factors, key=lambda name: max(factors[name])), float(logsumexp(together)))
+    prior = np.array([USUAL[name] for name in factors])
+    together = np.array(list(factors.values())) + np.log(prior / prior.sum())
+    return Autocorrelation(sensor, max(factors, key=lambda name: factors[name]), float(logsumexp(together)))
+
+
+def logmeanexp(values: Sequence[float] | Array) -> float:
+    """ln of the mean of Bayes factors given by their logarithms."""
+    return float(logsumexp(values) - np.log(len(values)))
 
 
 def bayes_factor(covariance: Array, y: Array, *, known: bool) -> float:
     """ln B of a course of ``covariance`` (n, n), dimensionless, against white noise, from y (n,), standard errors."""
     d, turn = np.linalg.eigh(covariance * len(y) / max(float(np.trace(covariance)), 1e-300))
     power = (turn.T @ y) ** 2
-    grown = 1 + SIGNAL[:, None] * np.maximum(d, 0.0)
+    largest = max(SIGNAL[-1], float(power.sum()) if known else 0.0)
+    signal = np.concatenate([SIGNAL, np.geomspace(SIGNAL[-1], largest, 4)[1:]]) if largest > SIGNAL[-1] else SIGNAL
+    grown = 1 + signal[:, None] * np.maximum(d, 0.0)
     volume = -0.5 * np.log(grown).sum(axis=1)
     if known:
         fitted = 0.5 * (power * (1 - 1 / grown)).sum(axis=1)
     else:
         fitted = -0.5 * len(y) * np.log((power / grown).sum(axis=1) / power.sum())
-    return float(logsumexp(volume + fitted) - np.log(len(SIGNAL)))
+    return logmeanexp(volume + fitted)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import ndtri
 
 CHANCE = 0.1
 """Share of 1/B that white noise reaches at most: 0.08 in simulation of 11 to 49 rows (see `autocorrelation`)."""
@@ -60,6 +61,35 @@ class Autocorrelation:
     def strength(self) -> float:
         """In standard errors: those of a normal deviate that weighs as much."""
         return normal_deviate(self.log_evidence + self.excess_log_evidence)
+
+
+@dataclass(frozen=True)
+class UnlikeNoise:
+    """A sensor whose scatter is not distributed as noise is."""
+
+    sensor: int
+    p_value: float
+    """Of normal noise at least as far from normal (Shapiro & Wilk 1965)."""
+    largest: float
+    """The largest residual over their root mean square."""
+
+    @property
+    def strength(self) -> float:
+        """In standard errors: those of a normal deviate as unlikely."""
+        return float(-ndtri(max(self.p_value, 1e-300)))
+
+
+@dataclass(frozen=True)
+class NoiseClaim:
+    """Stated noise of a kind of sensor that its readings do not bear out."""
+
+    kind: str
+    ratio: float
+    """Variance over the stated one."""
+    freedom: float
+    """Degrees of freedom that tell it."""
+    taken: float = 1.0
+    """Variance over the stated one that the search took."""
 
 
 def normal_deviate(log_evidence: float) -> float:

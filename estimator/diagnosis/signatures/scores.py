@@ -37,6 +37,11 @@ WORTH = 1e-3
 """p-value below which a signature is looked at as an explanation: is its amplitude within reason, is it a rival?
 It screens and names nothing: a name needs `LEVEL` over the whole catalogue."""
 
+ALONE = 1e-4
+"""p-value, all places of a cause together, at which it shows in the session by itself: the family-wise level over a
+catalogue of some forty. What is only seen because the sensor changed since the history is a change, and no such cause.
+"""
+
 OCCAM = 0.7
 """ln evidence that every amplitude beyond the first costs, a factor of two: it balances simple causes against richer
 ones that contain them, so that alternatives stay few (docs/diagnosis/study.md, alternatives)."""
@@ -101,20 +106,25 @@ def _score(projected: Projected, traces: Traces) -> Iterable[Scored]:
         shape, t, q, p = traces.shapes[s], float(statistic[s]), int(freedom[s]), float(p_value[s])
         if p < WORTH and not within_reason(projected.residuals.baseline.setting, traces.cause, shape, amplitude[s]):
             continue
-        if (traces.raw[s] == 0).any() and not seen_within(columns[s][:, traces.raw[s] > 0], projected.z, places):
+        if p < WORTH and not shows_itself(projected, traces, shape, columns[s][:, traces.raw[s] > 0]):
             continue
         log_evidence = bayes_factor(t, q) - float(np.log(places))
         yield Scored(traces.cause, shape, traces.lasting[s], traces.columns[s], t, q, log_evidence, p, places)
 
 
-def seen_within(columns: Array, z: Array, places: int) -> bool:
-    """Whether a cause beside which the sensor's parameter change is left open shows in the session itself.
+def shows_itself(projected: Projected, traces: Traces, shape: Shape, columns: Array) -> bool:
+    """Whether a cause that acts within the session shows there, and not only in what changed since the history.
 
-    ``columns`` (n, q) of its trace and the residuals ``z`` (n,), standard errors.
+    ``columns`` (n, q) of its trace, standard errors per unit amplitude.
     """
-    basis, size, _ = np.linalg.svd(columns, full_matrices=False)
+    residuals = projected.residuals
+    if residuals.change is None or traces.cause.between or traces.cause.nameless:
+        return True
+    basis, size, _ = np.linalg.svd(columns[: residuals.rows], full_matrices=False)
     live = basis[:, size > 1e-9 * max(size[0], 1e-300)]
-    return float(chdtrc(live.shape[1], ((live.T @ z) ** 2).sum())) * places < WORTH
+    level = WORTH if residuals.baseline.unstated[list(shape.sensors)].any() else ALONE
+    power = float(((live.T @ projected.z[: residuals.rows]) ** 2).sum())
+    return float(chdtrc(max(live.shape[1], 1), power)) * max(traces.places, 1) < level
 
 
 def within_reason(setting: Setting, cause: Signature, shape: Shape, amplitude: Array) -> bool:

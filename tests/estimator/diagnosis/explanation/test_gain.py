@@ -6,6 +6,7 @@ import pytest
 from estimator import diagnose
 from estimator.diagnosis.explanation.gain import score
 from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.diagnosis.residuals.prediction import FOLDS
 from estimator.session import ACCELEROMETER
 from tests.estimator.causes.hiding import change, found, scene, with_readings
 
@@ -22,7 +23,7 @@ def test_a_wrong_cause_gains_nothing() -> None:
     where = scene(ACCELEROMETER, 0)
     baseline = baseline_of(where.measured(1))
     wrong = change("stand-drift", where)[..., None]
-    assert score(baseline, [wrong]).log_score < score(baseline, []).log_score
+    assert score(baseline, [[wrong]] * FOLDS).log_score < score(baseline, [()] * FOLDS).log_score
 
 
 def test_without_a_finding_before_is_after() -> None:
@@ -40,7 +41,7 @@ def test_excess_noise_costs_its_width_and_pays_by_its_honesty() -> None:
 
 def test_unknown_directions_do_not_count_as_readings() -> None:
     where = scene("orientations", 0)
-    scores = [score(baseline_of(where.measured(seed)), []).chi2_per_dof for seed in range(8)]
+    scores = [score(baseline_of(where.measured(seed)), [()] * FOLDS).chi2_per_dof for seed in range(8)]
     assert abs(np.mean(scores) - 1) < 0.15
 
 

@@ -6,7 +6,7 @@ from scipy.special import logsumexp
 from scipy.stats import multivariate_normal
 
 from estimator import Diagnosis, diagnose
-from estimator.diagnosis.signatures.autocorrelation import SIGNAL, bayes_factor, kernels
+from estimator.diagnosis.signatures.autocorrelation import SIGNAL, along, bayes_factor
 from estimator.session import ACCELEROMETER, Array
 from tests.estimator.causes.hiding import scene, with_readings
 
@@ -39,7 +39,7 @@ def test_random_walks_are_no_noise() -> None:
 def test_bayes_factors_keep_their_promise_under_noise(known: bool) -> None:
     """Expectation at most one (Markov), and far fewer than 1/B of sound courses reach B."""
     rng, place = np.random.default_rng(5), np.linspace(0, 1, 30)
-    covariances = kernels(place)
+    covariances = along(place)
     drawn = [
         np.logaddexp.reduce([bayes_factor(c, y, known=known) for c in covariances]) - np.log(len(covariances))
         for y in rng.standard_normal((400, 30))
@@ -50,13 +50,13 @@ def test_bayes_factors_keep_their_promise_under_noise(known: bool) -> None:
 
 @pytest.mark.parametrize(("known", "same"), [(False, True), (True, False)])
 def test_where_the_noise_is_unknown_the_size_of_a_residual_says_nothing(known: bool, same: bool) -> None:
-    rng, (walk, *_) = np.random.default_rng(1), kernels(np.linspace(0, 1, 30))
+    rng, (walk, *_) = np.random.default_rng(1), along(np.linspace(0, 1, 30))
     y = np.cumsum(rng.standard_normal(30))
     assert (abs(bayes_factor(walk, 10 * y, known=known) - bayes_factor(walk, y, known=known)) < 1e-9) == same
 
 
 def test_a_bayes_factor_under_stated_noise_is_the_ratio_of_two_normal_densities() -> None:
-    (walk, *_), y = kernels(np.linspace(0, 1, 12)), np.random.default_rng(2).standard_normal(12)
+    (walk, *_), y = along(np.linspace(0, 1, 12)), np.random.default_rng(2).standard_normal(12)
     covariance = walk * 12 / np.trace(walk)
     densities = [multivariate_normal(np.zeros(12), np.eye(12) + size * covariance).logpdf(y) for size in SIGNAL]
     noise = multivariate_normal(np.zeros(12), np.eye(12)).logpdf(y)
@@ -65,7 +65,7 @@ def test_a_bayes_factor_under_stated_noise_is_the_ratio_of_two_normal_densities(
 
 @pytest.mark.parametrize("known", [False, True])
 def test_what_wanders_is_evidence_against_noise(known: bool) -> None:
-    walk, *_ = kernels(np.linspace(0, 1, 30))
+    walk, *_ = along(np.linspace(0, 1, 30))
     assert bayes_factor(walk, np.cumsum(np.random.default_rng(1).standard_normal(30)), known=known) > 5
 
 

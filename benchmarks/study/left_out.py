@@ -1,0 +1,63 @@
+"""Leave one cause out: a strong effect is hidden, and looked for with a catalogue that lacks its cause."""
+
+from collections import Counter
+from itertools import cycle, islice
+
+from benchmarks.study.examine import Task
+from benchmarks.study.rates import rate
+from benchmarks.study.report import table
+from tests.blind.cases import LEFT_OUT
+from tests.blind.catalogue import CATALOGUE
+from tests.blind.score import FAR, Outcome
+
+INTRODUCTION = (
+    "Every cause of the catalogue in turn is hidden at a strength of 40 standard errors and looked for with a "
+    "catalogue that lacks it. Where no other explanation comes within 10 standard errors of it, any name is wrong, "
+    "and the honest answer is `unexplained`."
+)
+
+
+def tasks(sessions: int, seed: int) -> list[Task]:
+    """The whole catalogue in turn."""
+    return [Task(LEFT_OUT, (seed, i), cause) for i, cause in enumerate(islice(cycle(CATALOGUE), sessions))]
+
+
+def far(outcomes: list[Outcome]) -> list[Outcome]:
+    """Those whose cause no other explanation comes near."""
+    return [o for o in outcomes if min(o.separations) >= FAR]
+
+
+def section(outcomes: list[Outcome]) -> str:
+    """Markdown."""
+    apart = far(outcomes)
+    rows = [
+        (
+            "a wrong name, `unexplained` neither beside it nor among its alternatives",
+            "≤ 2 %",
+            rate([bool(o.findings) and not o.unexplained_listed for o in apart]),
+        ),
+        ("any wrong name", "≤ 10 %", rate([bool(o.findings) for o in apart])),
+        ("`unexplained` said or listed", "≥ 95 %", rate([o.unexplained_listed for o in apart])),
+        ("nearer to a rival than 10: `unexplained` said or listed", "", _listed_near(outcomes)),
+    ]
+    figures = table(("figure", "target", "measured"), rows)
+    head = ("left out", "no rival within 10", "wrong name", "`unexplained` said or listed", "names given")
+    return f"## One cause left out\n\n{INTRODUCTION}\n\n{figures}\n\n" + table(
+        head, (_row(cause, apart) for cause in CATALOGUE)
+    )
+
+
+def _listed_near(outcomes: list[Outcome]) -> str:
+    return str(rate([o.unexplained_listed for o in outcomes if min(o.separations) < FAR]))
+
+
+def _row(cause: str, apart: list[Outcome]) -> tuple[object, ...]:
+    own = [o for o in apart if o.causes == (cause,)]
+    names = Counter(f.split("@")[0] for o in own for f in o.findings)
+    return (
+        f"`{cause}`",
+        len(own),
+        sum(bool(o.findings) for o in own),
+        sum(o.unexplained_listed for o in own),
+        ", ".join(f"{name} {n}" for name, n in names.most_common()) or "–",
+    )

@@ -1,0 +1,89 @@
+"""How well a model predicts rows that took no part in its fit.
+
+Rows are held out fold by fold. The rest fit the baseline, the constant nuisances and the effects in the model, and
+predict the rows held out with full predictive covariance; all in the whitened frame, where rows are independent.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimator.diagnosis.residuals.baseline import Baseline, block_columns
+from estimator.diagnosis.residuals.whitened import Whitener
+from estimator.session import Array
+
+FOLDS = 6
+"""Parts of the positions, each held out once: every sixth row, so that five sixths fit the model and every part
+reaches around the circle."""
+
+FLAT = 1e-8
+"""Prior information of a parameter's unit column: none to speak of, yet what is not observed stays put."""
+
+LN_2PI = float(np.log(2 * np.pi))
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """Every row predicted from the folds that do not hold it. R rows, m sensors."""
+
+    error: Array
+    """(R, m) at the input, m/s² (rad/s)."""
+    square: float
+    """χ² of the errors under their predictive covariance."""
+    log_score: float
+    """Sum of the log predictive densities of whitened readings."""
+    count: float
+    """Number of readings, less the directions that they serve to estimate."""
+
+
+def counted(baseline: Baseline) -> Array:
+    """(R,) number of readings of every row less the directions that they serve to estimate."""
+    return np.asarray(baseline.residual.shape[1] - Whitener.of(baseline).projected_out.sum(axis=1))
+
+
+def fold_of(rows: int) -> Array:
+    """(R,) the fold that holds each of so many rows."""
+    return np.arange(rows) % FOLDS
+
+
+def predicted(baseline: Baseline, effects: Sequence[Sequence[Array]]) -> Prediction:
+    """Predict every row; ``effects``: for every fold the columns (R, m, q), m/s² (rad/s), in the model there."""
+    R, m = baseline.residual.shape
+    whiten, number = Whitener.of(baseline), counted(baseline)
+    own = [block_columns(baseline.design), baseline.constant]
+    data = whiten(baseline.residual[..., None]).reshape(R, m)
+    errors, logs, squares = np.zeros((R, m)), 0.0, 0.0
+    for fold, columns in enumerate(effects):
+        rows = fold_of(R) == fold
+        if not rows.any():
+            continue
+        design = whiten(np.concatenate([*own, *columns], axis=-1)).reshape(R, m, -1)
+        size = np.maximum(np.linalg.norm(design, axis=(0, 1)), 1e-300)
+        held, rest = (design[r].reshape(-1, len(size)) / size for r in (rows, ~rows))
+        inverse = np.linalg.pinv(rest.T @ rest + np.diag(priors(baseline, size)), hermitian=True)
+        error = data[rows].reshape(-1) - held @ (inverse @ (rest.T @ data[~rows].reshape(-1)))
+        covariance = np.eye(len(held)) + held @ inverse @ held.T
+        square = float(error @ np.linalg.solve(covariance, error))
+        squares += square
+        logs -= 0.5 * (square + float(np.linalg.slogdet(covariance)[1]) + float(number[rows].sum()) * LN_2PI)
+        errors[rows] = error.reshape(-1, m)
+    return Prediction(errors / whiten.weight, squares, logs, float(number.sum()))
+
+
+def priors(baseline: Baseline, size: Array) -> Array:
+    """(p,) prior information of every unit column, dimensionless, from the columns' norms ``size`` (p,).
+
+    Of the constant nuisances theirs, of the rest next to none.
+    """
+    prior = np.full(len(size), FLAT)
+    P, k = 5 * baseline.residual.shape[1], len(baseline.constant_sigma)
+    prior[P : P + k] = (baseline.constant_sigma * size[P : P + k]) ** -2.0
+    return prior
+
+
+def root_mean_square(error: Array, baseline: Baseline) -> dict[str, float]:
+    """Of errors (R, m), m/s² (rad/s), by kind of sensor: units are never mixed."""
+    kinds = np.array(baseline.setting.kinds)
+    own = {str(kind): float(np.sqrt(np.mean(error[:, kinds == kind] ** 2))) for kind in dict.fromkeys(kinds)}
+    return own if baseline.session.block in own else {baseline.session.block: next(iter(own.values())), **own}

@@ -1,0 +1,15 @@
+"""A baseline whose noise or nuisances were changed, its parameters fitted anew beside them."""
+
+from dataclasses import replace
+
+from estimator.diagnosis.residuals.baseline import Baseline, block_columns
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+
+
+def refitted(baseline: Baseline) -> Baseline:
+    """The baseline with its parameters at their least squares under its own noise and nuisances: one linear step."""
+    residuals, setting = WhitenedResiduals.of(baseline), baseline.setting
+    step = residuals.response @ residuals.whitened(baseline.residual[..., None])[:, 0]
+    left = baseline.residual - block_columns(baseline.design) @ step
+    own = setting.parameters.stepped(step.reshape(-1, 5), setting.norm)
+    return replace(baseline, residual=left, setting=replace(setting, parameters=own))

@@ -1,0 +1,103 @@
+"""Naming may not predict worse: causes and shapes are chosen again from every fold's other rows, and must predict it.
+
+A name chosen with the help of the very rows that it is judged by always seems to help. So in every fold each finding
+is chosen anew among the leaders of its ranking, with all their shapes, from the rows that are not held out.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from estimator.causes.contract import Shape
+from estimator.diagnosis.residuals.prediction import FOLDS, fold_of, predicted
+from estimator.diagnosis.residuals.whitened import whitened_design
+from estimator.diagnosis.selection.forward import with_structures
+from estimator.diagnosis.selection.search_state import Found, SearchState
+from estimator.diagnosis.signatures.scores import bayes_factor
+from estimator.session import Array
+
+LEADERS = 6
+"""Causes of a ranking among which one is chosen again: those behind are less likely by orders of magnitude."""
+
+VISIBLE = 1e-6
+"""Share of a column that must be new for it to count as a direction of its own: rounding lies below."""
+
+WITHIN = 0.5
+"""Share of a finding's energy that the session's own rows must hold for its prediction of them to be judged: what
+shows in how the parameters moved since the history predicts no row."""
+
+
+def without_unpredictive(state: SearchState) -> SearchState:
+    """The state without its names where they, chosen again in every fold, predict the rows held out worse than none."""
+    judged = [f for f in state.found if shows_within(state, f)]
+    if not judged:
+        return state
+    nothing = predicted(state.baseline, [()] * FOLDS)
+    named = predicted(state.baseline, chosen_in_folds(state, judged))
+    if named.log_score >= nothing.log_score:
+        return state
+    rest = with_structures(replace(state, found=tuple(f for f in state.found if f not in judged)))
+    return rest
+
+
+def shows_within(state: SearchState, found: Found) -> bool:
+    """Whether a finding shows in the session's own rows rather than in what changed since the history."""
+    trace, rows = found.best.trace, state.residuals.rows
+    if found.best.cause.between:
+        return False
+    basis, _ = np.linalg.qr(trace)
+    fitted = basis @ (basis.T @ state.residuals.z)
+    return float((fitted[:rows] ** 2).sum()) > WITHIN * float((fitted**2).sum())
+
+
+def chosen_in_folds(state: SearchState, judged: list[Found]) -> list[list[Array]]:
+    """For every fold the columns (R, m, q), m/s² (rad/s), of the causes chosen without its rows."""
+    residuals, rows = state.residuals, state.baseline.setting.rows
+    candidates = [list(shapes_of(state, f)) for f in judged]
+    whitened = [[residuals.whitened(shape.columns) for shape, _ in own] for own in candidates]
+    data = residuals.whitened(state.baseline.residual[..., None])[:, 0]
+    design = whitened_design(state.baseline, residuals.whiten)
+    fold = np.full(len(design), -1)
+    fold[: rows * state.sensor_count] = np.repeat(fold_of(rows), state.sensor_count)
+    chosen = []
+    for held in range(FOLDS):
+        kept = fold != held
+        basis = extended(np.zeros((int(kept.sum()), 0)), design[kept])
+        z = data[kept] - basis @ (basis.T @ data[kept])
+        columns = []
+        for own, seen in zip(candidates, whitened, strict=True):
+            best = max(range(len(own)), key=lambda k: weight(basis, z, seen[k][kept]) - own[k][1])
+            columns.append(own[best][0].columns)
+            basis = extended(basis, seen[best][kept])
+            z = z - basis @ (basis.T @ z)
+        chosen.append(columns)
+    return chosen
+
+
+def shapes_of(state: SearchState, found: Found) -> Iterator[tuple[Shape, float]]:
+    """The shapes among which a finding is chosen again, each with the ln of the number that share its cause's prior."""
+    yield found.best.shape, float(np.log(max(found.best.places, 1)))
+    leaders = {s.group for s, _ in found.ranking[:LEADERS]}
+    for traces in state.traces:
+        q = len(traces.cause.units)
+        for shape in traces.shapes:
+            if (traces.cause.identifier, shape.sensors) in leaders and not traces.cause.between:
+                yield shape.first(q), float(np.log(max(traces.places, 1)))
+
+
+def weight(basis: Array, z: Array, columns: Array) -> float:
+    """ln evidence of columns (n, q) on what ``basis`` (n, p) leaves of residuals z (n,), standard errors."""
+    new = extended(basis, columns)[:, basis.shape[1] :]
+    power, freedom = float(((new.T @ z) ** 2).sum()), new.shape[1]
+    rest = max((float(z @ z) - power) / max(len(z) - basis.shape[1] - freedom, 1), 1e-300)
+    return bayes_factor(power / max(rest, 1.0), freedom)
+
+
+def extended(basis: Array, columns: Array) -> Array:
+    """(n, p + r) orthonormal, dimensionless: ``basis`` (n, p) continued by what is new in columns (n, q)."""
+    size = np.linalg.norm(columns, axis=0)
+    new = columns[:, size > 0] / size[size > 0]
+    new = new - basis @ (basis.T @ new)
+    left, value, _ = np.linalg.svd(new, full_matrices=False)
+    return np.concatenate([basis, left[:, value > VISIBLE]], axis=1)

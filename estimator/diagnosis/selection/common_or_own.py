@@ -1,0 +1,200 @@
+"""Common or own, without a catalogue: a set of names is weighed against an unknown course of the applied vector.
+
+Many names, or several of stand and fixture, may stand in for one error of the stand that no cause describes. Where a
+free course of the applied vector explains as much, no name is given, but those that hold whatever the applied vector
+was: causes that are seen in parity space alone, where no error of stand, fixture or reference shows.
+"""
+
+import os
+from collections.abc import Callable, Sequence, Set
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.special import expit
+
+from estimator.calibration.noise import typical, with_the_others
+from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.refitted import refitted
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.diagnosis.selection.backward import FURTHER
+from estimator.diagnosis.selection.forward import with_structures
+from estimator.diagnosis.selection.ranking import extended_basis, log_evidence_beside
+from estimator.diagnosis.selection.search_state import Found, SearchState
+from estimator.diagnosis.selection.start import begin
+from estimator.diagnosis.signatures.applied_course import SIZE, AppliedCourse, applied_course, components
+from estimator.diagnosis.signatures.scores import rescored, score
+from estimator.diagnosis.signatures.traces import Group
+from estimator.session import Array
+
+DEBUG = os.environ.get("DEBUGC")
+DISTINCT = 5.3
+"""ln evidence by which a set of names must beat a course for the course to be no alternative: odds of 200."""
+
+LEAST = 5.0
+"""ln evidence of a course beside names that would be believed by themselves."""
+
+ROUNDS = 8
+"""Steps of the noise in parity space: each halves what is left at least."""
+
+MOST_LIKELY = 2
+"""Different names in one session that are believed without a look at parity space."""
+
+
+def weighed(start: SearchState, state: SearchState) -> float:
+    """ln evidence of all that was found together against nothing, every further name paid for."""
+    members = (*state.found, *state.structures)
+    scatter = sum(s.log_evidence for s in state.excess)
+    scatter += sum(s.log_evidence + s.excess_log_evidence for s in state.autocorrelated)
+    scatter += sum(c.log_evidence for c in state.courses)
+    number = len(members) + len({s.sensor for s in state.scatter}) + len(state.courses)
+    return together(state, members, known=not start.baseline.unstated.any()) + scatter - FURTHER * max(number - 1, 0)
+
+
+def together(state: SearchState, members: Sequence[Found], *, known: bool) -> float:
+    """ln evidence of findings together; where the noise is of unknown scale, on what they leave of all residuals."""
+    residuals = state.residuals
+    attributed = np.zeros((len(residuals.z), 0))
+    value = log_evidence_beside(residuals, attributed, members)
+    if known or not members:
+        return value
+    statistic = 0.0
+    for member in members:
+        statistic += rescored(residuals, member.best, attributed).statistic
+        attributed = extended_basis(attributed, member.best.trace)
+    energy = float(residuals.z @ residuals.z)
+    left = 1 - float(((attributed.T @ residuals.z) ** 2).sum()) / energy
+    return value - 0.5 * statistic - 0.5 * degrees(residuals, attributed) * float(np.log(max(left, 1e-12)))
+
+
+def degrees(residuals: WhitenedResiduals, attributed: Array) -> int:
+    """Degrees of freedom that ``attributed`` (n, f), orthonormal, dimensionless, leaves of all residuals."""
+    return max(len(residuals.z) - residuals.basis.shape[1] - attributed.shape[1], 1)
+
+
+def concerns_all(state: SearchState) -> bool:
+    """Whether what was found is of no sensor, or on two sensors or more."""
+    places = {f.best.sensors for f in (*state.found, *state.structures)} | {(s.sensor,) for s in state.scatter}
+    return () in places or len(places) > 1
+
+
+def common_or_own(start: SearchState, state: SearchState, search: Callable[[SearchState], SearchState]) -> SearchState:
+    """The state, or its rival with a course of the applied vector, whichever is likelier; ``start``: nothing found."""
+    if not concerns_all(state):
+        return state
+    own, course = weighed(start, state), likeliest_course(start, ())
+    if course.log_evidence - own < -DISTINCT and not crowded(state):
+        return state
+    rival = whatever_the_vector(start, course, search)
+    gained = rival.log_evidence - own
+    if gained > 0:
+        return replace(rival.parity, courses=(rival.course,))
+    held_there = {f.best.group for f in rival.parity.found}
+    return doubted(without_crowd(state, held_there), held_there, float(expit(gained)))
+
+
+@dataclass(frozen=True, eq=False)
+class Rival:
+    """A course of the applied vector, and what holds whatever that vector was."""
+
+    course: AppliedCourse
+    parity: SearchState
+    log_evidence: float
+    """Of both together."""
+
+
+def whatever_the_vector(
+    start: SearchState, course: AppliedCourse, search: Callable[[SearchState], SearchState]
+) -> Rival:
+    """The course with the causes that parity space shows beside it; its size is free only where that explains more."""
+    parity = search(in_parity_space(start, size=False))
+    kept = seen_from(start, parity.found)
+    beside = likeliest_course(start, kept)
+    known = not start.baseline.unstated.any()
+    paid = beside.log_evidence + together(start, kept, known=known) - FURTHER * len(kept)
+    if kept and beside.log_evidence > LEAST and paid > course.log_evidence:
+        return Rival(beside, parity, paid)
+    if kept and SIZE in course.components:
+        parity = search(in_parity_space(start, size=True))
+    return Rival(course, parity, course.log_evidence)
+
+
+def doubted(state: SearchState, held_there: Set[Group], doubt: float) -> SearchState:
+    """The state with the probability that a course acts instead beside every name that parity does not bear out."""
+    found = [f if f.best.group in held_there else replace(f, unnamed=max(f.unnamed, doubt)) for f in state.found]
+    return replace(state, found=tuple(found))
+
+
+def likeliest_course(start: SearchState, beside: Sequence[Found]) -> AppliedCourse:
+    """The course of the applied vector beside findings, lasting since the history or new."""
+    known, attributed = not start.baseline.unstated.any(), replace(start, found=tuple(beside)).attributed()
+    lasting = (False, True) if start.history else (False,)
+    tried = [applied_course(start.residuals, attributed, known=known, lasting=k) for k in lasting]
+    return max(tried, key=lambda c: c.log_evidence)
+
+
+def seen_from(start: SearchState, found: Sequence[Found]) -> tuple[Found, ...]:
+    """Findings of parity space as the residuals of ``start`` show them, those that show there at all."""
+    nothing = np.zeros((len(start.residuals.z), 0))
+    seen = []
+    for old in found:
+        own = [t.at(old.best.sensors) for t in start.traces if t.cause is old.best.cause]
+        same = [s for s in score(start.residuals, own, nothing) if s.shape.nonlinear == old.best.shape.nonlinear]
+        if same:
+            seen.append(replace(old, best=max(same, key=lambda s: s.log_evidence)))
+    return tuple(seen)
+
+
+def without_crowd(state: SearchState, held_there: Set[Group]) -> SearchState:
+    """The state without a crowd of names that parity space does not bear out, where none explains half of what they do.
+
+    ``held_there``: what holds in parity space.
+    """
+    if not crowded(state):
+        return state
+    loose = [f for f in state.found if f.best.group not in held_there]
+    share = [f.best.statistic for f in loose]
+    if len({f.best.cause.identifier for f in loose}) <= MOST_LIKELY or max(share) > 0.5 * sum(share):
+        return state
+    kept = tuple(f for f in state.found if f not in loose)
+    left = with_structures(replace(state, found=kept, structures=()))
+    return left if left.structures else state
+
+
+def crowded(state: SearchState) -> bool:
+    """Whether more happened than misfortunes are likely at once: different names, structures, sensors that scatter."""
+    names = {f.best.cause.identifier for f in state.found}
+    return len(names) + bool(state.structures) + len(state.scatter_attributed) > MOST_LIKELY
+
+
+def in_parity_space(start: SearchState, *, size: bool) -> SearchState:
+    """The search begun where no applied vector is believed: each row's is free, as in arbitrary orientations.
+
+    The parameters are fitted anew beside the free vectors, so that they too are what parity alone makes of them.
+    """
+    baseline, setting = start.baseline, start.baseline.setting
+    turns = [p.columns for p in components(setting) if size or p.words != SIZE]
+    if not turns:
+        return replace(start, traces=(), patterns=())
+    sigma = np.full((setting.rows, len(turns)), np.inf)
+    free = refitted(renoised(replace(baseline, row=np.stack(turns, axis=-1), row_sigma=sigma)))
+    return replace(begin(free, start.history, start.catalogue), noise_claims=start.noise_claims)
+
+
+def renoised(free: Baseline) -> Baseline:
+    """A baseline in parity space with the noise that is not stated estimated there (restricted likelihood).
+
+    The others of a kind are taken to be alike, as everywhere (`calibration.noise`).
+    """
+    variance, m = free.variance.copy(), len(free.unstated)
+    if not free.unstated.any():
+        return free
+    for _ in range(ROUNDS):
+        residuals = WhitenedResiduals.of(replace(free, variance=variance))
+        rows = residuals.rows
+        own = residuals.sensor_of_row[:rows] == np.arange(m)[:, None]
+        energy, freedom = own @ residuals.z[:rows] ** 2, own @ residuals.row_freedom
+        value = np.where(free.unstated, variance.mean(axis=0), np.nan)
+        expected = typical(value[None], free.unstated[None], free.setting.norm)[0] / variance.mean(axis=0)
+        energy, freedom = with_the_others(energy, freedom, expected)
+        variance = variance * np.where(free.unstated, energy / np.maximum(freedom, 1.0), 1.0)
+    return replace(free, variance=variance)

@@ -1,0 +1,88 @@
+"""Lack of fit: a name claims that the cause fits, not that it is nearest.
+
+What names leave on their sensor, or in common, is looked at as anything is looked at: for patterns, for smooth courses,
+for scatter that is no noise. Where it holds structure that is no small part of what the names explain, they go.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.special import ndtr
+from scipy.stats import shapiro
+
+from estimator.diagnosis.selection.excess_noise import with_autocorrelation
+from estimator.diagnosis.selection.forward import with_structures
+from estimator.diagnosis.selection.ranking import extended_basis
+from estimator.diagnosis.selection.search_state import LEVEL, Found, SearchState
+from estimator.diagnosis.signatures.noise import UnlikeNoise
+from estimator.session import Array
+
+MISFIT = 0.05
+"""Share of the energy of names that structure beside them may hold: beyond a fifth in rms it is another effect that
+they are the nearest to, below it a cause described nearly, with something small beside it."""
+
+FEWEST = 8
+"""Rows from which on a distribution is judged."""
+
+KNOWN = 0.5
+"""Degrees of freedom that a row must have for its residual to show how noise is distributed."""
+
+
+def without_misfits(state: SearchState) -> SearchState:
+    """The state without names beside which structure is left that they should have explained."""
+    for place in dict.fromkeys(f.best.sensors for f in state.found):
+        names = tuple(f for f in state.found if f.best.sensors == place)
+        left = energy_left(state, place)
+        if left > MISFIT * explained(state, names):
+            rest = replace(state, found=tuple(f for f in state.found if f not in names))
+            again = with_autocorrelation(with_structures(replace(rest, structures=elsewhere(rest, place))))
+            state = again if energy_left(again, place) > 0 else rest
+    return state
+
+
+def elsewhere(state: SearchState, place: tuple[int, ...]) -> tuple[Found, ...]:
+    """Structures of other places."""
+    return tuple(s for s in state.structures if s.best.sensors != place)
+
+
+def energy_left(state: SearchState, place: tuple[int, ...]) -> float:
+    """χ² of structure without a name on a sensor, or in common."""
+    patterns = sum(s.best.statistic for s in state.structures if s.best.sensors == place)
+    return patterns + sum(a.strength**2 for a in state.autocorrelated if (a.sensor,) == place and a.plain)
+
+
+def explained(state: SearchState, names: tuple[Found, ...]) -> float:
+    """χ² that some names explain together, given all that was found beside them."""
+    others = replace(
+        state,
+        found=tuple(f for f in state.found if f not in names),
+        structures=(),
+    ).attributed()
+    own = extended_basis(others, np.concatenate([f.best.trace for f in names], axis=1))[:, others.shape[1] :]
+    return float(((own.T @ state.residuals.z) ** 2).sum())
+
+
+def with_unlike_noise(state: SearchState) -> SearchState:
+    """Sensors whose scatter, larger than stated or of unstated size, is not distributed as noise: no excess noise."""
+    residuals, remaining = state.residuals, state.remaining
+    freedom = residuals.row_freedom - (state.attributed()[: residuals.rows] ** 2).sum(axis=1)
+    excess, unlike = list(state.excess), list(state.unlike_noise)
+    for i in np.flatnonzero(state.baseline.unstated):
+        own = (residuals.sensor_of_row[: residuals.rows] == i) & (freedom > KNOWN)
+        if own.sum() < FEWEST:
+            continue
+        y = remaining[: residuals.rows][own] / np.sqrt(freedom[own])
+        p_value = min(1.0, 2 * min(float(shapiro(y).pvalue), two_valued(y)))
+        if p_value * state.sensor_count < LEVEL:
+            excess = [e for e in excess if e.sensor != i]
+            unlike.append(UnlikeNoise(int(i), p_value, float(np.abs(y).max() / np.sqrt(np.mean(y**2)))))
+    return replace(state, excess=tuple(excess), unlike_noise=tuple(unlike))
+
+
+def two_valued(y: Array) -> float:
+    """p-value of residuals y (n,), any unit, that crowd at two values: mean deviation over standard deviation.
+
+    Normal in large samples, of mean √(2/π) and variance (1 − 3/π)/n (Geary 1936, Biometrika 28, 295).
+    """
+    ratio = float(np.abs(y).mean() / np.sqrt(np.mean(y**2)))
+    return float(ndtr(-(ratio - np.sqrt(2 / np.pi)) * np.sqrt(len(y) / (1 - 3 / np.pi))))

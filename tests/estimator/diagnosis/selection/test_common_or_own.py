@@ -1,0 +1,98 @@
+"""A set of names, or one unknown course of the applied vector?"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from estimator.causes.contract import Setting
+from estimator.diagnosis.selection.acceptance import held
+from estimator.diagnosis.selection.common_or_own import common_or_own, in_parity_space, together
+from estimator.session import Array
+from tests.estimator.diagnosis.selection.small import SENSOR, candidate, effect, measured, names, start
+
+OWN = ("cubic-nonlinearity", "scale-asymmetry", "cross-coupling", "bias-per-position", "bias-ramp", "axis-creep")
+
+
+def turned(setting: Setting, course: Array) -> Array:
+    """(R, m) V, what a course (R,) of δα, rad, adds to the readings."""
+    assert setting.d_alpha is not None
+    return (setting.through(setting.d_alpha[..., None])[..., 0] * course[:, None]) * setting.parameters.scale
+
+
+def swaying(size: float) -> Array:
+    """(R, m) V, what a stand does whose head nods twice a turn, more in the second run."""
+    setting = start(()).baseline.setting
+    assert setting.beta is not None
+    assert setting.flipped is not None
+    return turned(setting, size * np.cos(2 * setting.beta + 0.3) * (1 + setting.flipped))
+
+
+def test_an_error_of_the_stand_that_no_cause_describes_gets_no_name() -> None:
+    begun = start(OWN, swaying(2e-4))
+    left = common_or_own(begun, held(begun), held)
+    assert not left.found
+    assert [course.components for course in left.courses] == [("α",)]
+
+
+def test_the_course_is_the_one_that_was_there() -> None:
+    begun = start(OWN, swaying(2e-4))
+    (course,) = common_or_own(begun, held(begun), held).courses
+    beta, flipped = begun.baseline.setting.beta, begun.baseline.setting.flipped
+    true = 2e-4 * np.cos(2 * beta + 0.3) * (1 + flipped)
+    assert np.corrcoef(course.value[:, 0], true)[0, 1] > 0.9
+
+
+def test_a_cause_of_one_sensor_beside_it_is_still_named() -> None:
+    begun = start(OWN, swaying(2e-4) + effect("cubic-nonlinearity"))
+    left = common_or_own(begun, held(begun), held)
+    assert names(left) == [("cubic-nonlinearity", (SENSOR,))]
+    assert left.courses
+
+
+@pytest.mark.parametrize("known", ["beta-second-harmonic", "stand-drift", "axis-wobble", "alpha-shift"])
+def test_an_error_of_the_stand_that_a_cause_describes_keeps_its_name(known: str) -> None:
+    begun = start((*OWN, known), effect(known))
+    left = common_or_own(begun, held(begun), held)
+    assert names(left) == [(known, ())]
+    assert not left.courses
+
+
+def test_two_true_causes_of_two_sensors_keep_their_names() -> None:
+    begun = start(OWN, effect("cubic-nonlinearity") + effect("bias-ramp", 3))
+    left = common_or_own(begun, held(begun), held)
+    assert names(left) == [("bias-ramp", (3,)), ("cubic-nonlinearity", (SENSOR,))]
+
+
+def test_nothing_of_a_course_shows_in_parity_space() -> None:
+    """But what noise leaves there: χ² within four of its standard deviations of its degrees of freedom."""
+    begun = in_parity_space(start(OWN, swaying(2e-4)), size=False)
+    z, freedom = begun.residuals.z, begun.residuals.freedom
+    assert abs(z @ z - freedom) < 4 * np.sqrt(2 * freedom)
+
+
+def test_evidence_together_is_that_of_one_and_of_the_other_beside_it() -> None:
+    state = start(OWN, effect("cubic-nonlinearity") + effect("bias-ramp", 3))
+    first = candidate(state, "cubic-nonlinearity")
+    second = candidate(replace(state, found=(first,)), "bias-ramp", (3,))
+    one, both = (together(state, members, known=True) for members in ((first,), (first, second)))
+    assert both == pytest.approx(one + second.best.log_evidence)
+
+
+def test_where_the_scale_of_the_noise_is_unknown_it_cancels() -> None:
+    state = start(OWN, effect("cubic-nonlinearity"))
+    finding = candidate(state, "cubic-nonlinearity")
+    doubled = replace(state, residuals=replace(state.residuals, z=1.0 * state.residuals.z))
+    value = together(state, (finding,), known=False)
+    assert value == together(doubled, (finding,), known=False)
+    assert value < together(state, (finding,), known=True)
+
+
+def test_a_turn_of_the_block_since_the_history_is_common() -> None:
+    setting = start(()).baseline.setting
+    turn = np.cross(np.array([2e-4, -1e-4, 1e-4]), setting.n)
+    added = setting.through(turn[..., None])[..., 0] * setting.parameters.scale
+    begun = start(("sensor-drift", *OWN), added, (measured(0.0, 11), measured(0.0, 12)))
+    left = common_or_own(begun, held(begun), held)
+    assert not left.found
+    assert left.courses

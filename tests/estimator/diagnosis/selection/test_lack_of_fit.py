@@ -1,0 +1,65 @@
+"""A name claims that the cause fits, not that it is nearest."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from estimator.diagnosis.selection.forward import with_structures
+from estimator.diagnosis.selection.lack_of_fit import explained, two_valued, with_unlike_noise, without_misfits
+from estimator.diagnosis.signatures.noise import ExcessVariance
+from tests.estimator.diagnosis.selection.small import ROWS, SENSOR, candidate, effect, names, on_sensor, start
+
+NOISE = np.random.default_rng(4).standard_normal(ROWS)
+
+
+def test_the_nearest_cause_goes_where_what_it_leaves_is_structure() -> None:
+    state = start(("scale-asymmetry",), effect("cross-coupling") + effect("scale-asymmetry"))
+    named = with_structures(replace(state, found=(candidate(state, "scale-asymmetry"),)))
+    left = without_misfits(named)
+    assert names(left) == []
+    assert left.structures or left.autocorrelated
+
+
+def test_a_cause_that_fits_stays() -> None:
+    state = start(("scale-asymmetry",), effect("scale-asymmetry"))
+    named = with_structures(replace(state, found=(candidate(state, "scale-asymmetry"),)))
+    assert names(without_misfits(named)) == [("scale-asymmetry", (SENSOR,))]
+
+
+def test_structure_on_another_sensor_is_none_of_its_business() -> None:
+    state = start(("scale-asymmetry",), effect("scale-asymmetry") + effect("cross-coupling", 3))
+    named = with_structures(replace(state, found=(candidate(state, "scale-asymmetry"),)))
+    left = without_misfits(named)
+    assert names(left) == [("scale-asymmetry", (SENSOR,))]
+    assert {s.best.sensors for s in left.structures} == {(3,)}
+
+
+def test_what_a_name_explains_is_its_statistic() -> None:
+    state = start(("scale-asymmetry",), effect("scale-asymmetry"))
+    finding = candidate(state, "scale-asymmetry")
+    assert explained(state, (finding,)) == pytest.approx(finding.best.statistic)
+
+
+@pytest.mark.parametrize(
+    ("course", "unlike"),
+    [
+        pytest.param(NOISE, False, id="normal"),
+        pytest.param(np.where(np.arange(ROWS) == 7, 60.0, NOISE), True, id="one row far out"),
+    ],
+)
+def test_scatter_that_is_not_distributed_as_noise_is_no_excess_noise(course: np.ndarray, unlike: bool) -> None:
+    state = start((), on_sensor(20 * course))
+    doubted = state.baseline.unstated.copy()
+    doubted[SENSOR] = True
+    state = replace(state, residuals=replace(state.residuals, baseline=replace(state.baseline, unstated=doubted)))
+    left = with_unlike_noise(replace(state, excess=(ExcessVariance(SENSOR, 400.0, 19.0, 50.0, 1e-20),)))
+    assert bool(left.unlike_noise) == unlike
+    assert bool(left.excess) != unlike
+
+
+def test_two_values_are_told_from_normal_noise() -> None:
+    rng = np.random.default_rng(6)
+    assert two_valued(np.sign(rng.standard_normal(40)) + 0.1 * rng.standard_normal(40)) < 1e-8
+    marks = [two_valued(rng.standard_normal(40)) < 0.05 for _ in range(400)]
+    assert 0.02 < np.mean(marks) < 0.08

@@ -1,0 +1,87 @@
+"""The stated noise is a claim."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from estimator import diagnose
+from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.diagnosis.selection.noise_claim import doubted, pure_error
+from estimator.diagnosis.selection.start import begin
+from estimator.session import CalibrationSession
+from tests.estimator.calibration.cases import accelerometers, block
+from tests.estimator.causes.hiding import Scene
+from tests.estimator.causes.physics import World
+from tests.estimator.causes.worlds import truth_of, wandering
+from tests.estimator.diagnosis.selection.small import effect, measured
+
+
+def stated(session: CalibrationSession, factor: float, sensors: slice = slice(None)) -> CalibrationSession:
+    """The session with some standard errors, of repetition too, stated too large by a factor."""
+    errors, known = session.standard_errors.copy(), list(session.sensors)
+    errors[:, sensors] *= factor
+    known[sensors] = [replace(s, bias_repeatability=factor * s.bias_repeatability) for s in known[sensors]]
+    return replace(session, standard_errors=errors, sensors=tuple(known))
+
+
+@pytest.mark.parametrize("factor", [0.1, 1 / 3, 3.0])
+def test_wrong_standard_errors_are_said_and_nothing_else(factor: float) -> None:
+    found = diagnose(stated(measured(seed=3), factor))
+    assert not found.findings
+    assert not found.unexplained
+    (scale,) = found.noise
+    assert scale.factor == pytest.approx(1 / factor, rel=0.25)
+
+
+@pytest.mark.parametrize("factor", [0.1, 1 / 3, 3.0])
+@pytest.mark.parametrize("identifier", ["bias-jump", "bias-ramp", "beta-second-harmonic"])
+def test_a_cause_is_named_whatever_the_errors_are_stated_as(identifier: str, factor: float) -> None:
+    found = diagnose(stated(measured(effect(identifier), 3), factor))
+    assert [f.cause for f in found.findings] == [identifier]
+    assert [scale.factor for scale in found.noise] == pytest.approx([1 / factor], rel=0.25)
+
+
+@pytest.mark.parametrize("identifier", ["beta-second-harmonic", "stand-drift", "alpha-shift"])
+def test_an_effect_that_all_sensors_show_is_no_noise(identifier: str) -> None:
+    found = diagnose(measured(effect(identifier), 3))
+    assert [f.cause for f in found.findings] == [identifier]
+    assert found.noise == ()
+
+
+def test_one_noisy_sensor_is_excess_noise_and_no_wrong_claim() -> None:
+    found = diagnose(stated(measured(seed=3), 0.2, slice(1, 2)))
+    assert [(f.cause, f.sensors) for f in found.findings] == [("excess-noise", ("A2",))]
+    assert found.noise == ()
+
+
+def repeated() -> Scene:
+    """Four accelerometers, every position measured twice."""
+    once = wandering(block(accelerometers(4), 12))
+    twice = np.tile(np.arange(len(once.readings)), 2)
+    schedule = replace(
+        once,
+        readings=once.readings[twice],
+        standard_errors=once.standard_errors[twice],
+        beta=once.beta[twice],
+        flipped=once.flipped[twice],
+        time=np.arange(len(twice)) * 300.0,
+        temperature=once.temperature[twice],
+    )
+    return Scene(World(schedule, truth_of(schedule)), np.full(4, 3e-6))
+
+
+def test_pure_error_is_the_scatter_of_what_repeats() -> None:
+    scatter = [pure_error(baseline_of(repeated().measured(seed)), np.full(4, True)) for seed in range(8)]
+    assert {s.freedom for s in scatter} == {24 * 4.0}
+    assert sum(s.energy for s in scatter) / sum(s.freedom for s in scatter) == pytest.approx(1, abs=0.12)
+
+
+def test_where_repeats_agree_with_the_stated_noise_misfit_is_no_noise() -> None:
+    where = repeated()
+    session = where.measured(1)
+    beta = session.beta
+    assert beta is not None
+    bent = session.readings + 60 * where.noise * np.sign(np.sin(5 * beta))[:, None] * [1, -1, 1, -1]
+    assert doubted(begin(baseline_of(replace(session, readings=bent)), (), ())) == ()
+    assert doubted(begin(baseline_of(stated(session, 0.2)), (), ()))
