@@ -31,10 +31,20 @@ class Prediction:
     """(R, m) at the input, m/s² (rad/s)."""
     square: float
     """χ² of the errors under their predictive covariance."""
-    log_score: float
-    """Sum of the log predictive densities of whitened readings."""
+    volume: float
+    """ln determinant of that covariance."""
     count: float
     """Number of readings, less the directions that they serve to estimate."""
+
+    @property
+    def log_score(self) -> float:
+        """Sum of the log predictive densities of whitened readings, their noise as it was taken."""
+        return -0.5 * (self.square + self.volume + self.count * LN_2PI)
+
+    @property
+    def scale_free(self) -> float:
+        """The same, but for a constant, where the scale of the noise is whatever the errors say."""
+        return -0.5 * (self.count * float(np.log(self.square)) + self.volume)
 
 
 def counted(baseline: Baseline) -> Array:
@@ -53,7 +63,7 @@ def predicted(baseline: Baseline, effects: Sequence[Sequence[Array]]) -> Predict
     whiten, number = Whitener.of(baseline), counted(baseline)
     own = [block_columns(baseline.design), baseline.constant]
     data = whiten(baseline.residual[..., None]).reshape(R, m)
-    errors, logs, squares = np.zeros((R, m)), 0.0, 0.0
+    errors, volume, squares = np.zeros((R, m)), 0.0, 0.0
     for fold, columns in enumerate(effects):
         rows = fold_of(R) == fold
         if not rows.any():
@@ -64,11 +74,10 @@ def predicted(baseline: Baseline, effects: Sequence[Sequence[Array]]) -> Predict
         inverse = np.linalg.pinv(rest.T @ rest + np.diag(priors(baseline, size)), hermitian=True)
         error = data[rows].reshape(-1) - held @ (inverse @ (rest.T @ data[~rows].reshape(-1)))
         covariance = np.eye(len(held)) + held @ inverse @ held.T
-        square = float(error @ np.linalg.solve(covariance, error))
-        squares += square
-        logs -= 0.5 * (square + float(np.linalg.slogdet(covariance)[1]) + float(number[rows].sum()) * LN_2PI)
+        squares += float(error @ np.linalg.solve(covariance, error))
+        volume += float(np.linalg.slogdet(covariance)[1])
         errors[rows] = error.reshape(-1, m)
-    return Prediction(errors / whiten.weight, squares, logs, float(number.sum()))
+    return Prediction(errors / whiten.weight, squares, volume, float(number.sum()))
 
 
 def priors(baseline: Baseline, size: Array) -> Array:

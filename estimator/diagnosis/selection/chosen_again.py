@@ -24,31 +24,39 @@ VISIBLE = 1e-6
 """Share of a column that must be new for it to count as a direction of its own: rounding lies below."""
 
 WITHIN = 0.5
-"""Share of a finding's energy that the session's own rows must hold for its prediction of them to be judged: what
-shows in how the parameters moved since the history predicts no row."""
+"""Share of a finding's energy that the session's own rows must hold, and that no fold may hold, for its prediction of
+rows to be judged."""
 
 
 def without_unpredictive(state: SearchState) -> SearchState:
     """The state without its names where they, chosen again in every fold, predict the rows held out worse than none."""
-    judged = [f for f in state.found if shows_within(state, f)]
+    judged = [f for f in state.found if predicts(state, f)]
     if not judged:
         return state
     nothing = predicted(state.baseline, [()] * FOLDS)
     named = predicted(state.baseline, chosen_in_folds(state, judged))
-    if named.log_score >= nothing.log_score:
+    known = not state.baseline.unstated.any()
+    gained = named.log_score - nothing.log_score if known else named.scale_free - nothing.scale_free
+    if gained >= 0:
         return state
     rest = with_structures(replace(state, found=tuple(f for f in state.found if f not in judged)))
-    return rest
+    return rest if rest.structures else state
 
 
-def shows_within(state: SearchState, found: Found) -> bool:
-    """Whether a finding shows in the session's own rows rather than in what changed since the history."""
-    trace, rows = found.best.trace, state.residuals.rows
+def predicts(state: SearchState, found: Found) -> bool:
+    """Whether a finding says something of rows by which it was not chosen.
+
+    It does not where it shows in what changed since the history rather than in the session's own rows, nor where a fold
+    holds most of what shows of it: without those rows nobody could know.
+    """
     if found.best.cause.between:
         return False
-    basis, _ = np.linalg.qr(trace)
-    fitted = basis @ (basis.T @ state.residuals.z)
-    return float((fitted[:rows] ** 2).sum()) > WITHIN * float((fitted**2).sum())
+    rows, m = state.baseline.setting.rows, state.sensor_count
+    basis, _ = np.linalg.qr(found.best.trace)
+    fitted = (basis @ (basis.T @ state.residuals.z)) ** 2
+    each = fitted[: rows * m].reshape(rows, m).sum(axis=1)
+    by_fold = np.bincount(fold_of(rows), weights=each)
+    return bool(each.sum() > WITHIN * fitted.sum() and by_fold.max() < WITHIN * each.sum())
 
 
 def chosen_in_folds(state: SearchState, judged: list[Found]) -> list[list[Array]]:

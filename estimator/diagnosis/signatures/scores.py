@@ -117,14 +117,16 @@ def shows_itself(projected: Projected, traces: Traces, shape: Shape, columns: Ar
 
     ``columns`` (n, q) of its trace, standard errors per unit amplitude.
     """
-    residuals = projected.residuals
+    residuals, rows = projected.residuals, projected.residuals.rows
     if residuals.change is None or traces.cause.between or traces.cause.nameless:
         return True
-    basis, size, _ = np.linalg.svd(columns[: residuals.rows], full_matrices=False)
-    live = basis[:, size > 1e-9 * max(size[0], 1e-300)]
-    level = WORTH if residuals.baseline.unstated[list(shape.sensors)].any() else ALONE
-    power = float(((live.T @ projected.z[: residuals.rows]) ** 2).sum())
-    return float(chdtrc(max(live.shape[1], 1), power)) * max(traces.places, 1) < level
+    basis, size, _ = np.linalg.svd(columns[:rows], full_matrices=False)
+    basis = basis[:, size > 1e-9 * max(size[0], 1e-300)]
+    along = basis.T @ projected.z[:rows]
+    energy, rest = projected.scatter.without([shape], basis[None], along[None])
+    q = np.array([max(basis.shape[1], 1)])
+    statistic = equivalent_chi2((along**2).sum(keepdims=True), q, energy, rest)
+    return float(chdtrc(q, statistic)[0]) * max(traces.places, 1) < ALONE
 
 
 def within_reason(setting: Setting, cause: Signature, shape: Shape, amplitude: Array) -> bool:
