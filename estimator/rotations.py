@@ -12,6 +12,8 @@ from estimator.session import Array
 
 SMALL = 1e-4
 """rad below which the series' next term, θ⁴/120, is below rounding."""
+FAINT = 1e-9
+"""Weight of no turn at all: above the rounding of vectors that share a line, and nothing beside any that do not."""
 ROUNDS = 30
 """Of the reweighting; a start needs no more."""
 CLOSEST = 1e-9
@@ -49,10 +51,11 @@ def common_turn(vectors: Array, others: Array) -> Array:
     """(3, 3) rotation R, dimensionless, with the least sum of |R·v − w| of n vectors v and others w, (n, 3) each.
 
     Distances, not their squares: the few vectors that moved otherwise hardly drag it (Weiszfeld's reweighting of
-    Kabsch). A place to linearise about, not an estimate.
+    Kabsch). About a line that all vectors share there is no turn. A place to linearise about, not an estimate.
     """
-    turn = nearest_turn(vectors, others)
+    both = np.concatenate([others, np.eye(3)])
+    turn = nearest_turn(np.concatenate([vectors, FAINT * np.eye(3)]), both)
     for _ in range(ROUNDS):
-        weight = 1 / np.maximum(np.linalg.norm(vectors @ turn.T - others, axis=1), CLOSEST)
-        turn = nearest_turn(vectors * weight[:, None], others)
+        near = np.maximum(np.linalg.norm(vectors @ turn.T - others, axis=1), CLOSEST)
+        turn = nearest_turn(np.concatenate([vectors * (near.min() / near)[:, None], FAINT * np.eye(3)]), both)
     return turn

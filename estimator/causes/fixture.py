@@ -3,6 +3,7 @@
 import numpy as np
 
 from estimator.causes.contract import CommonCause, Setting
+from estimator.rotations import left_jacobian
 from estimator.session import Array
 
 
@@ -30,13 +31,17 @@ class FlipMisalignment(CommonCause):
 class RemountRotation(CommonCause):
     identifier = "remount-rotation"
     scope = "fixture"
-    equation = "all axes of the block turn together: e → e + k×e since the history"
+    equation = "all axes of the block turn together by the rotation vector k: e → exp(k×)·e since the history"
     units = ("rad", "rad", "rad")
-    needs = frozenset({"stand", "history"})
+    needs = frozenset({"stand or directions", "history"})
     between = True
+    turns_block = True
     sentence = "The whole block sits turned in its fixture compared with earlier sessions; no sensor moved by itself."
     advice = "Reseat the block and repeat, or take the rotation into the mounting; the sensors need no attention."
 
     def change(self, setting: Setting) -> Array:
-        """(R, m, 3, 3) −k×n, m/s² (rad/s) per rad, since e·(n − k×n) = (e + k×e)·n."""
-        return turned(setting.n)
+        """(R, m, 3, 3) −dθ×n, m/s² (rad/s) per rad, since e·(n − dθ×n) = (e + dθ×e)·n.
+
+        About the turn k0 that the block has, exp((k0 + dk)×) = exp(dθ×)·exp(k0×) with dθ = J(k0)·dk.
+        """
+        return turned(setting.n) @ left_jacobian(setting.turn)

@@ -4,7 +4,8 @@ Theory
 ------
 With the baseline's normal matrix and a signature X, block inversion gives for the parameters the covariance
 C + L·V·L', where V = (X'PX)⁻¹ is the amplitudes' covariance and L the parameters' response to X. So the extended
-calibration is the ordinary one of the readings with the effect taken out, its covariance enlarged by L·V·L'.
+calibration is the ordinary one of the readings with the effect taken out, its covariance enlarged by L·V·L'. A turn of
+the block is taken out as the rotation that it is, in the mounting: exp(−k×) turns vectors and axes, and no reading.
 """
 
 from collections.abc import Sequence
@@ -14,10 +15,13 @@ from itertools import pairwise
 import numpy as np
 
 from estimator.calibration.calibrate import calibrate
+from estimator.diagnosis.residuals.turns import turned_baseline, turned_session
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.search_state import Found, SearchState
 from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance
 from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.results import Calibration, Estimate, SensorCalibration
+from estimator.rotations import turn_of
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
 RIDGE = 1e-12
@@ -71,13 +75,14 @@ def amplitude_beside(state: SearchState, found: Found) -> tuple[Array, Array]:
 def without_effects(state: SearchState, fitted: Amplitudes) -> CalibrationSession:
     """The session with the named effects taken out of the readings and the true noise stated.
 
-    A sensor's drift stays in: its parameters really are what they are now.
+    A sensor's drift stays in: its parameters really are what they are now. A turn of the block is taken out of the
+    mounting.
     """
-    session, p = state.baseline.session, state.baseline.parameters
+    session, p = turned_session(state.baseline.session, turned_back(state, fitted)), state.baseline.parameters
     inside = [
         f.best.shape.columns @ fitted.value[part]
         for f, part in zip(state.found, fitted.slices, strict=True)
-        if not f.best.cause.moves_parameters
+        if not (f.best.cause.moves_parameters or f.best.cause.turns_block)
     ]
     readings = session.readings
     if inside:
@@ -85,6 +90,12 @@ def without_effects(state: SearchState, fitted: Amplitudes) -> CalibrationSessio
         period = np.where(pulsed, session.count_time or 1.0, 1.0)
         readings = readings - np.sum(inside, axis=0) * p.scale * period
     return replace(session, readings=readings, standard_errors=true_errors(state, state.scatter))
+
+
+def turned_back(state: SearchState, fitted: Amplitudes) -> Array:
+    """(3, 3) rotation, dimensionless, from the frame of the session to that of the block before it was turned."""
+    turns = [fitted.value[part] for f, part in zip(state.found, fitted.slices, strict=True) if f.best.cause.turns_block]
+    return turn_of(-turns[0]) if turns else np.eye(3)
 
 
 def true_errors(state: SearchState, scatter: Sequence[ExcessVariance | Autocorrelation]) -> Array:
@@ -104,7 +115,8 @@ def extended_calibration(state: SearchState, fitted: Amplitudes) -> Calibration:
     if not state.found:
         return plain
     columns = [f.best.shape.columns * (not f.best.cause.moves_parameters) for f in state.found]
-    response = state.residuals.response @ state.residuals.whitened(np.concatenate(columns, axis=-1))
+    residuals = WhitenedResiduals.of(turned_baseline(state.baseline, turned_back(state, fitted)))
+    response = residuals.response @ residuals.whitened(np.concatenate(columns, axis=-1))
     factors = state.baseline.parameters.si_factors(state.baseline.setting.norm)
     response = response * factors[:, None]
     return enlarged(plain, response @ fitted.covariance @ response.T)

@@ -141,6 +141,7 @@ def in_orientations(session: CalibrationSession) -> Baseline:
         temperature=session.temperature,
         force=g * state.directions if state.felt else None,
         latitude=session.site.latitude or 0.0,
+        framed=bool(np.isfinite(state.direction_sigma).any()),
     )
     p = state.parameters
     turn = g * np.where(gyro[None, :, None, None], 0.0, tangents(state.directions)[:, None, :, :])
