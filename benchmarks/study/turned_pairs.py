@@ -97,6 +97,13 @@ def draw_pair(wish: Wish, rng: np.random.Generator) -> Pair:
     return Pair(now, files, since, None if drift is None else world.unit.names[drift.sensor])
 
 
+def draw_flipped(programme: Programme, degrees: float, rng: np.random.Generator) -> Pair:
+    """A session on a stand, alone, with the block turned in its flipped run against the direct one."""
+    world, turn = _session(programme, rng), _turn(degrees, rng)
+    readings = measure(world, [Effect("flip-misalignment", tuple(turn))], rng)[0]
+    return Pair(session_file(world, readings), [], turn, None)
+
+
 def _turn(degrees: float, rng: np.random.Generator) -> Array:
     axis = rng.standard_normal(3)
     return np.asarray(np.radians(degrees) * axis / np.linalg.norm(axis))

@@ -11,7 +11,7 @@ import numpy as np
 
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
-from benchmarks.study.turned_pairs import PROGRAMMES, Pair, Wish, draw_pair
+from benchmarks.study.turned_pairs import PROGRAMMES, Pair, Programme, Wish, draw_flipped, draw_pair
 from estimator import calibrate, diagnose, read_session
 from service.judging.judge import judge
 from service.judging.tolerances import ACCELEROMETER_DEFAULTS, GYROSCOPE_DEFAULTS
@@ -80,6 +80,47 @@ def moved(pair: Pair) -> tuple[tuple[str, ...], Verdict]:
     out = {d.sensor for d in found.decisions if d.verdict in BAD}
     out |= {sensor for motion in found.motions for sensor in motion.left_out}
     return tuple(sorted(out)), found.verdict
+
+
+@dataclass(frozen=True)
+class Flipped:
+    """What was said of one session whose block sat turned in its flipped run."""
+
+    programme: str
+    degrees: float
+    named: bool
+    others: tuple[str, ...]
+    """Names beside it, and ``unexplained`` where structure was left."""
+    inside: tuple[bool, ...]
+
+
+def examine_flipped(programme: Programme, degrees: float, seed: tuple[int, ...]) -> Flipped:
+    """One session drawn and diagnosed."""
+    pair = draw_flipped(programme, degrees, np.random.default_rng(seed))
+    found = diagnose(read_session(pair.session))
+    own = [f for f in found.findings if f.cause == "flip-misalignment"]
+    others = [f.cause for f in found.findings if f not in own] + ["unexplained"] * bool(found.structures)
+    inside = [abs(p) <= 2 for f in own for p in (np.array(f.amplitude) - pair.turn) / f.sigma]
+    return Flipped(programme.name, degrees, bool(own), tuple(others), tuple(map(bool, inside)))
+
+
+def run_flipped(sessions: int, seed: int) -> list[Flipped]:
+    """Every programme on a stand, turned in its flipped run."""
+    stands = [p for p in PROGRAMMES if p.stand]
+    cases = [(p, d) for p in stands for d in DEGREES]
+    return [examine_flipped(p, d, (seed, 1, i, k)) for i, (p, d) in enumerate(cases) for k in range(sessions)]
+
+
+def flipped_page(found: list[Flipped]) -> str:
+    """Markdown."""
+    rows = []
+    for degrees in (*DEGREES, None):
+        own = [f for f in found if degrees in (None, f.degrees)]
+        inside = rate([i for f in own for i in f.inside])
+        name = "all" if degrees is None else f"{degrees:g}°"
+        rows.append((name, rate([f.named for f in own]), rate([bool(f.others) for f in own]), inside))
+    head = ("turn", "`flip-misalignment`", "anything else", "within two sigma")
+    return "### The block turned in its flipped run, no history\n\n" + table(head, rows)
 
 
 def run(sessions: int, seed: int) -> list[Turned]:
@@ -158,6 +199,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     print(page(run(options.sessions, options.seed)))
+    print("\n" + flipped_page(run_flipped(options.sessions, options.seed)))
 
 
 if __name__ == "__main__":

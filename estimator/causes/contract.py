@@ -51,6 +51,8 @@ class Setting:
     """rad."""
     turn: Array = field(default_factory=lambda: np.zeros(3))
     """(3,) rotation vector, rad: how the block sits turned since the history; what turns it is linear about this."""
+    flip_turn: Array = field(default_factory=lambda: np.zeros(3))
+    """(3,) rotation vector, rad: how the block sits turned in the flipped run, as n has it already."""
     framed: bool = True
     """Whether the applied vectors are known apart from the sensors, so that a common turn of all axes shows."""
 
@@ -139,6 +141,8 @@ class Cause(ABC):
     """Whether it belongs to a single session, so that no model can hold it."""
     moves_parameters: ClassVar[bool] = False
     """Whether the sensor's parameters really are what it makes of them, so that it stays in the calibration."""
+    turns_flipped_run: ClassVar[bool] = False
+    """Whether its amplitude is the rotation vector of the block in the flipped run, taken out as the rotation it is."""
     turns_block: ClassVar[bool] = False
     """Whether its amplitude is the rotation vector of the whole block, taken out as the rotation that it is."""
     grows_an_angle: ClassVar[bool] = False

@@ -16,16 +16,21 @@ def turned(n: Array) -> Array:
 class FlipMisalignment(CommonCause):
     identifier = "flip-misalignment"
     scope = "fixture"
-    equation = "n → n − k×n in the flipped run"
+    equation = "n → exp(−k×)·n in the flipped run"
     units = ("rad", "rad", "rad")
     needs = frozenset({"stand", "both runs"})
+    turns_flipped_run = True
     sentence = "The block did not sit the same way after it was turned over in its fixture."
     advice = "Clean the mounting faces, seat the block against its stops and repeat the flipped run."
 
     def change(self, setting: Setting) -> Array:
-        """(R, m, 3, 3) −k×n in the flipped run, m/s² (rad/s) per rad."""
+        """(R, m, 3, 3) −dθ×n in the flipped run, m/s² (rad/s) per rad.
+
+        About the turn k0 that n has already, exp(−(k0 + dk)×) = exp(−dθ×)·exp(−k0×) with dθ = J(−k0)·dk.
+        """
         assert setting.flipped is not None
-        return turned(setting.n) * setting.flipped.astype(float)[:, None, None, None]
+        acts = setting.flipped.astype(float)[:, None, None, None]
+        return turned(setting.n) * acts @ left_jacobian(-setting.flip_turn)
 
 
 class RemountRotation(CommonCause):

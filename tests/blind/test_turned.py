@@ -3,7 +3,7 @@
 import pytest
 
 from benchmarks.study.turned_pairs import PROGRAMMES, Programme, Wish
-from benchmarks.study.turns import Turned, examine, page
+from benchmarks.study.turns import Turned, examine, examine_flipped, page
 
 
 @pytest.mark.parametrize("programme", PROGRAMMES, ids=lambda p: p.name)
@@ -25,6 +25,15 @@ def test_a_drift_beside_a_large_turn_is_found_and_blamed_on_nobody_else(programm
     found: Turned = examine(Wish(programme, 5.0, drift=16.0), (13,))
     assert found.drifted in found.drifts + found.listed
     assert set(found.drifts + found.judged) <= {found.drifted}
+
+
+@pytest.mark.parametrize("programme", [p for p in PROGRAMMES if p.stand], ids=lambda p: p.name)
+@pytest.mark.parametrize("degrees", [0.5, 3.0])
+def test_a_block_turned_by_degrees_in_its_flipped_run_is_named_so_and_nothing_else(
+    programme: Programme, degrees: float
+) -> None:
+    found = examine_flipped(programme, degrees, (15, int(10 * degrees)))
+    assert (found.named, found.others) == (True, ())
 
 
 def test_the_page_counts_what_was_said() -> None:

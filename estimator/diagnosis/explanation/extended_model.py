@@ -78,11 +78,11 @@ def without_effects(state: SearchState, fitted: Amplitudes) -> CalibrationSessio
     A sensor's drift stays in: its parameters really are what they are now. A turn of the block is taken out of the
     mounting.
     """
-    session, p = turned_session(state.baseline.session, turned_back(state, fitted)), state.baseline.parameters
+    session, p = without_turns(state, fitted), state.baseline.parameters
     inside = [
         f.best.shape.columns @ fitted.value[part]
         for f, part in zip(state.found, fitted.slices, strict=True)
-        if not (f.best.cause.moves_parameters or f.best.cause.turns_block)
+        if not (f.best.cause.moves_parameters or f.best.cause.turns_block or f.best.cause.turns_flipped_run)
     ]
     readings = session.readings
     if inside:
@@ -90,6 +90,14 @@ def without_effects(state: SearchState, fitted: Amplitudes) -> CalibrationSessio
         period = np.where(pulsed, session.count_time or 1.0, 1.0)
         readings = readings - np.sum(inside, axis=0) * p.scale * period
     return replace(session, readings=readings, standard_errors=true_errors(state, state.scatter))
+
+
+def without_turns(state: SearchState, fitted: Amplitudes) -> CalibrationSession:
+    """The session as the block would have been held without its turns, in its mounting and in the flipped run."""
+    flips = [f.best.cause.turns_flipped_run for f in state.found]
+    turns = [fitted.value[part] for part, is_flip in zip(fitted.slices, flips, strict=True) if is_flip]
+    session = replace(state.baseline.session, flip_turn=turns[0] if turns else np.zeros(3))
+    return turned_session(session, turned_back(state, fitted))
 
 
 def turned_back(state: SearchState, fitted: Amplitudes) -> Array:

@@ -13,6 +13,7 @@ import numpy as np
 from estimator.arrays import tangents
 from estimator.causes.fixture import turned
 from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.flipped_run import flip_effect
 from estimator.diagnosis.residuals.gauge import observable_directions, turn_response
 from estimator.diagnosis.residuals.whitened import (
     EarlierSession,
@@ -74,18 +75,19 @@ def parameter_change(now: Baseline, history: Sequence[Baseline]) -> ParameterCha
     covariance = (root := inverse_root(np.sum(information, axis=0))).T @ root
     shares = [keep @ covariance @ own @ keep.T for own in information]
     whiten = keep @ inverse_root(covariance + keep.T @ parameter_covariance(now) @ keep) @ keep.T
+    steps = [step + map @ taken_off(h) for h, step, map in zip(alike, steps, maps, strict=True)]
     step = np.sum([share @ step for share, step in zip(shares, steps, strict=True)], axis=0)
     earlier = [EarlierSession(WhitenedResiduals.of(h), w @ map) for h, w, map in zip(alike, shares, maps, strict=True)]
-    return ParameterChange(whiten @ (turn_taken_off(now) - step), whiten, tuple(earlier))
+    return ParameterChange(whiten @ (taken_off(now) - step), whiten, tuple(earlier))
 
 
-def turn_taken_off(now: Baseline) -> Array:
-    """(P,) dimensionless: what the block's turn since the history, `Setting.turn`, makes of the parameters."""
-    k = now.setting.turn
-    if not k.any():
-        return np.zeros(5 * len(now.setting.kinds))
-    residuals = WhitenedResiduals.of(now)
-    columns = now.setting.through(turned(now.setting.n)) @ k
+def taken_off(baseline: Baseline) -> Array:
+    """(P,) dimensionless: what the turns that a baseline is linear about would make of its parameters if left in."""
+    setting = baseline.setting
+    if not (setting.turn.any() or setting.flip_turn.any()):
+        return np.zeros(5 * len(setting.kinds))
+    residuals = WhitenedResiduals.of(baseline)
+    columns = setting.through(turned(setting.n)) @ setting.turn + flip_effect(setting)
     return residuals.response @ residuals.whitened(columns[..., None])[:, 0]
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.diagnosis.residuals.flipped_run import with_its_flip
 from estimator.diagnosis.residuals.turns import in_the_frame_of, turn_between
 from estimator.diagnosis.residuals.whitened import parameter_covariance
 from estimator.session import TWO_AXIS_STAND, CalibrationSession
@@ -22,8 +22,8 @@ def baselines(session: CalibrationSession, history: Sequence[CalibrationSession]
     single run leaves a direction open) would else stay at different values, far enough from one another for the second
     order to show as a change of what is observed.
     """
-    baseline = baseline_of(session)
-    earlier = [baseline_of(h) for h in history]
+    baseline = with_its_flip(session)
+    earlier = [with_its_flip(h) for h in history]
     if session.programme == TWO_AXIS_STAND and earlier:
         best = min([baseline, *earlier], key=lambda b: float(np.trace(parameter_covariance(b))))
         baseline, *earlier = [fitted_near(one, best) for one in (baseline, *earlier)]
@@ -37,5 +37,5 @@ def fitted_near(one: Baseline, best: Baseline) -> Baseline:
     p, found = best.parameters, one
     for _ in range(ROUNDS):
         turn = turn_between(found, best)
-        found = baseline_of(one.session, replace(p, axis=p.axis @ turn.T))
+        found = with_its_flip(one.session, replace(p, axis=p.axis @ turn.T))
     return found

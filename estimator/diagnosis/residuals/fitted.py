@@ -73,6 +73,7 @@ def stand_baseline(
         temperature=session.temperature,
         force=force_on_stand(session),
         latitude=session.site.latitude or 0.0,
+        flip_turn=session.flip_turn,
     )
     return Baseline(
         session=session,

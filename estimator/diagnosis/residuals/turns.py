@@ -41,7 +41,8 @@ that session's say on the common turn."""
 def turned_session(session: CalibrationSession, turn: Array) -> CalibrationSession:
     """The session with block axes turned by (3, 3), dimensionless, as if it had been mounted so."""
     directions = None if session.directions is None else session.directions @ turn.T
-    return replace(session, mounting=turn @ session.mounting, directions=directions)
+    flip = turn @ session.flip_turn
+    return replace(session, mounting=turn @ session.mounting, directions=directions, flip_turn=flip)
 
 
 def turned_baseline(baseline: Baseline, turn: Array) -> Baseline:
@@ -58,6 +59,7 @@ def turned_baseline(baseline: Baseline, turn: Array) -> Baseline:
         d_alpha=to(old.d_alpha),
         d_beta=to(old.d_beta),
         force=to(old.force),
+        flip_turn=turn @ old.flip_turn,
     )
     return replace(baseline, session=turned_session(baseline.session, turn), setting=setting, turn=vector_of(turn))
 
