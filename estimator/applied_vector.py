@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from estimator.rotations import turn_of
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Site, Stand, StandErrors
 
 EARTH_RATE = 7.292115e-5
@@ -78,10 +79,14 @@ def stand_vector(elevation: float, beta: Array, errors: StandErrors | None = Non
 def to_block(platform: Array, session: CalibrationSession) -> Array:
     """Platform vectors (R, 3), leading axes free, as the block meets them: the same in block axes; m/s², rad/s or none.
 
-    Rows of the flipped run are turned, then the mounting is applied: (10), (11).
+    Rows of the flipped run are turned, then the mounting is applied: (10), (11). Where the block sits turned in the
+    flipped run, its vectors turn back.
     """
     assert session.flipped is not None
-    return np.where(session.flipped[:, None], platform * FLIP, platform) @ session.mounting.T
+    block = np.where(session.flipped[:, None], platform * FLIP, platform) @ session.mounting.T
+    if not session.flip_turn.any():
+        return block
+    return np.where(session.flipped[:, None], block @ turn_of(session.flip_turn), block)
 
 
 def elevation(stand: Stand, kind: str) -> float:

@@ -110,6 +110,9 @@ class CalibrationSession:
     """(3, 3) rotation, platform → block."""
     flipped: NDArray[np.bool_] | None = None
     """(R,) True in the flipped run; two-axis stand only."""
+    flip_turn: Array = field(default_factory=lambda: np.zeros(3))
+    """(3,) rotation vector, rad, block axes: how the block sits turned in the flipped run against the direct one; in no
+    file, found by a diagnosis."""
     beta: Array | None = None
     """(R,) rad; two-axis stand only."""
     time: Array | None = None

@@ -24,7 +24,12 @@ def schedule(session: CalibrationSession) -> Hashable:
     assert session.beta is not None
     assert session.flipped is not None
     sensors = tuple((s.kind, s.nominal_axis.tobytes(), s.nominal_scale, s.bias_repeatability) for s in session.sensors)
-    arrays = (session.beta.tobytes(), session.flipped.tobytes(), session.mounting.tobytes())
+    arrays = (
+        session.beta.tobytes(),
+        session.flipped.tobytes(),
+        session.mounting.tobytes(),
+        session.flip_turn.tobytes(),
+    )
     return session.site, session.stand, session.count_time, sensors, arrays
 
 

@@ -7,7 +7,7 @@ The simulation, the diagnosis, the extended fit, the detection limits and the do
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 import numpy as np
@@ -16,7 +16,9 @@ from estimator.forward import projected, slope
 from estimator.parameters import SensorParameters
 from estimator.session import Array, CalibrationSession
 
-NEEDS = frozenset({"time", "temperature", "stand", "both runs", "gravity", "nominal or history", "history"})
+NEEDS = frozenset(
+    {"time", "temperature", "stand", "stand or directions", "both runs", "gravity", "nominal or history", "history"}
+)
 """What a cause may need."""
 
 
@@ -47,6 +49,12 @@ class Setting:
     """(R, 3) specific force that gyros feel, block axes, m/s²; None where unknown."""
     latitude: float
     """rad."""
+    turn: Array = field(default_factory=lambda: np.zeros(3))
+    """(3,) rotation vector, rad: how the block sits turned since the history; what turns it is linear about this."""
+    flip_turn: Array = field(default_factory=lambda: np.zeros(3))
+    """(3,) rotation vector, rad: how the block sits turned in the flipped run, as n has it already."""
+    framed: bool = True
+    """Whether the applied vectors are known apart from the sensors, so that a common turn of all axes shows."""
 
     @property
     def rows(self) -> int:
@@ -80,6 +88,8 @@ class Setting:
                 return self.temperature is not None and float(np.ptp(self.temperature)) > 0
             case "stand":
                 return self.beta is not None
+            case "stand or directions":
+                return self.framed
             case "both runs":
                 return self.flipped is not None and 0 < int(self.flipped.sum()) < self.rows
             case "gravity":
@@ -131,6 +141,10 @@ class Cause(ABC):
     """Whether it belongs to a single session, so that no model can hold it."""
     moves_parameters: ClassVar[bool] = False
     """Whether the sensor's parameters really are what it makes of them, so that it stays in the calibration."""
+    turns_flipped_run: ClassVar[bool] = False
+    """Whether its amplitude is the rotation vector of the block in the flipped run, taken out as the rotation it is."""
+    turns_block: ClassVar[bool] = False
+    """Whether its amplitude is the rotation vector of the whole block, taken out as the rotation that it is."""
     grows_an_angle: ClassVar[bool] = False
     """Whether its rad/s is an angle that grows with time, not a rate that is measured."""
     clips: ClassVar[bool] = False

@@ -3,6 +3,7 @@
 import numpy as np
 
 from estimator.causes.contract import CommonCause, Setting
+from estimator.rotations import left_jacobian
 from estimator.session import Array
 
 
@@ -15,28 +16,37 @@ def turned(n: Array) -> Array:
 class FlipMisalignment(CommonCause):
     identifier = "flip-misalignment"
     scope = "fixture"
-    equation = "n → n − k×n in the flipped run"
+    equation = "n → exp(−k×)·n in the flipped run"
     units = ("rad", "rad", "rad")
     needs = frozenset({"stand", "both runs"})
+    turns_flipped_run = True
     sentence = "The block did not sit the same way after it was turned over in its fixture."
     advice = "Clean the mounting faces, seat the block against its stops and repeat the flipped run."
 
     def change(self, setting: Setting) -> Array:
-        """(R, m, 3, 3) −k×n in the flipped run, m/s² (rad/s) per rad."""
+        """(R, m, 3, 3) −dθ×n in the flipped run, m/s² (rad/s) per rad.
+
+        About the turn k0 that n has already, exp(−(k0 + dk)×) = exp(−dθ×)·exp(−k0×) with dθ = J(−k0)·dk.
+        """
         assert setting.flipped is not None
-        return turned(setting.n) * setting.flipped.astype(float)[:, None, None, None]
+        acts = setting.flipped.astype(float)[:, None, None, None]
+        return turned(setting.n) * acts @ left_jacobian(-setting.flip_turn)
 
 
 class RemountRotation(CommonCause):
     identifier = "remount-rotation"
     scope = "fixture"
-    equation = "all axes of the block turn together: e → e + k×e since the history"
+    equation = "all axes of the block turn together by the rotation vector k: e → exp(k×)·e since the history"
     units = ("rad", "rad", "rad")
-    needs = frozenset({"stand", "history"})
+    needs = frozenset({"stand or directions", "history"})
     between = True
+    turns_block = True
     sentence = "The whole block sits turned in its fixture compared with earlier sessions; no sensor moved by itself."
     advice = "Reseat the block and repeat, or take the rotation into the mounting; the sensors need no attention."
 
     def change(self, setting: Setting) -> Array:
-        """(R, m, 3, 3) −k×n, m/s² (rad/s) per rad, since e·(n − k×n) = (e + k×e)·n."""
-        return turned(setting.n)
+        """(R, m, 3, 3) −dθ×n, m/s² (rad/s) per rad, since e·(n − dθ×n) = (e + dθ×e)·n.
+
+        About the turn k0 that the block has, exp((k0 + dk)×) = exp(dθ×)·exp(k0×) with dθ = J(k0)·dk.
+        """
+        return turned(setting.n) @ left_jacobian(setting.turn)

@@ -1,13 +1,14 @@
 """The changes of all sensors of one kind since the reference session, stacked, with what correlates them.
 
-The unit of a change is that of its quantity: rad for axes, relative for scales.
+The unit of a change is that of its quantity: rad for axes, relative for scales. Axes are compared with those of the
+reference turned by a rotation of the block, exactly: what is left is small whatever the turn, and only that is linear.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.health.deviation import Deviation, deviation
+from estimator.health.deviation import Deviation, axis_offset, deviation
 from estimator.results import Calibration, SensorCalibration
 from estimator.session import Array
 
@@ -50,19 +51,54 @@ class Changes:
         return {n: Deviation(y[w], own[np.ix_(w, w)], origin[np.ix_(w, w)]) for n, w in at.items()}
 
 
-def axis_changes(current: Calibration, reference: Calibration, kind: str) -> Changes | None:
-    """Of the axes of one kind of sensor; None where no axis is known in both sessions."""
+@dataclass(frozen=True, eq=False)
+class AxisPairs:
+    """The axes of m sensors of one kind in both sessions, with their joint covariances."""
+
+    names: tuple[str, ...]
+    axes: Array
+    """(m, 3) of this session, unit vectors."""
+    frames: Array
+    """(m, 3, 2) tangents that its covariance turns them along, dimensionless."""
+    origins: Array
+    """(m, 3) of the reference."""
+    origin_frames: Array
+    """(m, 3, 2)"""
+    own: Array
+    """(2 m, 2 m) rad²."""
+    origin: Array
+    """(2 m, 2 m) rad²."""
+
+    def about(self, turn: Array) -> Changes:
+        """The changes that a rotation ``turn`` (3, 3) of the block, dimensionless, leaves: along the reference's
+        tangents, turned with it."""
+        expected, frames = self.origins @ turn.T, turn @ self.origin_frames
+        bases = np.swapaxes(frames, -1, -2) @ self.frames
+        m = len(self.names)
+        carried = np.zeros((2 * m, 2 * m))
+        for i, basis in enumerate(bases):
+            carried[2 * i : 2 * i + 2, 2 * i : 2 * i + 2] = basis
+        y = [axis_offset(*pair) for pair in zip(self.axes, expected, frames, strict=True)]
+        design = np.cross(expected[:, None, :], np.swapaxes(frames, -1, -2)).reshape(2 * m, 3)
+        return Changes(self.names, np.concatenate(y), carried @ self.own @ carried.T, self.origin, design)
+
+
+def axis_pairs(current: Calibration, reference: Calibration, kind: str) -> AxisPairs | None:
+    """The axes of one kind of sensor; None where no axis is known in both sessions."""
     known = _known(current, reference, kind, "axis")
     elements = [f"{now.name}.{element}" for now, _, _ in known for element in ("axis_1", "axis_2")]
     own, origin = _joint(current, elements), _joint(reference, elements)
     if own is None or origin is None:
         return None
-    turn = np.zeros((2 * len(known), 2 * len(known)))
-    for i, (now, then, _) in enumerate(known):
-        turn[2 * i : 2 * i + 2, 2 * i : 2 * i + 2] = then.axis_tangents.T @ now.axis_tangents
-    design = np.concatenate([np.cross(np.asarray(then.axis), then.axis_tangents.T) for _, then, _ in known])
-    y = np.concatenate([d.vector for _, _, d in known])
-    return Changes(tuple(now.name for now, _, _ in known), y, turn @ own @ turn.T, origin, design)
+    return AxisPairs(
+        names=tuple(now.name for now, _, _ in known),
+        axes=np.array([now.axis for now, _, _ in known]),
+        frames=np.stack([now.axis_tangents for now, _, _ in known]),
+        origins=np.array([then.axis for _, then, _ in known]),
+        origin_frames=np.stack([then.axis_tangents for _, then, _ in known]),
+        own=own,
+        origin=origin,
+    )
 
 
 def scale_changes(current: Calibration, reference: Calibration, kind: str) -> Changes | None:

@@ -5,8 +5,11 @@ every sensor at once and say nothing of any sensor. The changes y of all axes (s
 
     y = A·x + s + ε,    cov ε = C, the total covariance of both sessions, sensors correlated
 
-axes     y (2 m) along the tangents p, o of the reference axes, x the rotation vector θ common to the block (3):
-         e moves by θ × e, so the row of a tangent t is (e × t)ᵀ.
+axes     the block turned by a rotation R, exactly, however far. y (2 m) is the angle from the turned axes R·e of the
+         reference along their turned tangents R·p, R·o; x (3) the small turn that is still missing. It moves R·e by
+         x × R·e, so the row of a turned tangent t is (R·e × t)ᵀ. R ← exp[x×]·R until nothing is missing (Gauss–Newton
+         on the rotations), from a start that single axes hardly drag. Reported is the rotation vector θ of R, whose
+         covariance is J⁻¹·cov x·J⁻ᵀ with J the left Jacobian.
 scales   y (m) relative changes, x the common factor (1): A is a column of ones.
 s        what single sensors did: zero but for those that are left out.
 
@@ -34,10 +37,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import stats
 
-from estimator.health.changes import Changes, axis_changes, scale_changes
+from estimator.health.changes import AxisPairs, Changes, axis_pairs, scale_changes
 from estimator.health.deviation import Deviation
 from estimator.health.moved import fit, moved
 from estimator.results import NOMINAL_AXES, Calibration
+from estimator.rotations import common_turn, left_jacobian, turn_of, vector_of
+from estimator.session import Array
 
 AXES, SCALES = "axes", "scales"
 SEPARATED, TOO_FEW, UNCLEAR = "separated", "too-few-sensors", "unclear"
@@ -52,6 +57,10 @@ moved."""
 PARALLEL = 1e-3
 """Smallest eigenvalue of AᵀA per sensor below which a turn about them does not show: the mean sin² of the
 axes' angles to one line (1.8° root mean square)."""
+ROUNDS = 10
+"""Of Gauss–Newton on the rotations; two are usual."""
+NEGLIGIBLE = 1e-12
+"""rad (2e-7″): a missing turn that changes no figure."""
 
 
 @dataclass(frozen=True)
@@ -119,40 +128,94 @@ def common_motion(
     is_framed = NOMINAL_AXES not in (current.gauge, reference.gauge)
     found = []
     for kind in dict.fromkeys(sensor.kind for sensor in current.sensors):
-        axes, scales = axis_changes(current, reference, kind), scale_changes(current, reference, kind)
+        axes, scales = axis_pairs(current, reference, kind), scale_changes(current, reference, kind)
         if axes is not None:
-            found.append(_split(kind, AXES, axes, allowed.get((kind, "axis"), 0.0), is_seen=is_framed))
+            found.append(_split_axes(kind, axes, allowed.get((kind, "axis"), 0.0), is_seen=is_framed))
         if scales is not None:
-            found.append(_split(kind, SCALES, scales, allowed.get((kind, "scale"), 0.0), is_seen=True))
+            found.append(_split_scales(kind, scales, allowed.get((kind, "scale"), 0.0)))
     return tuple(found)
 
 
-def _split(kind: str, quantity: str, changes: Changes, tolerance: float, *, is_seen: bool) -> Split:
-    """The common part and the rest; ``is_seen`` says whether a common change shows at all."""
-    spread = np.linalg.eigvalsh(changes.design.T @ changes.design)[0] / len(changes.names)
-    if len(changes.names) < FEWEST[quantity] or spread < PARALLEL:
-        return Split(_nothing(kind, quantity, TOO_FEW, changes.names), {})
-    tried = (replace(changes, scatter=share * tolerance) for share in SCATTERS)
-    agreed = next(((some, out) for some in tried if (out := moved(some)) is not None), None)
+@dataclass(frozen=True, eq=False)
+class _Agreed:
+    """What the sensors that agree say of the common change."""
+
+    changes: Changes
+    out: list[int]
+    """Sensors that take no part."""
+    gain: Array
+    """(k, m r) x = gain·y, dimensionless."""
+
+    @property
+    def value(self) -> Array:
+        """(k,) x, rad or relative."""
+        return self.gain @ self.changes.y
+
+    @property
+    def covariance(self) -> Array:
+        """(k, k) of x, rad² or relative²."""
+        return self.gain @ self.changes.covariance @ self.gain.T
+
+
+def _split_axes(kind: str, pairs: AxisPairs, tolerance: float, *, is_seen: bool) -> Split:
+    """The common turn and the rest; ``is_seen`` says whether a common turn shows at all."""
+    if not _tells(AXES, pairs.about(np.eye(3))):
+        return Split(_nothing(kind, AXES, TOO_FEW, pairs.names), {})
+    turn = common_turn(pairs.origins, pairs.axes)
+    agreed = _agreed(pairs.about(turn), tolerance)
+    for _ in range(ROUNDS):
+        if agreed is None or np.linalg.norm(agreed.value) < NEGLIGIBLE:
+            break
+        turn = turn_of(agreed.value) @ turn
+        agreed = _agreed(pairs.about(turn), tolerance)
     if agreed is None:
-        return Split(_nothing(kind, quantity, UNCLEAR, changes.names), {})
-    changes, out = replace(changes, scatter=max(agreed[0].scatter, NOTHING * tolerance)), agreed[1]
-    inside = [i for i in range(len(changes.names)) if i not in out]
-    gain = fit(changes, inside).gain
-    covariance = gain @ changes.covariance @ gain.T
-    value = gain @ changes.y
+        return Split(_nothing(kind, AXES, UNCLEAR, pairs.names), {})
+    value = vector_of(turn_of(agreed.value) @ turn)
+    slope = np.linalg.inv(left_jacobian(value))
+    return _separated((kind, AXES), agreed, value, slope @ agreed.covariance @ slope.T, is_seen=is_seen)
+
+
+def _split_scales(kind: str, changes: Changes, tolerance: float) -> Split:
+    """The common factor and the rest."""
+    if not _tells(SCALES, changes):
+        return Split(_nothing(kind, SCALES, TOO_FEW, changes.names), {})
+    agreed = _agreed(changes, tolerance)
+    if agreed is None:
+        return Split(_nothing(kind, SCALES, UNCLEAR, changes.names), {})
+    return _separated((kind, SCALES), agreed, agreed.value, agreed.covariance, is_seen=True)
+
+
+def _tells(quantity: str, changes: Changes) -> bool:
+    """Whether there are sensors enough, and not all alike."""
+    spread = np.linalg.eigvalsh(changes.design.T @ changes.design)[0] / len(changes.names)
+    return len(changes.names) >= FEWEST[quantity] and bool(spread >= PARALLEL)
+
+
+def _agreed(changes: Changes, tolerance: float) -> _Agreed | None:
+    """Who moved, by the smallest scatter with which a majority agrees; None where that cannot be told."""
+    tried = (replace(changes, scatter=share * tolerance) for share in SCATTERS)
+    found = next(((some, out) for some in tried if (out := moved(some)) is not None), None)
+    if found is None:
+        return None
+    own, out = replace(changes, scatter=max(found[0].scatter, NOTHING * tolerance)), found[1]
+    return _Agreed(own, out, fit(own, [i for i in range(len(own.names)) if i not in out]).gain)
+
+
+def _separated(of: tuple[str, str], agreed: _Agreed, value: Array, covariance: Array, *, is_seen: bool) -> Split:
+    """A common change ``value`` (k,) with its covariance (k, k), and what it leaves; ``of`` which kind and quantity."""
+    names = agreed.changes.names
     chi2 = float(value @ np.linalg.pinv(covariance, hermitian=True) @ value)
     motion = CommonMotion(
-        kind=kind,
-        quantity=quantity,
+        kind=of[0],
+        quantity=of[1],
         state=SEPARATED,
         value=tuple(map(float, value)),
         covariance=tuple(tuple(map(float, row)) for row in covariance),
         p_value=float(stats.chi2.sf(chi2, len(value))) if is_seen else None,
-        sensors=tuple(changes.names[i] for i in inside),
-        left_out=tuple(changes.names[i] for i in out),
+        sensors=tuple(name for i, name in enumerate(names) if i not in agreed.out),
+        left_out=tuple(names[i] for i in agreed.out),
     )
-    return Split(motion, changes.residuals(gain))
+    return Split(motion, agreed.changes.residuals(agreed.gain))
 
 
 def _nothing(kind: str, quantity: str, state: str, names: tuple[str, ...]) -> CommonMotion:

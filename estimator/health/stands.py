@@ -8,8 +8,10 @@ that is measured elsewhere. For a stand and a date the contrast of a unit is
 the reference session itself counting as a motion of zero; in the difference the unit's own reference drops out. Over
 the units c_u = δ + a_u + e_u: δ the stand's shift, e_u with the covariance of the sessions, a_u with the scatter τ²
 that units have anyway (how a block is seated, what its sensors do on their own), the typical one over all stands and
-dates. δ is the generalised least squares mean, δᵀV⁻¹δ is chi-square with k degrees of freedom when the stand has not
-moved. The level 1 % is shared by all dates and stands that were looked at (Bonferroni), and a stand is flagged only
+dates. δ is the generalised least squares mean. What the units scatter about it, their χ² per degree of freedom, widens
+its covariance V where it is more than one (Birge's ratio): how blocks are seated counts for more where a unit has few
+sessions. δᵀV⁻¹δ/k is then Fisher's F with k and k(u − 1) degrees of freedom when the stand has not moved, u the units.
+The level 1 % is shared by all dates and stands that were looked at (Bonferroni), and a stand is flagged only
 when at least three units show the shift and four in five of them in its direction: a single unit that was dropped is no
 fault of the stand. Values are in rad (turns) or relative (scales), covariances in rad² or relative².
 """
@@ -174,9 +176,12 @@ def _case(contrast: _Contrast, scatter: float) -> _Case:
     weight = np.linalg.inv(contrast.covariance + (scatter + 1e-24) * np.eye(k))
     covariance = np.linalg.inv(weight.sum(axis=0))
     value = covariance @ np.einsum("uij,uj->i", weight, contrast.value)
-    chi2 = float(value @ np.linalg.solve(covariance, value))
+    rest, freedom = contrast.value - value, k * (len(contrast.value) - 1)
+    dispersion = max(float(np.einsum("ui,uij,uj->", rest, weight, rest)) / freedom, 1.0)
+    covariance = dispersion * covariance
+    ratio = float(value @ np.linalg.solve(covariance, value)) / k
     agreeing = int((contrast.value @ value > 0.5 * float(value @ value)).sum())
-    return _Case(contrast.since, len(contrast.value), agreeing, value, covariance, float(stats.chi2.sf(chi2, k)))
+    return _Case(contrast.since, len(contrast.value), agreeing, value, covariance, float(stats.f.sf(ratio, k, freedom)))
 
 
 def _means(table: _Table, part: Array) -> tuple[Array, Array, Array]:

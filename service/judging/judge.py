@@ -61,10 +61,8 @@ def judge(
 def decisions_of(
     calibration: Calibration, reference: Calibration, unit_type: UnitType, coverage_factor: float
 ) -> tuple[Decision, ...]:
-    """Every parameter judged against any calibration of the unit."""
-    splits, tolerances = common_motion(calibration, reference), tolerances_of(unit_type)
-    found = judge_parameters(calibration, reference, tolerances, coverage_factor=coverage_factor, splits=splits)
-    return _decisions(found, RULE, unit_type, coverage_factor)
+    """Every parameter judged against any calibration of the unit, by the same rule as an upload."""
+    return judge(calibration, reference, unit_type, coverage_factor).decisions
 
 
 def _judge_recording(moved: Calibration, found: Comparison, unit_type: UnitType, coverage_factor: float) -> Judged:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from tests.blind.effects_outside import OUTSIDE_INPUT, OUTSIDE_POSE
 from tests.blind.effects_pose import POSE
@@ -53,7 +54,7 @@ def reference_vectors(session: Session, pose: Pose) -> tuple[Array, Array]:
     for platform in (force, rate):
         flipped = platform * np.array([-1.0, -1.0, 1.0])
         block = np.where(pose.flipped[:, None], flipped, platform) @ session.mounting.T
-        turned.append(block - np.cross(pose.turn, block) if pose.turn.any() else block)
+        turned.append(Rotation.from_rotvec(-pose.turn).apply(block) if pose.turn.any() else block)
     return turned[0], turned[1]
 
 

@@ -10,7 +10,7 @@ from tests.blind.world import Array, Session, Site
 
 @dataclass(frozen=True, eq=False)
 class Pose:
-    """R rows, rad; ``turn`` (R, 3) is a small rotation of the block in block axes."""
+    """R rows, rad; ``turn`` (R, 3) is a rotation vector of the block in block axes."""
 
     alpha: Array
     chi: Array

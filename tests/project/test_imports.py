@@ -25,6 +25,7 @@ ESTIMATOR_LAYERS = (
     {"errors"},
     {"session"},
     {"arrays"},
+    {"rotations"},
     {"applied_vector", "parameters", "reading"},
     {"results", "static"},
     {"forward", "writing"},

@@ -7,7 +7,7 @@ from estimator.calibration.calibrate import averaged, calibrate
 from estimator.causes.catalogue import cause
 from estimator.diagnosis.explanation.extended_model import amplitudes, extended_calibration
 from estimator.diagnosis.record.clipping import unclipped
-from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.diagnosis.residuals.flipped_run import with_its_flip
 from estimator.diagnosis.selection.refinement import with_refined_shapes
 from estimator.diagnosis.selection.search_state import Found, SearchState
 from estimator.diagnosis.selection.start import begin
@@ -34,7 +34,7 @@ def calibrate_extended(session: CalibrationSession, causes: Sequence[Accepted]) 
     rows = averaged(session)
     known = [cause(identifier) for identifier, _ in causes]
     clips, whole = unclipped(rows, known)
-    state = begin(baseline_of(whole), (), known)
+    state = begin(with_its_flip(whole), (), known)
     done = {(clip.cause.identifier, (clip.sensor,)) for clip in clips}
     for identifier, sensors in causes:
         for place in places(rows, sensors):

@@ -4,7 +4,8 @@ Theory
 ------
 With the baseline's normal matrix and a signature X, block inversion gives for the parameters the covariance
 C + L·V·L', where V = (X'PX)⁻¹ is the amplitudes' covariance and L the parameters' response to X. So the extended
-calibration is the ordinary one of the readings with the effect taken out, its covariance enlarged by L·V·L'.
+calibration is the ordinary one of the readings with the effect taken out, its covariance enlarged by L·V·L'. A turn of
+the block is taken out as the rotation that it is, in the mounting: exp(−k×) turns vectors and axes, and no reading.
 """
 
 from dataclasses import dataclass, replace
@@ -13,9 +14,12 @@ from itertools import pairwise
 import numpy as np
 
 from estimator.calibration.calibrate import calibrate
+from estimator.diagnosis.residuals.turns import turned_baseline, turned_session
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.search_state import Found, SearchState
 from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.results import Calibration, Estimate, SensorCalibration
+from estimator.rotations import turn_of
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
 RIDGE = 1e-12
@@ -69,13 +73,14 @@ def amplitude_beside(state: SearchState, found: Found) -> tuple[Array, Array]:
 def without_effects(state: SearchState, fitted: Amplitudes) -> CalibrationSession:
     """The session with the named effects taken out of the readings and the true noise stated.
 
-    A sensor's drift stays in: its parameters really are what they are now.
+    A sensor's drift stays in: its parameters really are what they are now. A turn of the block is taken out of the
+    mounting.
     """
-    session, p = state.baseline.session, state.baseline.parameters
+    session, p = without_turns(state, fitted), state.baseline.parameters
     inside = [
         f.best.shape.columns @ fitted.value[part]
         for f, part in zip(state.found, fitted.slices, strict=True)
-        if not f.best.cause.moves_parameters
+        if not (f.best.cause.moves_parameters or f.best.cause.turns_block or f.best.cause.turns_flipped_run)
     ]
     readings = session.readings
     if inside:
@@ -83,6 +88,20 @@ def without_effects(state: SearchState, fitted: Amplitudes) -> CalibrationSessio
         period = np.where(pulsed, session.count_time or 1.0, 1.0)
         readings = readings - np.sum(inside, axis=0) * p.scale * period
     return replace(session, readings=readings, standard_errors=true_errors(state))
+
+
+def without_turns(state: SearchState, fitted: Amplitudes) -> CalibrationSession:
+    """The session as the block would have been held without its turns, in its mounting and in the flipped run."""
+    flips = [f.best.cause.turns_flipped_run for f in state.found]
+    turns = [fitted.value[part] for part, is_flip in zip(fitted.slices, flips, strict=True) if is_flip]
+    session = replace(state.baseline.session, flip_turn=turns[0] if turns else np.zeros(3))
+    return turned_session(session, turned_back(state, fitted))
+
+
+def turned_back(state: SearchState, fitted: Amplitudes) -> Array:
+    """(3, 3) rotation, dimensionless, from the frame of the session to that of the block before it was turned."""
+    turns = [fitted.value[part] for f, part in zip(state.found, fitted.slices, strict=True) if f.best.cause.turns_block]
+    return turn_of(-turns[0]) if turns else np.eye(3)
 
 
 def true_errors(state: SearchState) -> Array:
@@ -104,7 +123,8 @@ def extended_calibration(state: SearchState, fitted: Amplitudes) -> Calibration:
     if not state.found:
         return plain
     columns = [f.best.shape.columns * (not f.best.cause.moves_parameters) for f in state.found]
-    response = state.residuals.response @ state.residuals.whitened(np.concatenate(columns, axis=-1))
+    residuals = WhitenedResiduals.of(turned_baseline(state.baseline, turned_back(state, fitted)))
+    response = residuals.response @ residuals.whitened(np.concatenate(columns, axis=-1))
     factors = state.baseline.parameters.si_factors(state.baseline.setting.norm)
     response = response * factors[:, None]
     return enlarged(plain, response @ fitted.covariance @ response.T)

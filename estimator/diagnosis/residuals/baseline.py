@@ -5,7 +5,7 @@ orientations it is estimated row by row. In both, a row carries nuisance columns
 sigma; the two turns of an unknown direction with an infinite one) and the session carries constant ones.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -37,6 +37,10 @@ class Baseline:
     """(R, r) rad; infinite where nothing is known beforehand."""
     expected_ratio: Array | None = None
     """(m,) variance that the other sensors of its kind suggest, relative to its own; 0 where they are not asked."""
+    turn: Array = field(default_factory=lambda: np.zeros(3))
+    """(3,) rotation vector, rad, of an earlier session: it was turned by this into the frame of the one diagnosed."""
+    sits_otherwise: bool = False
+    """Whether the block sat otherwise than in the latest earlier session, so that its frame tells of no common turn."""
 
     @property
     def parameters(self) -> SensorParameters:

@@ -1,22 +1,27 @@
 """What moved since the history: the parameters of earlier sessions as one reference with covariance.
 
-In arbitrary orientations the applied vectors are estimated, so a common turn of all axes cannot be observed: earlier
-axes are turned onto those of now first, and only what is orthogonal to a common turn is compared.
+Earlier baselines come turned into the frame of now (`turns`), so that what is compared is small however the block sat.
+The turn k that was taken off is put back as what it is, an amplitude: with the parameters' response T to a turn the
+change is d = (now − turned history) + T·k, linear about the exact rotation. In arbitrary orientations the applied
+vectors are estimated, so a common turn of all axes cannot be observed: only what is orthogonal to one is compared.
 """
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from estimator.arrays import nearest_turn, tangents
+from estimator.arrays import tangents
+from estimator.causes.fixture import turned
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.gauge import observable_directions
+from estimator.diagnosis.residuals.flipped_run import flip_effect
+from estimator.diagnosis.residuals.gauge import observable_directions, turn_response
 from estimator.diagnosis.residuals.whitened import (
     EarlierSession,
     ParameterChange,
     WhitenedResiduals,
     parameter_covariance,
 )
+from estimator.parameters import SensorParameters
 from estimator.session import Array
 
 NO_VARIANCE = 1e-13
@@ -24,24 +29,22 @@ NO_VARIANCE = 1e-13
 correlation matrix of some hundred parameters."""
 
 
-def seen_from(now: Baseline, earlier: Baseline) -> tuple[Array, Array]:
-    """Parameters of an earlier session seen from now: dimensionless deviation (P,) and how they map there (P, P)."""
-    p, q, norm = now.parameters, earlier.parameters, now.setting.norm
-    m = len(norm)
-    turned = nearest_turn(q.axis, p.axis) if now.gauge_free.any() else np.eye(3)
-    frame, old, axis = tangents(p.axis), turned @ tangents(q.axis), q.axis @ turned.T
-    step = np.empty((m, 5))
-    step[:, 0] = np.log(q.scale / p.scale)
-    step[:, 1] = (q.bias - p.bias) / norm
-    step[:, 2] = (q.quadratic - p.quadratic) * norm
-    step[:, 3:] = (np.swapaxes(frame, -1, -2) @ (axis - p.axis)[..., None])[..., 0]
-    mapping = np.zeros((m, 5, 5))
-    mapping[:, [0, 1, 2], [0, 1, 2]] = 1.0
-    mapping[:, 3:, 3:] = np.swapaxes(frame, -1, -2) @ old
-    full = np.zeros((5 * m, 5 * m))
-    for i in range(m):
-        full[5 * i : 5 * i + 5, 5 * i : 5 * i + 5] = mapping[i]
-    return step.reshape(-1), full
+def deviation(now: SensorParameters, then: SensorParameters, norm: Array) -> Array:
+    """(m, 5) dimensionless: parameters ``then`` from those of ``now``; ``norm`` (m,) of the applied vector, m/s²."""
+    step = np.empty((len(norm), 5))
+    step[:, 0] = np.log(then.scale / now.scale)
+    step[:, 1] = (then.bias - now.bias) / norm
+    step[:, 2] = (then.quadratic - now.quadratic) * norm
+    step[:, 3:] = (np.swapaxes(tangents(now.axis), -1, -2) @ (then.axis - now.axis)[..., None])[..., 0]
+    return step
+
+
+def carried(now: SensorParameters, frames: Array) -> Array:
+    """(P, P) dimensionless: a change along tangents ``frames`` (m, 3, 2) as one along the tangents of ``now``."""
+    m = len(frames)
+    full, one = np.eye(5 * m).reshape(m, 5, m, 5), np.arange(m)
+    full[one, 3:, one, 3:] = np.swapaxes(tangents(now.axis), -1, -2) @ frames
+    return full.reshape(5 * m, 5 * m)
 
 
 def inverse_root(matrix: Array) -> Array:
@@ -54,22 +57,41 @@ def inverse_root(matrix: Array) -> Array:
 
 
 def parameter_change(now: Baseline, history: Sequence[Baseline]) -> ParameterChange | None:
-    """The whitened change of all parameters since the history; None without a usable history.
+    """The whitened change of all parameters since the history, in the frame of now; None without a usable history.
 
-    The reference is the information-weighted mean of the history's parameters.
+    The reference is the information-weighted mean of the history's parameters. What tells nothing of the common turn
+    because the block sat otherwise enters without it.
     """
-    keep = observable_directions(now.gauge_free, now.parameters)
+    p, keep = now.parameters, observable_directions(now.gauge_free, now.parameters)
     alike = [h for h in history if h.setting.kinds == now.setting.kinds]
     if not alike:
         return None
-    steps, maps = zip(*(seen_from(now, earlier) for earlier in alike), strict=True)
-    known = [keep.T @ turn @ parameter_covariance(h) @ turn.T @ keep for h, turn in zip(alike, maps, strict=True)]
+    steps = [deviation(p, h.parameters, now.setting.norm).reshape(-1) for h in alike]
+    maps = [carried(p, tangents(h.parameters.axis)) for h in alike]
+    known = [keep.T @ map @ parameter_covariance(h) @ map.T @ keep for h, map in zip(alike, maps, strict=True)]
     information = [(root := inverse_root(covariance)).T @ root for covariance in known]
+    turn = keep.T @ turn_response(p)
+    information = [without(i, turn) if h.sits_otherwise else i for h, i in zip(alike, information, strict=True)]
     covariance = (root := inverse_root(np.sum(information, axis=0))).T @ root
     shares = [keep @ covariance @ own @ keep.T for own in information]
     whiten = keep @ inverse_root(covariance + keep.T @ parameter_covariance(now) @ keep) @ keep.T
+    steps = [step + map @ taken_off(h) for h, step, map in zip(alike, steps, maps, strict=True)]
     step = np.sum([share @ step for share, step in zip(shares, steps, strict=True)], axis=0)
-    earlier = [
-        EarlierSession(WhitenedResiduals.of(h), w @ turn) for h, w, turn in zip(alike, shares, maps, strict=True)
-    ]
-    return ParameterChange(whiten @ -step, whiten, tuple(earlier))
+    earlier = [EarlierSession(WhitenedResiduals.of(h), w @ map) for h, w, map in zip(alike, shares, maps, strict=True)]
+    return ParameterChange(whiten @ (taken_off(now) - step), whiten, tuple(earlier))
+
+
+def taken_off(baseline: Baseline) -> Array:
+    """(P,) dimensionless: what the turns that a baseline is linear about would make of its parameters if left in."""
+    setting = baseline.setting
+    if not (setting.turn.any() or setting.flip_turn.any()):
+        return np.zeros(5 * len(setting.kinds))
+    residuals = WhitenedResiduals.of(baseline)
+    columns = setting.through(turned(setting.n)) @ setting.turn + flip_effect(setting)
+    return residuals.response @ residuals.whitened(columns[..., None])[:, 0]
+
+
+def without(information: Array, directions: Array) -> Array:
+    """(q, q) information that leaves nothing known along ``directions`` (q, k), both dimensionless."""
+    along = information @ directions
+    return np.asarray(information - along @ np.linalg.pinv(directions.T @ along, hermitian=True) @ along.T)

@@ -1,25 +1,41 @@
-"""Baselines of a session and its history, fitted near one another."""
+"""Baselines of a session and its history, fitted near one another and seen in one frame."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.diagnosis.residuals.flipped_run import with_its_flip
+from estimator.diagnosis.residuals.turns import in_the_frame_of, turn_between
 from estimator.diagnosis.residuals.whitened import parameter_covariance
 from estimator.session import TWO_AXIS_STAND, CalibrationSession
 
+ROUNDS = 3
+"""Times that a session is fitted from the others' parameters: the turn between them is taken from the fit before."""
+
 
 def baselines(session: CalibrationSession, history: Sequence[CalibrationSession]) -> tuple[Baseline, list[Baseline]]:
-    """Of a session and of every earlier one, from the parameters of the one that observes most.
+    """Of a session and of every earlier one, these turned into the frame of the session.
 
-    What one of them does not observe (a single run leaves a direction open) would else stay at different values, far
-    enough from one another for the second order to show as a change of what is observed.
+    On a stand all are fitted from the parameters of the one that observes most. What one of them does not observe (a
+    single run leaves a direction open) would else stay at different values, far enough from one another for the second
+    order to show as a change of what is observed.
     """
-    baseline = baseline_of(session)
-    earlier = [baseline_of(h) for h in history]
-    if session.programme != TWO_AXIS_STAND or not earlier:
-        return baseline, earlier
-    best = min([baseline, *earlier], key=lambda b: float(np.trace(parameter_covariance(b))))
-    start = best.parameters
-    return baseline_of(session, start), [baseline_of(h, start) for h in history]
+    baseline = with_its_flip(session)
+    earlier = [with_its_flip(h) for h in history]
+    if session.programme == TWO_AXIS_STAND and earlier:
+        best = min([baseline, *earlier], key=lambda b: float(np.trace(parameter_covariance(b))))
+        baseline, *earlier = [fitted_near(one, best) for one in (baseline, *earlier)]
+    return baseline, in_the_frame_of(baseline, earlier)
+
+
+def fitted_near(one: Baseline, best: Baseline) -> Baseline:
+    """The baseline fitted anew from the parameters of the ``best``, turned as the block was turned between them."""
+    if one is best or one.setting.kinds != best.setting.kinds:
+        return one
+    p, found = best.parameters, one
+    for _ in range(ROUNDS):
+        turn = turn_between(found, best)
+        found = with_its_flip(one.session, replace(p, axis=p.axis @ turn.T))
+    return found

@@ -73,6 +73,7 @@ def stand_baseline(
         temperature=session.temperature,
         force=force_on_stand(session),
         latitude=session.site.latitude or 0.0,
+        flip_turn=session.flip_turn,
     )
     return Baseline(
         session=session,
@@ -141,6 +142,7 @@ def in_orientations(session: CalibrationSession) -> Baseline:
         temperature=session.temperature,
         force=g * state.directions if state.felt else None,
         latitude=session.site.latitude or 0.0,
+        framed=bool(np.isfinite(state.direction_sigma).any()),
     )
     p = state.parameters
     turn = g * np.where(gyro[None, :, None, None], 0.0, tangents(state.directions)[:, None, :, :])

@@ -14,10 +14,16 @@ def observable_directions(free: Array, parameters: SensorParameters) -> Array:
     """
     if not free.any():
         return np.eye(5 * len(free))
-    turn = np.zeros((len(free), 5, 3))
-    turn[:, 3:] = axis_response(parameters) * free[:, None, None]
-    directions, _, _ = np.linalg.svd(turn.reshape(-1, 3))
+    turn = turn_response(parameters) * np.repeat(free, 5)[:, None]
+    directions, _, _ = np.linalg.svd(turn)
     return np.asarray(directions[:, 3:])
+
+
+def turn_response(parameters: SensorParameters) -> Array:
+    """(P, 3) per rad: change of all P = 5 m parameters with a small rotation of the block."""
+    response = np.zeros((len(parameters.scale), 5, 3))
+    response[:, 3:] = axis_response(parameters)
+    return response.reshape(-1, 3)
 
 
 def axis_response(parameters: SensorParameters) -> Array:

@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from estimator.causes.contract import Cause, Signature
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.between_sessions import parameter_change
@@ -14,7 +16,8 @@ from estimator.diagnosis.signatures.patterns import PATTERNS
 
 
 def begin(baseline: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]) -> SearchState:
-    """The search for causes of a catalogue in a fitted session."""
+    """The search for causes of a catalogue in a fitted session; ``history`` in the frame of the session."""
+    baseline = since(baseline, history)
     residuals = WhitenedResiduals.of(baseline, parameter_change(baseline, history))
     signatures = [c for c in catalogue if isinstance(c, Signature)]
     return SearchState(
@@ -24,6 +27,13 @@ def begin(baseline: Baseline, history: Sequence[Baseline], catalogue: Sequence[C
         tuple(traces_of(residuals, signatures)),
         tuple(traces_of(residuals, PATTERNS)),
     )
+
+
+def since(baseline: Baseline, history: Sequence[Baseline]) -> Baseline:
+    """The baseline, which knows how the block sits turned since the latest of its history, where that can show."""
+    alike = [h for h in history if h.setting.kinds == baseline.setting.kinds]
+    turn = alike[-1].turn if alike and not baseline.gauge_free.any() else np.zeros(3)
+    return replace(baseline, setting=replace(baseline.setting, turn=turn))
 
 
 def begin_anew(state: SearchState, scatter: Sequence[ExcessVariance | Autocorrelation]) -> SearchState:

@@ -198,9 +198,49 @@ def test_the_turn_and_what_is_left_have_honest_covariances() -> None:
     assert outs <= stats.binom.isf(1e-3, 500, 0.002)
 
 
-def nees(motion: CommonMotion) -> float:
-    """Normalised error squared of a turn whose truth is zero."""
-    return float(np.array(motion.value) @ np.linalg.solve(np.array(motion.covariance), motion.value))
+def nees(motion: CommonMotion, truth: Array | float = 0.0) -> float:
+    """Normalised error squared of a turn."""
+    error = np.array(motion.value) - truth
+    return float(error @ np.linalg.solve(np.array(motion.covariance), error))
+
+
+def turned_by(degrees: float, seed: int) -> Array:
+    """(3,) a rotation vector of so many degrees about any axis, rad."""
+    axis = np.random.default_rng([20, seed]).standard_normal(3)
+    return np.radians(degrees) * axis / np.linalg.norm(axis)
+
+
+@pytest.mark.parametrize("degrees", [0.01, 1.0, 5.0, 170.0])
+@pytest.mark.parametrize("m", [4, 6, 12])
+def test_a_turn_however_large_leaves_nothing_of_any_sensor(m: int, degrees: float) -> None:
+    """Linear in the turn, a quarter of its square would be left: 16 arcsec of one degree."""
+    turn = turned_by(degrees, m)
+    found = split(m, None, turn=turn)["axes"]
+    assert found.motion.left_out == ()
+    assert found.motion.value == pytest.approx(turn, abs=1e-10)
+    assert max(np.abs(d.vector).max() for d in found.residuals.values()) < 1e-9
+
+
+def test_a_large_turn_has_an_honest_covariance_and_moves_no_sensor() -> None:
+    rng, errors, outs = np.random.default_rng(21), [], 0
+    for k in range(300):
+        turn = turned_by(5.0, k)
+        found = split(6, rng, turn=turn)["axes"].motion
+        errors.append(nees(found, turn))
+        outs += bool(found.left_out)
+    assert abs(np.mean(errors) - 3) < 4 * np.sqrt(6 / 300)
+    assert outs <= stats.binom.isf(1e-3, 300, 0.001)
+
+
+@pytest.mark.parametrize("arcsec", [20.0, 7200.0])
+def test_a_sensor_that_tilts_beside_a_large_turn_is_found_and_does_not_drag_it(arcsec: float) -> None:
+    """Of seven; 1.4 arcsec is four sigmas of one axis in both sessions, beyond its own share of noise."""
+    for k in range(20):
+        turn = turned_by(5.0, k)
+        found = split(7, np.random.default_rng([22, k]), tilted(7, 1, arcsec), turn)["axes"]
+        assert found.motion.left_out == ("A2",)
+        assert np.hypot(*found.residuals["A2"].vector) == pytest.approx(np.arctan(arcsec * ARCSEC), abs=6 * SIGMA)
+        assert nees(found.motion, turn) < stats.chi2.isf(1e-5, 3)
 
 
 def verdicts(moved: Array | None, turn: Array) -> dict[tuple[str, str], Judgement]:

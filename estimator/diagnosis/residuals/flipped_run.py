@@ -1,0 +1,51 @@
+"""A block that sits turned by degrees in its flipped run: the baseline is fitted about that turn.
+
+The applied vectors of the flipped run are n = exp(−k×)·n0. Linear in k, a quarter of its square would be left in the
+readings (16″ of 1°) and pass for other causes. So the baseline is fitted with the flipped run turned by a k0, which is
+where everything is linear and no estimate: k0 goes back into the residuals as the effect that it is, and the turn is an
+amplitude of the joint fit as before.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from estimator.causes.contract import Setting
+from estimator.causes.fixture import FlipMisalignment
+from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.parameters import SensorParameters
+from estimator.session import TWO_AXIS_STAND, Array, CalibrationSession
+
+SMALL = 1e-4
+"""rad (20″) up to which a turn is taken as linear: a quarter of its square, 2.5e-9, is below any reading's noise."""
+LARGEST = 0.2
+"""rad (11°) beyond which the run was not merely seated badly: the record is wrong, and no place is better than none."""
+ROUNDS = 6
+"""Of fits; two or three are usual."""
+
+
+def flip_effect(setting: Setting) -> Array:
+    """(R, m) m/s² (rad/s): what the turn of the flipped run that a setting holds adds at the input, to first order."""
+    if setting.flipped is None or not setting.flip_turn.any():
+        return np.zeros(setting.n.shape[:2])
+    return setting.through(FlipMisalignment().change(setting)) @ setting.flip_turn
+
+
+def with_its_flip(session: CalibrationSession, start: SensorParameters | None = None) -> Baseline:
+    """The baseline of a session, fitted about the turn of its flipped run where that is not small."""
+    found = baseline_of(replace(session, flip_turn=np.zeros(3)), start)
+    cause = FlipMisalignment()
+    if session.programme != TWO_AXIS_STAND or not cause.available(found.setting):
+        return found
+    for _ in range(ROUNDS):
+        residuals = WhitenedResiduals.of(found)
+        trace = residuals.trace(found.setting.through(cause.change(found.setting)))
+        turn, *_ = np.linalg.lstsq(trace, residuals.z, rcond=1e-6)
+        apart = np.linalg.norm(turn - found.session.flip_turn)
+        if apart < SMALL or np.linalg.norm(turn) > LARGEST:
+            break
+        found = baseline_of(replace(session, flip_turn=turn), start)
+        found = replace(found, residual=found.residual + flip_effect(found.setting))
+    return found

@@ -1,0 +1,114 @@
+"""Earlier sessions seen from a session: turned into its frame, exactly, before anything is taken as linear.
+
+A block that sits turned by R in its fixture has axes R·e. About equal frames a quarter of the turn's square would be
+left on every axis (16″ of 1°) and pass for a change of the sensors. So every earlier baseline is turned by its own R:
+axes and applied vectors together, which changes none of its residuals. R is found by Gauss–Newton on the rotations,
+with each sensor's own 5×5 covariance (what a session does not observe thus has no say) and Huber's weight, so that a
+sensor that moved alone does not drag it. R is where the change is linearised, no estimate: the turn itself is an
+amplitude of the joint fit.
+
+Sessions of a history in which the block sat as in the latest share its turn, and all of them tell where it sat. One in
+which it sat otherwise is turned by its own and has no say on the common turn, only on how the axes lie to one another.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.special import chdtrc
+
+from estimator.arrays import tangents
+from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.between_sessions import carried, deviation, inverse_root
+from estimator.diagnosis.residuals.gauge import turn_response
+from estimator.diagnosis.residuals.whitened import parameter_covariance
+from estimator.rotations import common_turn, turn_of, vector_of
+from estimator.session import Array, CalibrationSession
+
+ROUNDS = 20
+"""Of Gauss–Newton; three to six are usual."""
+NEGLIGIBLE = 1e-10
+"""rad (2e-5″): a step that no longer moves the place of linearisation."""
+HUBER = 3.0
+"""Standard errors of a sensor's change (root of χ² over its 5 elements, each) beyond which it weighs less."""
+SEEN = 1e-6
+"""Share of the best seen direction of a turn below which one is left alone: about a line that all axes share."""
+OTHERWISE = 1e-4
+"""Chance that a session of a history that sits as the latest one does is taken to sit otherwise: all that it costs is
+that session's say on the common turn."""
+
+
+def turned_session(session: CalibrationSession, turn: Array) -> CalibrationSession:
+    """The session with block axes turned by (3, 3), dimensionless, as if it had been mounted so."""
+    directions = None if session.directions is None else session.directions @ turn.T
+    flip = turn @ session.flip_turn
+    return replace(session, mounting=turn @ session.mounting, directions=directions, flip_turn=flip)
+
+
+def turned_baseline(baseline: Baseline, turn: Array) -> Baseline:
+    """The same baseline in block axes turned by (3, 3), dimensionless: its residuals and noise stay as they are."""
+
+    def to(vectors: Array | None) -> Array | None:
+        return None if vectors is None else vectors @ turn.T
+
+    old, p = baseline.setting, baseline.parameters
+    setting = replace(
+        old,
+        parameters=replace(p, axis=p.axis @ turn.T),
+        n=old.n @ turn.T,
+        d_alpha=to(old.d_alpha),
+        d_beta=to(old.d_beta),
+        force=to(old.force),
+        flip_turn=turn @ old.flip_turn,
+    )
+    return replace(baseline, session=turned_session(baseline.session, turn), setting=setting, turn=vector_of(turn))
+
+
+def turn_between(now: Baseline, earlier: Baseline) -> Array:
+    """(3, 3) rotation, dimensionless, that takes the axes of an earlier session onto those of ``now``."""
+    p, q = now.parameters, earlier.parameters
+    own, origin, design = parameter_covariance(now), parameter_covariance(earlier), turn_response(p)
+    m = len(design) // 5
+    turn, response = common_turn(q.axis, p.axis), design.reshape(m, 5, 3)
+    for _ in range(ROUNDS):
+        mapping = carried(p, turn @ tangents(q.axis))
+        blocks = (own + mapping @ origin @ mapping.T).reshape(m, 5, m, 5)[np.arange(m), :, np.arange(m)]
+        roots = np.stack([inverse_root(block) for block in blocks])
+        step = roots @ deviation(p, replace(q, axis=q.axis @ turn.T), now.setting.norm)[..., None]
+        length = np.linalg.norm(step, axis=1, keepdims=True) / np.sqrt(5)
+        weight = np.sqrt(np.minimum(1.0, HUBER / np.maximum(length, HUBER)))
+        missing, *_ = np.linalg.lstsq(
+            (weight * (roots @ response)).reshape(-1, 3), -(weight * step).ravel(), rcond=SEEN
+        )
+        turn = turn_of(missing) @ turn
+        if np.linalg.norm(missing) < NEGLIGIBLE:
+            break
+    return turn
+
+
+def in_the_frame_of(now: Baseline, history: Sequence[Baseline]) -> list[Baseline]:
+    """Earlier baselines turned into the frame of ``now``; those of other sensors as they are."""
+    alike = [h for h in history if h.setting.kinds == now.setting.kinds]
+    if not alike:
+        return list(history)
+    latest, shared = alike[-1], turn_between(now, alike[-1])
+
+    def framed(one: Baseline) -> Baseline:
+        if one.setting.kinds != now.setting.kinds:
+            return one
+        own = turned_baseline(one, turn_between(now, one))
+        as_latest = turned_baseline(one, shared)
+        otherwise = one is not latest and sits_otherwise(now, own, turned_baseline(latest, shared))
+        return replace(own, sits_otherwise=otherwise) if otherwise or now.gauge_free.any() else as_latest
+
+    return [framed(h) for h in history]
+
+
+def sits_otherwise(now: Baseline, one: Baseline, latest: Baseline) -> bool:
+    """Whether the block sat otherwise in ``one`` than in the ``latest``, both turned into the frame of ``now``."""
+    p = now.parameters
+    maps = [carried(p, tangents(h.parameters.axis)) for h in (one, latest)]
+    both = [m @ parameter_covariance(h) @ m.T for h, m in zip((one, latest), maps, strict=True)]
+    apart = vector_of(turn_of(one.turn) @ turn_of(latest.turn).T)
+    seen = inverse_root(both[0] + both[1]) @ turn_response(p) @ apart
+    return bool(chdtrc(3, float(seen @ seen)) < OTHERWISE)
