@@ -178,14 +178,14 @@ def _sensors(session: CalibrationSession) -> list[tuple[str, str]]:
 
 
 def _verdict_after(storage: Storage, task: Task, session: CalibrationSession, found: Diagnosis) -> Verdict | None:
-    """The verdict with the named causes in the model; None where none was named or there is no reference."""
+    """The verdict with the named causes in the model; None where none was named, or where nothing was judged."""
     if not found.findings or task.session.is_reference:
         return None
     with storage.database.reading() as store:
         unit = store.units.key(session.unit)
         reference = reference_of(store, unit, session.block, session.programme, task.session.started_at).session
-        if reference is None:
+        decisions = store.sessions.decisions(task.session.id)
+        if reference is None or not decisions:
             return None
         unit_type, known = store.unit_types.of_unit(session.unit), store.calibrations.get(reference)
-        factor = store.sessions.decisions(task.session.id)[0].coverage_factor
-    return judge(found.calibration, known, unit_type, factor).verdict
+    return judge(found.calibration, known, unit_type, decisions[0].coverage_factor).verdict
