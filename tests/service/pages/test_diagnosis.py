@@ -80,6 +80,15 @@ def test_a_unit_type_without_tolerances_is_diagnosed_like_any_other(holding: Hol
     assert "No verdict: nothing of this session was judged." in text
 
 
+def test_what_a_cause_explains_is_no_noise(holding: Holding) -> None:
+    document = json.dumps(warm(2, "2026-03-05T08:00:00Z")).encode()
+    client, id = holding(document), session_id(document)
+    assert "The readings scatter more than that" in client.get(f"/sessions/{id}", headers=HTML).text
+    text = page(client, id)
+    assert "The band is ±2σ of the stated noise." in text
+    assert "scatter more" not in text
+
+
 def test_an_accepted_cause_is_listed_and_the_unit_recomputed(holding: Holding) -> None:
     client, id = held(holding, TEMPERATURE)
     accepted = client.post(f"/sessions/{id}/diagnosis/accept", data=ACCEPT, headers=HTML, follow_redirects=True)
