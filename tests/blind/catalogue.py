@@ -42,6 +42,7 @@ CATALOGUE = {
     "scale-ramp": _hidden(1, SENSOR, "time"),
     "axis-creep": _hidden(2, SENSOR, "time"),
     "temperature-rate": _hidden(1, SENSOR, "temperature", "time"),
+    "thermal-lag": _hidden(1, SENSOR, "temperature", "time", free=2),
     "bias-per-position": _hidden(2, SENSOR, "both runs"),
     "reading-outlier": _hidden(1, SENSOR, free=2),
     "excess-noise": _hidden(1, SENSOR, "stated noise"),

@@ -98,7 +98,7 @@ def shapes(session: Session, cause: str) -> list[tuple[float, ...]]:
         return [(float(j),) for j in range(1, R)]
     if cause == "reading-outlier":
         return [(float(j),) for j in range(R)]
-    if cause == "warm-up":
+    if cause in ("warm-up", "thermal-lag"):
         return [(float(tau),) for tau in TIME_CONSTANTS * session.schedule.time[-1]]
     return [()]
 

@@ -33,6 +33,7 @@ TABLE = [
     "scale-ramp",
     "axis-creep",
     "temperature-rate",
+    "thermal-lag",
     "bias-per-position",
     "reading-outlier",
     "excess-noise",
