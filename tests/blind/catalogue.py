@@ -42,7 +42,6 @@ CATALOGUE = {
     "scale-ramp": _hidden(1, SENSOR, "time"),
     "axis-creep": _hidden(2, SENSOR, "time"),
     "temperature-rate": _hidden(1, SENSOR, "temperature", "time"),
-    "thermal-lag": _hidden(1, SENSOR, "temperature", "time", free=2),
     "bias-per-position": _hidden(2, SENSOR, "both runs"),
     "reading-outlier": _hidden(1, SENSOR, free=2),
     "excess-noise": _hidden(1, SENSOR, "stated noise"),
@@ -66,6 +65,7 @@ CATALOGUE = {
     "g-sensitivity": _hidden(3, HISTORY, "history", "both runs", "gyros"),
     "latitude-entry": _hidden(1, HISTORY, "history", "both runs", "gyros"),
     "meridian-error": _hidden(1, WHOLE, "both runs", "gyros"),
+    "thermal-lag": _hidden(1, SENSOR, "temperature", "time", free=2),
 }
 
 DISCRETE = frozenset({"positions-swapped", "channels-swapped", "sign-reversed", "runs-swapped", "beta-reversed"})
