@@ -116,6 +116,8 @@ class CalibrationSession:
     """(R,) s since the start."""
     temperature: Array | None = None
     """(R,) °C."""
+    vibration: Array | None = None
+    """(R, m) variance of the input within the row, (m/s²)² or (rad/s)²."""
     turn_angle: Array | None = None
     """(R,) rad, of a turntable about the block's Z axis at the end of the row, right-handed."""
     turn_rate: Array | None = None

@@ -160,9 +160,12 @@ def draw_session(rng: np.random.Generator, needs: frozenset[str] = frozenset(), 
     site = draw_site(rng)
     wanted = Wanted.drawn(rng, needs, one_run=ONE_RUN, most=_most(unit, longest))
     noise = draw_noise(unit, arrangement.count_time, rng)
+    schedule = draw_schedule(wanted, rng)
+    if "vibration" in needs:
+        schedule = replace(schedule, vibration=0.1 * rng.weibull(1.5, schedule.rows))
     return Session(
         unit=unit,
-        schedule=draw_schedule(wanted, rng),
+        schedule=schedule,
         site=site,
         stand=draw_stand(site, rng),
         mounting=draw_mounting(rng),

@@ -140,6 +140,14 @@ def thermal_lag(session: Session, effect: Effect, n: Array, a: Array, force: Arr
     return effect.k * centred(late(session.schedule, effect.shape[0], smooth(session.schedule)))
 
 
+def vibration_rectification(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s²: k·w², averaged over the phases of a shake w of the row's rms; less the mean over the rows."""
+    assert session.schedule.vibration is not None
+    phase = 2 * np.pi * np.arange(16) / 16
+    shake = np.sqrt(2) * session.schedule.vibration[:, None] * np.sin(phase)
+    return effect.k * centred((shake**2).mean(axis=1))
+
+
 def bias_per_position(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
     """(R,) m/s² or rad/s: k₁ sin β + k₂ cos β."""
     beta = session.schedule.beta
@@ -173,6 +181,7 @@ INPUT = {
     "axis-creep": axis_creep,
     "temperature-rate": temperature_rate,
     "thermal-lag": thermal_lag,
+    "vibration-rectification": vibration_rectification,
     "bias-per-position": bias_per_position,
     "reading-outlier": reading_outlier,
     "g-sensitivity": g_sensitivity,

@@ -67,7 +67,9 @@ SINGLE = ("sensor-drift", "g-sensitivity")
 
 
 def _draw_sensor(session: Session, cause: str, rng: np.random.Generator) -> tuple[int, ...]:
-    able = np.flatnonzero(session.unit.gyro) if cause == "g-sensitivity" else np.arange(session.unit.size)
+    able = np.arange(session.unit.size)
+    if cause in ("g-sensitivity", "vibration-rectification"):
+        able = np.flatnonzero(session.unit.gyro == (cause == "g-sensitivity"))
     return (int(rng.choice(able)),)
 
 

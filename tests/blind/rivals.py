@@ -41,6 +41,7 @@ def available(session: Session, cause: str) -> bool:
         "stated noise": session.noise.stated,
         "accelerometers": not unit.gyro.all(),
         "gyros": bool(unit.gyro.any()),
+        "vibration": schedule.vibration is not None,
         "history": True,
     }
     return all(has[need] for need in CATALOGUE[cause].needs)
@@ -107,8 +108,10 @@ def _of_each_sensor(session: Session, cause: str) -> Iterator[Candidate]:
     if cause == "excess-noise":
         return
     force, rate = reference_vectors(session, believed(session))
-    R, m = session.schedule.rows, session.unit.size
+    R, m, is_gyro = session.schedule.rows, session.unit.size, session.unit.gyro
     for i in range(m):
+        if cause == "vibration-rectification" and is_gyro[i]:
+            continue
         if cause == "saturation":
             yield Candidate(cause, (i,), _clips(session, i), fixed=True)
             continue

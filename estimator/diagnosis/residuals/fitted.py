@@ -71,6 +71,7 @@ def stand_baseline(
         d_beta=g.beta,
         time=session.time,
         temperature=session.temperature,
+        vibration=session.vibration,
         force=force_on_stand(session),
         latitude=session.site.latitude or 0.0,
     )
@@ -139,6 +140,7 @@ def in_orientations(session: CalibrationSession) -> Baseline:
         d_beta=None,
         time=session.time,
         temperature=session.temperature,
+        vibration=session.vibration,
         force=g * state.directions if state.felt else None,
         latitude=session.site.latitude or 0.0,
     )

@@ -67,6 +67,7 @@ class Seen:
         self.pn, self.on = (n @ tangents(world.truth.axis[i])).T
         self.t, self.beta = session.time, session.beta
         self.T = np.zeros_like(self.t) if session.temperature is None else session.temperature
+        self.swing = np.zeros_like(self.t) if session.vibration is None else session.vibration[:, i]
         self.elapsed, self.warmth = self.t - np.mean(self.t), self.T - np.mean(self.T)
         self.force = applied(session, ACCELEROMETER, Happened({}))
         self.row, self.flipped = np.arange(len(n)), session.flipped
@@ -182,6 +183,7 @@ ACTED: dict[str, Acted] = {
     "axis-creep": term(lambda s, x: (s.pn * s.elapsed, s.on * s.elapsed)),
     "temperature-rate": term(lambda s, x: (s.rate(),)),
     "thermal-lag": term(lambda s, x: (s.late(x[0]),)),
+    "vibration-rectification": term(lambda s, x: (s.swing - np.mean(s.swing),)),
     "bias-per-position": term(lambda s, x: (np.sin(s.beta), np.cos(s.beta))),
     "reading-outlier": term(lambda s, x: (np.where(s.row == x[0], 1.0, 0.0),)),
     "g-sensitivity": term(lambda s, x: tuple(s.force.T)),

@@ -34,6 +34,7 @@ TABLE = [
     "axis-creep",
     "temperature-rate",
     "thermal-lag",
+    "vibration-rectification",
     "bias-per-position",
     "reading-outlier",
     "excess-noise",
