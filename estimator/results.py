@@ -155,6 +155,8 @@ class Residuals:
     """(R,) s, or None."""
     temperature: Array | None
     """(R,) °C, or None."""
+    enlarged_by: float | None = None
+    """How many times ``sigma`` is the noise as it was stated or, where it was not, estimated; None where unknown."""
 
     def to_dict(self) -> dict[str, Any]:
         def listed(column: Any) -> Any:
@@ -167,6 +169,7 @@ class Residuals:
             "run": None if self.flipped is None else ["flipped" if f else "direct" for f in self.flipped],
             "time_s": listed(self.time),
             "temperature_c": listed(self.temperature),
+            "enlarged_by": self.enlarged_by,
         }
 
 

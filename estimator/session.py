@@ -119,6 +119,8 @@ class CalibrationSession:
     """(R,) s since the start."""
     temperature: Array | None = None
     """(R,) °C."""
+    vibration: Array | None = None
+    """(R, m) variance of the input within the row, (m/s²)² or (rad/s)²."""
     turn_angle: Array | None = None
     """(R,) rad, of a turntable about the block's Z axis at the end of the row, right-handed."""
     turn_rate: Array | None = None
@@ -131,6 +133,9 @@ class CalibrationSession:
     """One sigma of ``directions`` per axis, rad; None when no directions are stated."""
     sample_rate: float | None = None
     """Hz; set for a raw log only."""
+    at_ends: Array | None = None
+    """(R, m, 2) share, dimensionless, of a row's samples that read the log's very largest and smallest value of their
+    channel; None unless the rows were averaged from a raw log."""
     count_time: float | None = None
     """s; set when gyro readings are pulse counts over that time."""
     unit_type: str | None = None

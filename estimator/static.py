@@ -274,6 +274,8 @@ def averaged(session: CalibrationSession, found: Intervals) -> CalibrationSessio
         session,
         readings=found.means(session.readings),
         standard_errors=mean_errors(session.readings, found, session.sample_rate),
+        at_ends=found.means(ends(session.readings)),
+        vibration=variances(session, found),
         time=middle if session.time is None else found.means(session.time),
         temperature=None if session.temperature is None else found.means(session.temperature),
         flipped=None if session.flipped is None else session.flipped[start],
@@ -282,6 +284,18 @@ def averaged(session: CalibrationSession, found: Intervals) -> CalibrationSessio
         position=None if session.position is None else session.position[start],
         sample_rate=None,
     )
+
+
+def variances(session: CalibrationSession, found: Intervals) -> Array:
+    """(n, m) variance of the input within every interval, by nominal scales, (m/s²)² or (rad/s)²."""
+    inputs = session.readings / [s.nominal_scale for s in session.sensors]
+    inputs = inputs - inputs.mean(axis=0)
+    return np.maximum(found.means(inputs**2) - found.means(inputs) ** 2, 0.0)
+
+
+def ends(readings: Array) -> Array:
+    """(R, m, 2) 1 where a sample of readings (R, m) is its channel's largest, its smallest, else 0; no unit."""
+    return np.stack([readings == readings.max(axis=0), readings == readings.min(axis=0)], axis=-1).astype(float)
 
 
 def mean_errors(readings: Array, found: Intervals, rate: float) -> Array:

@@ -97,6 +97,8 @@ def _table(session: CalibrationSession) -> dict[str, Any]:
     for name, column in (("time_s", session.time), ("temperature_c", session.temperature)):
         if column is not None:
             table[name] = column.tolist()
+    if session.vibration is not None and np.all(session.vibration == session.vibration[:, :1]):
+        table["vibration_m_s2"] = np.sqrt(session.vibration[:, 0]).tolist()
     for name, turning in (("turn_angle_deg", session.turn_angle), ("turn_rate_deg_s", session.turn_rate)):
         if turning is not None:
             table[name] = np.round(np.degrees(turning), ANGLE_DECIMALS).tolist()

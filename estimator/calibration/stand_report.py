@@ -100,6 +100,7 @@ def reports(sessions: Sequence[CalibrationSession], solved: Solved) -> list[Cali
                 flipped=session.flipped,
                 time=session.time,
                 temperature=session.temperature,
+                enlarged_by=float(np.sqrt(solved.factor[k])),
             ),
             gauge="stand",
         )

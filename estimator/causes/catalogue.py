@@ -4,7 +4,7 @@ Where two causes leave the very same trace the earlier one is named first: what 
 blocks have.
 """
 
-from estimator.causes import environment, fixture, gyro, record, sensor, stand
+from estimator.causes import environment, fixture, gyro, lag, record, sensor, stand, vibration
 from estimator.causes.contract import Cause
 from estimator.causes.noise import ExcessNoise
 
@@ -28,6 +28,8 @@ CATALOGUE: tuple[Cause, ...] = (
     environment.ScaleRamp(),
     environment.AxisCreep(),
     environment.TemperatureRate(),
+    lag.ThermalLag(),
+    vibration.VibrationRectification(),
     sensor.BiasPerPosition(),
     sensor.ReadingOutlier(),
     ExcessNoise(),

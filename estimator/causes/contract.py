@@ -17,9 +17,29 @@ from estimator.parameters import SensorParameters
 from estimator.session import Array, CalibrationSession
 
 NEEDS = frozenset(
-    {"time", "temperature", "stand", "stand or directions", "both runs", "gravity", "nominal or history", "history"}
+    {
+        "time",
+        "temperature",
+        "vibration",
+        "stand",
+        "stand or directions",
+        "both runs",
+        "gravity",
+        "nominal or history",
+        "history",
+    }
 )
 """What a cause may need."""
+
+
+LIVELIEST = 2.0
+"""Times the usual row's variance that the liveliest row's must be for the vibration to vary at all: the variance of a
+hundred samples scatters by a seventh."""
+
+
+def varies(variance: Array) -> bool:
+    """Whether variances (R, m), of any unit, of some column are no mere scatter about one value."""
+    return bool(np.any(variance.max(axis=0) > LIVELIEST * np.median(variance, axis=0)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +75,8 @@ class Setting:
     """(3,) rotation vector, rad: how the block sits turned in the flipped run, as n has it already."""
     framed: bool = True
     """Whether the applied vectors are known apart from the sensors, so that a common turn of all axes shows."""
+    vibration: Array | None = None
+    """(R, m) variance of the input within a row, (m/s²)² or (rad/s)²; None where unknown."""
 
     @property
     def rows(self) -> int:
@@ -86,6 +108,8 @@ class Setting:
                 return self.time is not None
             case "temperature":
                 return self.temperature is not None and float(np.ptp(self.temperature)) > 0
+            case "vibration":
+                return self.vibration is not None and varies(self.vibration)
             case "stand":
                 return self.beta is not None
             case "stand or directions":

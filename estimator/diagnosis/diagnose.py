@@ -63,10 +63,11 @@ def diagnose(
         state = searched(entry.corrected(right), earlier, catalogue)
     fitted = amplitudes(state)
     new = newness(state, fitted)
+    calibration = extended_calibration(state, fitted)
     return Diagnosis(
         unit=session.unit,
         findings=(
-            *clip_findings(clips, rows, state.baseline),
+            *clip_findings(clips, rows, state.baseline, calibration),
             *(record_error_finding(e, rows) for e in errors),
             *([] if entry is None else [entry_finding(entry)]),
             *findings(state, fitted, new),
@@ -76,7 +77,7 @@ def diagnose(
         limits=limits(state),
         noise=noise_scales(state),
         baseline=calibrate(rows),
-        calibration=extended_calibration(state, fitted),
+        calibration=calibration,
     )
 
 

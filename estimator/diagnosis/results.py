@@ -77,8 +77,8 @@ class Finding:
     sigma: tuple[float, ...] = ()
     units: tuple[str, ...] = ()
     nonlinear_each: tuple[dict[str, float], ...] = ({},)
-    """Shape parameters of every sensor in turn, such as τ or the row of a jump (counted from 1), by unit; one entry
-    where the cause acts on none."""
+    """Shape parameters of every sensor in turn, such as τ or the row of a jump (counted from 1), by unit,
+    numbered where two share one; one entry where the cause acts on none."""
     alternatives: tuple[str, ...] = ()
     separations: tuple[Separation, ...] = ()
     ranking: tuple[Rival, ...] = ()

@@ -21,6 +21,7 @@ TURN = Interval(-3.6e7, 3.6e7, "degrees")
 TURN_RATE = Interval(-36_000, 36_000, "deg/s")
 TIME = Interval(-1e12, 1e12, "s")
 TEMPERATURE = Interval(-100, 200, "°C")
+VIBRATION = Interval(0, 1e4, "m/s²")
 DIRECTION = Interval(-1e6, 1e6)
 """Bounds that good cells of any instrument keep; beyond, the unit or the column is mistaken."""
 SHORTEST_DIRECTION = 1e-3
@@ -39,6 +40,7 @@ class Table:
     beta: Array | None
     time: Array | None
     temperature: Array | None
+    vibration: Array | None
     turn_angle: Array | None
     turn_rate: Array | None
     position: NDArray[np.int64] | None
@@ -62,6 +64,7 @@ def read_table(document: Fields, programme: str, sensors: tuple[Sensor, ...]) ->
         beta=np.radians(_required(columns, "beta_deg", BETA)) if on_stand else None,
         time=_time(columns),
         temperature=_optional(columns, "temperature_c", TEMPERATURE),
+        vibration=_vibration(columns, len(names)),
         turn_angle=_turning(columns, "turn_angle_deg", TURN, needed=programme == ROTATION_ALIGNMENT),
         turn_rate=_turning(columns, "turn_rate_deg_s", TURN_RATE, needed=programme == RATE_TABLE),
         position=columns.labels("position") if columns.has("position") else None,
@@ -79,6 +82,12 @@ def _required(columns: Columns, name: str, within: Interval) -> Array:
 
 def _optional(columns: Columns, name: str, within: Interval) -> Array | None:
     return columns.numbers(name, within) if columns.has(name) else None
+
+
+def _vibration(columns: Columns, m: int) -> Array | None:
+    """(R, m) (m/s²)² of every sensor: the square of what is stated for all."""
+    rms = _optional(columns, "vibration_m_s2", VIBRATION)
+    return None if rms is None else np.repeat(rms[:, None] ** 2, m, axis=1)
 
 
 def _turning(columns: Columns, name: str, within: Interval, *, needed: bool) -> Array | None:

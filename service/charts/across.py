@@ -58,7 +58,7 @@ def zero_line() -> alt.Chart:
     return chart
 
 
-def largest_edge(value: Array, sigma: Array) -> float:
-    """The largest |residual| or 2σ of some sensors, both (rows, sensors), m/s² or rad/s; 0 without any."""
-    edges = np.abs(np.stack([value, 2 * sigma]))
+def largest_edge(value: Array, *sigmas: Array) -> float:
+    """The largest |residual| or 2σ of some sensors, all (rows, sensors), m/s² or rad/s; 0 without any."""
+    edges = np.abs(np.stack([value, *(2 * sigma for sigma in sigmas)]))
     return float(np.max(edges, initial=0.0, where=np.isfinite(edges)))

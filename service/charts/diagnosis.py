@@ -22,6 +22,7 @@ from service.charts.across import (
     ticks,
     zero_line,
 )
+from service.charts.noise import Noise, edges
 from service.measures import THIN, Measure, decimals, deviation_measure, number
 
 MOST_PANELS = 9
@@ -37,6 +38,7 @@ class Sides:
     sensors: tuple[SensorCalibration, ...]
     before: Residuals
     after: Residuals | None
+    noise: Noise
 
 
 def diagnosis_charts(sides: Sides, named: Sequence[str]) -> tuple[ChartSet, ...]:
@@ -61,12 +63,13 @@ def _ways(residuals: Residuals) -> list[Across]:
 
 def _chart_set(sides: Sides, across: Across, columns: list[int], several: bool) -> ChartSet:
     kind = sides.sensors[columns[0]].kind
-    largest = largest_edge(sides.before.value[:, columns], sides.before.sigma[:, columns])
+    noise = sides.noise
+    largest = largest_edge(sides.before.value[:, columns], noise.stated[:, columns], noise.found[:, columns])
     measure = deviation_measure(kind, "bias", largest)
     return ChartSet(
         name=f"diagnosis-{kind}-{across.name}",
         heading=f"{across.heading}, {kind}s" if several else across.heading,
-        spec=_spec(across, measure, largest * measure.factor),
+        spec=_spec(across, measure, largest * measure.factor, wider=noise.times is not None),
         panels=tuple(_panel(sides, i, across, measure) for i in columns),
     )
 
@@ -94,18 +97,19 @@ def _points(sides: Sides, column: int, across: Across, measure: Measure) -> list
         {
             "x": float(f"{across.values[row]:.6g}"),
             "y": float(f"{side.value[row, column] * measure.factor:.5g}"),
-            "band": float(f"{2 * sides.before.sigma[row, column] * measure.factor:.4g}"),
+            "band": float(f"{2 * sides.noise.stated[row, column] * measure.factor:.4g}"),
+            "found": sides.noise.edge(row, column, measure.factor),
             "run": RUNS[int(flipped[row])] if flipped is not None else RUNS[0],
             "model": model,
             "row": row + 1,
         }
         for model, side in both
         for row in range(min(len(across.values), len(side.value)))
-        if np.isfinite(side.value[row, column]) and np.isfinite(sides.before.sigma[row, column])
+        if np.isfinite(side.value[row, column]) and np.isfinite(sides.noise.stated[row, column])
     ]
 
 
-def _spec(across: Across, measure: Measure, largest: float) -> dict[str, Any]:
+def _spec(across: Across, measure: Measure, largest: float, *, wider: bool) -> dict[str, Any]:
     domain = BETA_RANGE if across.name == BETA else padded(float(across.values.min()), float(across.values.max()))
     axis, scale = alt.Axis(**ticks(across.name)), alt.Scale(domain=domain, nice=False, zero=False)
     x = alt.X("x:Q", title=across.title, axis=axis, scale=scale)
@@ -116,6 +120,7 @@ def _spec(across: Across, measure: Measure, largest: float) -> dict[str, Any]:
     return specification(
         [
             band.encode(y=alt.Y("low:Q", scale=y_scale), y2="band:Q", detail="run:N"),
+            *(edges(base, y_scale, "var(--muted)") if wider else ()),
             zero_line(),
             _marks(base, y, measure, MODELS[0]),
             _marks(base, y, measure, MODELS[1]),

@@ -1,4 +1,4 @@
-"""Residuals of a session, a panel a sensor: by β with both runs, and in the order measured, with ±2σ bands."""
+"""Residuals of a session, a panel a sensor: by β with both runs, and in the order measured, with ±2σ of the noise."""
 
 from functools import cache
 from typing import Any
@@ -22,12 +22,13 @@ from service.charts.across import (
     ticks,
     zero_line,
 )
+from service.charts.noise import Noise, edges, noise_of
 from service.measures import THIN, Measure, decimals, deviation_measure, number
 
 RESIDUAL, BAND = "{residual}", "{band}"
 """Blanks: the names of the tooltip's numbers, with their unit."""
 SHADES = {BETA: 0.07, ORDER: 0.13}
-"""Opacity of the ±2σ bands: by the angle both runs lie on each other."""
+"""Opacity of the bands, ±2σ of the stated noise: by the angle both runs lie on each other."""
 
 
 def residual_charts(calibration: Calibration) -> tuple[ChartSet, ...]:
@@ -55,66 +56,70 @@ def _ways(residuals: Residuals) -> tuple[Across, ...]:
 def _chart_set(calibration: Calibration, kind: str, across: Across, several: bool) -> ChartSet:
     columns = _columns(calibration, kind)
     residuals = calibration.residuals
-    largest = largest_edge(residuals.value[:, columns], residuals.sigma[:, columns])
+    noise = noise_of(residuals, calibration)
+    largest = largest_edge(residuals.value[:, columns], noise.stated[:, columns], noise.found[:, columns])
     unit = deviation_measure(kind, "bias", largest)
     return ChartSet(
         name=f"residuals-{kind}-{across.name}",
         heading=f"{across.heading}, {kind}s" if several else across.heading,
-        spec=_filled(across, unit, largest * unit.factor),
+        spec=_filled(across, unit, largest * unit.factor, wider=noise.times is not None),
         panels=tuple(_panel(calibration, i, across, unit) for i in columns),
     )
 
 
 def _panel(calibration: Calibration, column: int, across: Across, unit: Measure) -> Panel:
     residuals = calibration.residuals
-    value, sigma = residuals.value[:, column], residuals.sigma[:, column]
-    outside = int(np.sum(np.abs(value) > 2 * sigma))
+    noise = noise_of(residuals, calibration)
+    value = residuals.value[:, column]
+    outside = int(np.sum(np.abs(value) > 2 * noise.stated[:, column]))
     rms = float(np.sqrt(np.nanmean(value**2))) * unit.factor
     return Panel(
         title=calibration.sensors[column].name,
         description=f"rms {number(rms, decimals(rms))}{THIN}{unit.label}, {outside} of {len(value)} outside ±2σ",
         condition=None,
-        datasets={DATA_FORM: _rows(residuals, column, across, unit)},
+        datasets={DATA_FORM: _rows(residuals, noise, column, across, unit)},
     )
 
 
-def _rows(residuals: Residuals, column: int, across: Across, unit: Measure) -> list[dict[str, Any]]:
+def _rows(residuals: Residuals, noise: Noise, column: int, across: Across, unit: Measure) -> list[dict[str, Any]]:
     flipped = np.zeros(len(residuals.value), bool) if residuals.flipped is None else residuals.flipped
     return [
         {
             "x": float(f"{x:.6g}"),
             "y": float(f"{y * unit.factor:.5g}"),
             "band": float(f"{2 * s * unit.factor:.5g}"),
+            "found": noise.edge(row - 1, column, unit.factor),
             "run": RUNS[int(turned)],
             "row": row,
         }
         for row, (x, y, s, turned) in enumerate(
-            zip(across.values, residuals.value[:, column], residuals.sigma[:, column], flipped, strict=True),
+            zip(across.values, residuals.value[:, column], noise.stated[:, column], flipped, strict=True),
             1,
         )
         if np.isfinite(y) and np.isfinite(s)
     ]
 
 
-def _filled(across: Across, unit: Measure, largest: float) -> dict[str, Any]:
+def _filled(across: Across, unit: Measure, largest: float, *, wider: bool) -> dict[str, Any]:
     left, right = BETA_RANGE if across.name == BETA else (0, len(across.values) + 1)
     low, high = padded(-largest, largest)
     ranges = {LEFT: left, RIGHT: right, LOW: low, HIGH: high}
-    texts = {UNIT: unit.label, RESIDUAL: f"residual, {unit.label}", BAND: f"2σ, {unit.label}"}
-    found: dict[str, Any] = filled(_spec(across.name, across.title), {**ranges, **texts})
+    texts = {UNIT: unit.label, RESIDUAL: f"residual, {unit.label}", BAND: f"2σ stated, {unit.label}"}
+    found: dict[str, Any] = filled(_spec(across.name, across.title, wider=wider), {**ranges, **texts})
     return found
 
 
 @cache
-def _spec(name: str, title: str) -> dict[str, Any]:
-    """With blanks for the unit and the ranges."""
+def _spec(name: str, title: str, *, wider: bool) -> dict[str, Any]:
+    """With blanks for the unit and the ranges; ``wider``: with the edges of the noise found."""
     x = alt.X("x:Q", title=title, axis=alt.Axis(**ticks(name)), scale=alt.Scale(domain=[LEFT, RIGHT], nice=False))
     y_scale = alt.Scale(domain=[LOW, HIGH])
     y = alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=y_scale)
     base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
     band = base.transform_calculate(low="-datum.band").mark_area(color="var(--accent)", opacity=SHADES[name])
     shades = band.encode(y=alt.Y("low:Q", scale=y_scale), y2="band:Q", detail="run:N")
-    return specification([shades, zero_line(), _marks(base, y)], HEIGHT)
+    found = edges(base, y_scale, "var(--accent)") if wider else []
+    return specification([shades, *found, zero_line(), _marks(base, y)], HEIGHT)
 
 
 def _marks(base: alt.Chart, y: alt.Y) -> alt.Chart:

@@ -19,6 +19,7 @@ from service.flows.flagging.diagnosis import flag_diagnosis
 from service.ingest import read_upload
 from service.judging.judge import judge
 from service.judging.reference import reference_of
+from service.log import log
 from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState, StoredDiagnosis, state_of
 from service.records.session import StoredSession
@@ -26,14 +27,14 @@ from service.settings import VERSION
 from service.storage import Files, Storage
 from service.storage.diagnosis_document import diagnosis_to_dict, inapplicable_to_dict, read_diagnosis, written
 from service.storage.store import Store
-from service.words.diagnosis import NOT_APPLICABLE, summary_of
+from service.words.diagnosis import NOT_APPLICABLE, cannot_be_diagnosed, fault_of_the_program, summary_of
 
 MOST_EARLIER = 10
 """Earlier sessions of the unit that a diagnosis looks at."""
 QUICK_BYTES, QUICK_EARLIER_BYTES = 40_000, 400_000
 """Files up to this size are diagnosed within the request that brought them: some tenths of a second."""
-BREAKDOWNS = (SessionError, ArithmeticError, ValueError, LookupError, AssertionError)
-"""What a session that the numerics cannot digest ends in; it is stored as such and harms nothing else."""
+FAULTS = (ArithmeticError, AssertionError, AttributeError, LookupError, TypeError, ValueError)
+"""What a mistake in the program ends in. A store or memory that is missing is none: it leaves the diagnosis pending."""
 
 
 @dataclass(frozen=True)
@@ -122,22 +123,32 @@ def _known(store: Store, id: str) -> StoredDiagnosis | None:
 
 
 def _made(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
-    """Reads the stored bytes again and looks for causes, where the programme is one that calibrates."""
+    """Reads the stored bytes again and looks for causes, where the programme is one that calibrates.
+
+    Where the program fails it says so, and this version does not try again; the next one does.
+    """
     if task.session.programme not in CALIBRATIONS:
         nothing = written(inapplicable_to_dict(task.session.unit))
         return replace(_nothing_found(task, DiagnosisState.NOT_APPLICABLE, NOT_APPLICABLE, now), document=nothing)
     try:
-        session = _read(storage.files, task.session)
-        found = find_causes(session, _comparable(storage.files, task, session))
-        verdict = _verdict_after(storage, task, session, found)
-    except BREAKDOWNS as fault:
-        return _nothing_found(task, DiagnosisState.FAILED, f"The session cannot be diagnosed: {fault}", now)
+        return _found(storage, task, now)
+    except SessionError as fault:
+        return _nothing_found(task, DiagnosisState.FAILED, cannot_be_diagnosed(fault), now)
+    except FAULTS as fault:
+        log.error("diagnosis failed", session=task.session.id, estimator_version=VERSION, exc_info=fault)
+        return _nothing_found(task, DiagnosisState.FAILED, fault_of_the_program(task.session.id), now)
+
+
+def _found(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
+    """The session's causes, and its verdict with them in the model."""
+    session = _read(storage.files, task.session)
+    found = find_causes(session, _comparable(storage.files, task, session))
     document = written(diagnosis_to_dict(found))
     return replace(
         _nothing_found(task, state_of(found), summary_of(found), now),
         found=read_diagnosis(document),
         document=document,
-        verdict_after=verdict,
+        verdict_after=_verdict_after(storage, task, session, found),
     )
 
 
@@ -178,14 +189,14 @@ def _sensors(session: CalibrationSession) -> list[tuple[str, str]]:
 
 
 def _verdict_after(storage: Storage, task: Task, session: CalibrationSession, found: Diagnosis) -> Verdict | None:
-    """The verdict with the named causes in the model; None where none was named or there is no reference."""
+    """The verdict with the named causes in the model; None where none was named, or where nothing was judged."""
     if not found.findings or task.session.is_reference:
         return None
     with storage.database.reading() as store:
         unit = store.units.key(session.unit)
         reference = reference_of(store, unit, session.block, session.programme, task.session.started_at).session
-        if reference is None:
+        decisions = store.sessions.decisions(task.session.id)
+        if reference is None or not decisions:
             return None
         unit_type, known = store.unit_types.of_unit(session.unit), store.calibrations.get(reference)
-        factor = store.sessions.decisions(task.session.id)[0].coverage_factor
-    return judge(found.calibration, known, unit_type, factor).verdict
+    return judge(found.calibration, known, unit_type, decisions[0].coverage_factor).verdict

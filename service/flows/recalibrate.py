@@ -5,14 +5,13 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from estimator.errors import SessionError
-from estimator.session import RATE_TABLE, ROTATION_ALIGNMENT
 from service.flows.flagging.settle import Occasion
 from service.flows.flagging.verdict import flag_verdict
 from service.flows.keep import keep
 from service.flows.refresh_outlook import refresh_outlook
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
-from service.judging.calibrate import Calibrated, basis_of, calibrate
+from service.judging.calibrate import Calibrated, basis_of, calibrate, rests_on_model
 from service.judging.judge import judge_in_epoch
 from service.judging.model_in_force import model_of
 from service.records.model import Model
@@ -20,8 +19,6 @@ from service.records.session import StoredSession
 from service.storage import Storage
 from service.storage.store import Store
 
-WITHOUT_MODEL = (ROTATION_ALIGNMENT, RATE_TABLE)
-"""Programmes that no accepted cause changes."""
 RECOMPUTED, UNCHANGED, LEFT = "recomputed", "unchanged", "left"
 """What can become of a session."""
 
@@ -76,7 +73,7 @@ def _recalibrate(
     """One session: what became of it and the revision that it now rests on."""
     with storage.database.reading() as store:
         model = model_of(store.models.of_session(stored.id))
-    if model.revision == stored.revision or stored.programme in WITHOUT_MODEL:
+    if model.revision == stored.revision or not rests_on_model(stored.programme):
         return UNCHANGED, stored.revision
     try:
         new = _recomputed(storage, stored, model)

@@ -61,6 +61,12 @@ def calibrate(new: Checked, basis: Basis) -> Calibrated:
     return Calibrated(new, basis.model, parity_calibration(found.result, found.reference), found)
 
 
+def rests_on_model(programme: str) -> bool:
+    """Whether accepted causes change what sessions of a programme give: by their own fit, or by what they are compared
+    with."""
+    return programme in CALIBRATIONS or programme == IN_SERVICE
+
+
 def _under(model: Model, session: CalibrationSession) -> Calibration:
     """Under a model; a session that a cause of it does not show is calibrated without that cause."""
     if model.causes and session.programme in CALIBRATIONS:

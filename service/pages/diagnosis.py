@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from estimator.diagnosis.results import Structure
 from service.charts import ChartSet
 from service.charts.diagnosis import MOST_PANELS, Sides, diagnosis_charts
+from service.charts.noise import noise_of
 from service.judging.model_in_force import in_force
 from service.pages.gain import GainView, gain_view
 from service.pages.residual_table import ResidualTable, residual_table
@@ -15,6 +16,7 @@ from service.records.session import StoredSession
 from service.words.causes import cause_on
 from service.words.diagnosis import HEADLINES, headline, what_to_do
 from service.words.finding import FindingView, evidence, finding_view
+from service.words.fit import bands_in_words
 from service.words.limits import BlindCauses, SeenCause, blind_causes, seen_causes
 
 PENDING = "Still being found out"
@@ -59,6 +61,8 @@ class EvidenceView:
     findings: tuple[FindingView, ...]
     structures: tuple[StructureView, ...]
     charts: tuple[ChartSet, ...]
+    bands: str
+    """What is drawn of the noise."""
     beta: bool
     """Whether the session has angles and runs of a stand."""
     left_out: int
@@ -120,11 +124,12 @@ def _evidence(report: DiagnosisReport, made: StoredDiagnosis, found: Diagnosed) 
     before, after, is_named = found.residuals_before, found.calibration, bool(found.findings)
     places = (*(f.sensors for f in found.findings), *(structure.sensors for structure in found.structures))
     named = [sensor for sensors in places for sensor in sensors]
-    verdicts = report.session.verdict, made.verdict_after
+    verdicts, noise = (report.session.verdict, made.verdict_after), noise_of(before, after)
     return EvidenceView(
         findings=tuple(finding_view(f, in_force(report.revisions)) for f in found.findings),
         structures=tuple(map(_structure, found.structures)),
-        charts=diagnosis_charts(Sides(after.sensors, before, after.residuals if is_named else None), named),
+        charts=diagnosis_charts(Sides(after.sensors, before, after.residuals if is_named else None, noise), named),
+        bands=bands_in_words(after, noise.times),
         beta=before.beta is not None,
         left_out=max(0, len(after.sensors) - MOST_PANELS),
         residuals=residual_table(replace(after, residuals=before)),

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import CALIBRATIONS
 from service.charts import ChartSet
+from service.charts.noise import noise_of
 from service.charts.residuals import residual_charts
 from service.measures import (
     COVERAGE,
@@ -30,7 +31,7 @@ from service.records.diagnosis import DiagnosisSummary
 from service.records.session import ALL_PARAMETERS, SessionReport, StoredSession
 from service.storage.parity_document import parity_from_dict
 from service.words.conditions import Condition, condition_of
-from service.words.fit import FitWords, fit_in_words
+from service.words.fit import FitWords, bands_in_words, fit_in_words
 from service.words.known import combination_in_words
 from service.words.motion import MotionLine, motions_in_words
 from service.words.names import method_name
@@ -83,6 +84,8 @@ class SessionPage:
     parity: ParityView | None
     """Of a recording in service only."""
     charts: tuple[ChartSet, ...]
+    bands: str
+    """What is drawn of the noise."""
     residuals: ResidualTable
     method: str
     rule: str
@@ -101,6 +104,7 @@ def session_page(report: SessionReport, diagnosis: DiagnosisSummary | None = Non
     judged = {(d.sensor, d.parameter): d for d in decisions}
     parameters = parameters_of(calibration)
     coverage = decisions[0].coverage_factor if decisions else COVERAGE
+    noise = noise_of(calibration.residuals, calibration)
     parity = None if calibration.parity is None else parity_from_dict(calibration.parity)
     return SessionPage(
         session=report.session,
@@ -110,6 +114,7 @@ def session_page(report: SessionReport, diagnosis: DiagnosisSummary | None = Non
         fit=fit_in_words(calibration) if parity is None else agreement_in_words(parity),
         parity=None if parity is None else parity_view(parity),
         charts=residual_charts(calibration),
+        bands=bands_in_words(calibration, noise.times),
         residuals=residual_table(calibration),
         method=method_name(calibration.method),
         rule=decisions[0].rule if decisions else "",

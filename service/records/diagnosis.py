@@ -74,7 +74,7 @@ class StoredDiagnosis:
     document: str | None
     """imu-diagnosis/1, JSON as it was written: what the API hands out; None where there was nothing to write."""
     verdict_after: Verdict | None
-    """The verdict that the session would have with the named causes in the model."""
+    """That the session would have with the named causes in the model; None where nothing was judged or named."""
     estimator_version: str
     created_at: datetime
 

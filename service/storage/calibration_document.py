@@ -71,4 +71,5 @@ def residuals_from_dict(entry: dict[str, Any]) -> Residuals:
         flipped=None if run is None else np.array([name == "flipped" for name in run]),
         time=None if entry["time_s"] is None else _numbers(entry["time_s"]),
         temperature=None if entry["temperature_c"] is None else _numbers(entry["temperature_c"]),
+        enlarged_by=entry.get("enlarged_by"),  # absent from earlier versions
     )

@@ -1,5 +1,6 @@
 """How large a cause is, and where it sits, in people's measures."""
 
+import re
 from collections.abc import Iterator
 from math import isfinite
 
@@ -7,6 +8,9 @@ from estimator.causes import find
 from estimator.diagnosis import Finding
 from service.measures import THIN, measured, number
 from service.words.amplitude_measures import amplitude_measure
+
+NUMBERED = re.compile(r" \d+$")
+"""What tells two nonlinear parameters of one unit apart: ``row 1``, ``row 2``."""
 
 
 def amplitudes_of(finding: Finding) -> Iterator[str]:
@@ -48,9 +52,10 @@ def _shape(cause: str, nonlinear: dict[str, float]) -> str:
     return f"{known.shape_words if known else ''} {text}".strip() if text else ""
 
 
-def _place(cause: str, si_unit: str, value: float) -> str:
-    """One nonlinear parameter: a row, a side of the range, or a quantity."""
-    if si_unit.startswith("row"):
+def _place(cause: str, name: str, value: float) -> str:
+    """One nonlinear parameter: a row, a side of the range, or a quantity; two of one unit are numbered."""
+    si_unit = NUMBERED.sub("", name)
+    if si_unit == "row":
         return f"row {number(value, 0)}"
     if si_unit == "side":
         return "upper side" if value > 0 else "lower side" if value < 0 else ""

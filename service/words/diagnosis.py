@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from estimator.diagnosis import Diagnosis, Finding
 from estimator.diagnosis.results import Structure
+from estimator.errors import SessionError
 from service.records.diagnosis import DiagnosisState
 from service.words.causes import what_is_wrong
 
@@ -17,7 +18,7 @@ MOST_FINDINGS = 3
 HEADLINES = {
     DiagnosisState.NOTHING: "Nothing wrong found",
     DiagnosisState.UNEXPLAINED: UNEXPLAINED,
-    DiagnosisState.FAILED: "This session cannot be diagnosed",
+    DiagnosisState.FAILED: "This session could not be diagnosed",
     DiagnosisState.NOT_APPLICABLE: "Not applicable to this programme",
 }
 """Where no cause is named."""
@@ -45,6 +46,20 @@ def summary_of(diagnosis: Diagnosis) -> str:
         who = f" in {', '.join(first.sensors)}" if first.sensors else ", common to all sensors"
         return f"{UNEXPLAINED}{who}: {first.where}."
     return NOTHING
+
+
+def cannot_be_diagnosed(fault: SessionError) -> str:
+    """What the session lacks."""
+    return f"The session cannot be diagnosed: {fault}"
+
+
+def fault_of_the_program(session: str) -> str:
+    """That the program failed, and what holds all the same."""
+    return (
+        "The program failed at this diagnosis: that is a fault of the program, not of the session. The session, its "
+        "calibration and its verdict are stored and hold, and the next version of the program diagnoses it again. "
+        f"The log says what happened, under session {session}: send that to those who maintain the program."
+    )
 
 
 def unexplained_in(structures: Sequence[Structure]) -> str:

@@ -32,6 +32,24 @@ def fit_in_words(calibration: Calibration) -> FitWords:
     return FitWords(_headline(fit), _detail(fit), (*_warnings(fit), *_open(calibration)))
 
 
+def bands_in_words(calibration: Calibration, times: float | None) -> str:
+    """What the bands beside residuals are; ``times``: how much wider the noise found is drawn, None where it is not."""
+    if calibration.residuals.enlarged_by is None:
+        return "The band is ±2σ of the noise that the calibration reckons with."
+    stated = calibration.fit.noise == "stated"
+    band = (
+        "The band is ±2σ of the stated noise."
+        if stated
+        else "The file does not state all noise: the band is ±2σ of what was estimated from the residuals."
+    )
+    if times is None:
+        return band
+    return (
+        f"{band} The readings scatter more than that: the dashed lines are ±2σ of the noise that the calibration "
+        f"reckons with instead, up to {number(times, 1)} times as much."
+    )
+
+
 def _headline(fit: Fit) -> str:
     if fit.p_value is None:
         return "The file states no standard errors: the noise was estimated from the residuals."

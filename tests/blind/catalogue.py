@@ -65,6 +65,8 @@ CATALOGUE = {
     "g-sensitivity": _hidden(3, HISTORY, "history", "both runs", "gyros"),
     "latitude-entry": _hidden(1, HISTORY, "history", "both runs", "gyros"),
     "meridian-error": _hidden(1, WHOLE, "both runs", "gyros"),
+    "thermal-lag": _hidden(1, SENSOR, "temperature", "time", free=2),
+    "vibration-rectification": _hidden(1, SENSOR, "vibration", "accelerometers"),
 }
 
 DISCRETE = frozenset({"positions-swapped", "channels-swapped", "sign-reversed", "runs-swapped", "beta-reversed"})

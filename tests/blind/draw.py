@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from tests.blind.effects_sensor import across
 from tests.blind.schedule import Wanted, draw_schedule
-from tests.blind.world import ARCSEC, STANDARD_G, Array, Noise, Session, Site, Stand, StandSigma, Unit
+from tests.blind.world import ARCSEC, STANDARD_G, Array, Noise, Schedule, Session, Site, Stand, StandSigma, Unit
 
 DEGREE = np.pi / 180
 DEG_PER_HOUR = DEGREE / 3600
@@ -162,7 +162,7 @@ def draw_session(rng: np.random.Generator, needs: frozenset[str] = frozenset(), 
     noise = draw_noise(unit, arrangement.count_time, rng)
     return Session(
         unit=unit,
-        schedule=draw_schedule(wanted, rng),
+        schedule=shaken(draw_schedule(wanted, rng), "vibration" in needs, rng),
         site=site,
         stand=draw_stand(site, rng),
         mounting=draw_mounting(rng),
@@ -175,6 +175,11 @@ def draw_session(rng: np.random.Generator, needs: frozenset[str] = frozenset(), 
 def _most(unit: Unit, longest: int) -> int:
     """Fewer positions where there are many sensors: the covariance is that of all readings."""
     return min(20, longest) if unit.size > 8 else longest
+
+
+def shaken(schedule: Schedule, watched: bool, rng: np.random.Generator) -> Schedule:
+    """The schedule with what shakes the block at every row, where that is watched."""
+    return replace(schedule, vibration=0.1 * rng.weibull(1.5, schedule.rows)) if watched else schedule
 
 
 def draw_earlier(session: Session, rng: np.random.Generator, longest: int = 36) -> Session:
@@ -191,7 +196,7 @@ def draw_earlier(session: Session, rng: np.random.Generator, longest: int = 36) 
     )
     return replace(
         session,
-        schedule=draw_schedule(wanted, rng),
+        schedule=shaken(draw_schedule(wanted, rng), session.schedule.vibration is not None, rng),
         stand=session.stand if rng.random() < 0.5 else draw_stand(session.site, rng),
         started_at=date,
     )

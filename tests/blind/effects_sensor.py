@@ -5,12 +5,19 @@ Every function takes the session, the effect, n (R, 3) and a (R,) of that sensor
 unit vectors across the axis, t the time, T the temperature, k the amplitudes.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 
-from tests.blind.world import Array, Effect, Session, Unit
+from tests.blind.world import Array, Effect, Schedule, Session, Unit
+
+Course = Callable[[Array], Array]
+
+
+FOLLOWED = 400.0
+"""s; the longest steps in which a lag is followed are an eighth of this: short beside the rows."""
 
 
 def across(axis: Array) -> tuple[Array, Array]:
@@ -113,6 +120,34 @@ def temperature_rate(session: Session, effect: Effect, n: Array, a: Array, force
     return effect.k * session.schedule.temperature_rate
 
 
+def smooth(schedule: Schedule) -> Course:
+    """The temperature, °C, at any times, s: through the rows with its true rate there."""
+    return CubicHermiteSpline(schedule.time, schedule.temperature, schedule.temperature_rate)
+
+
+def late(schedule: Schedule, tau: float, course: Course) -> Array:
+    """(R,) L, °C: τ·dL/dt = T − L, L = T at the first row, by implicit midpoint steps short beside τ and the rows."""
+    ends = np.unique(np.concatenate([schedule.time, np.arange(0.0, schedule.time[-1], min(tau, FOLLOWED) / 8)]))
+    driven, step = course((ends[1:] + ends[:-1]) / 2), np.diff(ends) / (2 * tau)
+    found = [float(schedule.temperature[0])]
+    for warm, s in zip(driven.tolist(), step.tolist(), strict=True):
+        found.append((found[-1] * (1 - s) + 2 * s * warm) / (1 + s))
+    return np.array(found)[np.searchsorted(ends, schedule.time)]
+
+
+def thermal_lag(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s² or rad/s: k·(L − mean L), the temperature that a body with a time constant takes on."""
+    return effect.k * centred(late(session.schedule, effect.shape[0], smooth(session.schedule)))
+
+
+def vibration_rectification(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
+    """(R,) m/s²: k·w², averaged over the phases of a shake w of the row's rms; less the mean over the rows."""
+    assert session.schedule.vibration is not None
+    phase = 2 * np.pi * np.arange(16) / 16
+    shake = np.sqrt(2) * session.schedule.vibration[:, None] * np.sin(phase)
+    return effect.k * centred((shake**2).mean(axis=1))
+
+
 def bias_per_position(session: Session, effect: Effect, n: Array, a: Array, force: Array) -> Array:
     """(R,) m/s² or rad/s: k₁ sin β + k₂ cos β."""
     beta = session.schedule.beta
@@ -145,6 +180,8 @@ INPUT = {
     "scale-ramp": scale_ramp,
     "axis-creep": axis_creep,
     "temperature-rate": temperature_rate,
+    "thermal-lag": thermal_lag,
+    "vibration-rectification": vibration_rectification,
     "bias-per-position": bias_per_position,
     "reading-outlier": reading_outlier,
     "g-sensitivity": g_sensitivity,

@@ -8,6 +8,7 @@ from scipy.optimize import brentq
 
 from tests.blind.catalogue import CATALOGUE, DISCRETE, HISTORY, SENSOR
 from tests.blind.effects_outside import OUTSIDE_INPUT
+from tests.blind.effects_sensor import late, smooth
 from tests.blind.physics import mean_readings
 from tests.blind.pose import believed
 from tests.blind.rivals import shapes, step_of
@@ -41,7 +42,18 @@ def draw_effect(session: Session, cause: str, rng: np.random.Generator) -> Effec
     if cause == "sensor-drift":
         direction *= [(1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 1)][rng.integers(3)]
     steps = np.array([step_of(session, cause, k) for k in range(hidden.size)])
-    return Effect(cause, tuple(direction * steps), sensors, _draw_shape(session, cause, rng))
+    shape = _draw_shape(session, cause, rng)
+    if cause == "thermal-lag" and not followed(session, *shape):
+        raise UnhideableError(cause)
+    return Effect(cause, tuple(direction * steps), sensors, shape)
+
+
+def followed(session: Session, tau: float) -> bool:
+    """Whether the rows sample the temperature so closely that what lags behind it by τ, s, can be told from them."""
+    schedule = session.schedule
+    true = late(schedule, tau, smooth(schedule))
+    sampled = late(schedule, tau, lambda t: np.interp(t, schedule.time, schedule.temperature))
+    return bool(np.std(sampled - true) < COARSE * np.std(true - schedule.temperature))
 
 
 def resolved(session: Session) -> bool:
@@ -55,12 +67,14 @@ SINGLE = ("sensor-drift", "g-sensitivity")
 
 
 def _draw_sensor(session: Session, cause: str, rng: np.random.Generator) -> tuple[int, ...]:
-    able = np.flatnonzero(session.unit.gyro) if cause == "g-sensitivity" else np.arange(session.unit.size)
+    able = np.arange(session.unit.size)
+    if cause in ("g-sensitivity", "vibration-rectification"):
+        able = np.flatnonzero(session.unit.gyro == (cause == "g-sensitivity"))
     return (int(rng.choice(able)),)
 
 
 def _draw_shape(session: Session, cause: str, rng: np.random.Generator) -> tuple[float, ...]:
-    if cause == "warm-up":
+    if cause in ("warm-up", "thermal-lag"):
         return (float(session.schedule.time[-1] * np.exp(rng.uniform(np.log(0.05), np.log(1.0)))),)
     if cause == "saturation":
         return (float(rng.choice([-1.0, 0.0, 1.0])),)

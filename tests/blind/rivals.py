@@ -41,6 +41,7 @@ def available(session: Session, cause: str) -> bool:
         "stated noise": session.noise.stated,
         "accelerometers": not unit.gyro.all(),
         "gyros": bool(unit.gyro.any()),
+        "vibration": schedule.vibration is not None,
         "history": True,
     }
     return all(has[need] for need in CATALOGUE[cause].needs)
@@ -100,7 +101,7 @@ def shapes(session: Session, cause: str) -> list[tuple[float, ...]]:
         return [(float(j),) for j in range(1, R)]
     if cause == "reading-outlier":
         return [(float(j),) for j in range(R)]
-    if cause == "warm-up":
+    if cause in ("warm-up", "thermal-lag"):
         return [(float(tau),) for tau in TIME_CONSTANTS * session.schedule.time[-1]]
     return [()]
 
@@ -109,8 +110,10 @@ def _of_each_sensor(session: Session, cause: str) -> Iterator[Candidate]:
     if cause == "excess-noise":
         return
     force, rate = reference_vectors(session, believed(session))
-    R, m = session.schedule.rows, session.unit.size
+    R, m, is_gyro = session.schedule.rows, session.unit.size, session.unit.gyro
     for i in range(m):
+        if cause == "vibration-rectification" and is_gyro[i]:
+            continue
         if cause == "saturation":
             yield Candidate(cause, (i,), _clips(session, i), fixed=True)
             continue

@@ -47,6 +47,8 @@ class Schedule:
     """Whether the file states the time."""
     thermometer: bool = True
     """Whether the file states the temperature."""
+    vibration: Array | None = None
+    """(R,) m/s², rms of what shakes the block while it is averaged; None where it was not watched."""
 
     @property
     def rows(self) -> int:

@@ -72,6 +72,8 @@ def _table(session: Session, readings: Array) -> dict[str, Any]:
         table["time_s"] = schedule.time.tolist()
     if schedule.thermometer:
         table["temperature_c"] = schedule.temperature.tolist()
+    if schedule.vibration is not None:
+        table["vibration_m_s2"] = schedule.vibration.tolist()
     for i, name in enumerate(unit.names):
         table[name] = readings[:, i].tolist()
         if session.noise.stated:

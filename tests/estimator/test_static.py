@@ -8,6 +8,7 @@ from scipy.signal import lfilter
 
 from estimator.calibration.free import calibrate_free, residual_per_freedom
 from estimator.errors import ScheduleError
+from estimator.reading import read_session
 from estimator.session import (
     ACCELEROMETER,
     ARBITRARY_ORIENTATIONS,
@@ -18,6 +19,7 @@ from estimator.session import (
     Stand,
 )
 from estimator.static import Intervals, average, averaged, labelled, mean_errors
+from tests.builders import raw_log
 
 RATE = 100.0
 G = 9.81
@@ -144,3 +146,15 @@ def test_standard_errors_respect_correlated_noise():
 def test_single_samples_have_no_standard_error():
     session = averaged(raw(np.ones((3, 3))), Intervals(np.arange(3), np.arange(1, 4)))
     assert np.isnan(session.standard_errors).all()
+
+
+def test_the_variance_within_each_rest_is_kept_at_the_input():
+    document = raw_log(3, orientations=12, still=400, noise=1e-3)
+    at = np.array(document["table"]["position"])
+    shaken = (at == 3) | (at == 7)
+    shake = 0.2 * np.sqrt(2) * np.sin(np.arange(len(at)) * 2.1)
+    document["table"]["A1"] = (np.array(document["table"]["A1"]) + 0.12 * shaken * shake).tolist()
+    found = average(read_session(document), residual_per_freedom).vibration
+    np.testing.assert_allclose(found[[3, 7], 0], 0.2**2, rtol=0.02)
+    np.testing.assert_allclose(found[[3, 7], 1], 1e-6, rtol=0.5)
+    np.testing.assert_allclose(np.delete(found[:, 0], [3, 7]), 1e-6, rtol=0.5)

@@ -26,19 +26,6 @@ class Terminal(io.StringIO):
 
 
 @pytest.fixture
-def written() -> Iterator[io.StringIO]:
-    """What the log writes for a program."""
-    root = logging.getLogger()
-    handlers, level = root.handlers[:], root.level
-    root.handlers.clear()
-    stream = io.StringIO()
-    write_log(stream)
-    yield stream
-    root.handlers[:] = handlers
-    root.setLevel(level)
-
-
-@pytest.fixture
 def failing(settings: Settings) -> Iterator[httpx.Client]:
     """HTTP to a service with a route that nobody foresaw to fail."""
     app: FastAPI = create_app(settings)

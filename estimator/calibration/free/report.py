@@ -108,6 +108,14 @@ def report(session: CalibrationSession, known: Knowledge, fit: Fit, gauge: str) 
         covariance=known.covariance,
         repeatability=known.covariance,
         fit=fit,
-        residuals=Residuals(known.residual, known.noise, None, None, session.time, session.temperature),
+        residuals=Residuals(
+            value=known.residual,
+            sigma=known.noise,
+            beta=None,
+            flipped=None,
+            time=session.time,
+            temperature=session.temperature,
+            enlarged_by=1.0,
+        ),
         gauge=gauge,
     )

@@ -107,14 +107,13 @@ def turned_back(state: SearchState, fitted: Amplitudes) -> Array:
 def true_errors(state: SearchState) -> Array:
     """(R, m) standard errors with the excess noise in them, reading units; no claim makes them smaller than stated."""
     session, scale = state.baseline.session, state.baseline.parameters.scale
-    larger = {n.sensor: n.ratio for n in state.scatter}
+    larger = np.ones(state.sensor_count)
+    for noisy in state.scatter:
+        larger[noisy.sensor] *= noisy.ratio
     for claim in state.noise_claims:
-        larger |= {i: claim.ratio for i, kind in enumerate(state.baseline.setting.kinds) if kind == claim.kind}
-    errors = session.standard_errors.copy()
-    for i, ratio in larger.items():
-        repeated = (scale[i] * session.sensors[i].bias_repeatability) ** 2
-        errors[:, i] = np.sqrt(max(ratio, 1.0) * (errors[:, i] ** 2 + repeated) - repeated)
-    return errors
+        larger[[kind == claim.kind for kind in state.baseline.setting.kinds]] *= max(claim.ratio, 1.0)
+    repeated = (scale * np.array([s.bias_repeatability for s in session.sensors])) ** 2
+    return np.asarray(np.sqrt(larger * (session.standard_errors**2 + repeated) - repeated))
 
 
 def extended_calibration(state: SearchState, fitted: Amplitudes) -> Calibration:

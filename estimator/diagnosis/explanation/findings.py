@@ -47,7 +47,7 @@ def finding(state: SearchState, found: Found, fitted: Amplitudes, part: slice, n
         amplitude=tuple(map(float, amplitude)),
         sigma=tuple(map(float, sigma)),
         units=tuple(u.replace("m/s²", "rad/s") if gyro else u for u in cause.units),
-        nonlinear_each=(nonlinear(found),),
+        nonlinear_each=(nonlinear(cause.nonlinear_units, best.shape.nonlinear),),
         alternatives=(
             *(r.cause.identifier for r in others),
             *(("unexplained",) if found.unnamed > 1 - CREDIBLE else ()),
@@ -59,10 +59,11 @@ def finding(state: SearchState, found: Found, fitted: Amplitudes, part: slice, n
     )
 
 
-def nonlinear(found: Found) -> dict[str, float]:
-    """The shape parameters by unit; rows counted from 1, a saturation limit at the input."""
-    pairs = zip(found.best.cause.nonlinear_units, found.best.shape.nonlinear, strict=False)
-    return {unit: value + 1 if unit == "row" else value for unit, value in pairs}
+def nonlinear(units: Sequence[str], values: Sequence[float]) -> dict[str, float]:
+    """The shape parameters by unit, ``s 1`` and ``s 2`` where two share one; rows counted from 1."""
+    names = [f"{u} {units[: k + 1].count(u)}" if units.count(u) > 1 else u for k, u in enumerate(units)]
+    pairs = zip(names, units, values, strict=False)
+    return {name: value + 1 if unit == "row" else value for name, unit, value in pairs}
 
 
 def noise_cause(state: SearchState) -> Cause | None:

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from estimator.causes.sensor import ReadingOutlier
 from estimator.diagnosis.explanation.naming import merged, named_cause
 from estimator.diagnosis.explanation.rivals import CREDIBLE, SHOWN
 from estimator.diagnosis.record.clipping import Clip
@@ -15,30 +16,51 @@ from estimator.diagnosis.record.turned import LEAST
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.results import Finding, Rival, Structure
 from estimator.forward import measured
+from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, CalibrationSession
 
 
-def clip_findings(clips: Sequence[Clip], session: CalibrationSession, baseline: Baseline) -> tuple[Finding, ...]:
-    """Clipped sensors of a session as it came, as one finding: every limit at the input, with the noise of a reading.
+def clip_findings(
+    clips: Sequence[Clip], session: CalibrationSession, baseline: Baseline, calibration: Calibration
+) -> tuple[Finding, ...]:
+    """Clipped sensors of a session as it came, as one finding: every limit at the input, with the noise of a reading
+    and the uncertainty of the scale factor that it is counted by.
 
-    ``baseline``: of the session put right.
+    ``baseline`` and ``calibration``: of the session put right.
     """
-    inputs = np.abs(measured(session)[0] / baseline.parameters.scale)
-    found = [(c.cause, clip_finding(c, float(inputs[c.rows[0], c.sensor]), baseline)) for c in clips]
+    inputs = measured(session)[0] / baseline.parameters.scale
+    limits = [abs(float((c.side * inputs[list(c.rows), c.sensor]).max())) for c in clips]
+    scales = [calibration.sensors[c.sensor].scale for c in clips]
+    known = [abs(k.sigma / k.value) if k.sigma and k.value else 0.0 for k in scales]
+    found = [
+        (c.cause, clip_finding(c, limit, limit * relative, baseline))
+        for c, limit, relative in zip(clips, limits, known, strict=True)
+    ]
     return tuple(merged(found))
 
 
-def clip_finding(clip: Clip, limit: float, baseline: Baseline) -> Finding:
-    """One sensor clipped on one side at a limit, m/s² or rad/s at the input."""
+def clip_finding(clip: Clip, limit: float, by_scale: float, baseline: Baseline) -> Finding:
+    """One sensor clipped on one side at a limit known to ``by_scale`` by its scale, both m/s² or rad/s at the input.
+
+    A single reading short of the input is clipped if it is the extreme of its R rows on this side; one that does not
+    belong to the rest is so with a chance of 1 in R: that is their odds.
+    """
+    rows = len(baseline.session.readings)
+    share = 1.0 if len(clip.rows) > 1 else rows / (rows + 1)
     sensor = baseline.session.sensors[clip.sensor]
     unit = "m/s²" if sensor.kind == ACCELEROMETER else "rad/s"
     return replace(
         named_cause(clip.cause, (sensor.name,), clip.p_value, clip.strength),
         amplitude=(limit,),
-        sigma=(float(np.sqrt(np.median(baseline.variance[:, clip.sensor]))),),
+        sigma=(float(np.hypot(np.sqrt(np.median(baseline.variance[:, clip.sensor])), by_scale)),),
         units=(unit,),
         nonlinear_each=({unit: limit, "side": clip.side},),
-        ranking=(Rival(clip.cause.identifier, (sensor.name,), 1.0, clip.strength),),
+        alternatives=() if share > CREDIBLE else (ReadingOutlier.identifier,),
+        ranking=tuple(
+            Rival(name, (sensor.name,), part, clip.strength)
+            for name, part in ((clip.cause.identifier, share), (ReadingOutlier.identifier, 1 - share))
+            if part > 0
+        ),
     )
 
 

@@ -1,42 +1,48 @@
 """Channels at the end of their range: told by readings that are the same to the last digit, and put right.
 
 A clipped sensor reads exactly its limit in every row whose input lies beyond it. So readings that are all one and the
-same extreme are suspected: the sensor's other rows alone say, by a linear fit, what it should have read there. Where
-that is beyond the limit by more than chance, the sensor is clipped. Far beyond it no small effect about the fitted
-baseline describes that any more, since the clipped rows have spoiled the fit: so they take no part in it.
+same extreme are suspected, and of a raw log rows in which a good part of the samples is: everything else in the session
+says what the sensor should have read there. Where that is beyond the limit by more than chance, the sensor is clipped.
+Far beyond it no small effect about the fitted baseline describes that any more, since the clipped rows have spoiled
+the fit: so they take no part in it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import groupby, pairwise
 
 import numpy as np
-from scipy.special import fdtrc
 
-from estimator.applied_vector import stand_geometry
 from estimator.causes.contract import Cause
-from estimator.session import TWO_AXIS_STAND, Array, CalibrationSession
+from estimator.diagnosis.record.expected import Expected, explained, in_orientations, on_stand
+from estimator.session import ACCELEROMETER, TWO_AXIS_STAND, Array, CalibrationSession
 
 FEWEST = 2
 """Rows at one extreme; a single one is as well a reading that does not belong to the rest."""
 
-SPARE = 3
-"""Degrees of freedom that the sensor's other rows must leave: fewer hardly tell their own scatter."""
+CUT = 0.05
+"""Part of a row's samples at the end of the channel's range from which its mean is spoiled: it is then short by 2 % of
+the noise of a sample, which a rest of a thousand samples hardly shows."""
 
 LEVEL = 1e-6
 """p-value below which a sensor is clipped, shared among sensors and sides: its readings are left out, which must not
 happen by chance once in the life of a fleet."""
 
-SEEN = 1e-6
-"""Share of the strongest direction above which the other rows see one: rounding lies far below."""
-
-SHORT = 3.0
-"""Standard errors by which a clipped row may be expected short of the limit: noise alone does so at the margin."""
-
-EXACT = 1e-9
-"""Least scatter of the readings relative to their range: simulated readings may have none."""
-
 FREE = 1e3
 """Standard error given to a clipped reading, in ranges of the sensor's readings: it takes no part any more."""
+
+UPPER, LOWER = 1.0, -1.0
+"""Sides of the range."""
+
+
+@dataclass(frozen=True, eq=False)
+class Suspect:
+    """Rows in which one sensor may stand at one end of its range."""
+
+    sensor: int
+    side: float
+    rows: Array
+    """(k,) numbers of the rows."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,64 +74,70 @@ class Clip:
 
 
 def unclipped(session: CalibrationSession, catalogue: Sequence[Cause]) -> tuple[list[Clip], CalibrationSession]:
-    """The sensors clipped in a session on a stand, and the session put right."""
+    """The sensors clipped in an averaged session, and the session put right."""
     cause = next((c for c in catalogue if c.clips), None)
-    if session.programme != TWO_AXIS_STAND or cause is None:
+    if cause is None:
         return [], session
-    clips = [clip for i in range(len(session.sensors)) for clip in clips_of(session, i, cause)]
+    clips = clips_among(session, list(suspected(session)), cause)
+    if not clips and session.programme != TWO_AXIS_STAND:
+        clips = clipped_once(session, cause)
     for clip in clips:
         session = clip.put_right(session)
     return clips, session
 
 
-def clips_of(session: CalibrationSession, i: int, cause: Cause) -> list[Clip]:
-    """The sides on which sensor i is clipped."""
-    u = session.readings[:, i]
-    ends = {side: np.flatnonzero(u == side * (side * u).max()) for side in (1.0, -1.0)}
-    tied = {side: rows for side, rows in ends.items() if FEWEST <= len(rows) < len(u)}
-    if not tied:
-        return []
-    left_out = np.concatenate(list(tied.values()))
-    expected, covariance, freedom = predicted(session, i, left_out)
-    if freedom < SPARE:
-        return []
-    clips, start = [], 0
-    for side, rows in tied.items():
-        own = slice(start, start := start + len(rows))
-        strength, p_value = significance(side * (expected[own] - u[rows]), covariance[own, own], freedom)
+def clips_among(session: CalibrationSession, suspects: Sequence[Suspect], cause: Cause) -> list[Clip]:
+    """Those of the suspects that are clipped, none of which takes part in saying what the others should have read."""
+    found = []
+    for suspect, expected in zip(suspects, expectations(session, suspects), strict=True):
+        if expected is None or (len(suspect.rows) < FEWEST and not expected.believed):
+            continue
+        strength, p_value = expected.significance(session.readings[suspect.rows, suspect.sensor], suspect.side)
         if p_value < LEVEL / (2 * len(session.sensors)):
-            clips.append(Clip(cause, i, side, tuple(map(int, rows)), expected[own], p_value, strength))
-    return clips
+            rows = tuple(map(int, suspect.rows))
+            found.append(Clip(cause, suspect.sensor, suspect.side, rows, expected.value, p_value, strength))
+    return found
 
 
-def predicted(session: CalibrationSession, i: int, left_out: Array) -> tuple[Array, Array, int]:
-    """Readings (k,) that sensor i should have in rows ``left_out`` (k,) by its others, reading units; with their
-    covariance (k, k) and the degrees of freedom.
-
-    u = c₀ + c·n + c₂·a², a along the nominal axis, fitted by least squares; no freedom where the others leave it open.
-    """
-    n = stand_geometry(session).n[:, i]
-    size = float(np.linalg.norm(n[0]))
-    along = n @ session.sensors[i].nominal_axis
-    terms = np.column_stack([np.ones(len(n)), n / size, (along / size) ** 2])
-    kept = np.setdiff1d(np.arange(len(n)), left_out)
-    _, values, turn = np.linalg.svd(terms[kept], full_matrices=False)
-    seen = turn[values > SEEN * values[0]]
-    freedom = len(kept) - len(seen)
-    if freedom < SPARE or np.abs(terms[left_out] - terms[left_out] @ seen.T @ seen).max() > SEEN:
-        return np.zeros(len(left_out)), np.zeros((len(left_out),) * 2), 0
-    basis = terms @ seen.T
-    coefficients, *_ = np.linalg.lstsq(basis[kept], session.readings[kept, i], rcond=None)
-    rest = session.readings[kept, i] - basis[kept] @ coefficients
-    variance = float(rest @ rest) / freedom + (EXACT * np.ptp(session.readings[:, i])) ** 2
-    lean = basis[left_out] @ np.linalg.inv(basis[kept].T @ basis[kept]) @ basis[left_out].T
-    return basis[left_out] @ coefficients, variance * (np.eye(len(left_out)) + lean), freedom
+def clipped_once(session: CalibrationSession, cause: Cause) -> list[Clip]:
+    """The sensor that is clipped in a single row, or in one on each side, where the readings do not fit together with
+    it and do without: so much beyond its limit a row spoils the orientations that the linear search starts from."""
+    if explained(session):
+        return []
+    ends = [(UPPER, np.argmax), (LOWER, np.argmin)]
+    felt = [i for i, sensor in enumerate(session.sensors) if sensor.kind == ACCELEROMETER]
+    each = [[Suspect(i, side, np.array([last(session.readings[:, i])])) for side, last in ends] for i in felt]
+    found = [clips_among(session, suspects, cause) for suspects in each]
+    return max(found, key=lambda clips: sum(clip.strength**2 for clip in clips), default=[])
 
 
-def significance(beyond: Array, covariance: Array, freedom: int) -> tuple[float, float]:
-    """Strength, standard errors, and p-value of readings ``beyond`` (k,) a limit, reading units, with their covariance
-    (k, k); p = 1 where one of them stays short of it."""
-    if np.any(beyond < -SHORT * np.sqrt(np.diagonal(covariance))) or beyond.sum() <= 0:
-        return 0.0, 1.0
-    square = float(beyond @ np.linalg.solve(covariance, beyond))
-    return float(np.sqrt(square)), float(fdtrc(len(beyond), freedom, square / len(beyond)))
+def suspected(session: CalibrationSession) -> Iterator[Suspect]:
+    """Both sides of every sensor that has several rows at one end of its range. Gyros that rest in unknown orientations
+    are none of them: nothing says what they should have read."""
+    for i, sensor in enumerate(session.sensors):
+        if session.programme != TWO_AXIS_STAND and sensor.kind != ACCELEROMETER:
+            continue
+        sides = [(side, np.flatnonzero(at_end(session, i, k, side))) for k, side in enumerate((UPPER, LOWER))]
+        if any(len(rows) >= FEWEST for _, rows in sides):
+            yield from (Suspect(i, side, rows) for side, rows in sides if 0 < len(rows) < len(session.readings))
+
+
+def at_end(session: CalibrationSession, i: int, k: int, side: float) -> Array:
+    """(R,) bool: rows of sensor i that stand at its k-th end, on a side."""
+    if session.at_ends is not None:
+        return np.asarray(session.at_ends[:, i, k] >= CUT)
+    u = side * session.readings[:, i]
+    return np.asarray(u == u.max())
+
+
+def expectations(session: CalibrationSession, suspects: Sequence[Suspect]) -> list[Expected | None]:
+    """What to expect in the rows of every suspect, none of which takes part, in order."""
+    if session.programme != TWO_AXIS_STAND:
+        return in_orientations(session, [(s.sensor, s.rows) for s in suspects]) if suspects else []
+    found: list[Expected | None] = []
+    for i, both in groupby(suspects, key=lambda s: s.sensor):
+        sides = list(both)
+        together = on_stand(session, (i, np.concatenate([s.rows for s in sides])))
+        ends = np.cumsum([0, *(len(s.rows) for s in sides)])
+        found += [None if together is None else together.of(slice(a, b)) for a, b in pairwise(ends)]
+    return found

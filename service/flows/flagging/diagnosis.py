@@ -7,7 +7,7 @@ from estimator.causes import cause
 from estimator.diagnosis import Finding
 from service.flows.flagging.settle import Found, Occasion, settle
 from service.judging.model_in_force import in_force
-from service.records.diagnosis import Diagnosed, DiagnosisState, StoredDiagnosis
+from service.records.diagnosis import Diagnosed, StoredDiagnosis
 from service.records.flag import Concern, Flag, Matter
 from service.records.model import ModelRevision
 from service.records.session import StoredSession
@@ -21,15 +21,16 @@ GONE = "The diagnosis of the session of {day} no longer finds it."
 
 
 def flag_diagnosis(store: Store, made: StoredDiagnosis, at: datetime) -> None:
-    """Settles the unit's flags; the diagnosis of an older session than its latest, or a failed one, says nothing."""
+    """Settles the unit's flags. An older session than its latest says nothing, nor one without a diagnosis: a failed
+    one, or a recording in which no causes are looked for."""
     session = store.sessions.get(made.session)
     summary = store.fleet.unit(session.unit)
-    if made.state is DiagnosisState.FAILED or summary is None or summary.last_session != session.id:
+    if made.found is None or summary is None or summary.last_session != session.id:
         return
     unit = store.units.hold(session.unit)
     opened = tuple(flag for flag in store.flags.open_of(unit) if flag.matter in MATTERS)
     accepted = in_force(store.models.of_session(session.id))
-    concerns = () if made.found is None else tuple(_concerns(made.found, session, accepted))
+    concerns = tuple(_concerns(made.found, session, accepted))
     gone = GONE.format(day=day_of(session.started_at))
     clear = {flag.key: gone for flag in opened if _speaks_of(session, flag)}
     settle(store, Occasion(unit, session.id, at), opened, Found(concerns, clear))

@@ -22,6 +22,7 @@ STRENGTH = 40.0
 
 SHAPES = {
     "warm-up": (900.0,),
+    "thermal-lag": (900.0,),
     "bias-jump": (17.0,),
     "reading-outlier": (17.0,),
     "sensor-drift": (0.0, 1.0, 0.0, 0.0),

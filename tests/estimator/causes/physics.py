@@ -67,6 +67,7 @@ class Seen:
         self.pn, self.on = (n @ tangents(world.truth.axis[i])).T
         self.t, self.beta = session.time, session.beta
         self.T = np.zeros_like(self.t) if session.temperature is None else session.temperature
+        self.swing = np.zeros_like(self.t) if session.vibration is None else session.vibration[:, i]
         self.elapsed, self.warmth = self.t - np.mean(self.t), self.T - np.mean(self.T)
         self.force = applied(session, ACCELEROMETER, Happened({}))
         self.row, self.flipped = np.arange(len(n)), session.flipped
@@ -79,6 +80,21 @@ class Seen:
     def rate(self) -> Array:
         """(R,) dT/dt from neighbouring rows, °C/s."""
         return np.gradient(self.T, self.t)
+
+    def late(self, tau: float) -> Array:
+        """(R,) K: T weighed by exp(−(t − s)/τ)/τ over the past s, steady before the first row; less its mean.
+
+        By Gauss–Legendre quadrature of the temperature between neighbouring rows, in pieces short beside τ.
+        """
+        nodes, weights = np.polynomial.legendre.leggauss(6)
+        ends = np.unique(np.concatenate([self.t, np.arange(self.t[0], self.t[-1], tau / 4)]))
+        half, middle = np.diff(ends) / 2, (ends[1:] + ends[:-1]) / 2
+        s, w = (middle[:, None] + half[:, None] * nodes).ravel(), (half[:, None] * weights).ravel()
+        ago = (self.t[:, None] - s) / tau
+        kernel = np.where(ago > 0, np.exp(-np.maximum(ago, 0)), 0.0)
+        past = kernel @ (w * np.interp(s, self.t, self.T)) / tau
+        found = past + self.T[0] * np.exp(-(self.t - self.t[0]) / tau)
+        return found - found.mean()
 
 
 def turned_head(alpha: Callable[[CalibrationSession], Array], beta: Callable[[CalibrationSession], Array]) -> Acted:
@@ -166,6 +182,8 @@ ACTED: dict[str, Acted] = {
     "scale-ramp": term(lambda s, x: (s.elapsed * s.a,)),
     "axis-creep": term(lambda s, x: (s.pn * s.elapsed, s.on * s.elapsed)),
     "temperature-rate": term(lambda s, x: (s.rate(),)),
+    "thermal-lag": term(lambda s, x: (s.late(x[0]),)),
+    "vibration-rectification": term(lambda s, x: (s.swing - np.mean(s.swing),)),
     "bias-per-position": term(lambda s, x: (np.sin(s.beta), np.cos(s.beta))),
     "reading-outlier": term(lambda s, x: (np.where(s.row == x[0], 1.0, 0.0),)),
     "g-sensitivity": term(lambda s, x: tuple(s.force.T)),

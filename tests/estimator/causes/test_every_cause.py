@@ -33,6 +33,8 @@ TABLE = [
     "scale-ramp",
     "axis-creep",
     "temperature-rate",
+    "thermal-lag",
+    "vibration-rectification",
     "bias-per-position",
     "reading-outlier",
     "excess-noise",

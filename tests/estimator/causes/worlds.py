@@ -21,7 +21,13 @@ def wandering(schedule: CalibrationSession, seed: int = 2) -> CalibrationSession
     shuffled = at_rows(schedule, order)
     time = np.cumsum(rng.uniform(80, 160, len(order))) - 80.0
     turn = 2 * np.pi * time / time[-1]
-    return replace(shuffled, time=time, temperature=21 + 2 * np.sin(2.3 * turn) + np.cos(3.7 * turn))
+    swing = np.random.default_rng(seed + 1).gamma(1.0, 1e-2, (len(order), 1))
+    return replace(
+        shuffled,
+        time=time,
+        temperature=21 + 2 * np.sin(2.3 * turn) + np.cos(3.7 * turn),
+        vibration=np.repeat(swing, len(schedule.sensors), axis=1),
+    )
 
 
 def truth_of(session: CalibrationSession, seed: int = 3) -> SensorParameters:

@@ -6,7 +6,8 @@ import httpx
 import pytest
 
 from tests.conftest import Holding
-from tests.service.diagnosed import ECCENTRIC, TEMPERATURE, UNEXPLAINED, drawn, files_of, held, send
+from tests.service.diagnosed import ECCENTRIC, TEMPERATURE, UNEXPLAINED, drawn, files_of, held, send, warm
+from tests.service.recordings import recording_document
 
 
 def flagged(client: httpx.Client, id: str) -> list[tuple[str, str, str]]:
@@ -26,6 +27,18 @@ def test_an_unexplained_structure_raises_a_flag_on_the_unit(holding: Holding) ->
 
 def test_a_fault_of_the_stand_raises_a_flag_on_the_stand(holding: Holding) -> None:
     assert ("stand", drawn(ECCENTRIC).session["stand"]["id"], "raised") in flagged(*held(holding, ECCENTRIC))
+
+
+def test_a_recording_in_which_no_causes_are_looked_for_speaks_for_resolving_none(holding: Holding) -> None:
+    document = warm(2, "2026-03-05T08:00:00Z")
+    client = holding(json.dumps(document).encode())
+    own = {"unit": document["unit"], "sensors": document["sensors"], "started_at": "2026-09-01T09:00:00Z"}
+    recording = recording_document(m=len(document["sensors"])) | own
+    send(client, recording)
+    (unit,) = client.get("/api/v1/units").json()["units"]
+    assert unit["last_at"].startswith("2026-09-01")
+    [flag] = [flag for flag in client.get("/api/v1/flags").json()["flags"] if flag["matter"] == "cause"]
+    assert (flag["state"], flag["proposal"]) == ("raised", "")
 
 
 @pytest.mark.parametrize("accept", [True, False])

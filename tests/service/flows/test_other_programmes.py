@@ -5,9 +5,11 @@ from datetime import UTC, datetime
 
 import pytest
 
+from estimator.session import CALIBRATIONS, IN_SERVICE, PROGRAMMES
 from service.flows.diagnose import diagnose, task_of
 from service.flows.recalibrate import recalibrate
 from service.flows.receive import upload
+from service.judging.calibrate import rests_on_model
 from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState
 from service.records.model import ModelRevision, Scope
@@ -80,10 +82,16 @@ def test_a_recording_is_compared_again_with_the_reference_under_its_new_model(st
     assert before.parity["chi2"] != after.parity["chi2"]
 
 
-def test_no_accepted_cause_changes_an_alignment(storage: Storage) -> None:
-    reference, alignment = stored(storage, session_bytes()), stored(storage, OTHERS["alignment"])
+@pytest.mark.parametrize("programme", ["alignment", "rate table"])
+def test_no_accepted_cause_changes_what_is_no_calibration(storage: Storage, programme: str) -> None:
+    reference, other = stored(storage, session_bytes()), stored(storage, OTHERS[programme])
     accepted(storage, reference)
     done = recalibrate(storage, "BA-017", NOW)
     assert (done.recomputed, done.unchanged) == (1, 1)
     with storage.database.reading() as store:
-        assert store.calibrations.revisions(alignment) == (0,)
+        assert store.calibrations.revisions(other) == (0,)
+
+
+def test_a_programme_that_nobody_entered_anywhere_rests_on_no_model() -> None:
+    known = {programme: rests_on_model(programme) for programme in (*PROGRAMMES, "two-point")}
+    assert [programme for programme, rests in known.items() if rests] == [*CALIBRATIONS, IN_SERVICE]

@@ -10,7 +10,7 @@ from sqlalchemy import text as sql
 from service.app import create_app
 from service.storage import Storage
 from tests.conftest import Holding, SettingsHolding
-from tests.service.diagnosed import ALIASES, TEMPERATURE, UNEXPLAINED, drawn, files_of, held, warm
+from tests.service.diagnosed import ALIASES, TEMPERATURE, UNEXPLAINED, drawn, files_of, held, send, warm
 from tests.service.pages.test_http import HTML, MOST_QUERIES, counted
 from tests.service.sessions import session_bytes, session_id
 from tests.serving import http_client
@@ -68,6 +68,25 @@ def test_the_gain_is_shown_on_the_session_before_too(holding: Holding) -> None:
     text = page_after(holding, follows=True)
     assert "Positions held out" in text
     assert text.index("The session before") > text.index("the session before, of <time")
+
+
+def test_a_unit_type_without_tolerances_is_diagnosed_like_any_other(holding: Holding) -> None:
+    client = holding(json.dumps(warm(1, "2026-01-05T08:00:00Z")).encode())
+    name = client.get("/api/v1/units/WARM-1").json()["unit_type"]["name"]
+    none = {"tolerances": dict.fromkeys(("scale", "bias", "quadratic", "axis"))}
+    client.put(f"/api/v1/unit-types/{name}", json=none).raise_for_status()
+    text = page(client, send(client, warm(2, "2026-03-05T08:00:00Z")))
+    assert "The zero of A2 follows the temperature." in text
+    assert "No verdict: nothing of this session was judged." in text
+
+
+def test_what_a_cause_explains_is_no_noise(holding: Holding) -> None:
+    document = json.dumps(warm(2, "2026-03-05T08:00:00Z")).encode()
+    client, id = holding(document), session_id(document)
+    assert "The readings scatter more than that" in client.get(f"/sessions/{id}", headers=HTML).text
+    text = page(client, id)
+    assert "The band is ±2σ of the stated noise." in text
+    assert "scatter more" not in text
 
 
 def test_an_accepted_cause_is_listed_and_the_unit_recomputed(holding: Holding) -> None:

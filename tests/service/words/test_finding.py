@@ -5,12 +5,22 @@ from math import nan
 
 import pytest
 
+from estimator.diagnosis.explanation.findings import nonlinear
+from service.measures import THIN
 from service.words.amplitudes import amplitudes_of, shape_of
 from service.words.causes import cause_name, cause_on, what_is_wrong
 from service.words.finding import evidence, finding_view
 from tests.service.findings import JUMP
 
 NAMED = replace(JUMP, alternatives=())
+
+
+def test_two_shape_parameters_of_one_unit_are_told_apart() -> None:
+    each = nonlinear(("s", "row", "s"), (60.0, 3.0, 900.0))
+    assert each == {"s 1": 60.0, "row": 4.0, "s 2": 900.0}
+    assert nonlinear(("row", "s"), (3.0, 60.0)) == {"row": 4.0, "s": 60.0}
+    words = shape_of(replace(JUMP, cause="warm-up", nonlinear_each=(each,)))
+    assert words == f"time constant 60{THIN}s and row 4 and 900{THIN}s"
 
 
 def test_a_named_cause_is_said_in_its_sentence() -> None:

@@ -1,0 +1,152 @@
+"""What a sensor should have read in some rows, by everything that those readings take no part in.
+
+On a stand the applied vectors are known, so a sensor's other rows say it by a linear fit. In arbitrary orientations
+the whole session is fitted without those readings: the other sensors and the sensor's other rows say it together.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import chdtrc, fdtrc
+
+from estimator.applied_vector import gravity, stand_geometry
+from estimator.calibration.free import accelerometer_rows, solve
+from estimator.calibration.free.excess import UNLIKELY
+from estimator.calibration.free.model import linearise
+from estimator.calibration.free.model import predicted as readings_of
+from estimator.calibration.free.solve import Solution
+from estimator.session import ACCELEROMETER, Array, CalibrationSession
+
+SPARE = 3
+"""Degrees of freedom that the other readings must leave: fewer hardly tell their own scatter."""
+
+SEEN = 1e-6
+"""Share of the strongest direction above which the other rows see one: rounding lies far below."""
+
+EXACT = 1e-9
+"""Least scatter of the readings relative to their range: simulated readings may have none."""
+
+UNWEIGHTED = 1e3
+"""Standard error of a reading that takes no part, relative to g: as if it were not there, and still finite."""
+
+SHORT = 3.0
+"""Standard errors by which a clipped row may be expected short of the limit: noise alone does so at the margin."""
+
+Cells = tuple[int, Array]
+"""A sensor, and rows (k,) of it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Expected:
+    """What a sensor should have read in k rows."""
+
+    value: Array
+    """(k,) reading units."""
+    covariance: Array
+    """(k, k) of what would be read there, reading units squared."""
+    freedom: float
+    """Degrees of freedom that the covariance is known with; infinite where the stated noise is believed."""
+
+    @property
+    def believed(self) -> bool:
+        """Whether the stated noise explains all readings that take part."""
+        return bool(np.isinf(self.freedom))
+
+    def of(self, rows: slice) -> "Expected":
+        """Of some of the rows."""
+        return Expected(self.value[rows], self.covariance[rows, rows], self.freedom)
+
+    def significance(self, read: Array, side: float) -> tuple[float, float]:
+        """Strength, standard errors, and p-value of being expected beyond what was read (k,), reading units, on a side.
+
+        p = 1 where a row is expected plainly short of it.
+        """
+        beyond = side * (self.value - read)
+        if np.any(beyond < -SHORT * np.sqrt(np.diagonal(self.covariance))) or beyond.sum() <= 0:
+            return 0.0, 1.0
+        square, k = float(beyond @ np.linalg.solve(self.covariance, beyond)), len(beyond)
+        chance = chdtrc(k, square) if self.believed else fdtrc(k, self.freedom, square / k)
+        return float(np.sqrt(square)), float(chance)
+
+
+def on_stand(session: CalibrationSession, cells: Cells) -> Expected | None:
+    """By the sensor's other rows; None where they leave it open.
+
+    u = c₀ + c·n + c₂·a², a along the nominal axis, fitted by least squares.
+    """
+    i, left_out = cells
+    n = stand_geometry(session).n[:, i]
+    size = float(np.linalg.norm(n[0]))
+    along = n @ session.sensors[i].nominal_axis
+    terms = np.column_stack([np.ones(len(n)), n / size, (along / size) ** 2])
+    kept = np.setdiff1d(np.arange(len(n)), left_out)
+    _, values, turn = np.linalg.svd(terms[kept], full_matrices=False)
+    seen = turn[values > SEEN * values[0]]
+    freedom = len(kept) - len(seen)
+    if freedom < SPARE or np.abs(terms[left_out] - terms[left_out] @ seen.T @ seen).max() > SEEN:
+        return None
+    basis = terms @ seen.T
+    coefficients, *_ = np.linalg.lstsq(basis[kept], session.readings[kept, i], rcond=None)
+    rest = session.readings[kept, i] - basis[kept] @ coefficients
+    variance = float(rest @ rest) / freedom + (EXACT * np.ptp(session.readings[:, i])) ** 2
+    lean = basis[left_out] @ np.linalg.inv(basis[kept].T @ basis[kept]) @ basis[left_out].T
+    return Expected(basis[left_out] @ coefficients, variance * (np.eye(len(left_out)) + lean), freedom)
+
+
+def explained(session: CalibrationSession) -> bool:
+    """Whether accelerometers in orientations fit together within their stated noise, or state none to judge by."""
+    felt = np.array([s.kind == ACCELEROMETER for s in session.sensors])
+    if not felt.any():
+        return True
+    prepared, stated = accelerometer_rows(session, felt, gravity(session.site))
+    if not stated:
+        return True
+    found = solve(prepared, stated, None)
+    return found.dof < 1 or bool(chdtrc(found.dof, found.chi2) >= UNLIKELY)
+
+
+def in_orientations(session: CalibrationSession, cells: Sequence[Cells]) -> list[Expected | None]:
+    """Of accelerometers, one for each of ``cells``, by a fit in which none of them takes part; None where it is open.
+
+    With F the information of parameters and orientations together, h the derivative of one reading by both and σ its
+    noise, the covariance of two predictions is h'F⁻¹h, and σ² on its diagonal. Where the stated noise does not explain
+    the other readings, it is enlarged to what they show.
+    """
+    felt = np.array([s.kind == ACCELEROMETER for s in session.sensors])
+    g, place = gravity(session.site), np.cumsum(felt) - 1
+    prepared, stated = accelerometer_rows(session, felt, g)
+    sigma = prepared.sigma.copy()
+    for i, rows in cells:
+        sigma[rows, place[i]] = UNWEIGHTED
+    found = solve(prepared.weighted(sigma), True, None)
+    spare = found.dof - sum(len(rows) for _, rows in cells)
+    believed = stated and spare > 0 and chdtrc(spare, found.chi2) >= UNLIKELY
+    if not found.converged or (spare < SPARE and not believed):
+        return [None] * len(cells)
+    growth = 1.0 if believed else found.chi2 / spare
+    expected: list[Expected | None] = []
+    for i, rows in cells:
+        own = prepared.sigma[rows, place[i]]
+        covariance = _covariance(found, int(place[i]), rows)
+        if covariance is None:
+            expected.append(None)
+            continue
+        unit, offset = g * session.sensors[i].nominal_scale, session.sensors[i].nominal_offset or 0.0
+        value = readings_of(found.unknowns)[rows, place[i]] * unit + offset
+        full = growth * (covariance + np.diag(own**2)) + EXACT**2 * np.eye(len(rows))
+        expected.append(Expected(value, full * unit**2, np.inf if believed else spare))
+    return expected
+
+
+def _covariance(found: Solution, i: int, rows: Array) -> Array | None:
+    """(k, k) of the predictions of sensor i in ``rows`` (k,), relative to g; None where the fit leaves one open."""
+    linear, known = linearise(found.rows, found.unknowns), found.knowledge
+    sigma = found.rows.sigma[rows, i]
+    own, shared = linear.own[rows, i] * sigma[:, None], linear.shared[rows, i] * sigma[:, None]
+    through = np.einsum("ka,kab->kb", shared, linear.inverse[rows])
+    h = -np.einsum("kb,kpb->kp", through, linear.coupling[rows])
+    h[:, 5 * i : 5 * i + 5] += own
+    if np.abs(h @ known.unseen).max(initial=0.0) > SEEN:
+        return None
+    return np.asarray(h @ known.covariance @ h.T + np.diag(np.einsum("kb,kb->k", through, shared)))

@@ -1,0 +1,84 @@
+"""A diagnosis at which the program fails: told as that, logged with its session, and nothing is lost or tried for ever.
+
+The failure is a real one: the stored calibration of the reference, which the verdict is compared with, is damaged.
+"""
+
+import io
+import json
+import zlib
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from threading import Event
+
+import httpx
+import pytest
+from sqlalchemy import text
+
+from service.app import create_app
+from service.background.diagnose_pending import diagnose_pending
+from service.flows.diagnose import InProgress, diagnose
+from service.flows.receive import upload
+from service.records.diagnosis import DiagnosisState
+from service.settings import Settings
+from service.storage import Storage
+from tests.service.diagnosed import warm
+from tests.service.pages.test_http import HTML
+from tests.service.sessions import session_id
+from tests.service.test_log import lines
+from tests.serving import http_client
+
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
+REFERENCE, LATER = (json.dumps(warm(m, f"2026-0{m}-05T08:00:00Z")).encode() for m in (1, 3))
+ID = session_id(LATER)
+SPOIL = text("UPDATE calibrations SET document = :document WHERE session_id = :id")
+
+
+@pytest.fixture
+def spoilt(storage: Storage) -> Storage:
+    """Stores that hold a session that is not diagnosed yet, and a reference whose calibration is damaged."""
+    for content in (REFERENCE, LATER):
+        upload(storage, content, "warm.json", NOW)
+    with storage.database.engine.begin() as connection:
+        connection.execute(SPOIL, {"document": zlib.compress(b"{}"), "id": session_id(REFERENCE)})
+    return storage
+
+
+@pytest.fixture
+def shown(spoilt: Storage, settings: Settings) -> Iterator[httpx.Client]:
+    """HTTP to the service on these stores."""
+    with http_client(create_app(settings)) as client:
+        yield client
+
+
+def test_the_page_says_that_it_is_a_fault_of_the_program_and_where_to_look(shown: httpx.Client) -> None:
+    page = shown.get(f"/sessions/{ID}/diagnosis", headers=HTML)
+    assert page.status_code == 200
+    assert "a fault of the program, not of the session" in page.text
+    assert f"under session {ID}" in page.text
+    assert "Error" not in page.text
+
+
+def test_the_log_says_what_happened_under_the_session(written: io.StringIO, spoilt: Storage) -> None:
+    assert diagnose(spoilt, ID, NOW).document is None
+    [failure] = [line for line in lines(written) if line["event"] == "diagnosis failed"]
+    assert (failure["level"], failure["session"]) == ("error", ID)
+    assert "KeyError" in failure["exception"]
+
+
+def test_session_calibration_and_file_are_there_all_the_same(shown: httpx.Client) -> None:
+    shown.get(f"/sessions/{ID}/diagnosis", headers=HTML)
+    for path in ("", "/calibration", "/file"):
+        assert shown.get(f"/api/v1/sessions/{ID}{path}").status_code == 200
+
+
+def test_this_version_fails_once(written: io.StringIO, spoilt: Storage) -> None:
+    made = [diagnose(spoilt, ID, NOW) for _ in range(2)]
+    assert [one.state for one in made] == [DiagnosisState.FAILED] * 2
+    assert len([line for line in lines(written) if line["event"] == "diagnosis failed"]) == 1
+
+
+def test_one_failure_does_not_keep_the_next_from_its_diagnosis(spoilt: Storage) -> None:
+    diagnose_pending(spoilt, lambda: NOW, InProgress(), Event())
+    with spoilt.database.reading() as store:
+        states = [store.diagnoses.summary(session_id(content)) for content in (REFERENCE, LATER)]
+    assert [state and state.state for state in states] == [DiagnosisState.NAMED, DiagnosisState.FAILED]
