@@ -27,6 +27,8 @@ class Changes:
     """(m r, k) A, dimensionless."""
     scatter: float = 0.0
     """τ, rad or relative."""
+    dofs: tuple[tuple[float | None, float | None], ...] = ()
+    """Of each sensor the degrees of freedom of both covariances; none where all noise is known."""
 
     @property
     def rows(self) -> int:
@@ -47,7 +49,8 @@ class Changes:
         rest = np.eye(len(self.y)) - self.design @ gain
         y, own, origin = rest @ self.y, rest @ self.own @ rest.T, rest @ self.origin @ rest.T
         at = {name: self.where([i]) for i, name in enumerate(self.names)}
-        return {n: Deviation(y[w], own[np.ix_(w, w)], origin[np.ix_(w, w)]) for n, w in at.items()}
+        dofs = dict(zip(self.names, self.dofs, strict=False))
+        return {n: Deviation(y[w], own[np.ix_(w, w)], origin[np.ix_(w, w)], *dofs.get(n, ())) for n, w in at.items()}
 
 
 def axis_changes(current: Calibration, reference: Calibration, kind: str) -> Changes | None:
@@ -62,7 +65,8 @@ def axis_changes(current: Calibration, reference: Calibration, kind: str) -> Cha
         turn[2 * i : 2 * i + 2, 2 * i : 2 * i + 2] = then.axis_tangents.T @ now.axis_tangents
     design = np.concatenate([np.cross(np.asarray(then.axis), then.axis_tangents.T) for _, then, _ in known])
     y = np.concatenate([d.vector for _, _, d in known])
-    return Changes(tuple(now.name for now, _, _ in known), y, turn @ own @ turn.T, origin, design)
+    names = tuple(now.name for now, _, _ in known)
+    return Changes(names, y, turn @ own @ turn.T, origin, design, dofs=_dofs(known))
 
 
 def scale_changes(current: Calibration, reference: Calibration, kind: str) -> Changes | None:
@@ -76,11 +80,17 @@ def scale_changes(current: Calibration, reference: Calibration, kind: str) -> Ch
     then = np.array([t.scale.value for _, t, _ in known], dtype=float)
     ratio = (1 + y) / then
     names = tuple(now.name for now, _, _ in known)
-    return Changes(names, y, own / np.outer(then, then), origin * np.outer(ratio, ratio), np.ones((len(y), 1)))
+    own, origin = own / np.outer(then, then), origin * np.outer(ratio, ratio)
+    return Changes(names, y, own, origin, np.ones((len(y), 1)), dofs=_dofs(known))
 
 
 Known = list[tuple[SensorCalibration, SensorCalibration, Deviation]]
 """Each sensor as it is, as the reference has it, and its change."""
+
+
+def _dofs(known: Known) -> tuple[tuple[float | None, float | None], ...]:
+    """Of each sensor's change the degrees of freedom of both sessions."""
+    return tuple((d.own_dof, d.origin_dof) for _, _, d in known)
 
 
 def _known(current: Calibration, reference: Calibration, kind: str, parameter: str) -> Known:

@@ -68,11 +68,11 @@ def _chart_set(calibration: Calibration, kind: str, across: Across, several: boo
 def _panel(calibration: Calibration, column: int, across: Across, unit: Measure) -> Panel:
     residuals = calibration.residuals
     value, sigma = residuals.value[:, column], residuals.sigma[:, column]
-    outside = int(np.sum(np.abs(value) > 2 * sigma))
+    outside = f", {np.sum(np.abs(value) > 2 * sigma)} of {len(value)} outside ±2σ" if np.isfinite(sigma).any() else ""
     rms = float(np.sqrt(np.nanmean(value**2))) * unit.factor
     return Panel(
         title=calibration.sensors[column].name,
-        description=f"rms {number(rms, decimals(rms))}{THIN}{unit.label}, {outside} of {len(value)} outside ±2σ",
+        description=f"rms {number(rms, decimals(rms))}{THIN}{unit.label}{outside}",
         condition=None,
         datasets={DATA_FORM: _rows(residuals, column, across, unit)},
     )
@@ -84,7 +84,7 @@ def _rows(residuals: Residuals, column: int, across: Across, unit: Measure) -> l
         {
             "x": float(f"{x:.6g}"),
             "y": float(f"{y * unit.factor:.5g}"),
-            "band": float(f"{2 * s * unit.factor:.5g}"),
+            "band": float(f"{2 * s * unit.factor:.5g}") if np.isfinite(s) else 0.0,
             "run": RUNS[int(turned)],
             "row": row,
         }
@@ -92,7 +92,7 @@ def _rows(residuals: Residuals, column: int, across: Across, unit: Measure) -> l
             zip(across.values, residuals.value[:, column], residuals.sigma[:, column], flipped, strict=True),
             1,
         )
-        if np.isfinite(y) and np.isfinite(s)
+        if np.isfinite(y)
     ]
 
 

@@ -19,7 +19,7 @@ from service.flows.flagging.diagnosis import flag_diagnosis
 from service.ingest import read_upload
 from service.judging.judge import judge
 from service.judging.reference import reference_of
-from service.records.decision import Verdict
+from service.records.decision import Verdict, nominal_factor_of
 from service.records.diagnosis import DiagnosisState, StoredDiagnosis, state_of
 from service.records.session import StoredSession
 from service.settings import VERSION
@@ -187,5 +187,5 @@ def _verdict_after(storage: Storage, task: Task, session: CalibrationSession, fo
         if reference is None:
             return None
         unit_type, known = store.unit_types.of_unit(session.unit), store.calibrations.get(reference)
-        factor = store.sessions.decisions(task.session.id)[0].coverage_factor
+        factor = nominal_factor_of(store.sessions.decisions(task.session.id))
     return judge(found.calibration, known, unit_type, factor).verdict

@@ -25,7 +25,7 @@ ESTIMATOR_LAYERS = (
     {"errors"},
     {"session"},
     {"arrays"},
-    {"applied_vector", "parameters", "reading"},
+    {"applied_vector", "coverage", "parameters", "reading", "rest_noise"},
     {"results", "static"},
     {"forward", "writing"},
     {"causes"},
