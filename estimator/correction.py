@@ -165,6 +165,7 @@ def _sensor(session: CalibrationSession, found: SensorCalibration) -> SensorCorr
 
 
 def _covariance(calibration: Calibration, sensors: Sequence[SensorCorrection]) -> Array:
-    """(5 m, 5 m) of the sensors' parameters, SI; 0 for what is taken as known."""
+    """(5 m, 5 m) of the sensors' parameters, SI; 0 for what is taken as known, NaN where nothing tells the noise."""
     places = [calibration.names.index(f"{s.name}.{element}") for s in sensors for element in ELEMENTS]
-    return np.nan_to_num(calibration.covariance[np.ix_(places, places)], nan=0.0)
+    assumed = np.array([element == "quadratic" and not s.quadratic_known for s in sensors for element in ELEMENTS])
+    return np.where(assumed | assumed[:, None], 0.0, calibration.covariance[np.ix_(places, places)])

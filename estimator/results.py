@@ -8,12 +8,15 @@ from typing import Any
 
 import numpy as np
 
+from estimator.coverage import coverage_factor
 from estimator.session import Array
 
 ARCSEC = np.pi / 180 / 3600
 """rad."""
 NOMINAL_AXES = "nominal-axes"
 """The gauge of a calibration whose frame the nominal axes hold."""
+COVERAGE = 2.0
+"""Coverage factor for known noise, 95.45 %; with few degrees of freedom it is Student's t of the same probability."""
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
 """Of a sensor, as people judge them: the axis with both its turns."""
 
@@ -27,15 +30,30 @@ def json_numbers(array: Array) -> Any:
 
 @dataclass(frozen=True)
 class Estimate:
-    """A value with its total one-sigma uncertainty; both None when the session does not observe it."""
+    """A value with its total one-sigma uncertainty.
+
+    Both None when the session does not observe it; ``sigma`` None alone when nothing tells the noise.
+    """
 
     value: float | None
     sigma: float | None
     repeatability: float | None = None
     """One sigma of what differs from session to session on one stand (reading noise, bias repeatability, δβ)."""
+    dof: float | None = None
+    """Effective degrees of freedom of sigma; None when the noise is known."""
+
+    def factor(self, k: float = COVERAGE) -> float:
+        """The coverage factor that covers of this estimate what ``k`` covers when the noise is known."""
+        return coverage_factor(k, self.dof)
 
     def to_dict(self) -> dict[str, Any]:
-        return {"value": self.value, "sigma": self.sigma, "repeatability": self.repeatability}
+        return {
+            "value": self.value,
+            "sigma": self.sigma,
+            "repeatability": self.repeatability,
+            "dof": self.dof,
+            "coverage_factor": None if self.sigma is None else self.factor(),
+        }
 
 
 @dataclass(frozen=True)
@@ -44,7 +62,8 @@ class KnownCombination:
 
     coefficients: dict[str, float]
     value: float
-    sigma: float
+    sigma: float | None
+    """None when nothing tells the noise."""
 
     def to_dict(self) -> dict[str, Any]:
         return {"coefficients": self.coefficients, "value": self.value, "sigma": self.sigma}
@@ -71,11 +90,22 @@ class SensorCalibration:
     """What is known of the parameters that are not observable one by one."""
     misalignment: Estimate | None = None
     """Turn of a gyro's input axis toward the axis of a turntable (E_xz, E_yz), rad; only of sessions on one."""
+    axis_dof: float | None = None
+    """Effective degrees of freedom of the axis' covariance; None when the noise is known."""
 
     @property
     def axis_sigma(self) -> float | None:
-        """Root of the trace of the axis' covariance, rad."""
-        return None if self.axis is None else float(np.sqrt(np.trace(self.axis_covariance)))
+        """Root of the trace of the axis' covariance, rad; None when it is not observable or nothing tells the noise."""
+        if self.axis is None or not np.isfinite(self.axis_covariance).all():
+            return None
+        return float(np.sqrt(np.trace(self.axis_covariance)))
+
+    def factor(self, parameter: str, k: float = COVERAGE) -> float:
+        """The coverage factor of a parameter that covers what ``k`` covers when the noise is known."""
+        if parameter == "axis":
+            return coverage_factor(k, self.axis_dof)
+        estimate: Estimate | None = getattr(self, parameter)
+        return k if estimate is None else estimate.factor(k)
 
     def to_dict(self) -> dict[str, Any]:
         sigma = self.axis_sigma
@@ -91,6 +121,8 @@ class SensorCalibration:
                 "sigma_arcsec": None if sigma is None else sigma / ARCSEC,
                 "tangents": self.axis_tangents.tolist(),
                 "covariance": json_numbers(self.axis_covariance),
+                "dof": self.axis_dof,
+                "coverage_factor": None if sigma is None else self.factor("axis"),
             },
             **tilted,
             "observable": dict(self.observable),
@@ -121,6 +153,8 @@ class Fit:
     converged: bool
     add: tuple[tuple[float, float, float], ...] = ()
     """Directions of up, block axes, of still orientations that would complete a set that leaves something open."""
+    positions_to_add: int = 0
+    """Positions to add so that the readings tell their noise; 0 when the uncertainties are known."""
 
     def to_dict(self) -> dict[str, Any]:
         return {
@@ -136,6 +170,7 @@ class Fit:
             "iterations": self.iterations,
             "converged": self.converged,
             "add": [list(direction) for direction in self.add],
+            "positions_to_add": self.positions_to_add,
         }
 
 

@@ -5,8 +5,8 @@ variance, in units of each channel's noise floor, stays below a threshold. The t
 grid is tried, and the one whose positions calibrate with the least residual per degree of freedom is kept (Tedaldi,
 Pretto and Menegatti, ICRA 2014, choose it the same way).
 
-The standard error of a mean allows for correlated noise: it is taken from the scatter of block means within the
-positions, pooled over all positions, and not from the scatter of samples.
+The standard error of a mean allows for noise that hangs together: it is taken from the spectrum that all positions
+show, and not from the scatter of samples (`estimator.rest_noise`).
 """
 
 from collections.abc import Callable
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.errors import Problem, ScheduleError
+from estimator.rest_noise import energies, mean_variance
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
 Indices = NDArray[np.intp]
@@ -43,17 +44,6 @@ FEWEST = 4
 
 TRIM = 0.05
 """Part cut off each end of a labelled position: people label a little early and late."""
-
-POOLED = 20
-"""Degrees of freedom that the scatter of block means must have: they tell a sigma to 16 %."""
-
-MOST_BLOCKS = 1.0
-"""s; longest block, which makes its mean independent of the next for noise that is correlated over less."""
-
-RESTLESS = 3.0
-"""Scatter of an interval's block means, in usual ones, from which the interval has a standard error of its own: beyond
-chance for the few blocks of an interval averaged over the channels."""
-
 
 MOTION = 0.02
 """g; change of a reading from quarter to quarter of a stretch from which the block moves: a turn of a degree, which no
@@ -98,14 +88,6 @@ class Intervals:
         """(n, ...) means of values (R, m), or of any shape (R, ...) and unit, over each interval."""
         sums = self.sums(values)
         return sums / self.samples.reshape(-1, *[1] * (sums.ndim - 1))
-
-    def cut(self, length: int) -> "tuple[Intervals, Indices]":
-        """Each interval cut into whole blocks of ``length`` samples, and the interval (B,) of each block."""
-        count = self.samples // length
-        owner = np.repeat(np.arange(len(self)), count)
-        first = np.concatenate([[0], np.cumsum(count)[:-1]])
-        start = self.start[owner] + length * (np.arange(count.sum()) - first[owner])
-        return Intervals(start, start + length), owner
 
 
 def average(session: CalibrationSession, residual: Callable[[CalibrationSession], float]) -> CalibrationSession:
@@ -273,7 +255,7 @@ def averaged(session: CalibrationSession, found: Intervals) -> CalibrationSessio
     return replace(
         session,
         readings=found.means(session.readings),
-        standard_errors=mean_errors(session.readings, found, session.sample_rate),
+        standard_errors=errors_by_kind(session, found),
         at_ends=found.means(ends(session.readings)),
         vibration=variances(session, found),
         time=middle if session.time is None else found.means(session.time),
@@ -298,42 +280,19 @@ def ends(readings: Array) -> Array:
     return np.stack([readings == readings.max(axis=0), readings == readings.min(axis=0)], axis=-1).astype(float)
 
 
-def mean_errors(readings: Array, found: Intervals, rate: float) -> Array:
-    """(n, m) standard errors of the means of readings (R, m), in their unit, from the scatter of pooled block means.
+def mean_errors(readings: Array, found: Intervals) -> Array:
+    """(n, m) standard errors of the means of readings (R, m) of sensors of one kind, in their unit.
 
-    Blocks grow to `MOST_BLOCKS` seconds as long as `POOLED` degrees of freedom are left; NaN where every interval is a
-    single sample. An interval whose scatter stands out keeps its own instead of spoiling the others'.
+    NaN where every interval is a single sample.
     """
-    length = max(int(MOST_BLOCKS * rate), 1)
-    while length > 1 and freedom(found, length) < POOLED:
-        length //= 2
-    if freedom(found, length) < 1:
-        return np.full((len(found), readings.shape[1]), np.nan)
-    blocks, owner = found.cut(length)
-    scatter, left = within(blocks.means(readings), owner, len(found))
-    own = scatter / np.maximum(left, 1)[:, None]
-    usual = np.median(own[left > 0], axis=0)
-    unrest = (own / np.where(usual > 0, usual, 1.0)).mean(axis=1)
-    calm = unrest < RESTLESS
-    pooled = scatter[calm].sum(axis=0) / max(int(left[calm].sum()), 1)
-    variance = np.where(calm[:, None], pooled, np.maximum(own, pooled))
-    return np.sqrt(variance * length / found.samples[:, None])
+    shown = energies(readings, found.start, found.stop)
+    return np.full((len(found), readings.shape[1]), np.nan) if shown is None else np.sqrt(mean_variance(shown))
 
 
-def within(means: Array, owner: Indices, n: int) -> tuple[Array, Indices]:
-    """Squared scatter (n, m) of block means (B, m) about the mean of their interval, and its degrees of freedom (n,).
-
-    owner : (B,) number of the interval of each block. Scatter in the means' unit squared.
-    """
-    count = np.bincount(owner, minlength=n)
-    total = np.zeros((n, means.shape[1]))
-    np.add.at(total, owner, means)
-    apart = means - (total / np.maximum(count, 1)[:, None])[owner]
-    squares = np.zeros_like(total)
-    np.add.at(squares, owner, apart**2)
-    return squares, np.maximum(count - 1, 0)
-
-
-def freedom(found: Intervals, length: int) -> int:
-    """Degrees of freedom of block means of ``length`` samples about the means of their intervals."""
-    return int(np.maximum(found.samples // length - 1, 0).sum())
+def errors_by_kind(session: CalibrationSession, found: Intervals) -> Array:
+    """(n, m) standard errors of the means over the intervals, reading units."""
+    kinds, errors = [s.kind for s in session.sensors], np.empty((len(found), len(session.sensors)))
+    for kind in set(kinds):
+        own = [i for i, other in enumerate(kinds) if other == kind]
+        errors[:, own] = mean_errors(session.readings[:, own], found)
+    return errors

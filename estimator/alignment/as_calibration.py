@@ -108,7 +108,8 @@ def _estimate(result: AlignmentResult | RateTableResult, parameter: str, state: 
     """All of it differs from session to session."""
     found = result.parameter(state)
     value = found.value if found.value is None or parameter != "scale" else 1.0 + found.value
-    return Estimate(value, found.sigma, found.sigma)
+    dof = float(result.fit.dof) if result.fit.noise == "estimated" else None
+    return Estimate(value, found.sigma, found.sigma, dof)
 
 
 def _innovations(result: AlignmentResult) -> tuple[Array, Array, Array]:

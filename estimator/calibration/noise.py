@@ -13,6 +13,8 @@ degrees of freedom, v = (E + d₀v₀)/(f + d₀) (Smyth 2004, Stat. Appl. Genet
 borrows from the others, unless it is plainly noisier than they are.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy import special
 
@@ -34,6 +36,10 @@ alike, one is taken for noisier in 6 % of the sessions, and then merely keeps it
 
 LEAST = 1.0
 """Degrees of freedom that a noise of its own is divided by at least: fewer tell no variance."""
+
+NO_FREEDOM = 0.5
+"""Degrees of freedom at or below which the readings tell nothing of their noise: of rows of stated noise they are whole
+numbers, and rounding leaves less than this of none."""
 
 STEADY = 0.01
 """Relative change of every variance at which the estimate stands: far below the scatter of any estimated variance."""
@@ -80,14 +86,23 @@ def _estimated(variance: Array, y: Array, p: SensorParameters, geometry: Geometr
     return np.where(unstated, value[:, None, :], variance)
 
 
-def residual_energy(
-    variance: Array, y: Array, p: SensorParameters, geometry: Geometry, counted: Array
-) -> tuple[Array, Array]:
-    """Energy E of the residuals of each sensor's counted readings, and its degrees of freedom f: (S, m) each.
+@dataclass(frozen=True, eq=False)
+class Left:
+    """What the fit leaves of the readings, and how the parameters lean on them. P parameters, k constant errors."""
 
-    ``variance`` (S, R, m) at the input, (m/s²)² or (rad/s)², and so is E; ``y`` (S, R, m) reading units; ``counted``
-    (S, R, m) bool.
-    """
+    pulled: Array
+    """(S, R, m) residuals weighted by P, 1/(m/s²) or 1/(rad/s)."""
+    kept: Array
+    """(S, R, m) diagonal of P, 1/(m/s²)² or 1/(rad/s)²."""
+    lean: Array
+    """(S, R, m, P + k) change of each estimate with each reading, dimensionless elements and rad (s) per m/s²
+    (rad/s)."""
+    inverse: Array
+    """(S, P + k, P + k) covariance of the estimates, products of their units."""
+
+
+def left_by_fit(variance: Array, y: Array, p: SensorParameters, geometry: Geometry) -> Left:
+    """Of readings y (S, R, m), reading units, of ``variance`` (S, R, m) at the input, (m/s²)² or (rad/s)²."""
     S, R, m = y.shape
     weight = 1.0 / variance
     normal, residual = linearise(y, p, geometry, weight)
@@ -106,11 +121,57 @@ def residual_energy(
         return weight[..., None] * values - swing[..., None] * common
 
     left = residual[..., None] - columns @ (inverse @ normal.rhs[..., None])[:, None]
-    pulled = weighted(left)[..., 0]
     leaning = weighted(columns)
-    kept = weight - swing**2 / shared - ((leaning @ inverse[:, None]) * leaning).sum(axis=-1)
-    own = np.where(counted, variance, 0.0)
-    return ((own * pulled) ** 2).sum(axis=1), (own * kept).sum(axis=1)
+    lean = leaning @ inverse[:, None]
+    kept = weight - swing**2 / shared - (lean * leaning).sum(axis=-1)
+    return Left(weighted(left)[..., 0], kept, lean, inverse)
+
+
+def residual_energy(
+    variance: Array, y: Array, p: SensorParameters, geometry: Geometry, counted: Array
+) -> tuple[Array, Array]:
+    """Energy E of the residuals of each sensor's counted readings, and its degrees of freedom f: (S, m) each.
+
+    ``variance`` (S, R, m) at the input, (m/s²)² or (rad/s)², and so is E; ``y`` (S, R, m) reading units; ``counted``
+    (S, R, m) bool.
+    """
+    left, own = left_by_fit(variance, y, p, geometry), np.where(counted, variance, 0.0)
+    return ((own * left.pulled) ** 2).sum(axis=1), (own * left.kept).sum(axis=1)
+
+
+def freedom_of(variance: Array, y: Array, p: SensorParameters, geometry: Geometry, unstated: Array) -> Array:
+    """(S, P) effective degrees of freedom of the parameters' variances, the stand's stated errors among their parts.
+
+    Satterthwaite, as for arbitrary orientations (`estimator.calibration.free.noise`), T taken as the diagonal of the f:
+    on a stand the sensors' residuals have little in common. Infinite where no estimated noise has a part; NaN of a
+    sensor whose noise nothing tells, its own rows or others of its kind.
+
+    variance, y : (S, R, m) as in `with_estimated`, but all variances known; unstated : (S, R, m) bool.
+    """
+    parts = np.split(np.arange(len(y)), range(TOGETHER, len(y), TOGETHER))
+    return np.concatenate([_freedom(variance[k], y[k], p.at(k), geometry, unstated[k]) for k in parts])
+
+
+def _freedom(variance: Array, y: Array, p: SensorParameters, geometry: Geometry, unstated: Array) -> Array:
+    left, own = left_by_fit(variance, y, p, geometry), np.where(unstated, variance, 0.0)
+    energy, freedom = ((own * left.pulled) ** 2).sum(axis=1), (own * left.kept).sum(axis=1)
+    sensors, P = np.asarray(unstated.any(axis=1)), 5 * y.shape[2]
+    value = np.where(sensors, own.max(axis=1), np.nan)
+    borrows = with_the_others(energy, freedom, typical(value, sensors, geometry.norm))[1] > freedom
+    information = freedom[..., None] * np.eye(len(sensors[0]))
+    told = np.zeros_like(sensors)
+    for norm in np.unique(geometry.norm):
+        b = np.where(sensors & borrows & (geometry.norm == norm), 1.0, 0.0)
+        together = b[:, :, None] * b[:, None, :] / np.maximum(b.sum(axis=1), 1.0)[:, None, None]
+        information = information + ALIKE * (b[..., None] * np.eye(len(b[0])) - together)
+        told |= (b > 0) & ((b * freedom).sum(axis=1, keepdims=True) > NO_FREEDOM)
+    told |= sensors & (freedom > NO_FREEDOM)
+    gradient = np.einsum("srm,srmp->spm", own, left.lean[..., :P] ** 2)
+    inverse = np.linalg.pinv(information, hermitian=True)
+    doubt = ((gradient @ inverse) * gradient).sum(axis=-1)
+    total = np.diagonal(left.inverse, axis1=1, axis2=2)[:, :P]
+    found = np.where(doubt > 0, total**2 / np.where(doubt > 0, doubt, 1.0), np.inf)
+    return np.where(np.repeat(sensors & ~told, 5, axis=1), np.nan, found)
 
 
 def typical(value: Array, sensors: Array, norm: Array) -> Array:

@@ -4,6 +4,7 @@
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -43,10 +44,26 @@ def solved(sessions: Sequence[CalibrationSession], start: SensorParameters | Non
     readings, errors = zip(*map(measured, sessions), strict=True)
     y = np.stack(readings)
     start = starting_point(y, first, geometry) if start is None else start
-    variance, stated = noise_variance(y, np.stack(errors), start, first, geometry)
-    solution = fit(y, variance, geometry, start)
+    variance, unstated = noise_variance(y, np.stack(errors), start, first, geometry)
+    solution, stated = fit(y, variance, geometry, start), np.all(~unstated, axis=(1, 2))
     seen, p_value, factor = judged(solution, stated)
-    return Solved(y, geometry, solution, seen, stated, p_value, factor)
+    solved = Solved(y, geometry, solution, seen, stated, p_value, factor, np.full((len(y), 5 * y.shape[2]), np.inf))
+    return replace(solved, freedom=freedom(solved, unstated))
+
+
+def freedom(solved: Solved, unstated: Array) -> Array:
+    """(S, 5 m) degrees of freedom of the variances: of estimated noise, or of the factor that stated noise grew by.
+
+    unstated : (S, R, m) bool, readings whose noise was estimated.
+    """
+    fitted, found = solved.fitted, solved.freedom
+    unstated = unstated & np.isfinite(fitted.variance)
+    if unstated.any():
+        found = noise.freedom_of(fitted.variance, solved.y, fitted.parameters, solved.geometry, unstated)
+    grown, dof = solved.factor[:, None], np.maximum(fitted.readings - solved.spectrum.rank, 1)[:, None]
+    steady, whole = (np.diagonal(c, axis1=1, axis2=2) for c in (fitted.repeatability, fitted.covariance))
+    share = 1.0 + (whole - steady) / (grown * steady)
+    return np.where(grown > 1.0, dof * share**2, found)
 
 
 def starting_point(y: Array, session: CalibrationSession, geometry: Geometry) -> SensorParameters:
@@ -62,10 +79,10 @@ def starting_point(y: Array, session: CalibrationSession, geometry: Geometry) ->
 def noise_variance(
     y: Array, errors: Array, start: SensorParameters, session: CalibrationSession, geometry: Geometry
 ) -> tuple[Array, Array]:
-    """Variance of the independent noise at the input (S, R, m), (m/s²)² or (rad/s)², and whether (S,) all is stated.
+    """Variance of the independent noise at the input (S, R, m), (m/s²)² or (rad/s)², and where none is stated.
 
-    y, errors : (S, R, m) readings, offset taken off, and their standard errors, reading units. Where none is stated the
-    variance is estimated.
+    y, errors : (S, R, m) readings, offset taken off, and their standard errors, reading units. Where none is stated
+    the variance is estimated; where, (S, R, m) bool, is told too.
     A sensor whose reading is constant answers to nothing: its noise is infinite, so that it takes no part.
     """
     variance = input_variance(start, errors, np.array([s.bias_repeatability for s in session.sensors]))
@@ -73,7 +90,7 @@ def noise_variance(
     variance = np.where(answers(y)[:, None, :], variance, np.inf)
     if np.isnan(variance).any():
         variance = noise.with_estimated(variance, y, start, geometry)
-    return variance, np.logical_not(unstated.any(axis=(1, 2)))
+    return variance, unstated
 
 
 def judged(solution: Fitted, stated: Array) -> tuple[Spectrum, Array, Array]:

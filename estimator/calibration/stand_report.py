@@ -4,7 +4,7 @@ What can be done for all sessions at once is done on arrays; what is left builds
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from estimator.applied_vector import Geometry
 from estimator.arrays import tangents
 from estimator.calibration.observability import Spectrum, known_bias_quadratic, known_linear
 from estimator.calibration.refine import Fitted
+from estimator.coverage import finite, positions_to_add
 from estimator.forward import projected, slope
 from estimator.parameters import ELEMENTS, names, units
 from estimator.results import PARAMETERS, Calibration, Estimate, Fit, KnownCombination, Residuals, SensorCalibration
@@ -36,6 +37,8 @@ class Solved:
     """(S,)"""
     factor: Array
     """(S,) by which the stated row noise was enlarged."""
+    freedom: Array
+    """(S, P) degrees of freedom of the variances: infinite where the noise is known, NaN where nothing tells it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +66,8 @@ def tables(solved: Solved) -> Tables:
     fitted, geometry, grown = solved.fitted, solved.geometry, solved.factor[:, None, None]
     p, seen = fitted.parameters, solved.spectrum.observed
     S, m, _ = seen.shape
-    factors = np.where(seen.reshape(S, -1), p.si_factors(geometry.norm), np.nan)
+    given = seen.reshape(S, -1) & ~np.isnan(solved.freedom)
+    factors = np.where(given, p.si_factors(geometry.norm), np.nan)
     to_si = factors[:, :, None] * factors[:, None, :]
     total = (fitted.covariance + (grown - 1.0) * fitted.repeatability) * to_si
     steady = grown * fitted.repeatability * to_si
@@ -74,7 +78,9 @@ def tables(solved: Solved) -> Tables:
         sigma=np.sqrt(np.diagonal(total, axis1=1, axis2=2)).reshape(S, m, 5),
         steady=np.sqrt(np.diagonal(steady, axis1=1, axis2=2)).reshape(S, m, 5),
         tangents=tangents(p.axis),
-        residual_sigma=np.sqrt(grown * (fitted.variance + swing * swing)),
+        residual_sigma=np.where(
+            np.isnan(solved.freedom[:, None, ::5]), np.nan, np.sqrt(grown * (fitted.variance + swing * swing))
+        ),
         seen=seen,
     )
 
@@ -108,16 +114,24 @@ def reports(sessions: Sequence[CalibrationSession], solved: Solved) -> list[Cali
     ]
 
 
+def more_rows(k: int, solved: Solved) -> int:
+    """Positions to add to session k so that each sensor whose noise nothing tells knows it to `WANTED` freedom."""
+    untold = np.isnan(solved.freedom[k]).reshape(-1, 5).any(axis=1)
+    missing = 5 * int(untold.sum()) - int(solved.spectrum.observed[k][untold].sum())
+    return positions_to_add(-missing, int(untold.sum()))
+
+
 def sensor_results(k: int, session: CalibrationSession, solved: Solved, table: Tables) -> tuple[SensorCalibration, ...]:
     """The sensors of session k."""
     p = solved.fitted.parameters
     values = zip(p.scale[k].tolist(), p.bias[k].tolist(), p.quadratic[k].tolist(), strict=True)
     seen, sigma, steady = table.seen[k].tolist(), table.sigma[k].tolist(), table.steady[k].tolist()
+    dofs = solved.freedom[k].reshape(-1, 5)
     found = []
     for i, (sensor, own) in enumerate(zip(session.sensors, values, strict=True)):
         angles = slice(5 * i + 3, 5 * i + 5)
         scale, bias, quadratic = (
-            Estimate(value, sigma[i][e], steady[i][e]) if seen[i][e] else Estimate(None, None)
+            estimate(value, sigma[i][e], steady[i][e], dofs[i, e]) if seen[i][e] else Estimate(None, None)
             for e, value in enumerate(own)
         )
         found.append(
@@ -132,13 +146,27 @@ def sensor_results(k: int, session: CalibrationSession, solved: Solved, table: T
                 axis_covariance=table.covariance[k, angles, angles],
                 observable=dict(zip(PARAMETERS, seen[i][:4], strict=True)),
                 known=() if all(seen[i]) else known(k, i, solved, seen[i]),
+                axis_dof=finite(float(dofs[i, 3:].min())),
             )
         )
     return tuple(found)
 
 
+def estimate(value: float, sigma: float, repeatability: float, dof: float) -> Estimate:
+    """A value with its one sigmas, of one unit, and their degrees of freedom, NaN where nothing tells the noise."""
+    return Estimate(value, None) if np.isnan(dof) else Estimate(value, sigma, repeatability, finite(dof))
+
+
 def known(k: int, i: int, solved: Solved, seen: list[bool]) -> tuple[KnownCombination, ...]:
     """The combinations that stand in for what is not observable of sensor i in session k."""
+    found = combinations(k, i, solved, seen)
+    if np.isnan(solved.freedom[k, 5 * i]):
+        return tuple(replace(combination, sigma=None) for combination in found)
+    return found
+
+
+def combinations(k: int, i: int, solved: Solved, seen: list[bool]) -> tuple[KnownCombination, ...]:
+    """The same with the sigmas under the noise that was used."""
     blind = {element for element, s in zip(PARAMETERS, seen, strict=False) if not s}
     if blind == {"quadratic"}:
         return ()
@@ -171,6 +199,7 @@ def qualities(sessions: Sequence[CalibrationSession], solved: Solved) -> list[Fi
             weakest=(f"{session.sensors[sensor[k]].name}.{ELEMENTS[lead[k]]}", sigma[k]),
             iterations=int(fitted.iterations[k]),
             converged=bool(fitted.converged[k]),
+            positions_to_add=more_rows(k, solved) if np.isnan(solved.freedom[k]).any() else 0,
         )
         for k, session in enumerate(sessions)
     ]

@@ -28,6 +28,8 @@ class Changes:
     """(m r, k) A, dimensionless."""
     scatter: float = 0.0
     """τ, rad or relative."""
+    dofs: tuple[tuple[float | None, float | None], ...] = ()
+    """Of each sensor the degrees of freedom of both covariances; none where all noise is known."""
 
     @property
     def rows(self) -> int:
@@ -48,7 +50,8 @@ class Changes:
         rest = np.eye(len(self.y)) - self.design @ gain
         y, own, origin = rest @ self.y, rest @ self.own @ rest.T, rest @ self.origin @ rest.T
         at = {name: self.where([i]) for i, name in enumerate(self.names)}
-        return {n: Deviation(y[w], own[np.ix_(w, w)], origin[np.ix_(w, w)]) for n, w in at.items()}
+        dofs = dict(zip(self.names, self.dofs, strict=False))
+        return {n: Deviation(y[w], own[np.ix_(w, w)], origin[np.ix_(w, w)], *dofs.get(n, ())) for n, w in at.items()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +71,8 @@ class AxisPairs:
     """(2 m, 2 m) rad²."""
     origin: Array
     """(2 m, 2 m) rad²."""
+    dofs: tuple[tuple[float | None, float | None], ...]
+    """Of each sensor the degrees of freedom of both covariances; none where all noise is known."""
 
     def about(self, turn: Array) -> Changes:
         """The changes that a rotation ``turn`` (3, 3) of the block, dimensionless, leaves: along the reference's
@@ -80,7 +85,9 @@ class AxisPairs:
             carried[2 * i : 2 * i + 2, 2 * i : 2 * i + 2] = basis
         y = [axis_offset(*pair) for pair in zip(self.axes, expected, frames, strict=True)]
         design = np.cross(expected[:, None, :], np.swapaxes(frames, -1, -2)).reshape(2 * m, 3)
-        return Changes(self.names, np.concatenate(y), carried @ self.own @ carried.T, self.origin, design)
+        return Changes(
+            self.names, np.concatenate(y), carried @ self.own @ carried.T, self.origin, design, dofs=self.dofs
+        )
 
 
 def axis_pairs(current: Calibration, reference: Calibration, kind: str) -> AxisPairs | None:
@@ -98,6 +105,7 @@ def axis_pairs(current: Calibration, reference: Calibration, kind: str) -> AxisP
         origin_frames=np.stack([then.axis_tangents for _, then, _ in known]),
         own=own,
         origin=origin,
+        dofs=_dofs(known),
     )
 
 
@@ -112,11 +120,17 @@ def scale_changes(current: Calibration, reference: Calibration, kind: str) -> Ch
     then = np.array([t.scale.value for _, t, _ in known], dtype=float)
     ratio = (1 + y) / then
     names = tuple(now.name for now, _, _ in known)
-    return Changes(names, y, own / np.outer(then, then), origin * np.outer(ratio, ratio), np.ones((len(y), 1)))
+    own, origin = own / np.outer(then, then), origin * np.outer(ratio, ratio)
+    return Changes(names, y, own, origin, np.ones((len(y), 1)), dofs=_dofs(known))
 
 
 Known = list[tuple[SensorCalibration, SensorCalibration, Deviation]]
 """Each sensor as it is, as the reference has it, and its change."""
+
+
+def _dofs(known: Known) -> tuple[tuple[float | None, float | None], ...]:
+    """Of each sensor's change the degrees of freedom of both sessions."""
+    return tuple((d.own_dof, d.origin_dof) for _, _, d in known)
 
 
 def _known(current: Calibration, reference: Calibration, kind: str, parameter: str) -> Known:

@@ -7,13 +7,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import ndtr
 
+from estimator.coverage import chance
+from estimator.coverage import coverage_factor as factor_of
 from estimator.health.common_motion import AXES, CommonMotion, Split, common_motion
 from estimator.health.deviation import NOT_SEEN, Deviation, axis_offset, deviation
 from estimator.health.disc import judge_length
 from estimator.health.rule import SESSION_LEVEL, UNDECIDABLE, critical_factors, state
-from estimator.results import Calibration, Estimate, SensorCalibration
+from estimator.results import COVERAGE, Calibration, Estimate, SensorCalibration
 from estimator.session import Array
 
 PARAMETERS = ("scale", "bias", "quadratic", "axis", "misalignment")
@@ -39,7 +40,7 @@ class Judgement:
     uncertainty: float | None
     """u, of both sessions."""
     expanded: float | None
-    """U = k·u, which is also the guard band."""
+    """U = k·u, which is also the guard band; k by Student's t where the noise is known to few degrees of freedom."""
     tolerance: float
     probability_out: float | None
     """Probability that the true deviation is out of tolerance."""
@@ -58,6 +59,10 @@ class Judgement:
     """One sigma of it."""
     common_p: float | None = None
     """Chance of a common change as large when nothing moved together."""
+    coverage_factor: float = COVERAGE
+    """k."""
+    dof: float | None = None
+    """Effective degrees of freedom of u; None when the noise is known."""
 
 
 @dataclass(frozen=True)
@@ -94,6 +99,8 @@ class _Assessed:
     change: Deviation
     y: float
     u: float
+    k: float
+    """Coverage factor for the degrees of freedom of u."""
     probability_out: float
     critical_scale: float
     """What a factor of `critical_factors` is multiplied by to become a deviation."""
@@ -105,7 +112,7 @@ def judge(
     reference: Calibration | None,
     tolerances: Mapping[tuple[str, str], float],
     *,
-    coverage_factor: float = 2.0,
+    coverage_factor: float = COVERAGE,
     level: float = SESSION_LEVEL,
     splits: tuple[Split, ...] | None = None,
 ) -> tuple[Judgement, ...]:
@@ -116,7 +123,7 @@ def judge(
     calibration : what the session found.
     reference : what it is compared with; None when the session itself becomes the reference.
     tolerances : T by (kind of sensor, parameter): relative for scale, else SI. A parameter without one is not judged.
-    coverage_factor : k.
+    coverage_factor : k for known noise; with few degrees of freedom Student's t of the same probability.
     level : α, chance that a unit exactly at its reference is called out of tolerance in this session.
     splits : of `common_motion` over the two calibrations; found here when None.
     """
@@ -131,17 +138,8 @@ def judge(
         if parameter in sensor.observable and (tolerance := tolerances.get((sensor.kind, parameter))) is not None
     ]
     assessed = [None if reference is None else _assess(case, coverage_factor) for case in cases]
-    judged = sum(
-        a is not None and coverage_factor * a.u <= case.tolerance for a, case in zip(assessed, cases, strict=True)
-    )
-    factors = critical_factors(judged, _noise_dof(calibration, reference), level)
-    return tuple(_judgement(case, a, coverage_factor, factors) for case, a in zip(cases, assessed, strict=True))
-
-
-def _noise_dof(calibration: Calibration, reference: Calibration | None) -> float:
-    """Degrees of freedom of the worse known noise; infinite when both files state theirs."""
-    fits = [c.fit for c in (calibration, reference) if c is not None]
-    return min([max(fit.dof, 1) for fit in fits if fit.noise == "estimated"], default=np.inf)
+    judged = sum(a is not None and a.k * a.u <= case.tolerance for a, case in zip(assessed, cases, strict=True))
+    return tuple(_judgement(case, a, coverage_factor, (judged, level)) for case, a in zip(cases, assessed, strict=True))
 
 
 def _assess(case: _Case, k: float) -> _Assessed | None:
@@ -149,31 +147,30 @@ def _assess(case: _Case, k: float) -> _Assessed | None:
     change = case.change
     if change is None:
         return None
-    return (
-        _assess_scalar(change, case.tolerance) if change.vector.size == 1 else _assess_axis(change, case.tolerance, k)
-    )
+    judged = _assess_scalar if change.vector.size == 1 else _assess_axis
+    return judged(change, case.tolerance, k)
 
 
-def _assess_scalar(change: Deviation, tolerance: float) -> _Assessed:
-    """A normal number."""
-    y = float(change.vector[0])
+def _assess_scalar(change: Deviation, tolerance: float, k: float) -> _Assessed:
+    """A normal number, or Student's where the noise is known to few degrees of freedom."""
+    y, dof = float(change.vector[0]), change.dof
     u = max(float(np.sqrt(change.covariance[0, 0])), FLOOR * tolerance)
-    out = float(ndtr((y - tolerance) / u) + ndtr((-y - tolerance) / u))
-    return _Assessed(change, y, u, out, u, is_vector=False)
+    out = sum(chance((side * y - tolerance) / u, dof) for side in (1, -1))
+    return _Assessed(change, y, u, factor_of(k, dof), out, u, is_vector=False)
 
 
 def _assess_axis(change: Deviation, tolerance: float, k: float) -> _Assessed:
     """Two normal numbers, judged by their length."""
     covariance = change.covariance + (FLOOR * tolerance) ** 2 * np.eye(2)
-    length = judge_length(change.vector, covariance, tolerance, k)
+    length = judge_length(change.vector, covariance, tolerance, k, change.dof)
     mahalanobis = float(np.sqrt(change.vector @ np.linalg.solve(covariance, change.vector)))
     largest = float(np.sqrt(np.linalg.eigvalsh(covariance)[-1]))
-    scale = length.value / mahalanobis if length.value > 0 else largest
-    return _Assessed(change, length.value, length.expanded / k, length.probability_beyond, scale, is_vector=True)
+    scale, own = length.value / mahalanobis if length.value > 0 else largest, factor_of(k, change.dof)
+    return _Assessed(change, length.value, length.expanded / own, own, length.probability_beyond, scale, is_vector=True)
 
 
-def _judgement(case: _Case, found: _Assessed | None, k: float, factors: tuple[float, float]) -> Judgement:
-    """The case with its verdict; ``factors`` of `critical_factors`."""
+def _judgement(case: _Case, found: _Assessed | None, k: float, together: tuple[int, float]) -> Judgement:
+    """The case with its verdict; ``together``: how many are judged, and the level of them all."""
     value, reference = _values(case)
     judgement = Judgement(
         sensor=case.sensor.name,
@@ -188,24 +185,28 @@ def _judgement(case: _Case, found: _Assessed | None, k: float, factors: tuple[fl
         probability_out=None,
         critical=None,
         verdict=UNDECIDABLE,
+        coverage_factor=k,
     )
     if found is None:
         return judgement
-    critical, motion = factors[found.is_vector] * found.critical_scale, case.motion
+    (judged, level), dof, motion = together, found.change.dof, case.motion
+    critical = critical_factors(judged, dof, level)[found.is_vector] * found.critical_scale
     return replace(
         judgement,
         deviation=found.y,
         uncertainty=found.u,
-        expanded=k * found.u,
+        expanded=found.k * found.u,
         probability_out=found.probability_out,
         critical=critical,
-        verdict=state(abs(found.y), k * found.u, case.tolerance, critical),
+        verdict=state(abs(found.y), found.k * found.u, case.tolerance, critical),
         change=tuple(map(float, found.change.vector)),
         change_own=_sigmas(found.change.own),
         change_origin=_sigmas(found.change.origin),
         common=None if motion is None else motion.size,
         common_sigma=None if motion is None else motion.sigma,
         common_p=None if motion is None else motion.p_value,
+        coverage_factor=found.k,
+        dof=dof,
     )
 
 

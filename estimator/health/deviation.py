@@ -1,9 +1,10 @@
 """Deviation of one parameter from the reference session, with the uncertainty of both. Units: see the package page."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from estimator.coverage import combined
 from estimator.results import Estimate, SensorCalibration
 from estimator.session import Array
 
@@ -23,6 +24,16 @@ class Deviation:
     origin: Array
     """(1, 1) or (2, 2), the share of the reference session, which all sessions judged against it have in common, unit
     of the vector squared."""
+    own_dof: float | None = None
+    """Degrees of freedom of ``own``; None when the noise is known."""
+    origin_dof: float | None = None
+    """The same of ``origin``."""
+
+    @property
+    def dof(self) -> float | None:
+        """Effective degrees of freedom of both together; None when the noise is known."""
+        own, origin = float(np.trace(self.own)), float(np.trace(self.origin))
+        return combined((own, self.own_dof), (origin, self.origin_dof))
 
     @property
     def covariance(self) -> Array:
@@ -47,8 +58,9 @@ def deviation(current: SensorCalibration, reference: SensorCalibration, paramete
         return None
     if parameter == "scale":
         ratio = now.value / then.value
-        return _scalar(ratio - 1, now.sigma / then.value, ratio * then.sigma / then.value)
-    return _scalar(now.value - then.value, now.sigma, then.sigma)
+        sigmas = now.sigma / then.value, ratio * then.sigma / then.value
+        return replace(_scalar(ratio - 1, *sigmas), own_dof=now.dof, origin_dof=then.dof)
+    return replace(_scalar(now.value - then.value, now.sigma, then.sigma), own_dof=now.dof, origin_dof=then.dof)
 
 
 def _scalar(change: float, own: float, origin: float) -> Deviation:
@@ -66,7 +78,8 @@ def _axis_deviation(current: SensorCalibration, reference: SensorCalibration) ->
     basis = reference.axis_tangents
     turn = basis.T @ current.axis_tangents
     own = turn @ current.axis_covariance @ turn.T
-    return Deviation(axis_offset(current.axis, reference.axis, basis), own, reference.axis_covariance)
+    offset = axis_offset(current.axis, reference.axis, basis)
+    return Deviation(offset, own, reference.axis_covariance, current.axis_dof, reference.axis_dof)
 
 
 def axis_offset(axis: Array, reference: Array, tangents: Array) -> Array:

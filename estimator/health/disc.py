@@ -9,12 +9,16 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import brentq
-from scipy.special import ndtr
+from scipy.special import ndtr, ndtri
 
+from estimator.coverage import chance
+from estimator.coverage import coverage_factor as student
 from estimator.session import Array
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(160)
 """(160,) dimensionless; so many that the probability is right to 1e-10 for a sigma of a twentieth of the disc."""
+CENTRE = 1e-3
+"""Standard deviations within which a limit counts as beside the measured length, where the ratio below is 0/0."""
 REACH = 9.0
 """Standard deviations beyond which a normal density is left out (1e-18)."""
 
@@ -66,7 +70,9 @@ class Length:
     """Chance that the true length exceeds the limit, the measured vector being what is known of it."""
 
 
-def judge_length(vector: Array, covariance: Array, limit: float, coverage_factor: float) -> Length:
+def judge_length(
+    vector: Array, covariance: Array, limit: float, coverage_factor: float, dof: float | None = None
+) -> Length:
     """Length of a two-dimensional deviation, freed of the upward pull of noise.
 
     Parameters
@@ -74,21 +80,38 @@ def judge_length(vector: Array, covariance: Array, limit: float, coverage_factor
     vector : (2,) measured deviation, any unit (of an axis rad).
     covariance : (2, 2) its covariance, positive definite, unit of the vector squared.
     limit : the tolerance that the length is compared with, unit of the vector.
-    coverage_factor : k; the one-sided level of the limits is Φ(k).
+    coverage_factor : k for known noise; the one-sided level of the limits is Φ(k).
+    dof : degrees of freedom of the covariance; None when the noise is known.
 
     Notes
     -----
     A true length δ along the axis of largest variance is rejected as too long when P(|x| ≤ |d|; δ) < Φ(−k), as too
     short when it exceeds Φ(k). That axis is the least favourable direction, so the levels hold for every direction.
-    U is never below k times the largest standard deviation.
+    U is never below k times the largest standard deviation. Of few degrees of freedom the limits are those of standard
+    deviations enlarged by t/k, and the chance is that of deviations with which the nearest edge is as likely as by t.
     """
     variances, axes = np.linalg.eigh(covariance)
     sigma = np.sqrt(variances)
     measured = float(np.hypot(*vector))
-    upper, value, lower = (_length_with(p, measured, sigma) for p in ndtr([-coverage_factor, 0.0, coverage_factor]))
-    expanded = max(coverage_factor * float(sigma[1]), upper - value, value - lower)
-    beyond = 1 - disc_probability(axes.T @ vector, sigma, limit)
+    factor = student(coverage_factor, dof)
+    wide = sigma * (factor / coverage_factor)
+    upper, lower = (_length_with(p, measured, wide) for p in ndtr([-coverage_factor, coverage_factor]))
+    value = _length_with(0.5, measured, sigma)
+    expanded = max(factor * float(sigma[1]), upper - value, value - lower)
+    wider = _wider((limit - measured) / float(sigma[1]), dof)
+    beyond = 1 - disc_probability(axes.T @ vector, sigma * wider, limit)
     return Length(value, expanded, min(1.0, max(0.0, beyond)))
+
+
+def _wider(distance: float, dof: float | None) -> float:
+    """Factor on standard deviations that gives a normal law the chance that Student's gives beyond a ``distance``.
+
+    distance : of the limit from the measured length, in standard deviations; below zero where it is exceeded.
+    """
+    if dof is None:
+        return 1.0
+    away = max(abs(distance), CENTRE)
+    return away / -float(ndtri(chance(-away, dof)))
 
 
 def _length_with(probability: float, measured: float, sigma: Array) -> float:

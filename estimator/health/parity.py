@@ -89,6 +89,7 @@ def _judged(case: _Case, reference: Calibration, k: float) -> Judgement:
         probability_out=probability_out(sight, case.tolerance),
         critical=sight.detectable,
         verdict=_verdict(case, k),
+        coverage_factor=k,
     )
 
 

@@ -6,9 +6,13 @@ Four states (ILAC-G8:2019, JCGM 106:2012), y the deviation, T the tolerance, U =
     conditional-pass  |y| ≤ T < |y| + w
     conditional-fail  |y| − w ≤ T < |y|
     fail              |y| − w > T
-    undecidable       U > T, or the session does not observe the parameter
+    undecidable       U > T, or the session does not observe the parameter or cannot tell its noise
 
-With w = k·u a parameter whose true deviation is T passes, and fails, with probability Φ(−k) at most (2.3 % for k = 2).
+Where the noise is known to ν effective degrees of freedom only, k is Student's t of the probability that the stated k
+has for known noise (`estimator.coverage`).
+
+With w = k·u a parameter whose true deviation is T passes, and fails, with probability Φ(−k) at most (2.3 % for k = 2),
+k the one for known noise.
 
 The level of a session
 ----------------------
@@ -37,8 +41,10 @@ CONDITIONAL_PASS = "conditional-pass"
 UNDECIDABLE = "undecidable"
 CONDITIONAL_FAIL = "conditional-fail"
 FAIL = "fail"
-RULE = "ILAC-G8-four-state/2"
-"""2: what all sensors of the block did together is taken off before a sensor is judged."""
+RULE = "ILAC-G8-four-state/3"
+"""2: what all sensors of the block did together is taken off before a sensor is judged. 3: k by Student's t."""
+WITH_SESSION_LEVEL = ("ILAC-G8-four-state/2", RULE)
+"""Versions that keep the level of the whole session, for papers of what was decided before."""
 SESSION_LEVEL = 0.01
 """α: one false alarm in a hundred sessions of a unit that has not changed."""
 
@@ -64,16 +70,16 @@ def state(size: float, expanded: float, tolerance: float, critical: float) -> st
     return FAIL if size - expanded > tolerance else CONDITIONAL_FAIL
 
 
-def critical_factors(judged: int, dof: float = np.inf, level: float = SESSION_LEVEL) -> tuple[float, float]:
+def critical_factors(judged: int, dof: float | None = None, level: float = SESSION_LEVEL) -> tuple[float, float]:
     """Factors of the standard uncertainty beyond which a scalar, and a two-vector (Mahalanobis length), is a change.
 
     Parameters
     ----------
     judged : n, deviations that the session judges; an axis counts as one.
-    dof : degrees of freedom of the estimated noise; infinite when the noise was stated.
+    dof : effective degrees of freedom of the deviation; None when the noise is known.
     level : α of the whole session.
     """
     single = -np.expm1(np.log1p(-level) / max(judged, 1))
-    if np.isinf(dof):
+    if dof is None:
         return float(stats.norm.isf(single / 2)), float(np.sqrt(-2 * np.log(single)))
     return float(stats.t.isf(single / 2, dof)), float(np.sqrt(2 * stats.f.isf(single, 2, dof)))

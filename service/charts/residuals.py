@@ -70,12 +70,12 @@ def _chart_set(calibration: Calibration, kind: str, across: Across, several: boo
 def _panel(calibration: Calibration, column: int, across: Across, unit: Measure) -> Panel:
     residuals = calibration.residuals
     noise = noise_of(residuals, calibration)
-    value = residuals.value[:, column]
-    outside = int(np.sum(np.abs(value) > 2 * noise.stated[:, column]))
+    value, sigma = residuals.value[:, column], noise.stated[:, column]
+    outside = f", {np.sum(np.abs(value) > 2 * sigma)} of {len(value)} outside ±2σ" if np.isfinite(sigma).any() else ""
     rms = float(np.sqrt(np.nanmean(value**2))) * unit.factor
     return Panel(
         title=calibration.sensors[column].name,
-        description=f"rms {number(rms, decimals(rms))}{THIN}{unit.label}, {outside} of {len(value)} outside ±2σ",
+        description=f"rms {number(rms, decimals(rms))}{THIN}{unit.label}{outside}",
         condition=None,
         datasets={DATA_FORM: _rows(residuals, noise, column, across, unit)},
     )
@@ -87,7 +87,7 @@ def _rows(residuals: Residuals, noise: Noise, column: int, across: Across, unit:
         {
             "x": float(f"{x:.6g}"),
             "y": float(f"{y * unit.factor:.5g}"),
-            "band": float(f"{2 * s * unit.factor:.5g}"),
+            "band": float(f"{2 * s * unit.factor:.5g}") if np.isfinite(s) else 0.0,
             "found": noise.edge(row - 1, column, unit.factor),
             "run": RUNS[int(turned)],
             "row": row,
@@ -96,7 +96,7 @@ def _rows(residuals: Residuals, noise: Noise, column: int, across: Across, unit:
             zip(across.values, residuals.value[:, column], noise.stated[:, column], flipped, strict=True),
             1,
         )
-        if np.isfinite(y) and np.isfinite(s)
+        if np.isfinite(y)
     ]
 
 

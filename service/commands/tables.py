@@ -10,7 +10,8 @@ from rich.text import Text
 
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import CALIBRATIONS, CalibrationSession, Sensor
-from service.measures import deviation_measure, in_measure, measured, number
+from service.measures import COVERAGE, UNKNOWN, deviation_measure, in_measure, measured, number
+from service.words.coverage import coverage_in_words, noise_is_estimated
 from service.words.fit import fit_in_words
 from service.words.names import method_name
 
@@ -82,23 +83,27 @@ def _numbers(declared: Sensor, sensor: SensorCalibration) -> Iterator[str]:
 
 
 def _axis(sensor: SensorCalibration) -> tuple[str, str]:
-    if sensor.axis is None or sensor.axis_sigma is None:
+    if sensor.axis is None:
         return UNSEEN, ""
+    if sensor.axis_sigma is None:
+        return " ".join(number(x, 6) for x in sensor.axis), UNKNOWN
     unit = deviation_measure(sensor.kind, "axis", sensor.axis_sigma)
     return " ".join(number(x, 6) for x in sensor.axis), f"{number(in_measure(sensor.axis_sigma, unit), 1)} {unit.label}"
 
 
 def _off_nominal(scale: Estimate, nominal: float) -> Estimate:
     """The scale factor relative to the nominal one."""
-    if scale.value is None or scale.sigma is None:
+    if scale.value is None:
         return scale
-    return Estimate(scale.value / nominal - 1, scale.sigma / nominal)
+    return Estimate(scale.value / nominal - 1, None if scale.sigma is None else scale.sigma / nominal)
 
 
 def _notes(calibration: Calibration) -> Iterator[Text]:
     """Sentences: how well the model fits, and what this session cannot see."""
     fit = fit_in_words(calibration)
     yield Text(f"{fit.headline} {fit.detail}")
+    if noise_is_estimated(calibration):
+        yield Text(f"For U of about 95 % take {coverage_in_words(calibration, COVERAGE)}.")
     sensors: dict[str, list[str]] = {}
     for sensor in calibration.sensors:
         unseen = ", ".join(name for name, seen in sensor.observable.items() if not seen)

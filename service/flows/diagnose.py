@@ -20,7 +20,7 @@ from service.ingest import read_upload
 from service.judging.judge import judge
 from service.judging.reference import reference_of
 from service.log import log
-from service.records.decision import Verdict
+from service.records.decision import Verdict, nominal_factor_of
 from service.records.diagnosis import DiagnosisState, StoredDiagnosis, state_of
 from service.records.session import StoredSession
 from service.settings import VERSION
@@ -199,4 +199,5 @@ def _verdict_after(storage: Storage, task: Task, session: CalibrationSession, fo
         if reference is None or not decisions:
             return None
         unit_type, known = store.unit_types.of_unit(session.unit), store.calibrations.get(reference)
-    return judge(found.calibration, known, unit_type, decisions[0].coverage_factor).verdict
+    factor = nominal_factor_of(decisions)
+    return judge(found.calibration, known, unit_type, factor).verdict

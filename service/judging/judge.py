@@ -15,6 +15,7 @@ from service.judging.tolerances import tolerances_of
 from service.records.decision import Decision, Judged, Verdict
 from service.records.unit import UnitType
 from service.storage.store import Store
+from service.words.advice import too_few
 from service.words.in_service import reason as recording_in_words
 from service.words.verdict import first_in_words, reason
 
@@ -43,16 +44,20 @@ def judge(
     *,
     after_service: bool = False,
 ) -> Judged:
-    """Every parameter judged, and the session by its worst; without a reference it becomes the reference."""
+    """Every parameter judged, and the session by its worst.
+
+    Without a reference it becomes the reference, unless it gives no uncertainty that later ones could be judged with.
+    """
     tolerances = tolerances_of(unit_type)
     splits = () if reference is None else common_motion(calibration, reference, tolerances)
     found = judge_parameters(calibration, reference, tolerances, coverage_factor=coverage_factor, splits=splits)
-    decisions = _decisions(found, RULE, unit_type, coverage_factor)
-    first = reference is None
+    decisions = _decisions(found, RULE, unit_type)
+    blind = too_few(calibration)
+    first = reference is None and not blind
     return Judged(
         calibration=calibration,
         decisions=decisions,
-        reason=first_in_words(calibration, after_service=after_service) if first else reason(decisions),
+        reason=first_in_words(calibration, after_service=after_service) if first else reason(decisions, blind),
         is_reference=first,
         motions=tuple(split.motion for split in splits),
     )
@@ -69,16 +74,11 @@ def _judge_recording(moved: Calibration, found: Comparison, unit_type: UnitType,
     """Every parameter that parity sees, judged, and the recording by its worst."""
     tolerances = tolerances_of(unit_type)
     seen = judge_parity(found.result, found.reference, tolerances, coverage_factor=coverage_factor)
-    decisions = _decisions(seen, PARITY_RULE, unit_type, coverage_factor)
+    decisions = _decisions(seen, PARITY_RULE, unit_type)
     return Judged(moved, decisions, recording_in_words(found.result, decisions), is_reference=False)
 
 
-def _decisions(
-    judgements: Iterable[Judgement], rule: str, unit_type: UnitType, coverage_factor: float
-) -> tuple[Decision, ...]:
+def _decisions(judgements: Iterable[Judgement], rule: str, unit_type: UnitType) -> tuple[Decision, ...]:
     """Judgements with the rule and the revision of the tolerances that they rest on."""
     basis = f"{rule} ({unit_type.name} rev {unit_type.revision})"
-    return tuple(
-        Decision(**(vars(own) | {"verdict": Verdict(own.verdict)}), coverage_factor=coverage_factor, rule=basis)
-        for own in judgements
-    )
+    return tuple(Decision(**(vars(own) | {"verdict": Verdict(own.verdict)}), rule=basis) for own in judgements)

@@ -9,7 +9,6 @@ from service.charts import ChartSet
 from service.charts.noise import noise_of
 from service.charts.residuals import residual_charts
 from service.measures import (
-    COVERAGE,
     HARD,
     THIN,
     Measure,
@@ -26,11 +25,12 @@ from service.measures import (
 from service.pages.diagnosis import PENDING, TONES
 from service.pages.parity import ParityView, parity_view
 from service.pages.residual_table import ResidualTable, residual_table
-from service.records.decision import Decision, Verdict
+from service.records.decision import Decision, Verdict, nominal_factor_of
 from service.records.diagnosis import DiagnosisSummary
 from service.records.session import ALL_PARAMETERS, SessionReport, StoredSession
 from service.storage.parity_document import parity_from_dict
 from service.words.conditions import Condition, condition_of
+from service.words.coverage import coverage_in_words
 from service.words.fit import FitWords, bands_in_words, fit_in_words
 from service.words.known import combination_in_words
 from service.words.motion import MotionLine, motions_in_words
@@ -103,7 +103,7 @@ def session_page(report: SessionReport, diagnosis: DiagnosisSummary | None = Non
     calibration, decisions = report.calibration, report.decisions
     judged = {(d.sensor, d.parameter): d for d in decisions}
     parameters = parameters_of(calibration)
-    coverage = decisions[0].coverage_factor if decisions else COVERAGE
+    coverage = nominal_factor_of(decisions)
     noise = noise_of(calibration.residuals, calibration)
     parity = None if calibration.parity is None else parity_from_dict(calibration.parity)
     return SessionPage(
@@ -118,7 +118,7 @@ def session_page(report: SessionReport, diagnosis: DiagnosisSummary | None = Non
         residuals=residual_table(calibration),
         method=method_name(calibration.method),
         rule=decisions[0].rule if decisions else "",
-        coverage=number(coverage),
+        coverage=coverage_in_words(calibration, coverage),
         size=size_in_words(report.session.size),
         diagnosis=_diagnosis(diagnosis),
         gives_correction=report.session.programme in CALIBRATIONS,
@@ -167,7 +167,7 @@ def _value(sensor: SensorCalibration, parameter: str, coverage: float) -> str:
     if parameter == "axis":
         return _axis(sensor, coverage)
     estimate: Estimate = getattr(sensor, parameter)
-    spread = None if estimate.sigma is None else coverage * estimate.sigma
+    spread = None if estimate.sigma is None else estimate.factor(coverage) * estimate.sigma
     if parameter == "scale":
         return _scale(estimate.value, spread, sensor.kind)
     largest = max(abs(estimate.value or 0.0), spread or 0.0)
@@ -186,10 +186,12 @@ def _scale(value: float | None, spread: float | None, kind: str) -> str:
 
 
 def _axis(sensor: SensorCalibration, coverage: float) -> str:
-    if sensor.axis is None or sensor.axis_sigma is None:
+    if sensor.axis is None:
         return "not observable"
     vector = ", ".join(number(float(x), 6) for x in sensor.axis)
-    spread = coverage * sensor.axis_sigma
+    if sensor.axis_sigma is None:
+        return f"({vector})"
+    spread = sensor.factor("axis", coverage) * sensor.axis_sigma
     measure = deviation_measure(sensor.kind, "axis", spread)
     share = spread * measure.factor
     return f"({vector}) ±{HARD}{number(share, decimals(share))}{THIN}{measure.label}"

@@ -4,9 +4,10 @@ from dataclasses import dataclass
 from enum import StrEnum
 from math import inf
 
+from estimator.coverage import nominal_factor
 from estimator.health import Judgement
 from estimator.health.common_motion import CommonMotion
-from estimator.results import Calibration
+from estimator.results import COVERAGE, Calibration
 
 
 class Verdict(StrEnum):
@@ -29,9 +30,14 @@ class Decision(Judgement):
 
     verdict: Verdict
     coverage_factor: float
-    """k."""
+    """k, Student's t where the noise is known to few degrees of freedom."""
     rule: str
-    """Name, version and the revision of the tolerances, ``ILAC-G8-four-state/2 (hex-cone rev 2)``."""
+    """Name, version and the revision of the tolerances, ``ILAC-G8-four-state/3 (hex-cone rev 2)``."""
+
+    @property
+    def nominal_factor(self) -> float:
+        """The k for known noise that the coverage factor was made of."""
+        return nominal_factor(self.coverage_factor, self.dof)
 
     @property
     def guard_band(self) -> float | None:
@@ -44,6 +50,11 @@ class Decision(Judgement):
         if self.deviation is None or self.expanded is None:
             return None
         return 1 - (abs(self.deviation) + self.expanded) / self.tolerance
+
+
+def nominal_factor_of(decisions: tuple[Decision, ...]) -> float:
+    """The k for known noise that a session was judged with; the common one of a session that was not judged."""
+    return decisions[0].nominal_factor if decisions else COVERAGE
 
 
 def worst_of(decisions: tuple[Decision, ...]) -> Decision | None:

@@ -43,16 +43,22 @@ def _sensor(entry: dict[str, Any]) -> SensorCalibration:
     return SensorCalibration(
         name=entry["name"],
         kind=entry["kind"],
-        scale=Estimate(**entry["scale"]),
-        bias=Estimate(**entry["bias"]),
-        quadratic=Estimate(**entry["quadratic"]),
+        scale=_estimate(entry["scale"]),
+        bias=_estimate(entry["bias"]),
+        quadratic=_estimate(entry["quadratic"]),
         axis=None if axis["value"] is None else _numbers(axis["value"]),
         axis_tangents=_numbers(axis["tangents"]),
         axis_covariance=_numbers(axis["covariance"]),
         observable=dict(entry["observable"]),
         known=tuple(KnownCombination(**known) for known in entry["known_combinations"]),
-        misalignment=Estimate(**entry["misalignment"]) if "misalignment" in entry else None,
+        misalignment=_estimate(entry["misalignment"]) if "misalignment" in entry else None,
+        axis_dof=axis.get("dof"),
     )
+
+
+def _estimate(entry: dict[str, Any]) -> Estimate:
+    """Its coverage factor follows from the degrees of freedom, which older documents lack."""
+    return Estimate(entry["value"], entry["sigma"], entry["repeatability"], entry.get("dof"))
 
 
 def _fit(entry: dict[str, Any]) -> Fit:

@@ -190,6 +190,7 @@ class DecisionRow(Base):
     common: Mapped[float | None]
     common_sigma: Mapped[float | None]
     common_p: Mapped[float | None]
+    dof: Mapped[float | None]
 
 
 class CommonMotionRow(Base):

@@ -8,7 +8,7 @@ from estimator.session import AS_LEFT, CalibrationSession
 from service.ingest import read_upload
 from service.judging.model_in_force import in_force
 from service.judging.reference import reference_of
-from service.measures import COVERAGE
+from service.records.decision import nominal_factor_of
 from service.records.diagnosis import StoredDiagnosis
 from service.records.event import Service
 from service.records.history import HistoryPoint
@@ -98,7 +98,7 @@ def _pair(store: Store, report: SessionReport) -> FoundAndLeft | None:
     if stored.stage != AS_LEFT:
         return None
     sessions = (*store.sessions.before(stored, None, MOST_EARLIER), stored)
-    k = report.decisions[0].coverage_factor if report.decisions else COVERAGE
+    k = nominal_factor_of(report.decisions)
     services = store.services.of_unit(stored.unit)
     pair = found_and_left(store, store.unit_types.of_unit(stored.unit), sessions, services, k)
     return pair if pair is not None and pair.left == stored else None

@@ -8,7 +8,7 @@ import numpy as np
 from estimator.applied_vector import magnitude, stand_geometry
 from estimator.calibration.calibrate import averaged
 from estimator.correction import BlockCorrection, Correction, SensorCorrection, correction_of
-from estimator.results import Calibration
+from estimator.results import Calibration, json_numbers
 from estimator.session import ACCELEROMETER, CALIBRATIONS, TWO_AXIS_STAND, Array, CalibrationSession
 from service.errors import NotFoundError
 from service.ingest import read_upload
@@ -126,7 +126,7 @@ def _example(block: BlockCorrection, session: CalibrationSession) -> dict[str, A
         "y": y.tolist(),
         "a": a.tolist(),
         "vector": vector.tolist(),
-        "expanded_uncertainty": (COVERAGE * sigma).tolist(),
+        "expanded_uncertainty": json_numbers(COVERAGE * sigma),
         "coverage_factor": COVERAGE,
         "applied": None if applied is None else applied.tolist(),
         "words": [

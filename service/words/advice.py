@@ -16,6 +16,17 @@ def what_to_add(calibration: Calibration) -> str:
     return f"add {len(add)} still orientation{'s' if len(add) > 1 else ''} with up, in block axes, along {up}"
 
 
+def too_few(calibration: Calibration) -> str:
+    """That the session gives no uncertainty, and what to add; empty where it gives one."""
+    add = calibration.fit.positions_to_add
+    if not add:
+        return ""
+    return (
+        f"Too few positions to give an uncertainty: add {add}, or state the standard errors of the readings. "
+        "The parameters take all that the readings tell, and nothing is left to estimate the noise by."
+    )
+
+
 def left_open(calibration: Calibration) -> str:
     """What a calibration does not show of its accelerometers, and what to add; empty where it shows all it must."""
     needed = ("scale", "bias", "axis")

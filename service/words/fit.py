@@ -5,7 +5,7 @@ from math import isfinite, sqrt
 
 from estimator.results import Calibration, Fit
 from service.measures import number
-from service.words.advice import what_to_add
+from service.words.advice import too_few, what_to_add
 
 UNLIKELY = 0.001
 """Probability of χ² below which the model does not explain the readings: the calibration's own bound."""
@@ -29,7 +29,8 @@ class FitWords:
 def fit_in_words(calibration: Calibration) -> FitWords:
     """What χ² and its probability say, and what to be careful of."""
     fit = calibration.fit
-    return FitWords(_headline(fit), _detail(fit), (*_warnings(fit), *_open(calibration)))
+    headline = too_few(calibration) or _headline(fit)
+    return FitWords(headline, _detail(fit), (*_warnings(fit), *_open(calibration)))
 
 
 def bands_in_words(calibration: Calibration, times: float | None) -> str:

@@ -33,7 +33,8 @@ def combination_in_words(known: KnownCombination, kind: str) -> str:
     shares = [(t.coefficient / lead.coefficient, t.name) for t in terms]
     first, *others = [(share, name) for share, name in shares if abs(share) > NEGLIGIBLE]
     rest = "".join(f" {MINUS if share < 0 else '+'} {_product(abs(share), name)}" for share, name in others)
-    total = measured(known.value, COVERAGE * known.sigma, Measure(lead.measure.label, 1 / lead.coefficient)).rstrip()
+    expanded = None if known.sigma is None else COVERAGE * known.sigma
+    total = measured(known.value, expanded, Measure(lead.measure.label, 1 / lead.coefficient)).rstrip()
     return f"{MINUS if first[0] < 0 else ''}{_product(abs(first[0]), first[1])}{rest} = {total}"
 
 

@@ -17,11 +17,13 @@ def first_in_words(calibration: Calibration, *, after_service: bool) -> str:
     return " ".join(filter(None, (NEW_EPOCH if after_service else FIRST_SESSION, left_open(calibration))))
 
 
-def reason(decisions: tuple[Decision, ...]) -> str:
-    """One sentence on the worst parameter, in people's units."""
+def reason(decisions: tuple[Decision, ...], blind: str = "") -> str:
+    """One sentence on the worst parameter, in people's units; ``blind`` says why a session gives no uncertainty."""
     worst = worst_of(decisions)
     if worst is None:
-        return NOTHING_JUDGED
+        return blind or NOTHING_JUDGED
+    if blind and worst.expanded is None:
+        return blind
     return _sentence(worst, decisions)
 
 

@@ -131,7 +131,7 @@ def test_a_stands_log_keeps_run_and_beta_of_each_position():
 def test_standard_errors_of_white_noise_are_sigma_over_root_n():
     log = np.random.default_rng(0).normal(size=(50 * 500, 1))
     places = Intervals(np.arange(0, 25000, 500), np.arange(500, 25500, 500))
-    np.testing.assert_allclose(mean_errors(log, places, RATE), 1 / np.sqrt(500), rtol=0.15)
+    np.testing.assert_allclose(mean_errors(log, places), 1 / np.sqrt(500), rtol=0.15)
 
 
 def test_standard_errors_respect_correlated_noise():
@@ -139,7 +139,7 @@ def test_standard_errors_respect_correlated_noise():
     log = lfilter([1.0], [1.0, -0.9], white, axis=0)
     places = Intervals(np.arange(0, 100000, 1000), np.arange(1000, 101000, 1000))
     scatter = places.means(log).std()
-    assert mean_errors(log, places, RATE)[0, 0] == pytest.approx(scatter, rel=0.25)
+    assert mean_errors(log, places)[0, 0] == pytest.approx(scatter, rel=0.25)
     assert log.std() / np.sqrt(1000) < 0.3 * scatter
 
 
@@ -158,3 +158,46 @@ def test_the_variance_within_each_rest_is_kept_at_the_input():
     np.testing.assert_allclose(found[[3, 7], 0], 0.2**2, rtol=0.02)
     np.testing.assert_allclose(found[[3, 7], 1], 1e-6, rtol=0.5)
     np.testing.assert_allclose(np.delete(found[:, 0], [3, 7]), 1e-6, rtol=0.5)
+
+
+def wandering(rests, seconds, time, size, rng):
+    """A log whose zero wanders exponentially correlated over ``time`` s, ``size`` times its white noise; its rests."""
+    n, decay = int(seconds * RATE), np.exp(-1 / (time * RATE))
+    start = np.arange(rests) * (n + 1000)
+    drawn = rng.standard_normal((start[-1] + n + 1000, 3))
+    wander = lfilter([np.sqrt(1 - decay**2)], [1, -decay], drawn, axis=0)[1000:]
+    return rng.standard_normal(wander.shape) + size * wander, Intervals(start, start + n)
+
+
+@pytest.mark.parametrize(("seconds", "time"), [(5.0, 2.0), (10.0, 2.0), (5.0, 0.5)])
+def test_means_of_a_zero_that_wanders_within_the_rest_are_covered(seconds, time):
+    """The true mean is 0; 20 logs of 20 rests."""
+    inside = []
+    for seed in range(20):
+        log, places = wandering(20, seconds, time, 0.3, np.random.default_rng(seed))
+        inside.append(np.mean(np.abs(places.means(log)) < 1.96 * mean_errors(log, places)))
+    assert 0.92 <= np.mean(inside) <= 0.985
+
+
+def test_white_noise_is_not_taken_for_a_wandering_zero():
+    ratios = []
+    for seed in range(20):
+        log, places = wandering(20, 5.0, 1.0, 0.0, np.random.default_rng(seed))
+        ratios.append(mean_errors(log, places).mean() * np.sqrt(500))
+    assert np.mean(ratios) == pytest.approx(1.0, abs=0.04)
+
+
+def test_a_mean_is_never_better_than_its_independent_samples():
+    """Rests whose block means happen to agree."""
+    samples = np.tile([1.0, -1.0], 800)[:, None]
+    places = Intervals(np.arange(0, 1600, 160), np.arange(160, 1760, 160))
+    assert (mean_errors(samples, places) >= 0.999 / np.sqrt(160)).all()
+
+
+def test_a_restless_interval_keeps_its_own_error():
+    log = np.random.default_rng(4).standard_normal((50 * 500, 2))
+    log[5000:5500] *= 20
+    places = Intervals(np.arange(0, 25000, 500), np.arange(500, 25500, 500))
+    found = mean_errors(log, places)[:, 0] * np.sqrt(500)
+    assert found[10] == pytest.approx(20.0, rel=0.4)
+    assert np.delete(found, 10) == pytest.approx(np.ones(49), rel=0.1)

@@ -26,7 +26,7 @@ ESTIMATOR_LAYERS = (
     {"session"},
     {"arrays"},
     {"rotations"},
-    {"applied_vector", "parameters", "reading"},
+    {"applied_vector", "coverage", "parameters", "reading", "rest_noise"},
     {"results", "static"},
     {"forward", "writing"},
     {"causes"},

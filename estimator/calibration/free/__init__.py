@@ -6,24 +6,23 @@ linear start (`start`); what the set does not tell is said (`information`). Dire
 known sigma enter as a prior, which is what makes six labelled positions enough.
 
 The quadratic term. ``quadratic`` True: estimated. False: left out of the model, reported as not observable. None:
-estimated when the set determines every parameter with it, and either every sensor's c·g to better than 1e-4 or terms
-that are plainly there (χ² of all of them, at 1e-3). On measured recordings terms that pass neither predict held-out
-positions worse than none, and those that pass predict them better (docs/recordings.md).
+estimated when the set determines every parameter with it and keeps degrees of freedom, and either every sensor's c·g to
+better than 1e-4 or terms that are plainly there (likelihood ratio, at 1e-3; `optional`). On measured recordings terms
+that pass neither predict held-out positions worse than none, and those that pass predict them better
+(docs/recordings.md).
 Source: multi-parameter optimisation paper, functional (5), in its maximum-likelihood form.
 """
 
 import numpy as np
-from scipy.stats import chi2
 
 from estimator.applied_vector import gravity
 from estimator.calibration.free.excess import explained
 from estimator.calibration.free.gyros import GyroBiases, rest_biases
-from estimator.calibration.free.information import information
 from estimator.calibration.free.knowledge import merged, of_accelerometers, of_gyros, of_nothing
 from estimator.calibration.free.model import Rows, predicted
+from estimator.calibration.free.optional import solve
 from estimator.calibration.free.report import fit_of_accelerometers, fit_of_gyros, report
 from estimator.calibration.free.schedule import Mask, check, sorted_out
-from estimator.calibration.free.solve import Solution, search, search_with_noise
 from estimator.calibration.free.start import start
 from estimator.forward import measured
 from estimator.parameters import names
@@ -31,14 +30,6 @@ from estimator.results import NOMINAL_AXES, Calibration
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
 __all__ = ["accelerometer_rows", "calibrate_free", "check", "gyro_biases", "residual_per_freedom", "solve"]
-
-USEFUL_QUADRATIC = 1e-4
-"""Sigma of c·g below which the quadratic term is worth estimating, be it there or not: 100 µg at 1 g. On measured
-recordings such terms improve what is predicted of positions held out (docs/recordings.md)."""
-
-PLAIN_QUADRATIC = 1e-3
-"""Probability, without any quadratic term, of estimates this large: below it the term is there. One set in a thousand
-gets a term that it does not need."""
 
 UNSTATED_NOISE = 1e-4
 """g; noise to begin with where none is stated. Estimated from the residuals afterwards, so only its order counts."""
@@ -130,27 +121,6 @@ def stated_directions(session: CalibrationSession) -> tuple[Array, Array]:
     if np.linalg.svd(directions, compute_uv=False)[1] < 0.1:
         return np.zeros((R, 3)), np.zeros(R)
     return directions, stated / session.direction_sigma**2
-
-
-def solve(rows: Rows, stated: bool, quadratic: bool | None) -> Solution:
-    """The search, with or without the quadratic term, with or without stated noise."""
-    run = search if stated else search_with_noise
-    solution = run(rows, start(rows), bool(quadratic))
-    if quadratic is not None or not information(solution.rows, solution.unknowns, quadratic=True).full:
-        return solution
-    extended = run(solution.rows, solution.unknowns, True)
-    return extended if useful(explained(extended) if stated else extended) else solution
-
-
-def useful(extended: Solution) -> bool:
-    """Whether the quadratic terms are known well, or are plainly there, under noise that explains the residuals."""
-    if not extended.knowledge.full:
-        return False
-    terms = np.arange(2, len(extended.knowledge.covariance), 5)
-    covariance = extended.knowledge.covariance[np.ix_(terms, terms)]
-    c = extended.unknowns.quadratic
-    known = np.all(np.diagonal(covariance) < USEFUL_QUADRATIC**2)
-    return bool(known or chi2.sf(c @ np.linalg.solve(covariance, c), len(c)) < PLAIN_QUADRATIC)
 
 
 def gyro_biases(session: CalibrationSession, chosen: Mask) -> GyroBiases:

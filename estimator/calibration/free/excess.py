@@ -48,7 +48,7 @@ def explained(solution: Solution) -> Solution:
         if abs(added - last) < SETTLED * added or not found.converged:
             break
         last = added
-    return replace(found, iterations=solution.iterations)
+    return replace(found, iterations=solution.iterations, freedom=float(solution.dof))
 
 
 def added_noise(found: Solution, stated: Array, dof: int) -> float:

@@ -30,6 +30,8 @@ class GyroBiases:
     """(R, k) one sigma of the independent noise of each reading, rad/s."""
     stated: bool
     """Whether the noise was stated."""
+    freedom: Array
+    """(k,) degrees of freedom of sigma: infinite where it is the stated one, NaN where one row tells none."""
 
     @property
     def chi2(self) -> float:
@@ -61,4 +63,6 @@ def rest_biases(readings: Array, standard_errors: Array, repeatability: Array) -
     squares = ((readings - bias) ** 2 / variance).sum(axis=0)
     restless = chi_squared.sf(squares, max(R - 1, 1)) < UNLIKELY
     sigma = sigma * np.where(restless, np.sqrt(squares / max(R - 1, 1)), 1.0)
-    return GyroBiases(bias, sigma, readings - bias, noise, bool(known.all()))
+    estimated = restless | ~known.all(axis=0)
+    freedom = np.where(estimated, R - 1.0 if R > 1 else np.nan, np.inf)
+    return GyroBiases(bias, sigma, readings - bias, noise, bool(known.all()), freedom)

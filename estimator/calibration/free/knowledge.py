@@ -8,6 +8,7 @@ from scipy.linalg import block_diag, null_space
 
 from estimator.calibration.free.gyros import GyroBiases
 from estimator.calibration.free.model import predicted
+from estimator.calibration.free.noise import freedom_of
 from estimator.calibration.free.solve import Solution
 from estimator.parameters import ELEMENTS, PLAUSIBLE, SensorParameters
 from estimator.results import KnownCombination
@@ -30,7 +31,9 @@ class Knowledge:
     residual: Array
     """(R, m) at the input, m/s² (rad/s)."""
     noise: Array
-    """(R, m) one sigma at the input, m/s² (rad/s)."""
+    """(R, m) one sigma at the input, m/s² (rad/s); NaN where nothing tells it."""
+    freedom: Array
+    """(P,) degrees of freedom of the variances: infinite where the noise is known, NaN where nothing tells it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +46,8 @@ class Told:
     """(P, k) directions that nothing tells of, dimensionless."""
     observable: Array
     """(P,) bool."""
+    certain: bool
+    """Whether the noise is known, so that the covariance is one."""
 
 
 def of_accelerometers(solution: Solution, sigma: Array, scale: Array, g: float) -> Knowledge:
@@ -62,11 +67,19 @@ def of_accelerometers(solution: Solution, sigma: Array, scale: Array, g: float) 
     unseen = T @ solution.knowledge.unseen
     observable = observed(covariance, unseen, np.linalg.norm(solution.knowledge.basis, axis=1) > 0)
     factors = parameters.si_factors(np.full(m, g))
-    told = Told(covariance, unseen, observable)
+    certain = solution.tells_noise
+    told = Told(covariance, unseen, observable, certain)
     known = tuple(combinations(i, parameters, told, factors) for i in range(m))
-    covariance = np.where(np.outer(observable, observable), covariance * np.outer(factors, factors), np.nan)
-    residual = (rows.y - predicted(unknowns)) * (g / gain)
-    return Knowledge(parameters, covariance, observable.reshape(m, 5), known, residual, sigma * (g / gain))
+    given = np.outer(observable, observable) & certain
+    return Knowledge(
+        parameters=parameters,
+        covariance=np.where(given, covariance * np.outer(factors, factors), np.nan),
+        observable=observable.reshape(m, 5),
+        known=known,
+        residual=(rows.y - predicted(unknowns)) * (g / gain),
+        noise=np.where(certain, sigma * (g / gain), np.nan),
+        freedom=freedom_of(solution, T),
+    )
 
 
 def to_bias(offset: Array, gain: Array) -> Array:
@@ -110,7 +123,7 @@ def combinations(i: int, p: SensorParameters, told: Told, factors: Array) -> tup
             KnownCombination(
                 coefficients={ELEMENTS[k % 5]: float(c) for k, c in zip(lost, coefficients, strict=True)},
                 value=float(coefficients @ values),
-                sigma=float(np.sqrt(a @ told.covariance[np.ix_(lost, lost)] @ a)),
+                sigma=float(np.sqrt(a @ told.covariance[np.ix_(lost, lost)] @ a)) if told.certain else None,
             )
         )
     return tuple(found)
@@ -125,7 +138,10 @@ def of_gyros(gyros: GyroBiases, scale: Array, axes: Array) -> Knowledge:
     observable[:, 1] = True
     parameters = SensorParameters(scale, gyros.bias, np.zeros(k), axes)
     square = covariance.reshape(5 * k, 5 * k)
-    return Knowledge(parameters, square, observable, ((),) * k, gyros.residual, gyros.noise)
+    square[1::5][np.isnan(gyros.freedom)] = np.nan
+    freedom = np.full((k, 5), np.inf)
+    freedom[:, 1] = gyros.freedom
+    return Knowledge(parameters, square, observable, ((),) * k, gyros.residual, gyros.noise, freedom.ravel())
 
 
 def of_nothing(readings: Array, scale: Array, axes: Array) -> Knowledge:
@@ -142,6 +158,7 @@ def of_nothing(readings: Array, scale: Array, axes: Array) -> Knowledge:
         known=((),) * k,
         residual=(readings - readings.mean(axis=0)) / scale,
         noise=np.broadcast_to(np.abs(readings.std(axis=0) / scale), (R, k)),
+        freedom=np.full(5 * k, np.inf),
     )
 
 
@@ -167,4 +184,5 @@ def merged(parts: list[tuple[Indices, Knowledge]]) -> Knowledge:
         known=tuple(known[k] for k in order),
         residual=np.concatenate([k.residual for _, k in parts], axis=1)[:, order],
         noise=np.concatenate([k.noise for _, k in parts], axis=1)[:, order],
+        freedom=np.concatenate([k.freedom for _, k in parts])[elements],
     )

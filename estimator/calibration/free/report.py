@@ -8,6 +8,7 @@ from estimator.calibration.free.excess import p_value
 from estimator.calibration.free.gyros import GyroBiases
 from estimator.calibration.free.knowledge import Knowledge
 from estimator.calibration.free.solve import Solution
+from estimator.coverage import finite, positions_to_add
 from estimator.parameters import names, units
 from estimator.results import PARAMETERS, Calibration, Estimate, Fit, Residuals, SensorCalibration
 from estimator.session import Array, CalibrationSession
@@ -41,7 +42,14 @@ def fit_of_accelerometers(
         iterations=used.iterations,
         converged=used.converged,
         add=() if used.knowledge.full else to_add(used),
+        positions_to_add=0 if used.tells_noise else more_positions(used),
     )
+
+
+def more_positions(solution: Solution) -> int:
+    """Orientations, unlabelled and of any direction, that tell all parameters and the noise to `WANTED` freedom."""
+    missing = solution.knowledge.parameters - solution.knowledge.rank
+    return positions_to_add(-missing, solution.rows.y.shape[1] - 2)
 
 
 def to_add(solution: Solution) -> tuple[tuple[float, float, float], ...]:
@@ -67,6 +75,7 @@ def fit_of_gyros(gyros: GyroBiases, element_names: tuple[str, ...]) -> Fit:
         weakest=(element_names[5 * worst + 1], 1.0),
         iterations=0,
         converged=True,
+        positions_to_add=positions_to_add(0, 1) if np.isnan(gyros.freedom).any() else 0,
     )
 
 
@@ -77,9 +86,10 @@ def sensor_result(
     p, sensor, own = known.parameters, session.sensors[i], slice(5 * i + 3, 5 * i + 5)
     seen = [bool(s) for s in known.observable[i]]
     values = (p.scale[i], p.bias[i], p.quadratic[i])
+    freedom = known.freedom[5 * i : 5 * i + 5]
     scale, bias, quadratic = (
-        Estimate(float(v), float(s), float(s)) if ok else Estimate(None, None)
-        for v, s, ok in zip(values, sigma[i, :3], seen[:3], strict=True)
+        estimate(v, s, f) if ok else Estimate(None, None)
+        for v, s, f, ok in zip(values, sigma[i, :3], freedom[:3], seen[:3], strict=True)
     )
     return SensorCalibration(
         name=sensor.name,
@@ -92,7 +102,15 @@ def sensor_result(
         axis_covariance=known.covariance[own, own],
         observable=dict(zip(PARAMETERS, seen, strict=False)),
         known=known.known[i],
+        axis_dof=finite(float(freedom[3:].min())),
     )
+
+
+def estimate(value: float, sigma: float, freedom: float) -> Estimate:
+    """A value with its one sigma, of one unit, NaN where nothing tells the noise; its degrees of freedom."""
+    if not np.isfinite(sigma):
+        return Estimate(float(value), None)
+    return Estimate(float(value), float(sigma), float(sigma), finite(freedom))
 
 
 def report(session: CalibrationSession, known: Knowledge, fit: Fit, gauge: str) -> Calibration:

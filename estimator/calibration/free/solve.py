@@ -1,23 +1,20 @@
-"""Levenberg–Marquardt on the parameters with the orientations eliminated, and the noise where none is stated.
+"""Levenberg–Marquardt on the parameters with the orientations eliminated, under given noise.
 
-The damping acts on the parameters alone: given them, the orientations are well determined by every row. Unstated noise
-is one variance a sensor, estimated from the residuals and the redundancy that each sensor's readings have left
-(Förstner's variance components); with little redundancy the sensors share one variance.
+The damping acts on the parameters alone: given them, the orientations are well determined by every row.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from estimator.arrays import nearest_turn
 from estimator.calibration.free.information import Information, information, movable, unseen_below
 from estimator.calibration.free.model import Linear, Rows, Unknowns, cost, linearise
+from estimator.calibration.free.schedule import Mask
 from estimator.session import Array
 
 MAX_ITERATIONS = 200
 """Of one search; three are usual, and one that has not ended by then says so."""
-MOST_ITERATIONS = 600
-"""Of all searches while the noise settles."""
 
 CONVERGED = 1e-10
 """Expected fall of χ² below which the search has ended: steps of 1e-5 standard errors."""
@@ -34,16 +31,9 @@ FIRST_DAMPING = 1e-4
 LONGEST = 0.5
 """Dimensionless; no element moves further in one step; a turn along a tangent means little beyond."""
 
-NOISE_ROUNDS = 25
-"""Rounds of search and noise; the last is taken where they do not settle."""
-NOISE_SETTLED = 1e-4
-"""Relative change of the noise between rounds below which it has settled."""
-
-ENOUGH_REDUNDANCY = 10.0
-"""Redundancy that a sensor's readings need to have a noise variance of their own: it tells a sigma to a quarter."""
-
-LEAST_NOISE = 1e-12
-"""Dimensionless; readings are not better than rounding."""
+NO_FREEDOM = 0.5
+"""Degrees of freedom at or below which the readings tell nothing of their noise. Unlabelled orientations leave whole
+numbers; half of one is left where loosely labelled ones spend it on the labels."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +49,15 @@ class Solution:
     knowledge: Information
     iterations: int
     converged: bool
+    freedom: float = np.inf
+    """Degrees of freedom that the noise is known to; infinite where it was stated and explains the residuals."""
+    borrows: Mask | None = None
+    """(m,) where each sensor's noise was estimated: whether it is taken as like the others'."""
+
+    @property
+    def tells_noise(self) -> bool:
+        """Whether the noise is known, so that uncertainties can be given."""
+        return self.freedom > NO_FREEDOM
 
     @property
     def dof(self) -> int:
@@ -114,41 +113,3 @@ def proposal(linear: Linear, basis: Array, damping: float) -> tuple[Array, Array
     turns = turns * min(1.0, LONGEST / max(float(np.abs(turns).max()), LONGEST))
     direct = np.einsum("ra,rab,rb->", linear.turn_gradient, linear.inverse, linear.turn_gradient)
     return step, turns, float(right @ inside + direct)
-
-
-def redundancy(rows: Rows, unknowns: Unknowns, knowledge: Information) -> Array:
-    """(R, m) part of each reading's variance that the fit leaves in its residual: 1 − leverage, dimensionless."""
-    linear = linearise(rows, unknowns)
-    m = rows.y.shape[1]
-    through = (linear.shared[:, :, None, :] @ linear.inverse[:, None])[:, :, 0, :]
-    direct = (through * linear.shared).sum(axis=-1)
-    root = knowledge.seen * np.sqrt(knowledge.variances)
-    moved = np.einsum("rma,rpa->rmp", through, linear.coupling) @ root
-    own = np.einsum("rmi,mif->rmf", linear.own, root.reshape(m, 5, -1))
-    return np.clip(1.0 - direct - ((own - moved) ** 2).sum(axis=-1), 0.0, 1.0)
-
-
-def noise_variance(solution: Solution) -> Array:
-    """(m,) factors, dimensionless, by which the variances used must be multiplied to agree with the residuals."""
-    rows = solution.rows
-    left = redundancy(rows, solution.unknowns, solution.knowledge).sum(axis=0)
-    squares = (linearise(rows, solution.unknowns).residual ** 2).sum(axis=0)
-    common = squares.sum() / max(left.sum(), 1.0)
-    if left.min() < ENOUGH_REDUNDANCY:
-        return np.full(len(left), common)
-    return squares / left
-
-
-def search_with_noise(rows: Rows, unknowns: Unknowns, quadratic: bool) -> Solution:
-    """The search with the noise estimated on the way; ``rows.sigma`` gives the relative weights to begin with."""
-    solution = search(rows, unknowns, quadratic)
-    iterations = solution.iterations
-    for _ in range(NOISE_ROUNDS):
-        factor = np.sqrt(noise_variance(solution))
-        sigma = np.maximum(solution.rows.sigma * factor, LEAST_NOISE)
-        change = np.abs(sigma / solution.rows.sigma - 1.0).max()
-        solution = search(rows.weighted(sigma), solution.unknowns, quadratic)
-        iterations += solution.iterations
-        if change < NOISE_SETTLED or iterations > MOST_ITERATIONS:
-            break
-    return replace(solution, iterations=iterations)

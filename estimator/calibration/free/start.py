@@ -32,9 +32,14 @@ FLAT = 1e-3
 
 
 def start(rows: Rows) -> Unknowns:
-    """Parameters and orientations from linear estimates; of several the one that fits best."""
+    """Of `starts`, the one that fits best."""
+    return starts(rows)[0]
+
+
+def starts(rows: Rows) -> list[Unknowns]:
+    """Parameters and orientations from linear estimates, the one that fits best first."""
     found = [with_directions(rows)] if rows.held else from_shape(rows)
-    return min((oriented(rows, *linear) for linear in found), key=lambda unknowns: cost(rows, unknowns))
+    return sorted((oriented(rows, *linear) for linear in found), key=lambda unknowns: cost(rows, unknowns))
 
 
 def oriented(rows: Rows, sensitivity: Array, offset: Array) -> Unknowns:

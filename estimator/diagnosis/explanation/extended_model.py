@@ -145,10 +145,10 @@ def with_sigmas(sensor: SensorCalibration, i: int, total: Array, steady: Array) 
     """The i-th sensor's estimates with the sigmas of new covariances ``total`` and ``steady`` (P, P), SI."""
 
     def estimate(old: Estimate, element: int) -> Estimate:
-        if old.value is None:
+        if old.value is None or old.sigma is None:
             return old
         k = 5 * i + element
-        return Estimate(old.value, float(np.sqrt(total[k, k])), float(np.sqrt(steady[k, k])))
+        return replace(old, sigma=float(np.sqrt(total[k, k])), repeatability=float(np.sqrt(steady[k, k])))
 
     angles = slice(5 * i + 3, 5 * i + 5)
     return replace(

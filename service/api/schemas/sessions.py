@@ -72,7 +72,10 @@ class DecisionSchema(BaseModel):
     deviation: float | None = Field(description="y, from the reference: relative for scale, else SI.")
     uncertainty: float | None = Field(description="u, standard uncertainty of the deviation, of both sessions.")
     expanded: float | None = Field(description="U = k·u.")
-    coverage_factor: float = Field(description="k.")
+    coverage_factor: float = Field(
+        description="k; Student's t where the noise is known to few degrees of freedom (JCGM 100, G.4)."
+    )
+    dof: float | None = Field(description="Effective degrees of freedom of u; null when the noise is known.")
     tolerance: float = Field(description="T, in the unit of the deviation.")
     guard_band: float | None = Field(description="w = U.")
     probability_out: float | None = Field(description="Probability that the true deviation is out of tolerance.")

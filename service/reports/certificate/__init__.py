@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from estimator.health.rule import RULE
-from service.measures import COVERAGE, number
+from estimator.health.rule import WITH_SESSION_LEVEL
+from service.records.decision import nominal_factor_of
 from service.reports.certificate.causes import Cause, causes_of
 from service.reports.certificate.drawings import Drawing, histories_of, residuals_of
 from service.reports.certificate.facts import Fact, facts_of, record_of, title_of
@@ -12,6 +12,7 @@ from service.reports.certificate.results import ResultTable, result_tables
 from service.reports.typeset import typeset
 from service.views.certificate import CertifiedSession
 from service.words.conditions import CONDITIONS, Condition, condition_of
+from service.words.coverage import coverage_in_words
 from service.words.fit import FitWords, fit_in_words
 from service.words.known import combination_in_words
 from service.words.motion import motions_in_words
@@ -67,7 +68,7 @@ def certificate_pdf(found: CertifiedSession) -> bytes:
 def certificate(found: CertifiedSession) -> Certificate:
     """What the paper says of a session."""
     session, calibration, decisions = found.report.session, found.report.calibration, found.report.decisions
-    k = decisions[0].coverage_factor if decisions else COVERAGE
+    k = nominal_factor_of(decisions)
     known = ((s.name, combination_in_words(c, s.kind)) for s in calibration.sensors for c in s.known)
     return Certificate(
         title=title_of(session),
@@ -81,10 +82,10 @@ def certificate(found: CertifiedSession) -> Certificate:
         record=record_of(found),
         sha256=session.sha256,
         notes=session.notes,
-        coverage=number(k),
+        coverage=coverage_in_words(calibration, k),
         judged=bool(decisions) and not session.is_reference,
         rule=decisions[0].rule if decisions else "",
-        whole_level=any(d.rule.startswith(RULE) for d in decisions),
+        whole_level=any(d.rule.startswith(WITH_SESSION_LEVEL) for d in decisions),
         states=tuple(reversed(CONDITIONS)),
         tables=result_tables(found, k),
         together=tuple(line.text for line in motions_in_words(found.report.motions, k)),

@@ -62,14 +62,18 @@ def result_row(
 def _value(sensor: SensorCalibration, column: ResultColumn) -> tuple[str, str]:
     """The value and its U; a scale factor's is relative."""
     if column.parameter == "axis":
-        if sensor.axis is None or sensor.axis_sigma is None:
+        if sensor.axis is None:
             return UNSEEN, UNKNOWN
         vector = "\u2002".join(number(float(x), 6) for x in sensor.axis)
-        return vector, _spread(column.k * sensor.axis_sigma, column.deviation)
+        if sensor.axis_sigma is None:
+            return vector, UNKNOWN
+        return vector, _spread(sensor.factor("axis", column.k) * sensor.axis_sigma, column.deviation)
     estimate: Estimate | None = getattr(sensor, column.parameter)
-    if estimate is None or estimate.value is None or estimate.sigma is None:
+    if estimate is None or estimate.value is None:
         return UNSEEN, UNKNOWN
-    expanded = column.k * estimate.sigma
+    if estimate.sigma is None:
+        return number(in_measure(estimate.value, column.value)), UNKNOWN
+    expanded = estimate.factor(column.k) * estimate.sigma
     shown = number(in_measure(estimate.value, column.value), decimals(in_measure(expanded, column.value)))
     if column.parameter == "scale":
         return shown, _spread(abs(expanded / estimate.value), deviation_measure(sensor.kind, "scale", 0.0), label=True)

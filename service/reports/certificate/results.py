@@ -96,7 +96,7 @@ def _column(parameter: str, sensors: list[SensorCalibration], decisions: list[De
     kind = sensors[0].kind
     moved = [abs(x) for d in decisions for x in (d.deviation, d.expanded, d.tolerance) if x is not None]
     if parameter == "axis":
-        spreads = [k * s.axis_sigma for s in sensors if s.axis_sigma is not None]
+        spreads = [s.factor("axis", k) * s.axis_sigma for s in sensors if s.axis_sigma is not None]
         return ResultColumn(parameter, k, *(deviation_measure(kind, "axis", max([*moved, *spreads], default=0.0)),) * 2)
     own = [abs(e.value) for s in sensors if (e := getattr(s, parameter)) is not None and e.value is not None]
     value = value_measure(kind, parameter, max(own, default=0.0))

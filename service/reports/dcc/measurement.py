@@ -6,11 +6,10 @@ import numpy as np
 
 from estimator.results import SensorCalibration
 from estimator.session import ACCELEROMETER
-from service.measures import COVERAGE
-from service.records.decision import Decision
+from service.records.decision import Decision, nominal_factor_of
 from service.reports.certificate.facts import title_of
 from service.reports.dcc.elements import DCC, conformity, english, software
-from service.reports.dcc.quantities import ONE, deviation_measure, quantity, value_measure
+from service.reports.dcc.quantities import ONE, Factor, deviation_measure, quantity, value_measure
 from service.reports.xml import Element
 from service.views.certificate import CertifiedSession
 from service.words.names import spaced
@@ -46,7 +45,7 @@ def _result(
 
 
 def _value(sensor: SensorCalibration, parameter: str, found: CertifiedSession) -> Element:
-    k = found.report.decisions[0].coverage_factor if found.report.decisions else COVERAGE
+    k = sensor.factor(parameter, nominal_factor_of(found.report.decisions))
     if parameter == "axis":
         return _axis(sensor, k)
     estimate = getattr(sensor, parameter)
@@ -55,7 +54,7 @@ def _value(sensor: SensorCalibration, parameter: str, found: CertifiedSession) -
     counted = found.source.count_time is not None and sensor.kind != ACCELEROMETER
     unit = value_measure(sensor.kind, parameter, reading, counted=counted)
     name = f"{parameter}, in {reading or '1'} per input" if parameter == "scale" else parameter
-    return quantity(name, estimate.value, unit, estimate.sigma, k)
+    return quantity(name, estimate.value, unit, estimate.sigma, Factor(k, estimate.dof))
 
 
 def _axis(sensor: SensorCalibration, k: float) -> Element:
@@ -65,13 +64,18 @@ def _axis(sensor: SensorCalibration, k: float) -> Element:
     components = zip("xyz", sensor.axis, spread, strict=True)
     return DCC.list(
         english("name", "input axis, block axes"),
-        *(quantity(name, component, ONE, float(sigma), k) for name, component, sigma in components),
+        *(quantity(name, value, ONE, _known(sigma), Factor(k, sensor.axis_dof)) for name, value, sigma in components),
     )
+
+
+def _known(sigma: float) -> float | None:
+    """NaN, of a session that tells no noise, is no uncertainty."""
+    return float(sigma) if np.isfinite(sigma) else None
 
 
 def _deviation(decision: Decision, deviation: float) -> Element:
     """The deviation with what it was decided by."""
-    unit, k = deviation_measure(decision.kind, decision.parameter), decision.coverage_factor
+    unit, k = deviation_measure(decision.kind, decision.parameter), Factor(decision.coverage_factor, decision.dof)
     name = f"{decision.parameter}, deviation from the reference"
     found = quantity(name, deviation, unit, decision.uncertainty, k)
     judged = DCC.metaData(

@@ -1,7 +1,8 @@
 """Quantities of a Digital Calibration Certificate: value, unit and expanded uncertainty by the rules of D-SI."""
 
-from math import erf, sqrt
+from dataclasses import dataclass
 
+from estimator.coverage import chance
 from estimator.session import ACCELEROMETER
 from service.reports.dcc.elements import DCC, SI, english
 from service.reports.xml import Element
@@ -28,16 +29,35 @@ def deviation_measure(kind: str, parameter: str) -> str:
     return ONE if parameter == "scale" else value_measure(kind, parameter, "", counted=False)
 
 
-def quantity(name: str, value: float, unit: str, sigma: float | None, k: float) -> Element:
+@dataclass(frozen=True)
+class Factor:
+    """A coverage factor and what it covers."""
+
+    k: float
+    dof: float | None
+    """Degrees of freedom of the standard uncertainty; None when the noise is known."""
+
+    @property
+    def probability(self) -> float:
+        """Of an interval ±k·u."""
+        return 2.0 * chance(self.k, self.dof) - 1.0
+
+    @property
+    def distribution(self) -> str:
+        """The law that the probability is of."""
+        return "normal" if self.dof is None else f"t, {self.dof:.3g} effective degrees of freedom"
+
+
+def quantity(name: str, value: float, unit: str, sigma: float | None, factor: Factor) -> Element:
     """``dcc:quantity`` with ``si:real``; k and its coverage stand with U."""
     real = SI.real(SI.value(repr(float(value))), SI.unit(unit))
     if sigma is not None:
         real.append(
             SI.expandedUnc(
-                SI.uncertainty(repr(float(k * sigma))),
-                SI.coverageFactor(f"{k:g}"),
-                SI.coverageProbability(f"{erf(k / sqrt(2)):.4f}"),
-                SI.distribution("normal"),
+                SI.uncertainty(repr(float(factor.k * sigma))),
+                SI.coverageFactor(f"{factor.k:g}"),
+                SI.coverageProbability(f"{factor.probability:.4f}"),
+                SI.distribution(factor.distribution),
             )
         )
     return DCC.quantity(english("name", name), real)

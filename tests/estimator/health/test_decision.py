@@ -8,6 +8,7 @@ from scipy import stats
 
 from estimator.health import Judgement, judge
 from estimator.health.rule import critical_factors
+from estimator.results import Estimate
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from tests.estimator.health.cases import TOLERANCES, calibration, sensor
 
@@ -92,15 +93,20 @@ def test_a_measurement_without_noise_is_judged_too() -> None:
     assert [j.verdict for j in judge(current, same, TOLERANCES)] == ["pass", "pass", "pass", "fail"]
 
 
-def critical(parameter: str, **fits: int) -> float:
-    """The smallest change that counts, in standard uncertainties; ``fits``: degrees of freedom of estimated noise."""
-    current, then = (
-        calibration(sensor(offset=offset, covariance=TIGHT), noise="estimated" if key in fits else "stated",
-                    dof=fits.get(key, 50)) for key, offset in (("now", (5e-5, 0.0)), ("then", (0.0, 0.0)))
-    )  # fmt: skip
-    found = next(j for j in judge(current, then, TOLERANCES) if j.parameter == parameter)
-    assert found.critical is not None
-    return found.critical / (found.uncertainty or 0)
+def found(parameter: str, now: float | None = None, then: float | None = None) -> Judgement:
+    """A judgement of two sessions of equal sigmas, noise known to so many degrees of freedom."""
+    current, origin = (
+        calibration(replace(sensor(offset=offset, covariance=TIGHT), bias=Estimate(0.0, 3e-5, 3e-5, dof), axis_dof=dof))
+        for offset, dof in (((5e-5, 0.0), now), ((0.0, 0.0), then))
+    )
+    return next(j for j in judge(current, origin, TOLERANCES) if j.parameter == parameter)
+
+
+def critical(parameter: str, now: float | None = None, then: float | None = None) -> float:
+    """The smallest change that counts, in standard uncertainties."""
+    judgement = found(parameter, now, then)
+    assert judgement.critical is not None
+    return judgement.critical / (judgement.uncertainty or 0)
 
 
 def test_a_change_of_a_number_is_measured_against_the_factor_of_numbers() -> None:
@@ -113,11 +119,29 @@ def test_a_change_of_an_axis_is_measured_against_the_factor_of_vectors() -> None
 
 
 def test_noise_known_from_few_readings_asks_for_a_larger_change() -> None:
-    assert critical("bias", now=8) == pytest.approx(critical_factors(4, dof=8)[0])
+    assert critical("bias", now=8, then=8) == pytest.approx(critical_factors(4, dof=16)[0])
 
 
-def test_the_worse_known_noise_of_both_sessions_counts() -> None:
-    assert critical("bias", now=30, then=8) == critical("bias", now=8, then=30) == critical("bias", then=8)
+def test_the_degrees_of_freedom_of_both_sessions_count() -> None:
+    """Equal sigmas: 4/(1/30 + 1/8)."""
+    assert critical("bias", now=30, then=8) == critical("bias", now=8, then=30)
+    assert critical("bias", now=30, then=8) == pytest.approx(critical_factors(4, dof=4 / (1 / 30 + 1 / 8))[0])
+
+
+@pytest.mark.parametrize("parameter", ["bias", "axis"])
+def test_few_degrees_of_freedom_widen_u_and_the_chance_to_be_out(parameter: str) -> None:
+    known, few = found(parameter), found(parameter, now=3, then=3)
+    assert few.dof == pytest.approx(6.0)
+    assert few.coverage_factor == pytest.approx(2.52, abs=0.01)
+    assert few.expanded == pytest.approx(few.coverage_factor * few.uncertainty)
+    assert few.expanded > 1.2 * known.expanded
+    assert few.probability_out > known.probability_out
+
+
+def test_a_session_that_tells_no_noise_is_undecidable() -> None:
+    blind = replace(sensor(covariance=np.full((2, 2), np.nan)), bias=Estimate(0.0, None))
+    verdicts = {j.parameter: j.verdict for j in judge(calibration(blind), calibration(sensor()), TOLERANCES)}
+    assert verdicts["bias"] == verdicts["axis"] == "undecidable"
 
 
 def test_a_sensor_of_another_kind_is_no_reference() -> None:

@@ -67,7 +67,7 @@ def test_every_decision_says_what_it_rests_on(holding: Holding) -> None:
     assert len(decisions) == 24
     assert {d["verdict"] for d in decisions} == {"pass"}
     assert all(abs(d["expanded"] - 2 * d["uncertainty"]) < 1e-12 for d in decisions)
-    assert {d["rule"] for d in decisions} == {"ILAC-G8-four-state/2 (accelerometer × 6, V rev 1)"}
+    assert {d["rule"] for d in decisions} == {"ILAC-G8-four-state/3 (accelerometer × 6, V rev 1)"}
 
 
 def test_three_faults_are_reported_with_their_rows(client: httpx.Client) -> None:

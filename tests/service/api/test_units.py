@@ -133,7 +133,7 @@ def test_other_tolerances_hold_from_the_next_session_on(measured: httpx.Client) 
     found = upload(measured, seed=8, month=10, a3_moved=90.0)
     assert found["verdict"] == "pass"
     rules = {d["rule"] for d in measured.get(f"/api/v1/sessions/{found['id']}").json()["decisions"]}
-    assert rules == {f"ILAC-G8-four-state/2 ({name} rev 2)"}
+    assert rules == {f"ILAC-G8-four-state/3 ({name} rev 2)"}
 
 
 def test_the_same_tolerances_again_are_no_revision(measured: httpx.Client) -> None:

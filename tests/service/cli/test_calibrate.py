@@ -119,3 +119,15 @@ def test_a_csv_table_finds_its_metadata_in_the_json_file_beside_it(run: Run, tmp
     (tmp_path / "x.csv").write_text("\n".join(lines), encoding="utf-8")
     ran = run("calibrate", tmp_path / "x.csv", "--json")
     assert ran.documents == [calibrate(read_session(accelerometer_block())).to_dict()]
+
+
+def test_too_few_positions_are_said_with_how_many_to_add(run: Run, tmp_path: Path) -> None:
+    """A triad in nine orientations, no standard errors: the parameters take all that the readings tell."""
+    ran = run("calibrate", write(tmp_path, "few.json", arbitrary_orientations(3, orientations=9, se=None)))
+    assert ran.code == 0
+    assert "Too few positions to give an uncertainty: add 5" in " ".join(ran.out.split())
+
+
+def test_few_degrees_of_freedom_are_said_with_the_factor_to_take(run: Run, tmp_path: Path) -> None:
+    ran = run("calibrate", write(tmp_path, "few.json", arbitrary_orientations(3, orientations=11, se=None)))
+    assert "k = 4.5" in " ".join(ran.out.split())

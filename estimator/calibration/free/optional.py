@@ -1,0 +1,113 @@
+"""Whether the quadratic terms are estimated, and from which of several minima.
+
+χ² of unknown orientations has more than one minimum once the quadratic terms are free: with few orientations they trade
+against scale and bias along a valley. Every minimum is therefore looked for from several points: where the search came
+from, and some standard errors up and down the least known directions.
+
+Terms are plainly there when leaving them out costs more χ² than chance allows, each model at its own best minimum under
+the same noise: a likelihood ratio, χ² of q terms where the noise is stated, Fisher's F where it is estimated from ν
+degrees of freedom. That the terms are many of their standard errors from zero (Wald) proves nothing at a far minimum.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from scipy.special import chdtrc, fdtrc
+
+from estimator.calibration.free.excess import explained
+from estimator.calibration.free.information import information
+from estimator.calibration.free.model import Rows, Unknowns, linearise
+from estimator.calibration.free.noise import scaled, search_with_noise
+from estimator.calibration.free.solve import Solution, search
+from estimator.calibration.free.start import starts
+from estimator.coverage import WANTED
+
+Run = Callable[[Rows, Unknowns, bool], Solution]
+
+USEFUL_QUADRATIC = 1e-4
+"""Sigma of c·g below which the quadratic term is worth estimating, be it there or not: 100 µg at 1 g. On measured
+recordings such terms improve what is predicted of positions held out (docs/recordings.md)."""
+
+PLAIN_QUADRATIC = 1e-3
+"""Probability, without any quadratic term, of a likelihood ratio this large: below it the term is there. One set in a
+thousand gets a term that it does not need."""
+
+FAR = 3.0
+"""Standard errors to either side of a minimum from which another is looked for: the edge of where the search began."""
+
+VALLEYS = 2
+"""Least known directions that are followed: the quadratic terms trade with the scales along one, with the biases along
+the other."""
+
+STRAIGHT = 0.01
+"""Dimensionless; a shorter way stays where the model is straight to a per cent, and leads back to the same minimum."""
+
+LOWER = 1e-3
+"""Fall of χ² from which another minimum is a lower one: far below what any choice rests on."""
+
+PARABOLA = 2.0
+"""Times the fall of χ² up to which the square of the terms in standard errors agrees with it: they are equal where χ²
+is a parabola, and beyond twice that it is not one."""
+
+
+def solve(rows: Rows, stated: bool, quadratic: bool | None) -> Solution:
+    """The search, with or without the quadratic term (None: if it deserves it), with or without stated noise."""
+    run: Run = search if stated else search_with_noise
+    first, *others = starts(rows)
+    plain = lowest(run, run(rows, first, bool(quadratic)), others)
+    if quadratic is not None or not affordable(plain, stated):
+        return plain
+    extended = lowest(run, run(plain.rows if stated else rows, plain.unknowns, True), [])
+    return extended if deserved(extended, plain, stated) else plain
+
+
+def affordable(plain: Solution, stated: bool) -> bool:
+    """Whether the terms would be determined and leave degrees of freedom to judge by: one, or to tell the noise."""
+    wanted = information(plain.rows, plain.unknowns, quadratic=True)
+    left = plain.dof + plain.knowledge.rank - wanted.rank
+    return wanted.full and left >= (1 if stated else WANTED)
+
+
+def lowest(run: Run, found: Solution, others: list[Unknowns]) -> Solution:
+    """The lowest of the minima around ``found`` and from other starts, all compared under the noise of ``found``."""
+    best = found
+    for start in (*others, *around(found)):
+        tried = search(found.rows, start, found.quadratic)
+        if tried.converged and tried.chi2 < best.chi2 - LOWER:
+            best = tried
+    return found if best is found else run(found.rows, best.unknowns, found.quadratic)
+
+
+def around(found: Solution) -> list[Unknowns]:
+    """Points `FAR` standard errors up and down the least known directions, each orientation turned to suit."""
+    linear, order = linearise(found.rows, found.unknowns), np.argsort(found.knowledge.variances)
+    steps = [s for s in FAR * scaled(found.knowledge)[:, order[-VALLEYS:]].T if np.linalg.norm(s) > STRAIGHT]
+    return [found.unknowns.stepped(s, linear.turns(s)) for step in steps for s in (step, -step)]
+
+
+def without_terms(unknowns: Unknowns) -> Unknowns:
+    """The same without quadratic terms."""
+    return replace(unknowns, quadratic=np.zeros_like(unknowns.quadratic))
+
+
+def deserved(extended: Solution, plain: Solution, stated: bool) -> bool:
+    """Whether the quadratic terms are plainly there, or known well at the minimum that belongs to them."""
+    used = explained(extended) if stated else extended
+    if not used.knowledge.full or not used.converged:
+        return False
+    without = lowest(search, search(used.rows, plain.unknowns, False), [without_terms(used.unknowns)])
+    fall = max(without.chi2 - used.chi2, 0.0)
+    q, terms = used.knowledge.rank - without.knowledge.rank, np.arange(2, len(used.knowledge.covariance), 5)
+    if likelihood_ratio(fall, q, used) < PLAIN_QUADRATIC:
+        return True
+    covariance, c = used.knowledge.covariance[np.ix_(terms, terms)], used.unknowns.quadratic
+    near = bool(c @ np.linalg.solve(covariance, c) < PARABOLA * fall + 1.0)
+    return near and bool(np.all(np.diagonal(covariance) < USEFUL_QUADRATIC**2))
+
+
+def likelihood_ratio(fall: float, q: int, used: Solution) -> float:
+    """Probability, without the q terms, of χ² falling by this much; F where the noise was estimated."""
+    if np.isinf(used.freedom):
+        return float(chdtrc(q, fall))
+    return float(fdtrc(q, used.freedom, fall / q))

@@ -1,0 +1,155 @@
+"""The standard error of the mean of a rest, from the spectrum that the rests themselves show.
+
+Theory
+------
+Noise that hangs together makes a mean worse than sd/√n, and what hangs together for about as long as the rest is hidden
+from its own scatter: the mean takes it along. So the spectrum is measured and followed down to the mean. Each rest is
+cut into B blocks; the discrete cosine transform of the block means has energies I_k, k = 1 … B − 1, at k half waves a
+rest, nearly independent for stationary noise, each χ² of one degree of freedom a rest times the spectrum
+
+    S_k = a_0·M_0k + a_j·M_jk
+
+of white noise and, if there is any, exponentially correlated noise (Gauss–Markov) of a time τ_j. The times double
+from a block to two rests: what lasts shorter is white to the blocks, what lasts longer hardly changes within a rest
+and belongs to the repeatability from position to position. The channels of a kind share the time, each with sizes of
+its own, which maximise the likelihood of all rests together (Whittle 1953, Ark. Mat. 2, 423), by the ascent of
+Févotte & Idier (2011, Neural Comput. 23, 2421). The times, and none, are weighed by their likelihood and the price of
+one more size a channel (Schwarz 1978, Ann. Statist. 6, 461), and the variance of a mean is the mean over them of
+a_0/n + a_j·v_j, n samples a rest and
+
+    v = 2x·(1 − x·(1 − e^{−1/x})),    x the time in rests.
+
+Never less than the sd of samples over √n.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.fft import dct
+
+from estimator.session import Array
+
+BLOCKS = 16
+"""Blocks of a rest: five octaves of correlation times."""
+
+ROUNDS = 60
+"""Of the ascent: two sizes settle to a per cent in some dozens."""
+
+RESTLESS = 3.0
+"""Energy of a rest over all waves and channels, in usual ones, from which it has a standard error of its own: some
+dozens of degrees of freedom do not reach it by chance."""
+
+PASSES = 3
+"""Times that the restless are looked for: one hides another only once or twice."""
+
+
+@dataclass(frozen=True, eq=False)
+class Energies:
+    """What n rests of m channels show. B blocks a rest."""
+
+    value: Array
+    """(n, B − 1, m) I, unit of the readings squared."""
+    samples: Array
+    """(n,) samples of each rest, without unit."""
+    least: Array
+    """(n, m) variance of the mean if the samples were independent, unit of the readings squared."""
+
+
+def energies(readings: Array, start: Array, stop: Array) -> Energies | None:
+    """Of readings (R, m), any unit, in rests from ``start`` to ``stop`` (n,), without unit; None where all are too
+    short to have a scatter."""
+    samples = stop - start
+    if samples.max() < 2:
+        return None
+    count = int(np.clip(samples[samples > 1].min(), 2, BLOCKS))
+    value = np.full((len(start), count - 1, readings.shape[1]), np.nan)
+    least = np.full((len(start), readings.shape[1]), np.nan)
+    for i in np.flatnonzero(samples > 1):
+        rest = readings[start[i] : stop[i]]
+        length = samples[i] // count
+        means = rest[: length * count].reshape(count, length, -1).mean(axis=1)
+        value[i] = dct(means, norm="ortho", axis=0)[1:] ** 2
+        least[i] = rest.var(axis=0, ddof=1) / samples[i]
+    return Energies(value, samples, least)
+
+
+def mixture(samples: Array, count: int) -> tuple[Array, Array]:
+    """Spectra M (n, B − 1, J) and variances v (n, J) of the mean, each for a unit of one of J noises, in rests (n,).
+
+    The first is white, of variance one a sample; the others correlated, of variance one, their times 1/B … 2 of the
+    longest rest.
+    """
+    times = samples.max() / count * 2.0 ** np.arange(int(np.log2(count)) + 2)
+    ratio = (samples[:, None] / count) / times
+    transform = dct(np.eye(count), norm="ortho", axis=0)[1:]
+    lag = np.abs(np.subtract.outer(np.arange(count), np.arange(count)))
+    near = 2 / ratio**2 * (ratio + np.expm1(-ratio))
+    far = (np.expm1(-ratio) / ratio) ** 2
+    decay = np.exp(-ratio[..., None, None] * np.maximum(lag - 1, 0))
+    covariance = np.where(lag == 0, near[..., None, None], far[..., None, None] * decay)
+    correlated = np.einsum("ka,njab,kb->nkj", transform, covariance, transform)
+    white = np.broadcast_to((count / samples)[:, None, None], (len(samples), count - 1, 1))
+    x = times / samples[:, None]
+    mean = 2 * x * (1 + x * np.expm1(-1 / x))
+    return np.concatenate([white, correlated], axis=-1), np.concatenate([1 / samples[:, None], mean], axis=-1)
+
+
+def fitted(energy: Array, spectra: Array) -> Array:
+    """(J, m) the a_j of greatest likelihood of energies (n, B − 1, m) under spectra (n, B − 1, J), units squared."""
+    share = spectra.mean(axis=(0, 1))
+    a = energy.mean(axis=(0, 1)) / (share[:, None] * len(share))
+    for _ in range(ROUNDS if len(share) > 1 else 1):
+        S = spectra @ a
+        S = np.where(S > 0, S, 1.0)  # readings that never change
+        up = np.tensordot(spectra, energy / S**2, axes=([0, 1], [0, 1]))
+        a = a * np.sqrt(up / np.tensordot(spectra, 1 / S, axes=([0, 1], [0, 1])))
+    return a
+
+
+def log_likelihood(energy: Array, S: Array) -> float:
+    """Of energies (n, B − 1, m) under a spectrum of the same shape, units squared; all channels together."""
+    S = np.where(S > 0, S, 1.0)
+    return float(-0.5 * (np.log(S) + energy / S).sum())
+
+
+@dataclass(frozen=True, eq=False)
+class Noises:
+    """White noise alone, and with correlated noise of each time: K models."""
+
+    amplitude: Array
+    """(K, J, m) a_j, unit of the readings squared."""
+    weight: Array
+    """(K,) probability of each, without unit."""
+
+    def over(self, shapes: Array) -> Array:
+        """(n, …, m) mean over the models of shapes (n, …, J), unit of the readings squared."""
+        return np.tensordot(shapes, np.tensordot(self.weight, self.amplitude, axes=1), axes=1)
+
+
+def noises(energy: Array, spectra: Array) -> Noises:
+    """The models under which energies (n, B − 1, m) are likely; spectra (n, B − 1, J) of one noise each."""
+    K, m = spectra.shape[-1], energy.shape[-1]
+    amplitude, score = np.zeros((K, K, m)), np.zeros(K)
+    for k in range(K):
+        used = [0, k] if k else [0]
+        amplitude[k, used] = fitted(energy, spectra[..., used])
+        prior = 0.5 * m * np.log(energy[..., 0].size) + np.log(K - 1) if k else 0.0
+        score[k] = log_likelihood(energy, spectra @ amplitude[k]) - prior
+    weight = np.exp(score - score.max())
+    return Noises(amplitude, weight / weight.sum())
+
+
+def mean_variance(found: Energies) -> Array:
+    """(n, m) variance of the mean of each rest, unit of the readings squared; a restless one has its own scale."""
+    known = np.asarray(np.isfinite(found.value).all(axis=(1, 2)))
+    spectra, means = mixture(found.samples.astype(float), found.value.shape[1] + 1)
+    unrest, variance = np.ones(len(known)), np.zeros_like(found.least)
+    for _ in range(PASSES):
+        calm = known & (unrest < RESTLESS)
+        likely = noises(found.value[calm], spectra[calm])
+        variance, S = likely.over(means), likely.over(spectra[known])
+        unrest[known] = (found.value[known] / np.where(S > 0, S, 1.0)).mean(axis=(1, 2))
+        if np.array_equal(calm, known & (unrest < RESTLESS)) or not (known & (unrest < RESTLESS)).any():
+            break
+    scale = np.where(unrest < RESTLESS, 1.0, unrest)[:, None]
+    return np.maximum(variance * scale, np.where(known[:, None], found.least, 0.0))

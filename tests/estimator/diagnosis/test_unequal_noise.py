@@ -1,0 +1,27 @@
+"""Unknown orientations, no stated noise, one sensor noisier than the others: no cause, no structure."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from estimator import diagnose
+from tests.estimator.calibration.free_sessions import session, sphere, truth
+
+NOISE = 1e-4
+"""m/s²."""
+
+
+def is_called_wrong(factor: float, seed: int) -> bool:
+    """Whether a block of six, one sensor ``factor`` times as noisy, gets a name other than noise, or structure."""
+    rng, true, noise = np.random.default_rng([9, seed]), truth(6, seed=seed), np.full(6, NOISE)
+    noise[seed % 6] *= factor
+    quiet = session(true, sphere(12, rng), noise=0.0, stated=False, rng=rng)
+    noisy = quiet.readings + true.scale * noise * rng.standard_normal((12, 6))
+    found = diagnose(replace(quiet, readings=noisy, time=60.0 * np.arange(12)))
+    return found.unexplained or any(f.cause != "excess-noise" for f in found.findings)
+
+
+@pytest.mark.parametrize("factor", [3.5, 5.0])
+def test_white_noise_of_unequal_sensors_is_no_structure(factor: float) -> None:
+    assert sum(is_called_wrong(factor, seed) for seed in range(20)) <= 1
