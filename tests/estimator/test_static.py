@@ -158,3 +158,11 @@ def test_the_variance_within_each_rest_is_kept_at_the_input():
     np.testing.assert_allclose(found[[3, 7], 0], 0.2**2, rtol=0.02)
     np.testing.assert_allclose(found[[3, 7], 1], 1e-6, rtol=0.5)
     np.testing.assert_allclose(np.delete(found[:, 0], [3, 7]), 1e-6, rtol=0.5)
+
+
+@pytest.mark.parametrize(("count_time", "counts"), [(1 / RATE, [100.0, 200.0]), (0.5 / RATE, None), (None, None)])
+def test_counts_without_gaps_between_them_say_how_many_were_averaged(count_time, counts):
+    session = averaged(
+        raw(np.ones((300, 3)), count_time=count_time), Intervals(np.array([0, 100]), np.array([100, 300]))
+    )
+    assert (None if session.counts_averaged is None else session.counts_averaged.tolist()) == counts
