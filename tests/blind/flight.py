@@ -114,9 +114,9 @@ def vibration(setting: Setting, moving: Array, rng: np.random.Generator) -> Arra
     return power[:, None] * (0.6 * tones + 0.5 * rng.standard_normal((len(t), 3)))
 
 
-def fly(block: Block, setting: Setting, rng: np.random.Generator) -> dict[str, Any]:
-    """A recording as a session file."""
-    force, rate, moving = path(setting, rng)
+def fly(block: Block, setting: Setting, rng: np.random.Generator, way: int | None = None) -> dict[str, Any]:
+    """A recording as a session file; the same ``way`` is the same path."""
+    force, rate, moving = path(setting, rng if way is None else np.random.default_rng(way))
     shaken = vibration(setting, moving, rng)
     force, rate = force + shaken, rate + ANGULAR * np.roll(shaken, 1, axis=1)
     spin = np.gradient(rate, 1 / (RATE * FINE), axis=0)

@@ -11,7 +11,7 @@ from estimator.parity.check import ParityAccumulator
 from estimator.parity.flight import AEROBATIC, Manoeuvre
 from estimator.parity.hypotheses import Evidence
 from estimator.parity.ledger import Ledger
-from estimator.parity.regression import DRAWN, excited, regress, sensor_noise
+from estimator.parity.regression import excited, regress, sensor_noise
 from estimator.session import Array
 from tests.estimator.parity.cases import STILL, block, recording
 from tests.estimator.parity.test_ledger import placed, reference
@@ -54,11 +54,20 @@ def test_the_mean_of_what_is_applied_is_always_excited() -> None:
     assert directions(np.zeros((320, 3)))[:, 0] ** 2 == pytest.approx([0.5, 0.0, 0.0, 0.5])
 
 
-def noise_of(sigma: Array, groups: int, seed: int = 1) -> tuple[Array, Array]:
-    """`sensor_noise` (m, 1, 1) of sensors with these standard errors of a group's part, and V."""
+DRAWN = 6.0
+"""Groups that the mean of all sensors weighs."""
+
+
+def parts_of(sigma: Array, groups: int, seed: int = 1) -> tuple[Array, Array]:
+    """(groups, d) parts of sensors with these standard errors, and V."""
     V = null_space(np.random.default_rng(0).standard_normal((len(sigma), 3)).T)
-    own = sigma * np.random.default_rng(seed).standard_normal((groups, len(sigma)))
-    return sensor_noise((own @ V)[:, None, :], V, groups), V
+    return sigma * np.random.default_rng(seed).standard_normal((groups, len(sigma))) @ V, V
+
+
+def noise_of(sigma: Array, groups: int, seed: int = 1) -> tuple[Array, Array]:
+    """`sensor_noise` (m, 1, 1) of these, and V."""
+    parts, V = parts_of(sigma, groups, seed)
+    return sensor_noise(parts[:, None, :], V, groups), V
 
 
 def test_each_sensor_has_the_noise_of_its_own() -> None:
@@ -79,9 +88,14 @@ def test_few_groups_draw_each_sensor_towards_the_mean() -> None:
     assert found[2] == pytest.approx(loud[2], rel=0.05)
 
 
-def test_no_variance_is_below_nothing() -> None:
+def test_no_sensor_s_own_variance_is_below_nothing() -> None:
+    """What is drawn from the mean is the least that each has."""
+    sigma = np.array([1e-3, 1.0, 1.0, 1.0, 1.0, 1.0])
     for seed in range(20):
-        assert noise_of(np.array([1e-3, 1.0, 1.0, 1.0, 1.0, 1.0]), 8, seed)[0].min() > 0
+        parts, V = parts_of(sigma, 8, seed)
+        mean = ((parts @ V.T) ** 2).sum() / (V**2).sum()
+        least = DRAWN * mean / (8 * (V**2).sum(axis=1) + DRAWN)
+        assert (noise_of(sigma, 8, seed)[0][:, 0, 0] >= least * (1 - 1e-9)).all()
 
 
 def used(motion: str, *, rest: int, spoilt: float, averaged: bool = False) -> Array:
