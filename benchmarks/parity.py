@@ -60,7 +60,7 @@ def false_alarms() -> Table:
                 for seed in range(RUNS // 2):
                     drawn, known = reference(m, seed)
                     rng = np.random.default_rng(10_000 + seed)
-                    found.append(parity_check(flight(drawn, drawn.truth, rng, kind, weather), known))
+                    found.append(parity_check(flight(drawn, drawn.truth, rng, kind, weather), known, motion="any"))
                 alarms = sum(r.detected for r in found)
                 z = [s.bias.size / s.bias.sigma for r in found for s in r.sensors if s.bias.size is not None]
                 limits = [limits_of(r) for r in found]
@@ -116,7 +116,7 @@ def rates(kind: str, part: str, size: float) -> str:
         drawn, known = reference(6, seed)
         rng = np.random.default_rng(10_000 + seed)
         now = drifted(drawn.truth, seed % 6, part, size)
-        found.append(parity_check(flight(drawn, now, rng, kind, WEATHERS["white"]), known))
+        found.append(parity_check(flight(drawn, now, rng, kind, WEATHERS["white"]), known, motion="any"))
     named = [f"A{seed % 6 + 1}" for seed in range(len(found))]
     right = sum(r.isolated == name for r, name in zip(found, named, strict=True))
     wrong = sum(r.isolated not in (None, name) for r, name in zip(found, named, strict=True))

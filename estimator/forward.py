@@ -58,7 +58,7 @@ def measured(session: CalibrationSession) -> tuple[Array, Array]:
     """Readings and their standard errors as the model gives them: (R, m) each, reading units (pulses per s).
 
     The stated nominal offset is taken off; pulse counts become pulses per second, with the quantisation of the count
-    (one pulse, uniform) in the standard error.
+    (`CalibrationSession.quantisation`) in the standard error.
     """
     readings, errors = session.readings, session.standard_errors
     if any(s.nominal_offset for s in session.sensors):
@@ -67,5 +67,5 @@ def measured(session: CalibrationSession) -> tuple[Array, Array]:
         return readings, errors
     gyro = np.array([s.kind != ACCELEROMETER for s in session.sensors])
     period = np.where(gyro, session.count_time, 1.0)
-    quantisation = np.where(gyro, 1.0 / 12.0, 0.0)
+    quantisation = np.where(gyro, session.quantisation, 0.0)
     return readings / period, np.sqrt(errors**2 + quantisation) / period

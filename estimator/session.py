@@ -24,6 +24,11 @@ PROGRAMMES = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, ROTATION_ALIGNMENT, RATE_T
 AS_FOUND, AS_LEFT = "as-found", "as-left"
 STAGES = (AS_FOUND, AS_LEFT)
 """Before and after a unit was worked on."""
+FREE_RUNNING, RESET = "free-running", "reset"
+COUNTERS = (FREE_RUNNING, RESET)
+"""How pulses are counted: the difference of two readings of a counter that runs on, or from zero every time."""
+QUANTISATION = {FREE_RUNNING: 1 / 6, RESET: 1 / 12}
+"""Variance of one count, pulses²: a reading is rounded, which is uniform (1/12); a difference holds two of them."""
 
 
 def comparable(programme: str) -> tuple[str, ...]:
@@ -47,6 +52,8 @@ class Sensor:
     nominal_offset: float | None = None
     """Reading that stands for zero, reading units; taken off before the model, so the bias is counted from it.
     None when not stated: then the bias holds the whole offset."""
+    position: Array | None = None
+    """(3,) where it sits, m, block axes, from any one origin; None when not stated."""
 
 
 @dataclass(frozen=True)
@@ -138,6 +145,10 @@ class CalibrationSession:
     channel; None unless the rows were averaged from a raw log."""
     count_time: float | None = None
     """s; set when gyro readings are pulse counts over that time."""
+    counter: str | None = None
+    """``free-running`` or ``reset``; None when not stated: the free-running one's larger error is then taken."""
+    counts_averaged: Array | None = None
+    """(R,) consecutive counts in the mean of a row; None where every row is one count."""
     unit_type: str | None = None
     started_at: str | None = None
     """ISO 8601."""
@@ -150,3 +161,16 @@ class CalibrationSession:
     def is_raw(self) -> bool:
         """Whether the rows are samples rather than averaged positions."""
         return self.sample_rate is not None
+
+    @property
+    def quantisation(self) -> float | Array:
+        """Variance of a row's pulse count, pulses²; a number, or (R, 1) where rows are means of counts.
+
+        Errors of a free-running counter cancel from count to count, so a mean of n in a row has but 1/(6 n²). Those of
+        a counter that is reset may all be alike, as at a steady rate without noise: a mean of them is no better than
+        one.
+        """
+        one = QUANTISATION[self.counter or FREE_RUNNING]
+        if self.counts_averaged is None or self.counter == RESET:
+            return one
+        return np.asarray(one / self.counts_averaged[:, None] ** 2)

@@ -11,6 +11,7 @@ from estimator.parameters import SensorParameters, nominal
 from estimator.session import (
     ACCELEROMETER,
     ARBITRARY_ORIENTATIONS,
+    RESET,
     TWO_AXIS_STAND,
     Array,
     CalibrationSession,
@@ -141,22 +142,25 @@ def simulate(
     repeatability = np.array([s.bias_repeatability for s in schedule.sensors])
     clean = response(truth, n) + truth.scale * repeatability * rng.standard_normal(shape)
     sigma = np.broadcast_to(np.asarray(noise, dtype=float), shape)
-    readings = counted(clean, schedule, lasted, sigma * rng.standard_normal(shape))
+    readings = counted(clean, schedule, lasted, sigma * rng.standard_normal(shape), rng)
     offset = np.array([s.nominal_offset or 0.0 for s in schedule.sensors])
     stated = sigma if state_noise else np.full(shape, np.nan)
     known = schedule.directions if schedule.direction_sigma is not None else None
     return replace(schedule, readings=readings + offset, standard_errors=np.array(stated), directions=known)
 
 
-def counted(clean: Array, schedule: CalibrationSession, lasted: float, error: Array) -> Array:
+def counted(clean: Array, schedule: CalibrationSession, lasted: float, error: Array, rng: np.random.Generator) -> Array:
     """(R, m) readings from noiseless ones and their errors (R, m): pulse gyros in whole pulses, the rest as they are.
+
+    A counter that runs on begins anywhere between two pulses.
 
     All in reading units, ``clean`` of a pulse gyro in pulses per s. ``lasted`` is by how much the count time exceeds
     the stated one, s.
     """
     if schedule.count_time is None:
         return clean + error
-    pulses = np.round(clean * (schedule.count_time + lasted) + error)
+    begun = 0.0 if schedule.counter == RESET else rng.uniform(-0.5, 0.5, clean.shape)
+    pulses = np.round(clean * (schedule.count_time + lasted) + error + begun)
     return np.where([s.kind != ACCELEROMETER for s in schedule.sensors], pulses, clean + error)
 
 

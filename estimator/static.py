@@ -45,6 +45,9 @@ FEWEST = 4
 TRIM = 0.05
 """Part cut off each end of a labelled position: people label a little early and late."""
 
+SAME_TIME = 1e-3
+"""Relative difference of count time and sample interval up to which counts follow one another without a gap."""
+
 MOTION = 0.02
 """g; change of a reading from quarter to quarter of a stretch from which the block moves: a turn of a degree, which no
 table that rests makes and no warm-up imitates."""
@@ -265,6 +268,7 @@ def averaged(session: CalibrationSession, found: Intervals) -> CalibrationSessio
         directions=None if session.directions is None else session.directions[start],
         position=None if session.position is None else session.position[start],
         sample_rate=None,
+        counts_averaged=found.samples.astype(float) if contiguous(session) else None,
     )
 
 
@@ -278,6 +282,12 @@ def variances(session: CalibrationSession, found: Intervals) -> Array:
 def ends(readings: Array) -> Array:
     """(R, m, 2) 1 where a sample of readings (R, m) is its channel's largest, its smallest, else 0; no unit."""
     return np.stack([readings == readings.max(axis=0), readings == readings.min(axis=0)], axis=-1).astype(float)
+
+
+def contiguous(session: CalibrationSession) -> bool:
+    """Whether the samples are pulse counts of which each begins where the one before ends."""
+    assert session.sample_rate is not None
+    return session.count_time is not None and abs(session.count_time * session.sample_rate - 1.0) < SAME_TIME
 
 
 def mean_errors(readings: Array, found: Intervals) -> Array:

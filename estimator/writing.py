@@ -40,6 +40,7 @@ def session_document(session: CalibrationSession) -> dict[str, Any]:
             "direction_sigma_deg": _degrees(session.direction_sigma),
             "sample_rate_hz": session.sample_rate,
             "count_time_s": session.count_time,
+            "counter": session.counter,
             "sensors": [_sensor(sensor, session) for sensor in session.sensors],
             "table": _table(session),
         }
@@ -84,6 +85,7 @@ def _sensor(sensor: Sensor, session: CalibrationSession) -> dict[str, Any]:
             "nominal_offset": sensor.nominal_offset,
             "reading_unit": sensor.reading_unit,
             f"bias_repeatability_{suffix}": sensor.bias_repeatability or None,
+            "position_m": None if sensor.position is None else sensor.position.tolist(),
         }
     )
 

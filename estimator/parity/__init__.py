@@ -10,12 +10,18 @@ spans the null space of Hᵀ, so with a = u/K − b − c·a² by the reference 
 Row i of ΔA is Δb·(1, 0) + Δln K·(b, g·e) + g·(0, Δe). Regression of p on x, block by block, gives Θ = Vᵀ·ΔA: d numbers
 for the change of bias and 3 d for those of scale and axes. ΔA = H·X with any X (3, 4) leaves no trace: three numbers of
 bias and nine of scale and axes, which a common bias, a turn, a stretch or a shear of the applied vector explains.
+Motion moves p of sound sensors too, by lever arms, delays and vibration: unknowns beside Θ, each of a size it has.
 
 reference   what the recording is compared with: H, V, and how a sensor's change shows
 ledger      recording → means of blocks, in bounded memory
+motion      the angular rate that a recording shows, from the gyros among its columns
+rest        whether a block of a recording is at rest in truth
 blocks      which blocks are used, and how they are grouped into stretches that can be taken for independent
+nuisance    what motion does to sound sensors
 regression  Θ with its covariance: noise of any colour, from the recording itself, and the reference's own
+freed       Θ with its covariance, freed of what motion does
 hypotheses  which sensor: generalised likelihood ratio, and what the recording could have found
+isolation   from what size on a change is attributed to its sensor
 check       the whole
 Source: parity space for redundant inertial sensors, Potter and Suman (1977); generalised likelihood ratio, Daly, Gai
 and Harrison (1979).

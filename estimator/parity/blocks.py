@@ -16,9 +16,7 @@ from numpy.typing import NDArray
 
 from estimator.errors import Problem, ScheduleError
 from estimator.parity.ledger import Blocks, Ledger
-
-Mask = NDArray[np.bool_]
-"""One bool a block."""
+from estimator.parity.rest import Mask, resting
 
 AUTO, STILL, ANY = "auto", "still", "any"
 MOTIONS = (AUTO, STILL, ANY)
@@ -56,7 +54,9 @@ class Selection:
     group: NDArray[np.intp]
     """(B,) number of the group of each block."""
     still: Mask
-    """(B,) bool; whether at rest."""
+    """(B,) bool; whether as quiet as the quietest."""
+    rest: Mask
+    """(B,) bool; whether at rest in truth."""
     saturated: tuple[str, ...]
     """Channels that ran into the end of their range somewhere."""
     left_out: dict[str, int]
@@ -70,12 +70,13 @@ class Selection:
         return int(self.group[-1]) + 1
 
 
-def select(ledger: Ledger, motion: str) -> Selection:
+def select(ledger: Ledger, motion: str, norm: float | None = None, rate: float | None = None) -> Selection:
     """The usable blocks of a recording.
 
     Parameters
     ----------
-    motion : ``still`` uses blocks at rest only, ``any`` all, ``auto`` leaves moving ones out where they spoil parity.
+    motion : ``still`` uses quiet blocks only, ``any`` all, ``auto`` leaves moving ones out where they spoil parity.
+    norm, rate : see `rest.resting`.
 
     Raises
     ------
@@ -92,12 +93,13 @@ def select(ledger: Ledger, motion: str) -> Selection:
     if clean.sum() < max(FEWEST_GROUPS, total / 2):
         raise ScheduleError([Problem(saturated[0], too_saturated(saturated, total, int(clean.sum())))])
     still = at_rest(blocks, clean)
-    used = clean & wanted(blocks, ledger, still, clean, motion)
+    rest = clean & resting(blocks, still, ledger.reference, norm, rate)
+    used = clean & wanted(blocks, ledger, still if motion == STILL else rest, clean, motion)
     if used.sum() < FEWEST_GROUPS:
         raise ScheduleError([Problem("table", never_still(int(used.sum()), total))])
     left_out = {"saturated": int((~clean).sum()), "moving": int((clean & ~used).sum())}
     chosen = blocks.at(used)
-    return Selection(chosen, grouped(chosen, still[used]), still[used], saturated, left_out, total)
+    return Selection(chosen, grouped(chosen, still[used]), still[used], rest[used], saturated, left_out, total)
 
 
 def at_rest(blocks: Blocks, clean: Mask) -> Mask:

@@ -6,9 +6,12 @@ import numpy as np
 
 from estimator.applied_vector import gravity
 from estimator.errors import Problem, ScheduleError
-from estimator.parity.blocks import AUTO, MOTIONS, Selection, select
+from estimator.parity.blocks import ANY, AUTO, MOTIONS, Selection, select
+from estimator.parity.freed import freed
 from estimator.parity.hypotheses import Evidence
 from estimator.parity.ledger import BLOCK, Ledger
+from estimator.parity.motion import gyros_of
+from estimator.parity.nuisance import nuisance_of
 from estimator.parity.reference import reference_of
 from estimator.parity.regression import Change, regress
 from estimator.parity.results import ParityResult
@@ -58,7 +61,8 @@ class ParityAccumulator:
         self._period = np.where([s.kind != ACCELEROMETER for s in sensors], count_time or 1.0, 1.0)
         self._samples = 0
         length = 1 if sample_rate is None else max(round(BLOCK * sample_rate), 2)
-        self.ledger = Ledger(self.reference, length)
+        gyros = gyros_of(sensors, calibration) if kind == ACCELEROMETER else None
+        self.ledger = Ledger(self.reference, length, gyros=gyros)
 
     def add(self, readings: Array) -> None:
         """The next rows (R, m) of all m sensors, reading units as in the file; ScheduleError where one is no number."""
@@ -74,19 +78,26 @@ class ParityAccumulator:
 
         Parameters
         ----------
-        motion : ``still`` uses stretches at rest only, ``any`` everything, ``auto`` leaves moving stretches out where
-            they spoil parity.
+        motion : ``still`` uses stretches at rest only; ``any`` everything, and takes the sensors to sit in one point;
+            ``auto`` leaves moving stretches out where they spoil parity.
         false_alarm : chance that an unchanged block is called changed.
         """
         if motion not in MOTIONS:
             raise ValueError(f"motion is {motion!r}; must be one of {', '.join(MOTIONS)}")
-        selection = select(self.ledger, motion)
-        change = regress(selection, self.reference, self._norm)
-        return self._judged(selection, change, Evidence(change), false_alarm)
+        selection = select(self.ledger, motion, self._norm, self._rate)
+        allowed = nuisance_of(
+            selection.blocks, selection.rest, self.reference, self._norm, self._rate, arms=motion != ANY
+        )
+        still = Evidence(regress(selection, self.reference, self._norm))
+        change = freed(selection, self.reference, self._norm, allowed)
+        return self._judged(selection, change, Evidence(change), still, false_alarm)
 
-    def _judged(self, selection: Selection, change: Change, evidence: Evidence, false_alarm: float) -> ParityResult:
+    def _judged(
+        self, selection: Selection, change: Change, evidence: Evidence, still: Evidence, false_alarm: float
+    ) -> ParityResult:
         """All that is said of a recording."""
         detected = evidence.detected(false_alarm)
+        moving = not detected and still.detected(false_alarm)
         found = evidence.candidates() if detected else []
         named = {h.sensor for h in found}
         explained = not detected or evidence.explained(found[0])
@@ -118,12 +129,24 @@ class ParityAccumulator:
             groups=selection.groups,
             left_out=selection.left_out,
             saturated=selection.saturated,
+            clipped=self._clipped(selection.saturated),
+            moving=moving,
+            chi2_unmoved=still.chi2,
+            p_value_unmoved=still.p_value(still.chi2, len(still.seen)),
+            suspects=tuple(map(still.candidate, still.candidates())) if moving else (),
+            motion_share=evidence.share(change.motion),
             block_seconds=None if self._rate is None else self.ledger.length / self._rate,
             duration=None if self._rate is None else self._samples / self._rate,
             course=change.course,
             course_sigma=change.course_sigma,
             course_time=self._middles(selection),
         )
+
+    def _clipped(self, names: tuple[str, ...]) -> dict[str, float]:
+        """Share of the samples in which the channels stood at an end of their range."""
+        top, bottom = self.ledger.ends
+        share = (top.clipped + bottom.clipped) / max(self.ledger.samples, 1)
+        return {name: float(share[self.reference.names.index(name)]) for name in names}
 
     def _middles(self, selection: Selection) -> Array:
         """(groups,) middle of each group, s since the start, or a number of blocks where no rate is known."""

@@ -9,7 +9,7 @@ In coordinated flight the lift stays along z however steep the turn: a transport
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
@@ -128,7 +128,7 @@ def fly(
     site: Site | None = None,
     unit_name: str = "simulated",
 ) -> CalibrationSession:
-    """A raw recording in service; ``truth`` holds the sensors as they are now, (m,)."""
+    """A raw recording in service; ``truth`` holds the sensors as they are now, (m,), all in one point."""
     place, w = site or Site(gravity=9.81), weather or Weather()
     force = profile(manoeuvres, seconds, rate, gravity(place))
     shape = (len(force), len(sensors))
@@ -140,7 +140,7 @@ def fly(
         unit=unit_name,
         block=sensors[0].kind,
         programme=IN_SERVICE,
-        sensors=sensors,
+        sensors=tuple(replace(s, position=np.zeros(3)) for s in sensors),
         readings=clean + truth.scale * own + offset,
         standard_errors=np.full(shape, np.nan),
         site=place,

@@ -17,6 +17,7 @@ import numpy as np
 from scipy.linalg import cho_solve, solve_triangular
 from scipy.stats import chi2, f, norm
 
+from estimator.parity.isolation import Rivals, log_tail, shortfall
 from estimator.parity.regression import Change
 from estimator.parity.results import AXIS, BIAS, KINDS, SCALE, SEVERAL, Candidate, SensorParity, Sight
 from estimator.session import Array
@@ -28,8 +29,6 @@ WRONG_SENSOR = 0.01
 """Chance that the true sensor is passed over; the level of the detection, once more."""
 POWER = 0.95
 """With which a change of the stated size is found; what is passed must have been found 19 times in 20."""
-ALIKE = 1e-4
-"""Share of a signature left after a rival's best fit below which the two are the same."""
 UNSEEN = 1e-6
 """A signature of less than this share of a plain one leaves no trace."""
 
@@ -59,14 +58,18 @@ class Evidence:
         self.change = change
         root = np.linalg.cholesky(change.covariance)
         self.seen = solve_triangular(root, change.theta.ravel(), lower=True)
-        self.own_noise = float(np.trace(cho_solve((root, True), change.noise))) / len(self.seen)
+        self._root = root
+        self.own_noise = self.share(change.noise)
         self.chi2 = float(self.seen @ self.seen)
         shown = change.reference.signatures(change.norm)
         columns = np.stack([change.signature(i, rows) for i, rows in enumerate(shown)])
         whitened = [solve_triangular(root, own, lower=True) for own in columns]
         self.all = [self._tried(i, kind, own[:, ELEMENTS[kind]]) for i, own in enumerate(whitened) for kind in KINDS]
         self._single = [h for h in self.all if h.kind != SEVERAL]
-        self._left = separations(self._single)
+
+    def share(self, part: Array) -> float:
+        """Of the covariance, how much a part of it (q, q), (m/s²)² ((rad/s)²), makes up on average, 0 to 1."""
+        return float(np.trace(cho_solve((self._root, True), part))) / len(part)
 
     @property
     def dof(self) -> float:
@@ -153,15 +156,12 @@ class Evidence:
         covariance = inverse @ inverse.T
         sigma = float(1 / sizes[-1])
         detectable = sigma * self.wanted(whitened.shape[1], false_alarm)
-        left = float(self._left[self._single.index(h)])
-        isolable = None
-        if left > ALIKE:
-            isolable = max(detectable, sigma * (np.sqrt(self.margin) + norm.ppf(POWER)) / np.sqrt(left))
+        isolable = self.rivals(h, false_alarm).least_size(h.whitened, h.sensor)
         return Sight(
             change=tuple((inverse @ self.seen).tolist()),
             covariance=tuple(map(tuple, covariance.tolist())),
             detectable=float(detectable),
-            isolable=None if isolable is None else float(isolable),
+            isolable=None if isolable is None else max(isolable, float(detectable)),
         )
 
     def beside(self, h: Hypothesis, isolated: list[Hypothesis]) -> Array:
@@ -180,37 +180,31 @@ class Evidence:
         own = [o for o in self.all if o.sensor == h.sensor and o.kind == SEVERAL]
         return float(np.linalg.svd(own[0].whitened, compute_uv=False)[0])
 
+    def rivals(self, h: Hypothesis, false_alarm: float) -> Rivals:
+        """What a change of the kind of ``h`` must be told from."""
+        bases = np.zeros((len(self.all), len(self.seen), 4))
+        for basis, tried in zip(bases, self.all, strict=True):
+            basis[:, : tried.basis.shape[1]] = tried.basis
+        return Rivals(
+            bases=bases,
+            count=np.array([tried.basis.shape[1] for tried in self.all]),
+            sensor=np.array([tried.sensor for tried in self.all]),
+            margin=self.margin,
+            threshold=self.threshold(h.whitened.shape[1], false_alarm),
+            dof=self.dof,
+            lost=1.0 - POWER - WRONG_SENSOR,
+        )
+
+    def threshold(self, k: int, false_alarm: float) -> float:
+        """Sigmas from which a change of k numbers is detected."""
+        return float(np.sqrt(f.isf(false_alarm / 2 / len(self.all), k, self.dof) * k))
+
     def wanted(self, k: int, false_alarm: float) -> float:
         """Sigmas of a change of k numbers that are detected with the power."""
-        level = false_alarm / 2 / len(self.all)
-        threshold = f.isf(level, k, self.dof) * k
-        return float(np.sqrt(threshold) + norm.ppf(POWER))
-
-
-def separations(hypotheses: list[Hypothesis]) -> Array:
-    """(n,) least relative share of each signature's energy that another sensor's change, no richer, leaves of it."""
-    q = len(hypotheses[0].basis)
-    bases = np.zeros((len(hypotheses), q, 2))
-    for h, basis in zip(hypotheses, bases, strict=True):
-        basis[:, : h.basis.shape[1]] = h.basis
-    overlap = np.linalg.svd(np.einsum("iqa,jqb->ijab", bases, bases, optimize=True), compute_uv=False)[..., 0]
-    sensor = np.array([h.sensor for h in hypotheses])
-    size = np.array([h.whitened.shape[1] for h in hypotheses])
-    rival = (sensor[:, None] != sensor) & (size <= size[:, None])
-    return np.asarray(1.0 - np.where(rival, overlap, 0.0).max(axis=1) ** 2)
+        threshold = self.threshold(k, false_alarm)
+        return threshold + float(norm.ppf(POWER)) * shortfall(threshold, self.dof)
 
 
 def tail(ratio: float, k: int, dof: float) -> tuple[float, float]:
     """Probability of a ratio of k numbers by chance, noise known to ``dof``, and −2 ln of it for certain noise."""
-    return float(f.sf(ratio / k, k, dof)), -2.0 * log_tail(max(ratio, np.finfo(float).tiny), k)
-
-
-def log_tail(x: float, k: int) -> float:
-    """ln of the upper tail of χ² with k = 1 to 4 degrees of freedom, in closed form.
-
-    x may be large, and `scipy.stats.chi2.logsf` is −∞ from about 1,500 on.
-    """
-    if k % 2 == 0:
-        return -x / 2 + (float(np.log1p(x / 2)) if k == 4 else 0.0)
-    first = float(np.log(2.0) + norm.logsf(np.sqrt(x)))
-    return first if k == 1 else float(np.logaddexp(first, 0.5 * np.log(2 * x / np.pi) - x / 2))
+    return float(f.sf(ratio / k, k, dof)), -2.0 * float(log_tail(np.maximum(np.array(ratio), np.finfo(float).tiny), k))

@@ -1,8 +1,9 @@
 """A recording as means of blocks, in bounded memory: however long it is, no more than `MOST` blocks are kept.
 
 A block begins as `BLOCK` seconds of samples. When there are too many, neighbours are joined two by two and the blocks
-are twice as long from then on. A block keeps the mean of each sensor's input, how much the inputs moved within it, and
-the extreme readings, by which a channel that ran into its end is known.
+are twice as long from then on. A block keeps the mean of each sensor's input, how much the inputs moved within it, the
+extreme readings, by which a channel that ran into its end is known, and what lever arms, delays and vibration do to a
+mean: the moments of the angular rate, the change of the vector from end to end, its covariance.
 """
 
 from dataclasses import dataclass, replace
@@ -10,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from estimator.parity.motion import Gyros
 from estimator.parity.reference import Reference
 from estimator.session import Array
 
@@ -44,6 +46,18 @@ class Blocks:
     """(B, m) smallest reading, reading units."""
     highest: Array
     """(B, m) largest reading, reading units."""
+    own: Array
+    """(B,) variance within the block of the parity vector's elements: noise alone, (m/s²)² ((rad/s)²)."""
+    gain: Array
+    """(B, 3) change of the vector from the sample before the block to its last, m/s² (rad/s)."""
+    shake: Array
+    """(B, 6) covariance of the vector within the first blocks, as `pairs`, (m/s²)² ((rad/s)²)."""
+    spin: Array
+    """(B, 3) mean angular rate, rad/s; (B, 0) where no gyros run beside, as the next two."""
+    spin_gain: Array
+    """(B, 3) its change from the sample before the block to its last, rad/s."""
+    spin_square: Array
+    """(B, 6) mean of its products, as `pairs`, (rad/s)²."""
 
     def __len__(self) -> int:
         return len(self.first)
@@ -56,16 +70,34 @@ class Blocks:
         """Neighbours two by two; the number of blocks must be even."""
         left, right = (vars(self.at(np.arange(k, len(self), 2))) for k in (0, 1))
         samples = left["samples"] + right["samples"]
-        share = (right["samples"] / samples)[:, None]
+        share = right["samples"] / samples
+
+        def mean(name: str) -> Array:
+            """Of both halves, by their samples."""
+            one = share.reshape(-1, *[1] * (left[name].ndim - 1))
+            return np.asarray((1.0 - one) * left[name] + one * right[name])
+
         return Blocks(
             first=left["first"] // 2,
             samples=samples,
-            mean=(1.0 - share) * left["mean"] + share * right["mean"],
+            mean=mean("mean"),
             motion=np.maximum(left["motion"], right["motion"]),
             jitter=np.maximum(left["jitter"], right["jitter"]),
             lowest=np.minimum(left["lowest"], right["lowest"]),
             highest=np.maximum(left["highest"], right["highest"]),
+            own=mean("own"),
+            gain=left["gain"] + right["gain"],
+            shake=mean("shake"),
+            spin=mean("spin"),
+            spin_gain=left["spin_gain"] + right["spin_gain"],
+            spin_square=mean("spin_square"),
         )
+
+
+def pairs(vectors: Array) -> Array:
+    """(..., 6) products xx, yy, zz, xy, xz, yz of vectors (..., 3), in their unit squared."""
+    x, y, z = np.moveaxis(vectors, -1, 0)
+    return np.stack([x * x, y * y, z * z, x * y, x * z, y * z], axis=-1)
 
 
 class Rails:
@@ -102,19 +134,27 @@ class Rails:
         cut = (self.count[0] >= RAIL_SAMPLES) & (self.count[0] > RAIL_PEAK * self.count[1])
         return np.where(cut, self.sign * self.value[0], np.nan)
 
+    @property
+    def clipped(self) -> NDArray[np.int64]:
+        """(m,) samples in which a channel stood where it is cut off."""
+        return np.where(np.isnan(self.limit), 0, self.count[0])
+
 
 class Ledger:
     """Takes samples as they come and keeps blocks."""
 
-    def __init__(self, reference: Reference, length: int, most: int = MOST) -> None:
+    def __init__(self, reference: Reference, length: int, most: int = MOST, gyros: Gyros | None = None) -> None:
         """``length`` is the number of samples of a block; 1 for rows that are averages."""
         self.reference = reference
+        self.gyros = gyros
         self.length = length
         self.averaged = length == 1
         self._most = most
         self._waiting: list[Array] = []
         self._kept: list[Blocks] = []
         self._count = 0
+        self._before: tuple[Array, Array] | None = None
+        self.samples = 0
         self.ends = (Rails(1.0, len(reference.names)), Rails(-1.0, len(reference.names)))
 
     def add(self, readings: Array) -> None:
@@ -134,7 +174,14 @@ class Ledger:
         u = readings[:, self.reference.column]
         for end in self.ends:
             end.add(u)
-        a = self.reference.inputs(readings).reshape(len(chunks), length, -1)
+        self.samples += len(readings)
+        inputs = self.reference.inputs(readings)
+        a = inputs.reshape(len(chunks), length, -1)
+        p = (inputs @ self.reference.parity).reshape(len(chunks), length, -1)
+        n = self.reference.vector(inputs).reshape(len(chunks), length, 3)
+        rate = np.empty((len(readings), 0)) if self.gyros is None else self.gyros.rates(readings)
+        rate = rate.reshape(len(chunks), length, -1)
+        gain, spin_gain = self._gains(n, rate)
         own = u.reshape(len(chunks), length, -1)
         self._kept.append(
             Blocks(
@@ -145,11 +192,29 @@ class Ledger:
                 jitter=0.5 * (np.diff(a, axis=1) ** 2).sum(axis=(1, 2)) / (max(length - 1, 1) * a.shape[2]),
                 lowest=own.min(axis=1),
                 highest=own.max(axis=1),
+                own=p.var(axis=1).mean(axis=1),
+                gain=gain,
+                shake=pairs(n - n.mean(axis=1, keepdims=True)).mean(axis=1),
+                spin=rate.mean(axis=1),
+                spin_gain=spin_gain,
+                spin_square=pairs(rate).mean(axis=1) if rate.shape[2] else rate.mean(axis=1),
             )
         )
         self._count += len(chunks)
         if self._count > self._most:
             self._halve()
+
+    def _gains(self, n: Array, rate: Array) -> tuple[Array, Array]:
+        """Changes (B, 3) of the vector and the rate from the sample before each block to its last, their units.
+
+        n (B, length, 3) and rate (B, length, 3) of the samples. Rows that are averages do not follow one another.
+        """
+        before = self._before or (n[0, 0], rate[0, 0])
+        self._before = (n[-1, -1], rate[-1, -1])
+        if self.averaged:
+            return np.zeros_like(n[:, 0]), np.zeros_like(rate[:, 0])
+        gains = [np.diff(x[:, -1], axis=0, prepend=first[None]) for x, first in zip((n, rate), before, strict=True)]
+        return gains[0], gains[1]
 
     def _halve(self) -> None:
         """Join neighbours, so that the blocks are twice as long."""
@@ -171,9 +236,11 @@ class Ledger:
         """All blocks so far."""
         if not self._kept:
             m = len(self.reference.names)
-            empty = np.empty((0, m))
-            none = np.empty(0)
-            return Blocks(np.empty(0, dtype=np.int64), none, empty, none, none, empty, empty)
+            empty, none, three = np.empty((0, m)), np.empty(0), np.empty((0, 3))
+            return Blocks(
+                np.empty(0, dtype=np.int64), none, empty, none, none, empty, empty,
+                none, three, np.empty((0, 6)), three, three, np.empty((0, 6)),
+            )  # fmt: skip
         parts = [vars(blocks) for blocks in self._kept]
         joined = Blocks(**{name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
         self._kept = [joined]

@@ -44,6 +44,8 @@ class Reference:
     """(5 m, 5 m) of the reference, SI with scale relative; zero where it does not know an element."""
     repeatability: Array
     """(m,) one sigma of the zero from one use to the next, m/s² (rad/s)."""
+    position: Array | None
+    """(m, 3) where they sit, m, block axes, from any one origin; None unless all of them say so."""
     parity: Array
     """(m, d) V, orthonormal, dimensionless."""
 
@@ -119,6 +121,7 @@ def assembled(used: list[tuple[int, Sensor, SensorCalibration]], calibration: Ca
     if kind != ACCELEROMETER:
         covariance[QUADRATIC::5] = covariance[:, QUADRATIC::5] = 0.0
     axes = np.stack([np.asarray(s.axis) for s in known])
+    placed = [s.position for _, s, _ in used if s.position is not None]
     return Reference(
         names=tuple(s.name for s in known),
         kind=kind,
@@ -131,5 +134,6 @@ def assembled(used: list[tuple[int, Sensor, SensorCalibration]], calibration: Ca
         tangents=np.stack([s.axis_tangents for s in known]),
         covariance=covariance * np.outer(relative, relative),
         repeatability=np.array([s.bias_repeatability for _, s, _ in used]),
+        position=np.stack(placed) if len(placed) == len(used) else None,
         parity=null_space(axes.T),
     )

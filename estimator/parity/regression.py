@@ -57,6 +57,8 @@ class Change:
     """(q, q) covariance of θ.ravel() from the recording's noise, (m/s²)² ((rad/s)²)."""
     known: Array
     """(q, q) the same from the reference calibration and the stated repeatability."""
+    motion: Array
+    """(q, q) the same from what motion does to sound sensors (`freed`); zero where nothing was allowed for."""
     dof: float
     """Groups less what was fitted to each sensor."""
     residual_rms: float
@@ -71,7 +73,7 @@ class Change:
     @property
     def covariance(self) -> Array:
         """(q, q) of θ.ravel(), (m/s²)² ((rad/s)²)."""
-        return self.noise + self.known
+        return self.noise + self.known + self.motion
 
     @property
     def complete(self) -> bool:
@@ -84,12 +86,13 @@ class Change:
         return np.einsum("sk,d->sdk", z, self.reference.parity[sensor]).reshape(-1, rows.shape[1])
 
 
-def regress(selection: Selection, reference: Reference, norm: float | None) -> Change:
+def regress(selection: Selection, reference: Reference, norm: float | None, *, spent: float = 0.0) -> Change:
     """Θ and its covariance from the used blocks.
 
     Parameters
     ----------
     norm : g; None takes the root mean square of the measured vector (gyros).
+    spent : numbers that were fitted to the blocks before, beside Θ.
 
     Raises
     ------
@@ -110,7 +113,9 @@ def regress(selection: Selection, reference: Reference, norm: float | None) -> C
     a2 = np.linalg.solve(G, (w[:, None] * z).T @ (n @ reference.axes.T) ** 2).T
     rho = neighbours(z, w, residual, selection, G)
     slow = (1 + rho) / (1 - rho)
-    omega = slow * sensor_noise(scores(z, w, residual, selection, G), reference.parity, groups)
+    omega = (
+        slow * fitted_too_well(spent, p) * sensor_noise(scores(z, w, residual, selection, G), reference.parity, groups)
+    )
     noise = np.einsum("mst,md,me->sdte", omega, reference.parity, reference.parity)
     q = theta.size
     course, about = (group_means(w, part, selection) @ reference.parity.T for part in (p, residual))
@@ -121,6 +126,7 @@ def regress(selection: Selection, reference: Reference, norm: float | None) -> C
         theta=theta,
         noise=noise.reshape(q, q),
         known=np.zeros((q, q)),
+        motion=np.zeros((q, q)),
         dof=max(groups / slow - Q.shape[1], min(LEAST_DOF[0] + LEAST_DOF[1] * p.shape[1], LEAST_DOF[2])),
         residual_rms=float(np.sqrt((w[:, None] * residual**2).mean())),
         quadratic=a2,
@@ -128,6 +134,11 @@ def regress(selection: Selection, reference: Reference, norm: float | None) -> C
         course_sigma=about.std(axis=0),
     )
     return replace(change, known=known_covariance(change))
+
+
+def fitted_too_well(spent: float, p: Array) -> float:
+    """Factor by which residuals of p (B, d) understate a variance from which ``spent`` numbers were fitted."""
+    return 1.0 / (1.0 - min(spent / p.size, 0.5))
 
 
 def excited(x: Array, w: Array, selection: Selection, groups: int) -> Array:

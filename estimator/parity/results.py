@@ -110,6 +110,18 @@ class ParityResult:
     """Blocks not used, by reason."""
     saturated: tuple[str, ...]
     """Channels that ran into the end of their range."""
+    clipped: dict[str, float]
+    """Share of the samples in which each of them stood there, by name."""
+    moving: bool
+    """Too much motion to tell: something would be called changed if nothing moved, and lever arms, delays between
+    channels or vibration could explain it."""
+    chi2_unmoved: float
+    """χ² if motion did nothing to sound sensors, and ``p_value_unmoved`` of it."""
+    p_value_unmoved: float
+    suspects: tuple[Candidate, ...]
+    """What would be the candidates if motion did nothing to sound sensors; none unless ``moving``."""
+    motion_share: float
+    """Of the variance of what is seen, how much motion is answerable for, 0 to 1."""
     block_seconds: float | None
     duration: float | None
     """s"""
@@ -129,7 +141,7 @@ class ParityResult:
 
     def to_dict(self) -> dict[str, Any]:
         """``imu-parity/1``."""
-        plain = {k: v for k, v in vars(self).items() if k not in ("sensors", "candidates")}
+        plain = {k: v for k, v in vars(self).items() if k not in ("sensors", "candidates", "suspects")}
         for name in ("constant", "slope", "covariance", "excited", "course", "course_sigma", "course_time"):
             plain[name] = json_numbers(plain[name])
         return {
@@ -137,5 +149,6 @@ class ParityResult:
             **plain,
             "saturated": list(self.saturated),
             "candidates": [asdict(c) for c in self.candidates],
+            "suspects": [asdict(c) for c in self.suspects],
             "sensors": [asdict(s) for s in self.sensors],
         }

@@ -60,6 +60,7 @@ def planned(
         directions=None,
         direction_sigma=None,
         sample_rate=None,
+        counts_averaged=None,
     )
     return read_perfectly(schedule, sigma)
 
@@ -73,7 +74,7 @@ def read_perfectly(schedule: CalibrationSession, sigma: Array) -> CalibrationSes
     pulses = np.array([schedule.count_time is not None and s.kind != ACCELEROMETER for s in sensors])
     period = np.where(pulses, schedule.count_time or 1.0, 1.0)
     own = sigma**2 - np.array([s.bias_repeatability for s in sensors]) ** 2
-    error = np.sqrt(np.maximum(own * (p.scale * period) ** 2 - np.where(pulses, 1.0 / 12.0, 0.0), 0.0))
+    error = np.sqrt(np.maximum(own * (p.scale * period) ** 2 - np.where(pulses, schedule.quantisation, 0.0), 0.0))
     readings = response(p, stand_geometry(schedule).n) * period + np.array([s.nominal_offset or 0.0 for s in sensors])
     return replace(schedule, readings=readings, standard_errors=np.broadcast_to(error, readings.shape).copy())
 

@@ -95,8 +95,8 @@ class _Bad:
     """A cell that is no label."""
 
 
-def vector(fields: Fields, key: str, advice: str) -> Array:
-    """(3,) dimensionless vector under a key; NaN stands in for a bad one."""
+def vector(fields: Fields, key: str, advice: str, within: Interval = COMPONENT) -> Array:
+    """(3,) vector under a key, dimensionless unless ``within`` has a unit; NaN stands in for a bad one."""
     value = fields.values.get(key)
     stand_in = np.full(3, np.nan)
     if value is None:
@@ -106,7 +106,7 @@ def vector(fields: Fields, key: str, advice: str) -> Array:
     if not isinstance(components, list | tuple) or len(components) != 3:
         fields.add(key, f"is {shown(components)}; {advice}")
         return stand_in
-    read = [number_in(component, COMPONENT) for component in components]
+    read = [number_in(component, within) for component in components]
     for number, (_, fault) in enumerate(read, start=1):
         if fault:
             fields.add(f"{key}[{number}]", fault)

@@ -15,14 +15,14 @@ FORMAT = "imu-session/1"
 """What ``format`` must say; docs/session-file.md describes it."""
 TOP = (
     "format", "unit", "unit_type", "block", "programme", "started_at", "operator", "notes", "stage", "site", "stand",
-    "mounting", "sensors", "table", "count_time_s", "sample_rate_hz", "direction_sigma_deg",
+    "mounting", "sensors", "table", "count_time_s", "counter", "sample_rate_hz", "direction_sigma_deg",
 )  # fmt: skip
 SITE = ("latitude_deg", "height_m", "gravity_m_s2")
 STAND = ("id", "alpha_deg", "chi_deg", "sigma_arcsec", "sigma_count_time_s")
 SIGMA = ("theta_x", "theta_y", "alpha", "beta", "latitude", "meridian", "wobble")
 SENSOR = (
     "name", "kind", "nominal_axis", "nominal_scale", "nominal_offset", "reading_unit",
-    "bias_repeatability_m_s2", "bias_repeatability_rad_s",
+    "bias_repeatability_m_s2", "bias_repeatability_rad_s", "position_m",
 )  # fmt: skip
 DIRECTIONS = ("direction_x", "direction_y", "direction_z")
 COLUMNS = (

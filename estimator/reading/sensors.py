@@ -26,6 +26,8 @@ REPEATABILITY = {
     GYROSCOPE: ("bias_repeatability_rad_s", Interval(0, 100, "rad/s")),
 }
 """Key and bounds by kind: ten g and 16 turns a second are beyond any sensor that is calibrated."""
+POSITION = Interval(-100, 100, "m")
+"""No block is so large, and none is measured from so far away."""
 PULSES = frozenset({"pulse", "pulses"})
 COUNTS = frozenset({"count", "counts"})
 """Reading units, in lower case, that ask gyros for a count time: pulses always, counts on a stand."""
@@ -60,6 +62,8 @@ def check_pulses(document: Fields, sensors: tuple[Sensor, ...], programme: str) 
             document.add("count_time_s", "is for gyroscopes and this session has none; give readings as a rate")
     elif any(g.reading_unit.lower() in (PULSES | COUNTS if programme == TWO_AXIS_STAND else PULSES) for g in gyros):
         document.add("count_time_s", "missing; gyro readings are pulses, so add the time in s they were counted over")
+    if document.has("counter") and not document.has("count_time_s"):
+        document.add("counter", "says how pulses are counted, and count_time_s is missing; add it, or take this out")
 
 
 def _read_sensor(entry: Fields, block: str) -> Sensor:
@@ -73,6 +77,7 @@ def _read_sensor(entry: Fields, block: str) -> Sensor:
         reading_unit=entry.text("reading_unit", "give the unit of the readings, for instance V"),
         bias_repeatability=_read_repeatability(entry, kind),
         nominal_offset=entry.optional_number("nominal_offset", OFFSET),
+        position=_read_position(entry),
     )
 
 
@@ -84,6 +89,12 @@ def _read_axis(entry: Fields) -> Array:
     elif abs(length - 1) > LENGTH_TOLERANCE:
         entry.add("nominal_axis", f"has length {length:.6g}; must be a unit vector, so divide it by its length")
     return axis / length if length else axis
+
+
+def _read_position(entry: Fields) -> Array | None:
+    if not entry.has("position_m"):
+        return None
+    return vector(entry, "position_m", "give where the sensor sits, three components in m, block axes", POSITION)
 
 
 def _read_repeatability(entry: Fields, kind: str) -> float:

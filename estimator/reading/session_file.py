@@ -11,7 +11,7 @@ from estimator.reading.sensors import KINDS, check_pulses, read_sensors
 from estimator.reading.setting import read_mounting, read_site, read_stand, read_started_at
 from estimator.reading.source import display_name, load
 from estimator.reading.table import read_table
-from estimator.session import PROGRAMMES, STAGES, CalibrationSession
+from estimator.session import COUNTERS, PROGRAMMES, STAGES, CalibrationSession
 
 SAMPLE_RATE = Interval(0, 1e9, "Hz", above=True)
 COUNT_TIME = Interval(0, 1e6, "s", above=True)
@@ -56,6 +56,7 @@ def _assemble(document: Fields) -> CalibrationSession:
     check_pulses(document, sensors, programme)
     sample_rate = document.optional_number("sample_rate_hz", SAMPLE_RATE)
     count_time = document.optional_number("count_time_s", COUNT_TIME)
+    counter = document.choice("counter", COUNTERS) if document.has("counter") else None
     stage = document.choice("stage", STAGES) if document.has("stage") else None
     texts = {key: document.optional_text(key) for key in ("unit_type", "operator", "notes")}
     table = read_table(document, programme, sensors)
@@ -74,6 +75,7 @@ def _assemble(document: Fields) -> CalibrationSession:
         mounting=mounting,
         sample_rate=sample_rate,
         count_time=count_time,
+        counter=counter,
         unit_type=texts["unit_type"] or None,
         started_at=started_at,
         operator=texts["operator"] or "",

@@ -8,7 +8,7 @@ from estimator.reading.problems import Problems, cut
 
 TEXTS = (
     "format", "unit", "unit_type", "block", "programme", "started_at", "operator", "notes",
-    "id", "name", "kind", "reading_unit",
+    "id", "name", "kind", "reading_unit", "counter",
 )  # fmt: skip
 """Keys whose value is text even where it looks like a number, as a serial number may."""
 DEEPEST = 4

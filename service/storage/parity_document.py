@@ -13,12 +13,20 @@ ARRAYS = ("constant", "slope", "covariance", "excited", "course", "course_sigma"
 
 def parity_from_dict(document: dict[str, Any]) -> ParityResult:
     """The result that `ParityResult.to_dict` wrote; null in an array is NaN again."""
+    document = _before_motion(document) | document
     read = {entry.name: document[entry.name] for entry in fields(ParityResult)}
     read |= {name: np.array(document[name], dtype=float) for name in ARRAYS}
     read["sensors"] = tuple(map(_sensor, document["sensors"]))
-    read["candidates"] = tuple(map(_candidate, document["candidates"]))
+    for name in ("candidates", "suspects"):
+        read[name] = tuple(map(_candidate, document[name]))
     read["saturated"] = tuple(document["saturated"])
     return ParityResult(**read)
+
+
+def _before_motion(document: dict[str, Any]) -> dict[str, Any]:
+    """What documents lack that were written before motion was allowed for: they took it to do nothing."""
+    unmoved = {"chi2_unmoved": document["chi2"], "p_value_unmoved": document["p_value"]}
+    return {"clipped": {}, "moving": False, "suspects": [], "motion_share": 0.0, **unmoved}
 
 
 def _sensor(entry: dict[str, Any]) -> SensorParity:

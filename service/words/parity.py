@@ -5,7 +5,14 @@ from collections.abc import Iterator
 from estimator.parity import ParityResult
 from service.measures import number
 from service.words.fit import FitWords
-from service.words.in_service import CHANGED, SAME
+from service.words.in_service import (
+    CHANGED,
+    MOST_CANDIDATES,
+    SAME,
+    TOO_MUCH_MOTION,
+    clipped_in_words,
+    stillness,
+)
 
 COMMON = (
     "a bias common to all that some acceleration explains, all axes turned together, all scales by one factor, "
@@ -24,8 +31,9 @@ PER_SENSOR = 4
 def agreement_in_words(result: ParityResult) -> FitWords:
     """How the recording agrees with the calibration, and what to be careful of."""
     chance = "less than 0.01" if result.p_value < SMALLEST else number(100 * result.p_value, 1)
+    quiet = TOO_MUCH_MOTION if result.moving else SAME
     return FitWords(
-        headline=f"{CHANGED if result.detected else SAME}.",
+        headline=f"{CHANGED if result.detected else quiet}.",
         detail=f"χ² = {number(result.chi2, 1)} for {result.dof} numbers; an unchanged block gives this much or more "
         f"in {chance} % of recordings.",
         warnings=tuple(_warnings(result)),
@@ -37,9 +45,22 @@ def _warnings(result: ParityResult) -> Iterator[str]:
     yield f"Parity sees {result.dof} of {can} numbers that can change. It never sees {COMMON}."
     if not result.complete:
         yield ONE_ORIENTATION
+    if result.moving:
+        yield _suspicion(result)
+    yield from (f"{clipped_in_words(result, name)}." for name in result.clipped)
     left = [f"{count} {_why(reason, result)}" for reason, count in result.left_out.items() if count]
     if left:
         yield f"Left out of {result.blocks} blocks: {', '.join(left)}."
+
+
+def _suspicion(result: ParityResult) -> str:
+    """What would be said if nothing moved, and how to know."""
+    suspects = list(dict.fromkeys(c.sensor for c in result.suspects))[:MOST_CANDIDATES]
+    act = stillness(result)
+    return (
+        f"If motion did nothing to sound sensors, χ² would be {number(result.chi2_unmoved, 1)} for {result.dof} "
+        f"numbers and {' or '.join(suspects)} would be suspected. {act[0].upper()}{act[1:]}."
+    )
 
 
 def _why(reason: str, result: ParityResult) -> str:

@@ -36,6 +36,7 @@ def session_file(session: Session, readings: Array) -> dict[str, Any]:
         document["stand"]["chi_deg"] = float(np.degrees(stand.chi))
     if session.count_time:
         document["count_time_s"] = session.count_time
+        document["counter"] = "reset"
     return document
 
 

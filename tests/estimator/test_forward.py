@@ -16,6 +16,7 @@ from tests.estimator.calibration.bound import Happened, readings
 from tests.estimator.calibration.cases import CASES, Case, accelerometers, gyros, sphere
 
 STAND = [case for case in CASES if case.on_stand]
+NO_ERRORS = StandDraw(StandErrors(), np.zeros(24))
 MIXED = next(case for case in CASES if case.name == "mixed-counts")
 
 
@@ -60,7 +61,7 @@ def test_pulse_counts_become_rates_with_their_quantisation() -> None:
     session = MIXED.simulated(1)[0]
     values, errors = measured(session)
     assert np.allclose(values[:, 3:], session.readings[:, 3:] / 100.0)
-    assert np.allclose(errors[:, 3:], np.sqrt(1.0 + 1 / 12) / 100.0)
+    assert np.allclose(errors[:, 3:], np.sqrt(1.0 + 1 / 6) / 100.0)
     assert np.allclose(values[:, :3], session.readings[:, :3] - 32768.0)
 
 
@@ -88,3 +89,26 @@ def test_gyros_at_rest_meet_the_earth_rate_at_the_latitude() -> None:
     u = simulate(schedule, ones, np.random.default_rng(0), noise=0.0).readings
     assert np.allclose(np.linalg.norm(u[:, 3:], axis=1), EARTH_RATE)
     assert np.allclose((u[:, :3] * u[:, 3:]).sum(axis=1), GRAVITY * EARTH_RATE * np.sin(0.9))
+
+
+@pytest.mark.parametrize("counter", ["free-running", "reset"])
+def test_the_scatter_of_counts_is_the_quantisation_that_is_stated(counter: str) -> None:
+    """Without any other noise, at rates of which pulses are anything but whole multiples."""
+    steady = tuple(replace(s, bias_repeatability=0.0) for s in MIXED.schedule.sensors)
+    schedule = replace(MIXED.schedule, counter=counter, sensors=steady)
+    counted = simulate(schedule, MIXED.truth, np.random.default_rng(3), noise=0.0, draw=NO_ERRORS).readings[:, 3:]
+    exact = 100.0 * response(MIXED.truth, stand_geometry(schedule).n)[:, 3:]
+    spread = np.mean((counted - exact) ** 2)
+    assert spread == pytest.approx(schedule.quantisation, rel=0.35)
+    assert schedule.quantisation == {"free-running": 1 / 6, "reset": 1 / 12}[counter]
+
+
+def test_a_mean_of_counts_that_run_on_is_better_than_independent_ones() -> None:
+    """The errors of neighbouring counts cancel: only the first and the last reading of the counter are rounded."""
+    rng = np.random.default_rng(5)
+    rate, begun = rng.uniform(7, 9, (4000, 1)), rng.uniform(0, 1, (4000, 1))
+    counts = np.diff(np.floor(rate * np.arange(51) + begun), axis=1)
+    session = replace(MIXED.schedule, counts_averaged=np.full(24, 50.0))
+    assert np.mean((counts.mean(axis=1) - rate[:, 0]) ** 2) == pytest.approx(np.max(session.quantisation), rel=0.1)
+    assert np.mean((counts[:, 0] - rate[:, 0]) ** 2) == pytest.approx(MIXED.schedule.quantisation, rel=0.1)
+    assert replace(session, counter="reset").quantisation == 1 / 12

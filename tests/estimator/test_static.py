@@ -201,3 +201,11 @@ def test_a_restless_interval_keeps_its_own_error():
     found = mean_errors(log, places)[:, 0] * np.sqrt(500)
     assert found[10] == pytest.approx(20.0, rel=0.4)
     assert np.delete(found, 10) == pytest.approx(np.ones(49), rel=0.1)
+
+
+@pytest.mark.parametrize(("count_time", "counts"), [(1 / RATE, [100.0, 200.0]), (0.5 / RATE, None), (None, None)])
+def test_counts_without_gaps_between_them_say_how_many_were_averaged(count_time, counts):
+    session = averaged(
+        raw(np.ones((300, 3)), count_time=count_time), Intervals(np.array([0, 100]), np.array([100, 300]))
+    )
+    assert (None if session.counts_averaged is None else session.counts_averaged.tolist()) == counts

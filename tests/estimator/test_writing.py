@@ -12,6 +12,13 @@ from estimator.session import CalibrationSession
 from estimator.writing import session_document
 from tests import builders
 
+
+def placed(document: builders.Document) -> builders.Document:
+    """The document with sensors that sit somewhere."""
+    sensors = [s | {"position_m": [0.01 * k, -0.02, 0.03]} for k, s in enumerate(document["sensors"])]
+    return document | {"sensors": sensors}
+
+
 DOCUMENTS = {
     "accelerometers": builders.accelerometer_block(mounting=np.array([[0.0, 0, 1], [1, 0, 0], [0, 1, 0]])),
     "pulse gyros": builders.gyro_block(),
@@ -20,6 +27,8 @@ DOCUMENTS = {
     "orientations": builders.arbitrary_orientations(direction_sigma_deg=1.0),
     "no standard errors": builders.arbitrary_orientations(se=None),
     "raw log": builders.raw_log(),
+    "a counter that is reset": builders.gyro_block() | {"counter": "reset"},
+    "positions": placed(builders.accelerometer_block()),
 }
 
 

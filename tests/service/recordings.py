@@ -39,7 +39,7 @@ def recording_document(
         "programme": "in-service",
         "started_at": "2026-05-01T09:00:00Z",
         "sample_rate_hz": RATE,
-        "sensors": declared(sensors, "V"),
+        "sensors": declared(sensors, "V", position_m=[0.0, 0.0, 0.0]),
         "table": {name: column.tolist() for name, column in columns.items()},
     }
 

@@ -76,7 +76,7 @@ def covariance(case: Case) -> Array:
     """(R m, R m) of all readings of a session on the stand."""
     session, p = case.schedule, case.truth
     pulsed = np.array([session.count_time is not None and s.kind != ACCELEROMETER for s in session.sensors])
-    own = np.where(pulsed, case.noise**2 + 1 / 12, case.noise**2)
+    own = np.where(pulsed, case.noise**2 + 1 / 6, case.noise**2)
     zero = p.scale * np.array([s.bias_repeatability for s in session.sensors])
     own = own + (zero * np.where(pulsed, session.count_time or 1.0, 1.0)) ** 2
     V = np.diag(np.broadcast_to(own, session.readings.shape).ravel())

@@ -62,7 +62,7 @@ def test_nobody_passes_where_a_change_cannot_be_attributed() -> None:
 
 
 def test_a_candidate_beyond_its_tolerance_fails_even_where_several_could_be_it() -> None:
-    assert "fail" in verdicts(4, MOVED, 1e-4).values()
+    assert "fail" in verdicts(4, MOVED, 1e-3).values()
 
 
 def test_the_measured_value_is_the_reference_moved_by_the_change() -> None:

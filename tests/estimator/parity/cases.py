@@ -21,7 +21,7 @@ def block(m, seed=0, noise=1e-4):
 
 
 def recording(true, seed=0, *, manoeuvres=AEROBATIC, **options):
-    """A flight of the block as it is now."""
+    """A flight of the block as it is now; its sensors sit in one point."""
     rng = np.random.default_rng(1000 + seed)
     sensors = session(true, np.eye(3)).sensors
     now = SensorParameters(true.scale, true.bias, true.quadratic, true.axes)

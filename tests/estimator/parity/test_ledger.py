@@ -88,7 +88,8 @@ def test_counts_that_thin_out_gently_are_no_end() -> None:
 def placed(first: list[int]) -> Blocks:
     """Blocks at these places; what grouping does not read is empty."""
     n, none = len(first), np.zeros(len(first))
-    return Blocks(np.array(first), np.ones(n), np.zeros((n, 6)), none, none, np.zeros((n, 6)), np.zeros((n, 6)))
+    six, three = np.zeros((n, 6)), np.zeros((n, 3))
+    return Blocks(np.array(first), np.ones(n), six, none, none, six, six, none, three, six, three, three, six)
 
 
 def lengths(first: list[int], still: list[bool]) -> list[int]:

@@ -16,12 +16,12 @@ from tests.estimator.parity.cases import STILL, biased, block, recording, scaled
 RUNS = 60
 
 
-def results(m, *, change=lambda true: true, runs=RUNS, **options):
+def results(m, *, change=lambda true: true, runs=RUNS, motion="auto", **options):
     """Results of many blocks, each with a recording of its own."""
     found = []
     for seed in range(runs):
         true, reference = block(m, seed)
-        found.append(parity_check(recording(change(true), seed, seconds=120.0, **options), reference))
+        found.append(parity_check(recording(change(true), seed, seconds=120.0, **options), reference, motion=motion))
     return found
 
 
@@ -41,13 +41,14 @@ def test_rest_raises_no_alarms():
 
 
 def test_stated_sigmas_are_honest():
-    found = results(6)
+    """Where the sensors are said to sit in one point, as they do; a stated place leaves half a millimetre."""
+    found = results(6, motion="any")
     z = np.array([s.bias.size / s.bias.sigma for r in found for s in r.sensors])
     assert 0.8 < np.sqrt(np.mean(z**2)) < 1.2
 
 
 def test_p_values_of_unchanged_blocks_are_spread():
-    p = np.array([r.p_value for r in results(6)])
+    p = np.array([r.p_value for r in results(6, motion="any")])
     assert 0.2 < np.mean(p < 0.5) < 0.7
 
 
@@ -67,7 +68,7 @@ def test_a_change_is_attributed_to_its_sensor(kind, change):
 
 
 def test_the_amplitude_is_found_within_its_sigma():
-    found = results(6, change=lambda true: biased(true, 2, 1e-3), runs=40)
+    found = results(6, change=lambda true: biased(true, 2, 1e-3), runs=40, motion="any")
     z = np.array([(r.sensor("A3").bias.size - 1e-3) / r.sensor("A3").bias.sigma for r in found])
     assert 0.7 < np.sqrt(np.mean(z**2)) < 1.3
 

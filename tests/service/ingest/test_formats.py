@@ -100,6 +100,15 @@ def test_every_format_gives_the_same_session(kind, build):
 
 
 @pytest.mark.parametrize("kind", WRITERS)
+def test_where_sensors_sit_and_how_pulses_are_counted_survive_every_format(kind):
+    document = builders.gyro_block() | {"counter": "reset"}
+    document["sensors"][2]["position_m"] = [0.01, -0.02, 0.0]
+    session = read_upload(WRITERS[kind](document), "x")
+    assert (session.counter, session.sensors[2].position.tolist()) == ("reset", [0.01, -0.02, 0.0])
+    assert session.sensors[0].position is None
+
+
+@pytest.mark.parametrize("kind", WRITERS)
 def test_empty_cells_survive_every_format(kind):
     document = rounded(builders.arbitrary_orientations())
     document["table"]["A1_se"][3] = None

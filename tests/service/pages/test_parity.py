@@ -1,9 +1,15 @@
 """The page of a recording in service speaks of agreement, of what would have been seen, and of what never is."""
 
+import json
+from functools import cache
+from html import unescape
+
+import numpy as np
 import pytest
 
+from tests.blind.flight import Setting, draw_block, fly, tumble
 from tests.conftest import Holding
-from tests.service.recordings import recording_bytes
+from tests.service.recordings import recording_bytes, recording_document
 from tests.service.sessions import session_bytes, session_id
 
 
@@ -34,3 +40,49 @@ def test_it_says_what_parity_never_sees(page: str) -> None:
 
 def test_a_recording_of_one_orientation_is_told_to_turn(holding: Holding) -> None:
     assert "The recording turns too little" in page_of(holding, recording_bytes(still=True))
+
+
+@cache
+def moving_block() -> tuple[bytes, bytes]:
+    """A calibration, and a smooth flight of its block, sound, whose sensors sit apart in places that are not stated."""
+    setting = Setting(seconds=150.0, arm=0.05, delay=1.0, vibration=0.02)
+    rng = np.random.default_rng([5, 7])
+    block = draw_block(rng, setting)
+    calibration, flight = tumble(block, rng), fly(block, setting, rng)
+    return tuple(  # type: ignore[return-value]
+        json.dumps(document | {"started_at": f"2026-0{month}-01T09:00:00Z"}).encode()
+        for month, document in ((3, calibration), (5, flight))
+    )
+
+
+def test_a_block_that_moves_too_much_is_told_so_and_what_to_do(holding: Holding) -> None:
+    calibration, flight = moving_block()
+    client = holding(calibration, flight)
+    page = unescape(client.get(f"/sessions/{session_id(flight)}").text)
+    assert "Moving too much to tell." in page
+    assert "Moving too much to tell: the sensors disagree, and lever arms, delays between channels or vibration" in page
+    assert "hold the unit still for 15 s while recording, or state where its sensors sit (position_m)" in page
+
+
+def test_nothing_is_lost_for_a_block_that_moves_too_much(holding: Holding) -> None:
+    calibration, flight = moving_block()
+    client = holding(calibration, flight)
+    answer = client.get(f"/api/v1/sessions/{session_id(flight)}").json()
+    parity = client.get(f"/api/v1/sessions/{session_id(flight)}/calibration").json()["parity"]
+    assert (answer["verdict"], parity["isolated"], parity["detected"], parity["moving"]) == (
+        "undecidable", None, False, True,
+    )  # fmt: skip
+    assert parity["p_value_unmoved"] < 1e-4
+    assert parity["suspects"]
+    page = client.get(f"/sessions/{session_id(flight)}").text
+    assert f"χ² would be {parity['chi2_unmoved']:.1f} for {parity['dof']} numbers" in page
+
+
+def test_a_channel_that_is_cut_off_at_times_is_said_to_be(holding: Holding) -> None:
+    """With its share of the samples, in the verdict that names it and on the page."""
+    document = recording_document(a3_moved=400.0)
+    readings = np.array(document["table"]["A3"])
+    document["table"]["A3"] = np.minimum(readings, np.quantile(readings, 0.96)).tolist()
+    page = page_of(holding, json.dumps(document).encode())
+    assert "A3 has changed since the calibration" in page
+    assert page.count("A3 stood at the end of its range in 4.0 % of the samples") == 2
