@@ -1,6 +1,6 @@
 """From the search to findings that people read."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,6 +17,13 @@ from estimator.diagnosis.signatures.applied_course import AppliedCourse
 from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance, UnlikeNoise
 from estimator.diagnosis.signatures.patterns import Pattern
 from estimator.session import ACCELEROMETER
+
+UNEXPLAINED = "unexplained"
+"""Among alternatives: what acts may be none of the catalogue's causes."""
+
+BEYOND_NOISE = 30.0
+"""Times the stated standard errors from which on scatter is no misjudged noise: stated ones were seen to be four to
+twenty times too small."""
 
 
 def findings(state: SearchState, fitted: Amplitudes, new: Sequence[bool | None]) -> tuple[Finding, ...]:
@@ -50,7 +57,7 @@ def finding(state: SearchState, found: Found, fitted: Amplitudes, part: slice, n
         nonlinear_each=(nonlinear(cause.nonlinear_units, best.shape.nonlinear),),
         alternatives=(
             *(r.cause.identifier for r in others),
-            *(("unexplained",) if found.unnamed > 1 - CREDIBLE else ()),
+            *((UNEXPLAINED,) if found.unnamed > 1 - CREDIBLE else ()),
         ),
         separations=separations(state, found, others),
         ranking=ranking(state, found),
@@ -82,6 +89,7 @@ def excess_finding(state: SearchState, cause: Cause, excess: ExcessVariance) -> 
         amplitude=(extra,),
         sigma=(sigma,),
         units=("m/s²" if sensor.kind == ACCELEROMETER else "rad/s",),
+        alternatives=(UNEXPLAINED,) if excess.doubtful else (),
     )
 
 
@@ -89,7 +97,7 @@ def structures(state: SearchState) -> tuple[Structure, ...]:
     """Unexplained structure and where it lives."""
     patterns = [
         Structure(
-            where=f.best.cause.where(f.best.shape) if isinstance(f.best.cause, Pattern) else "",
+            where=where_it_lives(f),
             sensors=tuple(state.names[i] for i in f.best.sensors),
             p_value=f.p_family,
             strength=f.best.strength,
@@ -105,7 +113,15 @@ def structures(state: SearchState) -> tuple[Structure, ...]:
         *courses,
         *larger,
         *(unlike_noise(state, u) for u in state.unlike_noise),
+        *beyond_noise(state),
     )
+
+
+def where_it_lives(found: Found) -> str:
+    """A pattern's own words; of a name that was taken back, that it predicts nothing."""
+    if isinstance(found.best.cause, Pattern):
+        return found.best.cause.where(found.best.shape)
+    return f"as of {found.best.cause.name}, which predicts positions held out worse than no name"
 
 
 def common_course(course: AppliedCourse) -> Structure:
@@ -123,6 +139,14 @@ def common_course(course: AppliedCourse) -> Structure:
 def noise_scales(state: SearchState) -> tuple[NoiseScale, ...]:
     """Kinds of sensor whose stated standard errors the readings contradict."""
     return tuple(NoiseScale(c.kind, float(np.sqrt(c.ratio)), c.freedom) for c in state.noise_claims)
+
+
+def beyond_noise(state: SearchState) -> Iterator[Structure]:
+    """Kinds of sensor that scatter as no noise does."""
+    for scale in noise_scales(state):
+        if scale.factor > BEYOND_NOISE:
+            where = f"scatter {scale.factor:.0f} times the stated standard errors: more than noise can be"
+            yield Structure(where, (), 0.0, float(np.sqrt(scale.freedom)) * scale.factor)
 
 
 def unlike_noise(state: SearchState, unlike: UnlikeNoise) -> Structure:

@@ -29,7 +29,10 @@ rows to be judged."""
 
 
 def without_unpredictive(state: SearchState) -> SearchState:
-    """The state without its names where they, chosen again in every fold, predict the rows held out worse than none."""
+    """The state without its names where they, chosen again in every fold, predict the rows held out worse than none.
+
+    What they explained is then structure; where no pattern holds it, as it is.
+    """
     judged = [f for f in state.found if predicts(state, f)]
     if not judged:
         return state
@@ -40,7 +43,7 @@ def without_unpredictive(state: SearchState) -> SearchState:
     if gained >= 0:
         return state
     rest = with_structures(replace(state, found=tuple(f for f in state.found if f not in judged)))
-    return rest if rest.structures else state
+    return rest if rest.structures else replace(rest, structures=tuple(judged))
 
 
 def predicts(state: SearchState, found: Found) -> bool:

@@ -17,18 +17,21 @@ from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.backward import FURTHER
+from estimator.diagnosis.selection.excess_noise import sensor_scatter
 from estimator.diagnosis.selection.forward import with_structures
-from estimator.diagnosis.selection.ranking import extended_basis, log_evidence_beside
+from estimator.diagnosis.selection.ranking import joint_log_evidence
 from estimator.diagnosis.selection.search_state import Found, SearchState
 from estimator.diagnosis.selection.start import begin
 from estimator.diagnosis.signatures.applied_course import SIZE, AppliedCourse, applied_course, components
-from estimator.diagnosis.signatures.scores import rescored, score
+from estimator.diagnosis.signatures.scores import score
 from estimator.diagnosis.signatures.traces import Group
-from estimator.session import Array
 
 DEBUG = os.environ.get("DEBUGC")
 DISTINCT = 5.3
 """ln evidence by which a set of names must beat a course for the course to be no alternative: odds of 200."""
+
+LEAST_FREEDOM = 3.0
+"""Degrees of freedom of a sensor's residual from which on it tells what noise is left."""
 
 LEAST = 5.0
 """ln evidence of a course beside names that would be believed by themselves."""
@@ -40,35 +43,28 @@ MOST_LIKELY = 2
 """Different names in one session that are believed without a look at parity space."""
 
 
-def weighed(start: SearchState, state: SearchState) -> float:
+def weighed(state: SearchState) -> float:
     """ln evidence of all that was found together against nothing, every further name paid for."""
-    members = (*state.found, *state.structures)
     scatter = sum(s.log_evidence for s in state.excess)
     scatter += sum(s.log_evidence + s.excess_log_evidence for s in state.autocorrelated)
-    scatter += sum(c.log_evidence for c in state.courses)
-    number = len(members) + len({s.sensor for s in state.scatter}) + len(state.courses)
-    return together(state, members, known=not start.baseline.unstated.any()) + scatter - FURTHER * max(number - 1, 0)
+    number = len(state.found) + len(state.structures) + len(state.scatter_attributed)
+    return joint_log_evidence(state) + scatter - FURTHER * max(number - 1, 0)
 
 
-def together(state: SearchState, members: Sequence[Found], *, known: bool) -> float:
-    """ln evidence of findings together; where the noise is of unknown scale, on what they leave of all residuals."""
-    residuals = state.residuals
-    attributed = np.zeros((len(residuals.z), 0))
-    value = log_evidence_beside(residuals, attributed, members)
-    if known or not members:
-        return value
-    statistic = 0.0
-    for member in members:
-        statistic += rescored(residuals, member.best, attributed).statistic
-        attributed = extended_basis(attributed, member.best.trace)
-    energy = float(residuals.z @ residuals.z)
-    left = 1 - float(((attributed.T @ residuals.z) ** 2).sum()) / energy
-    return value - 0.5 * statistic - 0.5 * degrees(residuals, attributed) * float(np.log(max(left, 1e-12)))
+def settled(start: SearchState, state: SearchState) -> tuple[SearchState, SearchState]:
+    """Nothing found, and what was found, with noise that no file states taken as what was found leaves of it.
 
-
-def degrees(residuals: WhitenedResiduals, attributed: Array) -> int:
-    """Degrees of freedom that ``attributed`` (n, f), orthonormal, dimensionless, leaves of all residuals."""
-    return max(len(residuals.z) - residuals.basis.shape[1] - attributed.shape[1], 1)
+    A noise estimated from residuals that hold an effect hides it, from a course more than from a name.
+    """
+    baseline, (energy, freedom) = start.baseline, sensor_scatter(state)
+    if not baseline.unstated.any():
+        return start, state
+    left = np.where(baseline.unstated & (freedom >= LEAST_FREEDOM), energy / np.maximum(freedom, 1.0), 1.0)
+    known = replace(baseline, variance=baseline.variance * left, unstated=np.zeros_like(baseline.unstated))
+    begun = replace(begin(refitted(known), start.history, start.catalogue), noise_claims=start.noise_claims)
+    found, structures = seen_from(begun, state.found), seen_from(begun, state.structures)
+    seen = replace(begun, found=found, structures=structures)
+    return begun, replace(seen, excess=state.excess, autocorrelated=state.autocorrelated)
 
 
 def concerns_all(state: SearchState) -> bool:
@@ -81,10 +77,11 @@ def common_or_own(start: SearchState, state: SearchState, search: Callable[[Sear
     """The state, or its rival with a course of the applied vector, whichever is likelier; ``start``: nothing found."""
     if not concerns_all(state):
         return state
-    own, course = weighed(start, state), likeliest_course(start, ())
+    begun, seen = settled(start, state)
+    own, course = weighed(seen), likeliest_course(begun, ())
     if course.log_evidence - own < -DISTINCT and not crowded(state):
         return state
-    rival = whatever_the_vector(start, course, search)
+    rival = whatever_the_vector(start, begun, course, search)
     gained = rival.log_evidence - own
     if gained > 0:
         return replace(rival.parity, courses=(rival.course,))
@@ -103,14 +100,16 @@ class Rival:
 
 
 def whatever_the_vector(
-    start: SearchState, course: AppliedCourse, search: Callable[[SearchState], SearchState]
+    start: SearchState, begun: SearchState, course: AppliedCourse, search: Callable[[SearchState], SearchState]
 ) -> Rival:
-    """The course with the causes that parity space shows beside it; its size is free only where that explains more."""
+    """The course with the causes that parity space shows beside it; its size is free only where that explains more.
+
+    ``begun``: the search of ``start`` with the noise by which both are weighed.
+    """
     parity = search(in_parity_space(start, size=False))
-    kept = seen_from(start, parity.found)
-    beside = likeliest_course(start, kept)
-    known = not start.baseline.unstated.any()
-    paid = beside.log_evidence + together(start, kept, known=known) - FURTHER * len(kept)
+    kept = seen_from(begun, parity.found)
+    beside = likeliest_course(begun, kept)
+    paid = beside.log_evidence + weighed(replace(begun, found=kept)) - FURTHER * bool(kept)
     if kept and beside.log_evidence > LEAST and paid > course.log_evidence:
         return Rival(beside, parity, paid)
     if kept and SIZE in course.components:
@@ -126,9 +125,9 @@ def doubted(state: SearchState, held_there: Set[Group], doubt: float) -> SearchS
 
 def likeliest_course(start: SearchState, beside: Sequence[Found]) -> AppliedCourse:
     """The course of the applied vector beside findings, lasting since the history or new."""
-    known, attributed = not start.baseline.unstated.any(), replace(start, found=tuple(beside)).attributed()
+    attributed = replace(start, found=tuple(beside)).attributed()
     lasting = (False, True) if start.history else (False,)
-    tried = [applied_course(start.residuals, attributed, known=known, lasting=k) for k in lasting]
+    tried = [applied_course(start.residuals, attributed, lasting=k) for k in lasting]
     return max(tried, key=lambda c: c.log_evidence)
 
 
@@ -137,7 +136,8 @@ def seen_from(start: SearchState, found: Sequence[Found]) -> tuple[Found, ...]:
     nothing = np.zeros((len(start.residuals.z), 0))
     seen = []
     for old in found:
-        own = [t.at(old.best.sensors) for t in start.traces if t.cause is old.best.cause]
+        known = (*start.traces, *start.patterns)
+        own = [t.at(old.best.sensors) for t in known if t.cause is old.best.cause]
         same = [s for s in score(start.residuals, own, nothing) if s.shape.nonlinear == old.best.shape.nonlinear]
         if same:
             seen.append(replace(old, best=max(same, key=lambda s: s.log_evidence)))

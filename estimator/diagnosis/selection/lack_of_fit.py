@@ -21,6 +21,9 @@ MISFIT = 0.05
 """Share of the energy of names that structure beside them may hold: beyond a fifth in rms it is another effect that
 they are the nearest to, below it a cause described nearly, with something small beside it."""
 
+DOUBTFUL = 0.05
+"""p-value of normal noise below which excess noise may as well be an effect that no cause explains."""
+
 FEWEST = 8
 """Rows from which on a distribution is judged."""
 
@@ -66,17 +69,19 @@ def with_unlike_noise(state: SearchState) -> SearchState:
     """Sensors whose scatter, larger than stated or of unstated size, is not distributed as noise: no excess noise."""
     residuals, remaining = state.residuals, state.remaining
     freedom = residuals.row_freedom - (state.attributed()[: residuals.rows] ** 2).sum(axis=1)
-    excess, unlike = list(state.excess), list(state.unlike_noise)
-    for i in np.flatnonzero(state.baseline.unstated):
+    excess, unlike = {e.sensor: e for e in state.excess}, list(state.unlike_noise)
+    for i in np.flatnonzero(state.baseline.unstated).tolist():
         own = (residuals.sensor_of_row[: residuals.rows] == i) & (freedom > KNOWN)
         if own.sum() < FEWEST:
             continue
         y = remaining[: residuals.rows][own] / np.sqrt(freedom[own])
         p_value = min(1.0, 2 * min(float(shapiro(y).pvalue), two_valued(y)))
         if p_value * state.sensor_count < LEVEL:
-            excess = [e for e in excess if e.sensor != i]
-            unlike.append(UnlikeNoise(int(i), p_value, float(np.abs(y).max() / np.sqrt(np.mean(y**2)))))
-    return replace(state, excess=tuple(excess), unlike_noise=tuple(unlike))
+            excess.pop(i, None)
+            unlike.append(UnlikeNoise(i, p_value, float(np.abs(y).max() / np.sqrt(np.mean(y**2)))))
+        elif i in excess:
+            excess[i] = replace(excess[i], doubtful=p_value < DOUBTFUL)
+    return replace(state, excess=tuple(excess.values()), unlike_noise=tuple(unlike))
 
 
 def two_valued(y: Array) -> float:

@@ -63,12 +63,13 @@ def joint_log_evidence(state: SearchState) -> float:
 
 
 def log_evidence_beside(residuals: WhitenedResiduals, attributed: Array, members: Sequence[Found]) -> float:
-    """ln evidence of some findings, each on what others and those before it leave.
+    """ln evidence of some findings, each on what others and the stronger of them leave.
 
+    The order matters where the noise is estimated from what is left: the strongest first, whatever they are called.
     ``attributed`` (n, f) orthonormal traces of the others, dimensionless.
     """
     log_evidence = 0.0
-    for member in members:
+    for member in sorted(members, key=lambda f: -rescored(residuals, f.best, attributed).statistic):
         log_evidence += rescored(residuals, member.best, attributed).log_evidence
         attributed = extended_basis(attributed, member.best.trace)
     return log_evidence

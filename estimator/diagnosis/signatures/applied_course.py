@@ -10,8 +10,7 @@ is
 
     ln B = −½ Σ ln(1 + λd) + ½ Σ v² λ/(1 + λd)                      (Rasmussen & Williams 2006, (2.30))
 
-and with noise of unknown scale, ν degrees of freedom, −½ Σ ln(1 + λd) − ½ ν ln(1 − Σ v² λ/(1 + λd) / z'z). It is the
-mean over components, kernels and λ. No sensor's own fault hides there: half of its energy lies in parity space.
+It is the mean over components, kernels and λ. No sensor's own fault hides there: half its energy lies in parity space.
 """
 
 from collections.abc import Iterator
@@ -34,9 +33,6 @@ ROUND = (0.4, 1.0, 2.5)
 
 LEAST_ENERGY, STEPS = 0.1, 14
 """λ runs from a course hardly visible to one that holds all the energy there is, in so many steps."""
-
-UNSEEN = 1e4
-"""Factor by which noise of unknown scale may be smaller than it was taken to be: a course hides in an estimate."""
 
 FAINT = 1e-4
 """Share of a kernel's largest direction below which one counts as none."""
@@ -154,19 +150,18 @@ def changes(setting: Setting) -> Iterator[tuple[str, Array]]:
             yield f"{words}, each run for itself", np.concatenate([fixed * flipped, fixed * ~flipped], axis=-1)
 
 
-def applied_course(residuals: WhitenedResiduals, attributed: Array, *, known: bool, lasting: bool) -> AppliedCourse:
+def applied_course(residuals: WhitenedResiduals, attributed: Array, *, lasting: bool) -> AppliedCourse:
     """The course of the applied vector that explains most of the residuals.
 
-    ``attributed`` (n, f) orthonormal traces of findings, dimensionless, which are projected out; ``known``: whether the
-    noise is taken as stated; ``lasting``: whether the history's sessions had the same course.
+    ``attributed`` (n, f) orthonormal traces of findings, dimensionless, which are projected out; ``lasting``: whether
+    the history's sessions had the same course. The noise is taken as it is in the residuals.
     """
     z = residuals.z - attributed @ (attributed.T @ residuals.z)
-    freedom = None if known else max(len(z) - residuals.basis.shape[1] - attributed.shape[1], 1)
     tried, best, leading = [], -np.inf, None
     for hypothesis in hypotheses(residuals.baseline.setting):
         trace = residuals.trace(hypothesis.columns, None if lasting else 0.0)
         trace = trace - attributed @ (attributed.T @ trace)
-        log_evidence, coefficients = evidence(trace, z, freedom)
+        log_evidence, coefficients = evidence(trace, z)
         tried.append(log_evidence)
         if leading is None or log_evidence > best:
             best, leading = log_evidence, (hypothesis, coefficients)
@@ -187,21 +182,16 @@ def covariance_root(kernel: Array) -> Array:
     return np.asarray(turn[:, kept] * np.sqrt(size[kept]))
 
 
-def evidence(trace: Array, z: Array, freedom: int | None) -> tuple[float, Array]:
+def evidence(trace: Array, z: Array) -> tuple[float, Array]:
     """ln B of one family of courses, the mean over their size, and the coefficients (r,) of the most likely course.
 
-    ``trace`` (n, r) of its unit coefficients and residuals ``z`` (n,), standard errors; ``freedom``: their degrees of
-    freedom where the noise is of unknown scale.
+    ``trace`` (n, r) of its unit coefficients and residuals ``z`` (n,), standard errors.
     """
-    energy = float(z @ z)
     size, turn = np.linalg.eigh(trace.T @ trace)
     size, power = np.maximum(size, 0.0), turn.T @ (trace.T @ z)
-    most = max(energy, 10.0) * (1.0 if freedom is None else UNSEEN)
-    strengths = np.geomspace(LEAST_ENERGY, most, STEPS) / max(float(size.sum()), 1e-300)
+    strengths = np.geomspace(LEAST_ENERGY, max(float(z @ z), 10.0), STEPS) / max(float(size.sum()), 1e-300)
     shrunk = strengths[:, None] / (1 + strengths[:, None] * size)
     volume = -0.5 * np.log1p(strengths[:, None] * size).sum(axis=1)
-    explained = (power**2 * shrunk).sum(axis=1)
-    unknown = -0.5 * (freedom or 0) * np.log(np.maximum(1 - explained / energy, 1e-12))
-    values = volume + (0.5 * explained if freedom is None else unknown)
+    values = volume + 0.5 * (power**2 * shrunk).sum(axis=1)
     value = turn @ (power * shrunk[int(np.argmax(values))])
     return float(logsumexp(values) - np.log(len(values))), value

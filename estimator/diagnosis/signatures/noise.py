@@ -26,6 +26,8 @@ class ExcessVariance:
     """ln Bayes factor against the stated noise."""
     p_family: float
     """Family-wise p-value."""
+    doubtful: bool = False
+    """Whether it is not quite distributed as noise is."""
 
     @property
     def strength(self) -> float:

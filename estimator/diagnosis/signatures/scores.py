@@ -42,6 +42,9 @@ ALONE = 1e-4
 catalogue of some forty. What is only seen because the sensor changed since the history is a change, and no such cause.
 """
 
+TOO_FAINT = 4.0
+"""Standard errors that an effect of the size fitted leaves in the session's own rows below which it need not show."""
+
 OCCAM = 0.7
 """ln evidence that every amplitude beyond the first costs, a factor of two: it balances simple causes against richer
 ones that contain them, so that alternatives stay few (docs/diagnosis/study.md, alternatives)."""
@@ -106,24 +109,29 @@ def _score(projected: Projected, traces: Traces) -> Iterable[Scored]:
         shape, t, q, p = traces.shapes[s], float(statistic[s]), int(freedom[s]), float(p_value[s])
         if p < WORTH and not within_reason(projected.residuals.baseline.setting, traces.cause, shape, amplitude[s]):
             continue
-        if p < WORTH and not shows_itself(projected, traces, shape, columns[s][:, traces.raw[s] > 0]):
+        if p < WORTH and not shows_itself(projected, traces, int(s), columns[s] * shown[s] @ np.diag(amplitude[s])):
             continue
         log_evidence = bayes_factor(t, q) - float(np.log(places))
         yield Scored(traces.cause, shape, traces.lasting[s], traces.columns[s], t, q, log_evidence, p, places)
 
 
-def shows_itself(projected: Projected, traces: Traces, shape: Shape, columns: Array) -> bool:
-    """Whether a cause that acts within the session shows there, and not only in what changed since the history.
+def shows_itself(projected: Projected, traces: Traces, s: int, fitted: Array) -> bool:
+    """Whether shape s of a cause that acts within the session shows there, and not only in what changed since the
+    history.
 
-    ``columns`` (n, q) of its trace, standard errors per unit amplitude.
+    ``fitted`` (n, q) standard errors: every column at its fitted amplitude. What is too faint there to show is asked
+    nothing, unless the sensor's change was left open, which explains any change by itself.
     """
     residuals, rows = projected.residuals, projected.residuals.rows
     if residuals.change is None or traces.cause.between or traces.cause.nameless:
         return True
-    basis, size, _ = np.linalg.svd(columns[:rows], full_matrices=False)
+    own = fitted[:rows, traces.raw[s] > 0]
+    if (traces.raw[s] > 0).all() and float((own.sum(axis=1) ** 2).sum()) < TOO_FAINT**2:
+        return True
+    basis, size, _ = np.linalg.svd(own, full_matrices=False)
     basis = basis[:, size > 1e-9 * max(size[0], 1e-300)]
     along = basis.T @ projected.z[:rows]
-    energy, rest = projected.scatter.without([shape], basis[None], along[None])
+    energy, rest = projected.scatter.without([traces.shapes[s]], basis[None], along[None])
     q = np.array([max(basis.shape[1], 1)])
     statistic = equivalent_chi2((along**2).sum(keepdims=True), q, energy, rest)
     return float(chdtrc(q, statistic)[0]) * max(traces.places, 1) < ALONE

@@ -5,11 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from estimator.causes import cause
 from estimator.causes.contract import Setting
+from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.selection.acceptance import held
-from estimator.diagnosis.selection.common_or_own import common_or_own, in_parity_space, together
+from estimator.diagnosis.selection.common_or_own import common_or_own, in_parity_space, settled, weighed
+from estimator.diagnosis.selection.ranking import joint_log_evidence
+from estimator.diagnosis.selection.start import begin
 from estimator.session import Array
-from tests.estimator.diagnosis.selection.small import SENSOR, candidate, effect, measured, names, start
+from tests.estimator.diagnosis.selection.small import ROWS, SENSOR, candidate, effect, measured, names, start
 
 OWN = ("cubic-nonlinearity", "scale-asymmetry", "cross-coupling", "bias-per-position", "bias-ramp", "axis-creep")
 
@@ -71,21 +75,25 @@ def test_nothing_of_a_course_shows_in_parity_space() -> None:
     assert abs(z @ z - freedom) < 4 * np.sqrt(2 * freedom)
 
 
-def test_evidence_together_is_that_of_one_and_of_the_other_beside_it() -> None:
+def test_a_further_name_is_paid_for() -> None:
     state = start(OWN, effect("cubic-nonlinearity") + effect("bias-ramp", 3))
     first = candidate(state, "cubic-nonlinearity")
-    second = candidate(replace(state, found=(first,)), "bias-ramp", (3,))
-    one, both = (together(state, members, known=True) for members in ((first,), (first, second)))
-    assert both == pytest.approx(one + second.best.log_evidence)
+    one = replace(state, found=(first,))
+    both = replace(one, found=(first, candidate(one, "bias-ramp", (3,))))
+    assert weighed(both) == pytest.approx(joint_log_evidence(both) - np.log(100))
+    assert weighed(one) == pytest.approx(joint_log_evidence(one))
 
 
-def test_where_the_scale_of_the_noise_is_unknown_it_cancels() -> None:
-    state = start(OWN, effect("cubic-nonlinearity"))
-    finding = candidate(state, "cubic-nonlinearity")
-    doubled = replace(state, residuals=replace(state.residuals, z=1.0 * state.residuals.z))
-    value = together(state, (finding,), known=False)
-    assert value == together(doubled, (finding,), known=False)
-    assert value < together(state, (finding,), known=True)
+def test_noise_that_no_file_states_is_what_the_names_leave() -> None:
+    added = effect("beta-second-harmonic")
+    unstated = replace(measured(added), standard_errors=np.full((ROWS, 4), np.nan))
+    begun = begin(baseline_of(unstated), (), [cause("beta-second-harmonic")])
+    named = replace(begun, found=(candidate(begun, "beta-second-harmonic", ()),))
+    known, seen = settled(begun, named)
+    true = baseline_of(measured(0.0)).variance
+    assert np.median(begun.baseline.variance / true) > 1.5
+    assert np.median(known.baseline.variance / true) == pytest.approx(1, abs=0.3)
+    assert names(seen) == names(named)
 
 
 def test_a_turn_of_the_block_since_the_history_is_common() -> None:
