@@ -20,10 +20,11 @@ from estimator.diagnosis.explanation.record_findings import (
     wrong_record,
 )
 from estimator.diagnosis.record.clipping import unclipped
-from estimator.diagnosis.record.implausible import implausible_axes
+from estimator.diagnosis.record.implausible import ImplausibleAxes, implausible_axes
 from estimator.diagnosis.record.nominal import wrong_entry
 from estimator.diagnosis.record.turned import expected_axes
 from estimator.diagnosis.record.undo import undo_record_errors
+from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.common_start import baselines
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.results import Diagnosis
@@ -56,7 +57,7 @@ def diagnose(
     earlier = [unclipped(averaged(h), catalogue)[1] for h in history]
     before = [baseline_of(h) for h in earlier]
     errors, right = undo_record_errors(right, before, catalogue)
-    wrong = implausible_axes(baseline_of(right), expected_axes(before, right))
+    wrong = mixed_up(right, before, catalogue)
     state = unsearched(right, earlier, catalogue) if wrong else searched(right, earlier, catalogue)
     entry = None if earlier or wrong else wrong_entry(without_effects(state, amplitudes(state)), catalogue)
     if entry is not None:
@@ -79,6 +80,16 @@ def diagnose(
         baseline=calibrate(rows),
         calibration=calibration,
     )
+
+
+def mixed_up(
+    session: CalibrationSession, history: Sequence[Baseline], catalogue: Sequence[Cause]
+) -> ImplausibleAxes | None:
+    """Axes that no block of this unit can have, whatever entry is corrected; None where there are none."""
+    expected = expected_axes(history, session)
+    wrong = implausible_axes(baseline_of(session), expected)
+    entry = None if wrong is None else wrong_entry(session, catalogue)
+    return wrong if entry is None else implausible_axes(baseline_of(entry.corrected(session)), expected)
 
 
 def searched(

@@ -150,10 +150,9 @@ def beyond_noise(state: SearchState) -> Iterator[Structure]:
 
 
 def unlike_noise(state: SearchState, unlike: UnlikeNoise) -> Structure:
-    """A sensor whose scatter is not distributed as noise is."""
-    return Structure(
-        "scatter that is not distributed as noise is", (state.names[unlike.sensor],), unlike.p_value, unlike.strength
-    )
+    """A sensor whose scatter is not that of noise."""
+    where = "scatter that is not distributed as noise is" if unlike.of_its_kind else "scatter far beyond its kind's"
+    return Structure(where, (state.names[unlike.sensor],), unlike.p_value, unlike.strength)
 
 
 def place(course: Autocorrelation) -> str:

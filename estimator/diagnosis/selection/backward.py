@@ -28,6 +28,13 @@ FURTHER = float(np.log(100))
 """ln evidence that every name beyond the first costs: one misfortune in a hundred sessions has another, independent
 one beside it."""
 
+MOST_AT_ONCE = 2
+"""Names on one sensor that are believed: more of them patch up one cause that is missing."""
+
+CLEARLY = 20.0
+"""ln evidence by which two names on one sensor must beat a course for it to be no alternative: what a free course pays
+for its freedom beside a formula with as many amplitudes as theirs."""
+
 NEEDLESS = 4.0
 """ln evidence by which a sensor's drift must improve on an effect that lasted to be kept beside it: odds of fifty,
 since drift has the free parameters to take up what any other effect leaves."""
@@ -77,7 +84,7 @@ def without_names_on_courses(state: SearchState) -> SearchState:
             continue
         need = log_evidence_beside(rest.residuals, attributed, names) - FURTHER * (len(names) - 1)
         gained = course.log_evidence - np.log(m) - need
-        if gained > (-TWO_FAULTS if noisy[i] else NAMELESS):
+        if gained > (-TWO_FAULTS if noisy[i] else NAMELESS) or len(names) > MOST_AT_ONCE:
             own = [e for e in state.excess if e.sensor == i]
             ratio, larger = float(np.prod([e.ratio for e in own])), float(sum(e.log_evidence for e in own))
             excess = tuple(e for e in rest.excess if e.sensor != i)
@@ -85,7 +92,7 @@ def without_names_on_courses(state: SearchState) -> SearchState:
             course = replace(course, ratio=ratio, excess_log_evidence=larger)
             state = replace(rest, excess=excess, autocorrelated=(*others, course))
         else:
-            doubt = float(expit(gained))
+            doubt = float(expit(gained + (CLEARLY if len(names) > 1 else 0.0)))
             kept = tuple(replace(f, unnamed=max(f.unnamed, doubt)) if f in names else f for f in state.found)
             state = replace(state, found=kept)
     return state

@@ -19,6 +19,7 @@ from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.backward import FURTHER
 from estimator.diagnosis.selection.excess_noise import sensor_scatter
 from estimator.diagnosis.selection.forward import with_structures
+from estimator.diagnosis.selection.lack_of_fit import MISFIT
 from estimator.diagnosis.selection.ranking import joint_log_evidence
 from estimator.diagnosis.selection.search_state import Found, SearchState
 from estimator.diagnosis.selection.start import begin
@@ -51,6 +52,13 @@ def weighed(state: SearchState) -> float:
     return joint_log_evidence(state) + scatter - FURTHER * max(number - 1, 0)
 
 
+def nearly(state: SearchState) -> float:
+    """ln evidence that one name alone may lack: a cause that describes all but a small part is it, though its own
+    formula is linear where the stand turned by minutes of arc."""
+    alone = len(state.found) == 1 and not (state.structures or state.scatter)
+    return 0.5 * MISFIT * state.found[0].best.statistic if alone else 0.0
+
+
 def settled(start: SearchState, state: SearchState) -> tuple[SearchState, SearchState]:
     """Nothing found, and what was found, with noise that no file states taken as what was found leaves of it.
 
@@ -78,7 +86,7 @@ def common_or_own(start: SearchState, state: SearchState, search: Callable[[Sear
     if not concerns_all(state):
         return state
     begun, seen = settled(start, state)
-    own, course = weighed(seen), likeliest_course(begun, ())
+    own, course = weighed(seen) + nearly(seen), likeliest_course(begun, ())
     if course.log_evidence - own < -DISTINCT and not crowded(state):
         return state
     rival = whatever_the_vector(start, begun, course, search)

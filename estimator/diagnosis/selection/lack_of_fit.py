@@ -10,6 +10,7 @@ import numpy as np
 from scipy.special import ndtr
 from scipy.stats import shapiro
 
+from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.selection.excess_noise import with_autocorrelation
 from estimator.diagnosis.selection.forward import with_structures
 from estimator.diagnosis.selection.ranking import extended_basis
@@ -23,6 +24,12 @@ they are the nearest to, below it a cause described nearly, with something small
 
 DOUBTFUL = 0.05
 """p-value of normal noise below which excess noise may as well be an effect that no cause explains."""
+
+UNUSUAL = 4.0
+"""Variance over the stated one from which on the same is said: few people misjudge a noise by more than twice."""
+
+OUTSIDER = 36.0
+"""Variance over that of the others of its kind beyond which a sensor hides something: six times as noisy."""
 
 FEWEST = 8
 """Rows from which on a distribution is judged."""
@@ -75,13 +82,22 @@ def with_unlike_noise(state: SearchState) -> SearchState:
         if own.sum() < FEWEST:
             continue
         y = remaining[: residuals.rows][own] / np.sqrt(freedom[own])
+        if unlike_its_kind(state.baseline, i, float(np.mean(y**2))):
+            unlike.append(UnlikeNoise(i, 0.0, float(np.mean(y**2)), of_its_kind=False))
+            continue
         p_value = min(1.0, 2 * min(float(shapiro(y).pvalue), two_valued(y)))
         if p_value * state.sensor_count < LEVEL:
             excess.pop(i, None)
             unlike.append(UnlikeNoise(i, p_value, float(np.abs(y).max() / np.sqrt(np.mean(y**2)))))
         elif i in excess:
-            excess[i] = replace(excess[i], doubtful=p_value < DOUBTFUL)
+            excess[i] = replace(excess[i], doubtful=p_value < DOUBTFUL or excess[i].ratio > UNUSUAL)
     return replace(state, excess=tuple(excess.values()), unlike_noise=tuple(unlike))
+
+
+def unlike_its_kind(baseline: Baseline, sensor: int, variance: float) -> bool:
+    """Whether a sensor of no stated noise scatters far beyond the others of its kind; ``variance`` of its residual."""
+    usual = 0.0 if baseline.expected_ratio is None else float(baseline.expected_ratio[sensor])
+    return usual > 0 and variance > OUTSIDER * usual
 
 
 def two_valued(y: Array) -> float:

@@ -74,6 +74,8 @@ class UnlikeNoise:
     """Of normal noise at least as far from normal (Shapiro & Wilk 1965)."""
     largest: float
     """The largest residual over their root mean square."""
+    of_its_kind: bool = True
+    """Whether the others of its kind, where it states no noise, scatter as it does."""
 
     @property
     def strength(self) -> float:

@@ -69,7 +69,8 @@ def scene_for(identifier: str) -> Scene:
     if identifier == "g-sensitivity":
         return scene("orientations", 0)
     gyro = known.kind == GYROSCOPE
-    return scene(GYROSCOPE if gyro else ACCELEROMETER, 2 if "history" in known.needs else 0)
+    entered = isinstance(known, Signature) and "nominal or history" in known.needs
+    return scene(GYROSCOPE if gyro else ACCELEROMETER, 2 if "history" in known.needs or entered else 0)
 
 
 def spoilt(identifier: str, session: CalibrationSession, where: Scene, rng: np.random.Generator) -> CalibrationSession:

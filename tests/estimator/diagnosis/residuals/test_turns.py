@@ -118,7 +118,7 @@ def test_histories_of_different_mountings_are_seen_in_one_frame_and_the_turn_is_
 def test_a_single_run_that_leaves_a_direction_open_is_no_drift_when_the_block_was_turned() -> None:
     whole = measured(1, TURN)
     assert whole.flipped is not None
-    rows = ("readings", "standard_errors", "flipped", "beta", "time", "temperature")
+    rows = ("readings", "standard_errors", "flipped", "beta", "time", "temperature", "vibration")
     single = replace(whole, **{name: getattr(whole, name)[~whole.flipped] for name in rows})
     found = diagnose(single, [measured(2, np.zeros(3)), measured(3, np.zeros(3))])
     assert {f.cause for f in found.findings} == {"remount-rotation"}
