@@ -152,6 +152,11 @@ def lines(sessions: int, seed: int) -> Iterator[str]:
             yield raw_row(seconds, time, size, max(sessions // 3, 1), seed)
 
 
+def tables(sessions: int, seed: int) -> str:
+    """Both tables in Markdown."""
+    return "\n".join(lines(sessions, seed))
+
+
 def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.study.degrees_of_freedom", description=__doc__)

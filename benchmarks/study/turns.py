@@ -192,14 +192,18 @@ def _beside(found: list[Turned], key: Callable[[Turned], str], names: Iterable[s
     return table(head, rows)
 
 
+def tables(sessions: int, seed: int) -> str:
+    """All tables in Markdown."""
+    return f"{page(run(sessions, seed))}\n\n{flipped_page(run_flipped(sessions, seed))}"
+
+
 def main() -> None:
     """Run and print."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.study.turns", description=__doc__)
     parser.add_argument("--sessions", type=int, default=6, help="of each programme and turn")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
-    print(page(run(options.sessions, options.seed)))
-    print("\n" + flipped_page(run_flipped(options.sessions, options.seed)))
+    print(tables(options.sessions, options.seed))
 
 
 if __name__ == "__main__":

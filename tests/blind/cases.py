@@ -70,6 +70,11 @@ def _weak(draw: Draw, cause: str | None) -> Case:
     return _hidden(draw, "weak", cause, (FAINTEST, WEAKEST))
 
 
+def _twelve(draw: Draw, cause: str | None) -> Case:
+    """One effect of one strength, for the study of what the noise is stated as."""
+    return _hidden(draw, "single", cause, (11.9, 12.1))
+
+
 def _left_out(draw: Draw, cause: str | None) -> Case:
     """A strong effect, to be looked for with a catalogue that lacks it: every other explanation is its rival."""
     return _hidden(draw, LEFT_OUT, cause, (0.99 * STRONGEST, STRONGEST))
@@ -152,4 +157,5 @@ KINDS = {
     "two": _two,
     "outside": _outside,
     LEFT_OUT: _left_out,
+    "twelve": _twelve,
 }

@@ -10,10 +10,11 @@ from statistics import fmean
 import pytest
 from scipy.stats import binom
 
-from tests.blind.cases import draw_case
+from benchmarks.study.stated_noise import HIDDEN, Wish, perform
+from tests.blind.cases import LEFT_OUT, draw_case
 from tests.blind.catalogue import CATALOGUE
 from tests.blind.examine import examine
-from tests.blind.score import Outcome
+from tests.blind.score import FAR, Outcome
 
 SEED = 20
 LONGEST = 16
@@ -59,6 +60,22 @@ def test_no_name_where_there_is_no_effect():
 def test_structure_outside_the_catalogue_is_unexplained():
     outcomes = examined("outside", [(k, None) for k in range(24)])
     assert enough([o.unexplained for o in outcomes], 0.95), [o for o in outcomes if not o.unexplained]
+
+
+def test_a_cause_left_out_of_the_catalogue_is_not_given_another_name():
+    """Where no other explanation comes within ten standard errors."""
+    outcomes = examined(LEFT_OUT, [(k, cause) for k, cause in enumerate(CATALOGUE)])
+    far = [o for o in outcomes if min(o.separations) >= FAR]
+    assert len(far) > 20
+    assert enough([o.unexplained_listed for o in far], 0.95), [o for o in far if not o.unexplained_listed]
+    assert enough([not o.findings for o in far], 0.90), [o for o in far if o.findings]
+
+
+@pytest.mark.parametrize("factor", [0.1, 1 / 3, 3.0])
+def test_wrongly_stated_noise_names_nothing_and_hides_nothing(factor: float):
+    answers = [perform(Wish(factor, "all", k % 2 == 1, (SEED, k), HIDDEN[5 * k % len(HIDDEN)])) for k in range(12)]
+    assert enough([not a.other_name for a in answers if not a.wish.hidden], 0.99)
+    assert enough([a.offered for a in answers if a.wish.hidden], 0.95)
 
 
 def test_two_effects_are_both_named_or_listed():

@@ -118,10 +118,10 @@ def structures(state: SearchState) -> tuple[Structure, ...]:
 
 
 def where_it_lives(found: Found) -> str:
-    """A pattern's own words; of a name that was taken back, that it predicts nothing."""
+    """A pattern's own words; of a name that was taken back, that it does not hold."""
     if isinstance(found.best.cause, Pattern):
         return found.best.cause.where(found.best.shape)
-    return f"as of {found.best.cause.name}, which predicts positions held out worse than no name"
+    return f"as of {found.best.cause.name}, which does not hold"
 
 
 def common_course(course: AppliedCourse) -> Structure:

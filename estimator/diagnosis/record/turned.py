@@ -22,6 +22,10 @@ far less than any exchange or wrong sign turns them."""
 NEARER = 3.0
 """Factor by which a correction must bring the worst axis nearer to be a way at all."""
 
+ALIKE = float(np.log(1.5))
+"""ln of a ratio by which scale factors of one kind, each relative to its nominal one, may differ: far more than makers
+or ageing allow."""
+
 LEAST = 1e-10
 """rad² an axis, (2 arcsec)²: how well axes agree at best, so that a perfect agreement does not count without bound."""
 
@@ -39,7 +43,7 @@ def turned_record(baseline: Baseline, expected: Array, known: Sequence[Correctio
         ways = list(cause.corrected(session))
         for places, right in ways:
             after, largest = misfit_of(right, expected)
-            if largest < worst / NEARER:
+            if largest < worst / NEARER and scales_agree(right):
                 floor = max(after, m * LEAST)
                 log_evidence = m * float(np.log(before / floor)) - float(np.log(len(ways)))
                 tried.append(Attempt(cause, places, right, log_evidence))
@@ -54,6 +58,17 @@ def misfit(baseline: Baseline, expected: Array) -> tuple[float, float]:
     chord = np.linalg.norm(found - expected, axis=-1)
     angle = np.where(cosine > 0.5, chord, np.arccos(cosine))
     return float((angle**2).sum()), float(angle.max())
+
+
+def scales_agree(session: CalibrationSession) -> bool:
+    """Whether no sensor's scale factor stands far out of its kind, each relative to its nominal one.
+
+    Signs, channels and runs change no scale factor; a sensor that answers with a step as its input changes sign does.
+    """
+    scale = baseline_of(session).parameters.scale
+    off = np.log(np.abs(scale) / [s.nominal_scale for s in session.sensors])
+    kinds = np.array([s.kind for s in session.sensors])
+    return all(np.ptp(off[kinds == kind]) < ALIKE for kind in set(kinds.tolist()))
 
 
 def misfit_of(session: CalibrationSession, expected: Array) -> tuple[float, float]:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from estimator.diagnosis.selection.chosen_again import without_unpredictive
 from estimator.diagnosis.selection.common_or_own import common_or_own
-from estimator.diagnosis.selection.lack_of_fit import with_unlike_noise, without_misfits
+from estimator.diagnosis.selection.lack_of_fit import with_unlike_noise, without_common_rows, without_misfits
 from estimator.diagnosis.selection.noise_claim import doubted, with_unknown_scale
 from estimator.diagnosis.selection.refinement import with_refined_shapes
 from estimator.diagnosis.selection.search import search
@@ -26,7 +26,7 @@ def accepted(start: SearchState) -> SearchState:
 
 def believed(start: SearchState) -> SearchState:
     """The causes that a search finds and that hold: they fit, and no course of the applied vector explains as much."""
-    return with_unlike_noise(without_unpredictive(common_or_own(start, held(start), held)))
+    return with_unlike_noise(without_unpredictive(without_common_rows(common_or_own(start, held(start), held))))
 
 
 def held(start: SearchState) -> SearchState:

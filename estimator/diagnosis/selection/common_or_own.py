@@ -37,6 +37,10 @@ LEAST_FREEDOM = 3.0
 LEAST = 5.0
 """ln evidence of a course beside names that would be believed by themselves."""
 
+LEAK = 0.025
+"""Share of the energy of a common course below which what parity space shows of a sensor may be what is not linear in
+the course, or what an unseen change of all scale factors leaves of it."""
+
 ROUNDS = 8
 """Steps of the noise in parity space: each halves what is left at least."""
 
@@ -92,9 +96,17 @@ def common_or_own(start: SearchState, state: SearchState, search: Callable[[Sear
     rival = whatever_the_vector(start, begun, course, search)
     gained = rival.log_evidence - own
     if gained > 0:
-        return replace(rival.parity, courses=(rival.course,))
+        return without_leaks(replace(rival.parity, courses=(rival.course,)))
     held_there = {f.best.group for f in rival.parity.found}
     return doubted(without_crowd(state, held_there), held_there, float(expit(gained)))
+
+
+def without_leaks(state: SearchState) -> SearchState:
+    """The state without names so small beside the common course that they may be what is not linear in it."""
+    common = 2 * LEAK * sum(c.log_evidence for c in state.courses)
+    small = tuple(f for f in state.found if f.best.statistic < common)
+    kept = tuple(f for f in state.found if f not in small)
+    return replace(state, found=kept, structures=(*state.structures, *small))
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,11 +22,12 @@ MISFIT = 0.05
 """Share of the energy of names that structure beside them may hold: beyond a fifth in rms it is another effect that
 they are the nearest to, below it a cause described nearly, with something small beside it."""
 
-DOUBTFUL = 0.05
-"""p-value of normal noise below which excess noise may as well be an effect that no cause explains."""
+DOUBTFUL = 0.02
+"""p-value of normal noise below which scatter in excess is called none: one true excess in fifty loses its name."""
 
 UNUSUAL = 4.0
-"""Variance over the stated one from which on the same is said: few people misjudge a noise by more than twice."""
+"""Variance over the stated one from which on excess noise may as well be an effect, from row to row, that no cause
+explains: few people misjudge a noise by more than twice."""
 
 OUTSIDER = 36.0
 """Variance over that of the others of its kind beyond which a sensor hides something: six times as noisy."""
@@ -48,6 +49,15 @@ def without_misfits(state: SearchState) -> SearchState:
             again = with_autocorrelation(with_structures(replace(rest, structures=elsewhere(rest, place))))
             state = again if energy_left(again, place) > 0 else rest
     return state
+
+
+def without_common_rows(state: SearchState) -> SearchState:
+    """The state without causes of single rows that most sensors show: something befell the rows, not the sensors."""
+    single = tuple(f for f in state.found if f.best.cause.nonlinear_units == ("row",) and f.best.sensors)
+    if 2 * len({f.best.sensors for f in single}) <= max(state.sensor_count, 4):
+        return state
+    kept = tuple(f for f in state.found if f not in single)
+    return replace(state, found=kept, structures=(*state.structures, *single))
 
 
 def elsewhere(state: SearchState, place: tuple[int, ...]) -> tuple[Found, ...]:
@@ -86,12 +96,14 @@ def with_unlike_noise(state: SearchState) -> SearchState:
             unlike.append(UnlikeNoise(i, 0.0, float(np.mean(y**2)), of_its_kind=False))
             continue
         p_value = min(1.0, 2 * min(float(shapiro(y).pvalue), two_valued(y)))
-        if p_value * state.sensor_count < LEVEL:
+        if p_value < (DOUBTFUL if i in excess else LEVEL / state.sensor_count):
             excess.pop(i, None)
             unlike.append(UnlikeNoise(i, p_value, float(np.abs(y).max() / np.sqrt(np.mean(y**2)))))
         elif i in excess:
-            excess[i] = replace(excess[i], doubtful=p_value < DOUBTFUL or excess[i].ratio > UNUSUAL)
-    return replace(state, excess=tuple(excess.values()), unlike_noise=tuple(unlike))
+            excess[i] = replace(excess[i], doubtful=excess[i].ratio > UNUSUAL)
+    coursing = {s.best.sensors for s in state.structures} | {(a.sensor,) for a in state.autocorrelated if a.plain}
+    noisy = tuple(e for e in excess.values() if (e.sensor,) not in coursing)
+    return replace(state, excess=noisy, unlike_noise=tuple(unlike))
 
 
 def unlike_its_kind(baseline: Baseline, sensor: int, variance: float) -> bool:
