@@ -147,6 +147,8 @@ class Structure:
     strength: float
     course: Course | None = None
     """Of the applied vector, where it is common to all sensors and in no pattern."""
+    of_record: bool = False
+    """Whether the record is mixed up: nothing that sensors or stand do looks like it."""
 
     def to_dict(self) -> dict[str, Any]:
         return {
@@ -155,6 +157,7 @@ class Structure:
             "p_value": self.p_value,
             "strength": self.strength,
             "course": None if self.course is None else asdict(self.course),
+            "of_record": self.of_record,
         }
 
 

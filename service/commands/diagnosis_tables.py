@@ -12,9 +12,10 @@ from estimator.diagnosis.results import Gain, Limit, Score, Structure
 from estimator.session import CalibrationSession
 from service.measures import number
 from service.records.diagnosis import DiagnosisState, state_of
-from service.words.diagnosis import NOT_APPLICABLE, NOTHING, UNEXPLAINED
+from service.words.diagnosis import NOT_APPLICABLE, errors_of, nothing_of, what_to_do
 from service.words.finding import FindingView, finding_view, standard_errors
 from service.words.limits import blind_causes
+from service.words.structures import told
 
 COLOURS = {
     DiagnosisState.NOTHING: "green",
@@ -37,11 +38,16 @@ def diagnosis_view(session: CalibrationSession, diagnosis: Diagnosis | None) -> 
 def _told(diagnosis: Diagnosis) -> Iterator[RenderableType]:
     state = state_of(diagnosis)
     for finding in diagnosis.findings:
-        yield from _finding(finding_view(finding), COLOURS[state])
+        yield from _finding(finding_view(finding, (), diagnosis.findings), COLOURS[state])
     for structure in diagnosis.structures:
         yield Text(_structure(structure), COLOURS[DiagnosisState.UNEXPLAINED])
+    if state is DiagnosisState.UNEXPLAINED:
+        yield Text(f"  What to do: {what_to_do(diagnosis)}")
     if state is DiagnosisState.NOTHING:
-        yield Text(NOTHING, COLOURS[state])
+        yield Text(nothing_of(diagnosis), COLOURS[state])
+    else:
+        yield from (Text(sentence, "yellow") for sentence in errors_of(diagnosis))
+    yield from (Text(note) for note in diagnosis.notes)
     if diagnosis.findings:
         yield Text(_gain(diagnosis.gain))
     yield from _unseen(diagnosis.limits)
@@ -50,14 +56,14 @@ def _told(diagnosis: Diagnosis) -> Iterator[RenderableType]:
 def _finding(finding: FindingView, colour: str) -> Iterator[RenderableType]:
     """The name or the choice, then the evidence."""
     yield Text(finding.statement, f"bold {colour}")
-    if finding.doubtful:
+    if finding.doubtful and not finding.lone:
         yield _choices(finding)
     else:
-        yield Text(f"  What to do: {finding.advice}")
+        yield Text(f"  {'If it comes back' if finding.lone else 'What to do'}: {finding.advice}")
     size = ", ".join(finding.amplitudes)
     parts = [f"size {size}" if size else "", finding.shape, finding.evidence, finding.since]
     yield Text("  " + "; ".join(part.rstrip(".") for part in parts if part))
-    if len(finding.ranking) > 1 and not finding.doubtful:
+    if len(finding.ranking) > 1 and (finding.lone or not finding.doubtful):
         others = ", ".join(f"{bar.name} {bar.percent}" for bar in finding.ranking[NEXT])
         yield Text(f"  Next in the ranking: {others}", "dim")
 
@@ -72,8 +78,7 @@ def _choices(finding: FindingView) -> Table:
 
 
 def _structure(structure: Structure) -> str:
-    who = ", ".join(structure.sensors) or "all sensors together"
-    return f"{UNEXPLAINED}: {who}, {structure.where} ({standard_errors(structure.strength)})"
+    return f"{told([structure]).rstrip('.')} ({standard_errors(structure.strength)})"
 
 
 def _gain(gain: Gain) -> str:

@@ -12,6 +12,7 @@ from service.records.diagnosis import StoredDiagnosis
 from service.records.model import Evidence, ModelRevision, NewModel, Scope
 from service.records.session import StoredSession
 from service.storage import Storage
+from service.words.causes import UNKNOWN_CAUSE
 
 
 def accept_model(storage: Storage, diagnosis: StoredDiagnosis, new: NewModel, now: datetime) -> ModelRevision:
@@ -45,7 +46,7 @@ def accept_model(storage: Storage, diagnosis: StoredDiagnosis, new: NewModel, no
 def _finding(findings: tuple[Finding, ...], wanted: str) -> Finding:
     """The finding that is accepted, under its own name or under that of an equal alternative."""
     named = [f for f in findings if f.cause == wanted]
-    equal = [_as_alternative(f, wanted) for f in findings if wanted in f.alternatives]
+    equal = [_as_alternative(f, wanted) for f in findings if wanted in f.alternatives and wanted != UNKNOWN_CAUSE]
     if not named and not equal:
         raise _not_shown(wanted, findings)
     known = find(wanted)

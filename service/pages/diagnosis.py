@@ -8,16 +8,18 @@ from service.charts import ChartSet
 from service.charts.diagnosis import MOST_PANELS, Sides, diagnosis_charts
 from service.charts.noise import noise_of
 from service.judging.model_in_force import in_force
+from service.pages.course import CourseView, course_views
 from service.pages.gain import GainView, gain_view
 from service.pages.residual_table import ResidualTable, residual_table
 from service.records.diagnosis import Diagnosed, DiagnosisReport, DiagnosisState, StoredDiagnosis
 from service.records.model import ModelRevision, Scope
 from service.records.session import StoredSession
 from service.words.causes import cause_on
-from service.words.diagnosis import HEADLINES, headline, what_to_do
+from service.words.diagnosis import HEADLINES, errors_of, headline, what_to_do
 from service.words.finding import FindingView, evidence, finding_view
 from service.words.fit import bands_in_words
 from service.words.limits import BlindCauses, SeenCause, blind_causes, seen_causes
+from service.words.structures import where_of, who_of
 
 PENDING = "Still being found out"
 WAIT = "A large session takes some seconds; this page reads itself again."
@@ -30,6 +32,8 @@ TONES = {
     DiagnosisState.NOT_APPLICABLE: "none",
 }
 """Style and icon, in the tones of the verdicts: how much it asks for attention."""
+CLAIM = "conditional-pass"
+"""The same where nothing is wrong but the standard errors that the file states."""
 
 
 @dataclass(frozen=True)
@@ -58,8 +62,12 @@ class RevisionView:
 class EvidenceView:
     """What a diagnosis rests on: absent while it is pending, and where none could be made."""
 
+    wrong_errors: tuple[str, ...]
+    """Which stated standard errors the readings contradict, a sentence each; empty where the headline says it."""
     findings: tuple[FindingView, ...]
     structures: tuple[StructureView, ...]
+    courses: tuple[CourseView, ...]
+    """Of the applied vector."""
     charts: tuple[ChartSet, ...]
     bands: str
     """What is drawn of the noise."""
@@ -111,13 +119,18 @@ def _made(pending: DiagnosisPage, report: DiagnosisReport, made: StoredDiagnosis
     found = made.found
     return replace(
         pending,
-        tone=TONES[made.state],
-        headline=HEADLINES[made.state] if found is None else headline(made.state, found.findings),
-        what_to_do=made.summary if found is None else what_to_do(made.state, found.findings),
+        tone=TONES[made.state] if found is None else _tone(made.state, found),
+        headline=HEADLINES[made.state] if found is None else headline(found),
+        what_to_do=made.summary if found is None else what_to_do(found),
         pending=False,
         evidence=None if found is None else _evidence(report, made, found),
         made=f"Made by estimator {made.estimator_version}",
     )
+
+
+def _tone(state: DiagnosisState, found: Diagnosed) -> str:
+    """Wrong standard errors are not all well, though nothing else is wrong."""
+    return CLAIM if state is DiagnosisState.NOTHING and found.noise else TONES[state]
 
 
 def _evidence(report: DiagnosisReport, made: StoredDiagnosis, found: Diagnosed) -> EvidenceView:
@@ -126,8 +139,10 @@ def _evidence(report: DiagnosisReport, made: StoredDiagnosis, found: Diagnosed) 
     named = [sensor for sensors in places for sensor in sensors]
     verdicts, noise = (report.session.verdict, made.verdict_after), noise_of(before, after)
     return EvidenceView(
-        findings=tuple(finding_view(f, in_force(report.revisions)) for f in found.findings),
+        wrong_errors=errors_of(found) if is_named or found.structures else (),
+        findings=_findings(report, found),
         structures=tuple(map(_structure, found.structures)),
+        courses=course_views(found.structures, before),
         charts=diagnosis_charts(Sides(after.sensors, before, after.residuals if is_named else None, noise), named),
         bands=bands_in_words(after, noise.times),
         beta=before.beta is not None,
@@ -140,10 +155,15 @@ def _evidence(report: DiagnosisReport, made: StoredDiagnosis, found: Diagnosed) 
     )
 
 
+def _findings(report: DiagnosisReport, found: Diagnosed) -> tuple[FindingView, ...]:
+    revisions, is_claim = in_force(report.revisions), found.calibration.fit.noise == "stated" and not found.noise
+    return tuple(finding_view(f, revisions, found.findings, by_stated_noise=is_claim) for f in found.findings)
+
+
 def _structure(structure: Structure) -> StructureView:
     return StructureView(
-        where=structure.where,
-        who=", ".join(structure.sensors) or "all sensors together",
+        where=where_of(structure),
+        who=who_of(structure),
         evidence=evidence(structure.strength, structure.p_value),
     )
 

@@ -1,8 +1,9 @@
 """What naming the causes is worth, and what moved because of it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
-from math import isclose, isfinite
+from math import isclose, isfinite, nan
 
 import numpy as np
 
@@ -59,11 +60,11 @@ def gain_view(
     gain: Gain, before: Calibration, after: Calibration, verdict: Verdict, verdict_after: Verdict | None
 ) -> GainView:
     """Before is the calibration in force, after the one with the named causes; each with its verdict."""
-    earlier, kind = gain.session, leading_kind({sensor.kind for sensor in after.sensors})
+    earlier, kinds = gain.session, _kinds(gain, after)
     return GainView(
         is_none=_is_same(gain.before, gain.after),
-        rows=_rows(gain.before, gain.after, kind),
-        earlier_rows=() if earlier is None else _rows(earlier.before, earlier.after, kind),
+        rows=_rows(gain.before, gain.after, kinds),
+        earlier_rows=() if earlier is None else _rows(earlier.before, earlier.after, kinds),
         earlier_at=None if earlier is None else _at(earlier.started_at),
         moved=tuple(
             _moved(a, b)
@@ -75,28 +76,45 @@ def gain_view(
     )
 
 
+def _kinds(gain: Gain, calibration: Calibration) -> tuple[str, ...]:
+    """Kinds of sensor whose error of prediction is stated: of earlier versions the leading one alone."""
+    kinds = {sensor.kind for sensor in calibration.sensors}
+    leading = leading_kind(kinds)
+    others = sorted(kinds & set(gain.after.rms_by_kind) - {leading})
+    return leading, *others
+
+
 def _at(started_at: str | None) -> datetime | None:
     """When a session began; None where its file does not say."""
     return None if started_at is None else datetime.fromisoformat(started_at)
 
 
 def _is_same(before: Score, after: Score) -> bool:
-    pairs = zip(vars(before).values(), vars(after).values(), strict=True)
-    return all(isclose(a, b, rel_tol=SAME) for a, b in pairs)
+    return all(isclose(a, b, rel_tol=SAME) for a, b in zip(_numbers(before), _numbers(after), strict=False))
 
 
-def _rows(before: Score, after: Score, kind: str) -> tuple[GainRow, ...]:
-    measure = deviation_measure(
-        kind, "bias", max((abs(x) for x in (before.rms, after.rms) if isfinite(x)), default=0.0)
-    )
-    rms = (number(score.rms * measure.factor, 3) for score in (before, after))
+def _numbers(score: Score) -> tuple[float, ...]:
+    """All that a score states."""
+    return score.rms, score.chi2_per_dof, score.log_score, *score.rms_by_kind.values()
+
+
+def _rows(before: Score, after: Score, kinds: Sequence[str]) -> tuple[GainRow, ...]:
+    """One line of rms for every kind of sensor, each in its own unit, then what holds of all."""
     chi2 = (number(score.chi2_per_dof, 3) for score in (before, after))
     log_score = (number(score.log_score, 3) for score in (before, after))
     return (
-        GainRow("rms", f"error of prediction, {measure.label}", *rms),
+        *(_rms(before, after, kind, several=len(kinds) > 1) for kind in kinds),
         GainRow("χ² per degree of freedom", "1 where the noise explains the errors", *chi2),
         GainRow("log score", "of a reading; higher is better", *log_score),
     )
+
+
+def _rms(before: Score, after: Score, kind: str, *, several: bool) -> GainRow:
+    """Of one kind of sensor; earlier versions stated that of the leading kind alone."""
+    own = tuple(score.rms_by_kind.get(kind, nan if several else score.rms) for score in (before, after))
+    measure = deviation_measure(kind, "bias", max((x for x in own if isfinite(x)), default=0.0))
+    who = f" of {kind}s" if several else ""
+    return GainRow("rms", f"error of prediction{who}, {measure.label}", *(number(x * measure.factor, 3) for x in own))
 
 
 def _has_moved(before: SensorCalibration, after: SensorCalibration) -> bool:

@@ -32,7 +32,7 @@ def diagnosis_to_dict(diagnosis: Diagnosis) -> dict[str, Any]:
 
 def inapplicable_to_dict(unit: str) -> dict[str, Any]:
     """imu-diagnosis/1 of a session of a programme in which no causes are looked for."""
-    empty: dict[str, Any] = {"findings": [], "unexplained": False, "structures": [], "limits": []}
+    empty: dict[str, Any] = {"findings": [], "unexplained": False, "structures": [], "limits": [], "noise": []}
     unmade = dict.fromkeys(("gain", "calibration", "residuals_before"))
     return {"format": "imu-diagnosis/1", "unit": unit, **empty, **unmade, "notes": [NOT_APPLICABLE]}
 
@@ -143,9 +143,14 @@ def _rival(entry: dict[str, Any]) -> Rival:
 
 def _structure(entry: dict[str, Any]) -> Structure:
     p_value, strength = _number(entry["p_value"]), _number(entry["strength"])
-    course = entry.get("course")  # absent from earlier versions
+    course = entry.get("course")  # absent from earlier versions, as is the next
     return Structure(
-        entry["where"], tuple(entry["sensors"]), p_value, strength, None if course is None else _course(course)
+        where=entry["where"],
+        sensors=tuple(entry["sensors"]),
+        p_value=p_value,
+        strength=strength,
+        course=None if course is None else _course(course),
+        of_record=entry.get("of_record", False),
     )
 
 

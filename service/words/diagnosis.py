@@ -1,51 +1,90 @@
 """A diagnosis in words: what it came to in one line, at the head of a page, and what to do about it."""
 
 from collections.abc import Sequence
+from typing import Protocol
 
-from estimator.diagnosis import Diagnosis, Finding
-from estimator.diagnosis.results import Structure
+from estimator.diagnosis import Finding
+from estimator.diagnosis.results import NoiseScale, Structure
 from estimator.errors import SessionError
+from estimator.results import Calibration
 from service.records.diagnosis import DiagnosisState
-from service.words.causes import what_is_wrong
+from service.words.causes import ONE_NOT_KNOWN, at_once_with, is_lone, what_is_wrong
+from service.words.noise_claims import but_wrong_errors, wrong_errors
+from service.words.structures import UNEXPLAINED, headline_of, told, what_to_do_about
 
 NOT_APPLICABLE = (
     "Not applicable to this programme: causes are looked for in calibrations, on a stand or in still orientations."
 )
-NOTHING = "Nothing wrong found: the simulation explains the readings."
-UNEXPLAINED = "Something is there that no known cause explains"
+NOTHING = "Nothing wrong found"
 MOST_FINDINGS = 3
 """Findings that one line tells before it counts the rest."""
 HEADLINES = {
-    DiagnosisState.NOTHING: "Nothing wrong found",
+    DiagnosisState.NOTHING: NOTHING,
     DiagnosisState.UNEXPLAINED: UNEXPLAINED,
     DiagnosisState.FAILED: "This session could not be diagnosed",
     DiagnosisState.NOT_APPLICABLE: "Not applicable to this programme",
 }
-"""Where no cause is named."""
-WHAT_TO_DO = {
-    DiagnosisState.NOTHING: (
-        "Measurement and simulation agree within the noise: no cause of the catalogue and no other structure shows."
-    ),
-    DiagnosisState.UNDECIDED: (
-        "This session cannot distinguish these causes. Take the measurement that can, before you act on one of them."
-    ),
-    DiagnosisState.UNEXPLAINED: (
-        "Do not force a name on it: look where it lives, repeat the session, and compare with another unit or stand."
-    ),
-}
-"""Where no cause is named; a named one brings its own advice."""
+"""Where the answer itself is not at hand."""
+AGREE = "Measurement and simulation agree within the noise: no cause of the catalogue and no other structure shows."
+RESTATE = (
+    "No cause of the catalogue and no other structure shows. But the readings scatter otherwise than the file says: "
+    "correct the standard errors that it states."
+)
+CHOOSE = "This session cannot distinguish these causes. Take the measurement that can, before you act on one of them."
+REPEAT = (
+    f"One known cause fits, and {ONE_NOT_KNOWN} would fit as well. Repeat the session before you act: if the name is "
+    "right, it comes back."
+)
+REPEAT_BOTH = (
+    f"Two causes at once on one sensor are rare, and {ONE_NOT_KNOWN} would fit as well. Repeat the session before you "
+    "act: if the names are right, both come back."
+)
 
 
-def summary_of(diagnosis: Diagnosis) -> str:
+class Answer(Protocol):
+    """What a diagnosis came to, as it was made or as it is stored."""
+
+    @property
+    def findings(self) -> tuple[Finding, ...]: ...
+    @property
+    def structures(self) -> tuple[Structure, ...]: ...
+    @property
+    def noise(self) -> tuple[NoiseScale, ...]: ...
+    @property
+    def calibration(self) -> Calibration: ...
+
+
+def summary_of(answer: Answer) -> str:
     """One line that a technician understands."""
-    if diagnosis.findings:
-        told, more = diagnosis.findings[:MOST_FINDINGS], len(diagnosis.findings) - MOST_FINDINGS
-        return " ".join(map(what_is_wrong, told)) + (f" And {more} more." if more > 0 else "")
-    if diagnosis.structures:
-        first = diagnosis.structures[0]
-        who = f" in {', '.join(first.sensors)}" if first.sensors else ", common to all sensors"
-        return f"{UNEXPLAINED}{who}: {first.where}."
-    return NOTHING
+    if answer.findings:
+        common = [s for s in answer.structures if not s.sensors]
+        return " ".join((_named(answer.findings), *([told(common)] if common else [])))
+    if answer.structures:
+        return " ".join((told(answer.structures), *errors_of(answer)))
+    return nothing_of(answer)
+
+
+def nothing_of(answer: Answer) -> str:
+    """That nothing is wrong, unless it is what the file says of the noise."""
+    if answer.noise:
+        return f"{NOTHING}{but_wrong_errors(answer.noise, _kinds(answer))}."
+    return f"{NOTHING}: the simulation explains the readings."
+
+
+def errors_of(answer: Answer) -> tuple[str, ...]:
+    """Which stated standard errors are wrong, a sentence each."""
+    return wrong_errors(answer.noise, _kinds(answer))
+
+
+def _kinds(answer: Answer) -> set[str]:
+    return {sensor.kind for sensor in answer.calibration.sensors}
+
+
+def _named(findings: Sequence[Finding]) -> str:
+    """The first findings; two that are one choice are told once."""
+    said = tuple(dict.fromkeys(what_is_wrong(finding, findings) for finding in findings))
+    more = len(said) - MOST_FINDINGS
+    return " ".join(said[:MOST_FINDINGS]) + (f" And {more} more." if more > 0 else "")
 
 
 def cannot_be_diagnosed(fault: SessionError) -> str:
@@ -62,17 +101,27 @@ def fault_of_the_program(session: str) -> str:
     )
 
 
-def unexplained_in(structures: Sequence[Structure]) -> str:
-    """That something is there, and in which sensors."""
-    sensors = sorted({sensor for structure in structures for sensor in structure.sensors})
-    return f"{UNEXPLAINED}{' in ' + ', '.join(sensors) if sensors else ''}."
-
-
-def headline(state: DiagnosisState, findings: Sequence[Finding]) -> str:
+def headline(answer: Answer) -> str:
     """The first cause or the choice that cannot be made; without one what the diagnosis came to."""
-    return what_is_wrong(findings[0]) if findings else HEADLINES[state]
+    if answer.findings:
+        return what_is_wrong(answer.findings[0], answer.findings)
+    if answer.structures:
+        return headline_of(answer.structures)
+    return f"{NOTHING}{but_wrong_errors(answer.noise, _kinds(answer))}"
 
 
-def what_to_do(state: DiagnosisState, findings: Sequence[Finding]) -> str:
+def what_to_do(answer: Answer) -> str:
     """What a technician does next."""
-    return findings[0].advice if state is DiagnosisState.NAMED else WHAT_TO_DO[state]
+    if answer.findings:
+        return _about(answer.findings[0], answer.findings)
+    if answer.structures:
+        return what_to_do_about(answer.structures)
+    return RESTATE if answer.noise else AGREE
+
+
+def _about(finding: Finding, findings: Sequence[Finding]) -> str:
+    if not finding.alternatives:
+        return finding.advice
+    if at_once_with(finding, findings):
+        return REPEAT_BOTH
+    return REPEAT if is_lone(finding) else CHOOSE

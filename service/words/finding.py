@@ -5,12 +5,13 @@ from dataclasses import dataclass
 from math import floor, isfinite, log10
 
 from estimator.causes import find
+from estimator.causes.noise import ExcessNoise
 from estimator.diagnosis import Finding
 from estimator.diagnosis.results import ParitySplit
 from service.measures import HARD, number
 from service.records.model import ModelRevision
 from service.words.amplitudes import amplitudes_of, shape_of
-from service.words.causes import what_is_wrong
+from service.words.causes import cause_name, is_lone, what_is_wrong
 from service.words.rivals import Bar, Choice, choices_of, ranking_of
 
 SURE = 1e-12
@@ -24,11 +25,15 @@ class FindingView:
     """A named cause with its evidence, for people."""
 
     cause: str
+    name: str
+    """What the cause is called."""
     statement: str
     """What is wrong, or the choice that cannot be made."""
     sentence: str
     """What is wrong if it is the first of several equal causes."""
     doubtful: bool
+    lone: bool
+    """Whether it is the only known cause that fits, beside one that is not in the catalogue."""
     advice: str
     amplitudes: tuple[str, ...]
     shape: str
@@ -44,18 +49,27 @@ class FindingView:
     """Revisions that already hold it for this session."""
 
 
-def finding_view(finding: Finding, revisions: Sequence[ModelRevision] = ()) -> FindingView:
-    """What a technician and an engineer read of a finding."""
+def finding_view(
+    finding: Finding,
+    revisions: Sequence[ModelRevision] = (),
+    findings: Sequence[Finding] = (),
+    *,
+    by_stated_noise: bool = False,
+) -> FindingView:
+    """What a technician and an engineer read of a finding; ``findings``: all of its diagnosis."""
     names = (finding.cause, *finding.alternatives)
+    of_noise = isinstance(find(finding.cause), ExcessNoise)
     return FindingView(
         cause=finding.cause,
-        statement=what_is_wrong(finding),
+        name=cause_name(finding.cause),
+        statement=what_is_wrong(finding, findings),
         sentence=finding.sentence,
         doubtful=bool(finding.alternatives),
+        lone=is_lone(finding),
         advice=finding.advice,
         amplitudes=tuple(amplitudes_of(finding)),
         shape=shape_of(finding),
-        evidence=evidence(finding.strength, finding.p_value),
+        evidence=evidence(finding.strength, finding.p_value, by_stated_noise=by_stated_noise and not of_noise),
         choices=tuple(choices_of(finding)),
         ranking=tuple(ranking_of(finding)),
         parity=_parity(finding.parity),
@@ -66,9 +80,13 @@ def finding_view(finding: Finding, revisions: Sequence[ModelRevision] = ()) -> F
     )
 
 
-def evidence(strength: float, p_value: float) -> str:
-    """How strong an effect is, and how often a session with nothing wrong would show as much."""
-    return f"{standard_errors(strength)}; {_chance(p_value)}"
+def evidence(strength: float, p_value: float, *, by_stated_noise: bool = False) -> str:
+    """How strong an effect is, and how often a session with nothing wrong would show as much.
+
+    ``by_stated_noise``: the file says what noise is, and nothing has put that to the test.
+    """
+    condition = ", if the noise is as stated" if by_stated_noise and isfinite(p_value) else ""
+    return f"{standard_errors(strength)}; {_chance(p_value)}{condition}"
 
 
 def standard_errors(strength: float) -> str:

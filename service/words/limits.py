@@ -11,6 +11,9 @@ from service.measures import THIN, leading_kind, number
 from service.words.amplitude_measures import amplitude_measure
 from service.words.causes import cause_name
 
+FULLER = {"the session lacks vibration": "no vibration was recorded, or it was the same everywhere"}
+"""Reasons that people would take for something else as the estimator puts them."""
+
 
 @dataclass(frozen=True)
 class SeenCause:
@@ -39,7 +42,7 @@ def blind_causes(limits: Sequence[Limit]) -> tuple[BlindCauses, ...]:
     names: dict[str, list[str]] = {}
     for limit in limits:
         if limit.amplitude is None:
-            names.setdefault(limit.reason, []).append(cause_name(limit.cause))
+            names.setdefault(FULLER.get(limit.reason, limit.reason), []).append(cause_name(limit.cause))
     return tuple(BlindCauses(", ".join(causes), reason) for reason, causes in names.items())
 
 

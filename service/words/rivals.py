@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from estimator.diagnosis import Finding
 from estimator.diagnosis.results import Separation
 from service.measures import HARD, number
-from service.words.causes import cause_on
+from service.words.causes import UNKNOWN_CAUSE, cause_on
 
 DISTINGUISHED = 3.0
 """Expected separation, standard errors, below which a measurement would not help: the estimator's own bound."""
@@ -16,6 +16,9 @@ ALWAYS_SHOWN = 3
 """Lines of the ranking that are shown however small their share."""
 
 
+IF_IT_COMES_BACK = "repeat the session: a cause that is named rightly comes back"
+
+
 @dataclass(frozen=True)
 class Choice:
     """One of several causes that this session cannot distinguish."""
@@ -23,6 +26,7 @@ class Choice:
     cause: str
     name: str
     share: str
+    """Among all known causes."""
     now: str
     """How far it is from the first one in this session."""
     measurement: str
@@ -43,6 +47,9 @@ def choices_of(finding: Finding) -> Iterator[Choice]:
     """The named cause and its alternatives, as equals."""
     apart = {separation.cause: separation for separation in finding.separations}
     for name in (finding.cause, *finding.alternatives) if finding.alternatives else ():
+        if name == UNKNOWN_CAUSE:
+            yield Choice(name, cause_on(name, finding.sensors), "–", "", IF_IT_COMES_BACK)
+            continue
         share = sum(rival.probability for rival in finding.ranking if rival.cause == name)
         yield Choice(name, cause_on(name, finding.sensors), _percent(share), *_apart(apart.get(name)))
 

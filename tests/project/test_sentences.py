@@ -8,7 +8,10 @@ from tests.project.source import ROOT, modules
 
 SENTENCES = {
     "Cannot tell which": "service.words.causes",
-    "Something is there that no known cause explains": "service.words.diagnosis",
+    "Something is there that no known cause explains": "service.words.structures",
+    "Something common to all sensors": "service.words.structures",
+    "stated standard errors": "service.words.noise_claims",
+    "one that is not in the catalogue": "service.words.causes",
     "as much by chance": "service.words.finding",
     "a sound model would give this much": "service.words.fit",
     "cannot be seen without motion": "service.words.in_service",

@@ -6,12 +6,15 @@ from typing import Any
 
 import httpx
 
-from estimator.session import ACCELEROMETER
+from estimator.session import ACCELEROMETER, CalibrationSession
 from estimator.writing import session_document
 from tests.blind.case import Case
 from tests.blind.cases import draw_case
 from tests.conftest import Holding
 from tests.estimator.causes.hiding import change, scene, with_readings
+from tests.estimator.diagnosis.selection.small import measured
+from tests.estimator.diagnosis.selection.test_common_or_own import swaying
+from tests.estimator.diagnosis.selection.test_noise_claim import stated
 from tests.service.sessions import session_id
 
 LONGEST = 16
@@ -19,6 +22,8 @@ TEMPERATURE = ("single", (77, 3), "bias-temperature")
 """A5 follows the temperature, told apart from every rival by more than five standard errors."""
 ECCENTRIC = ("single", (77, 25), "beta-scale")
 UNEXPLAINED = ("outside", (5, 1), "fifth-harmonic")
+TWO_AT_ONCE = ("outside", (13, 7), None)
+"""G2 does something that no cause of the catalogue describes; two of them together do."""
 ALIASES = ("single", (77, 0), "cubic-nonlinearity")
 
 
@@ -35,6 +40,21 @@ def warm(seed: int, started_at: str, *, follows: bool = True) -> dict[str, Any]:
     if follows:
         session = with_readings(session, change("bias-temperature", where) * where.world.truth.scale)
     return session_document(session) | {"unit": "WARM-1", "started_at": started_at}
+
+
+def swaying_stand() -> dict[str, Any]:
+    """A session on a stand whose head nods twice a turn, more in the second run."""
+    return dated(measured(swaying(2e-4)), "SWAY-1")
+
+
+def boasting() -> dict[str, Any]:
+    """A sound session whose file states a quarter of the standard errors that readings have."""
+    return dated(stated(measured(seed=3), 0.25), "BOAST-1")
+
+
+def dated(session: CalibrationSession, unit: str) -> dict[str, Any]:
+    """The session's file, of a unit and a day."""
+    return session_document(session) | {"unit": unit, "started_at": "2026-03-05T08:00:00Z"}
 
 
 def send(client: httpx.Client, document: dict[str, Any]) -> str:

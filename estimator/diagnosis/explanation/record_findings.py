@@ -107,4 +107,4 @@ def wrong_record(axes: ImplausibleAxes | None, session: CalibrationSession) -> t
     names = tuple(session.sensors[i].name for i in axes.sensors)
     who = "input axes" if names else "the whole block"
     where = f"{who} {np.degrees(axes.angle):.0f}° off: columns, runs or angles of the record are mixed up"
-    return (Structure(where, names, 0.0, axes.angle / float(np.sqrt(LEAST))),)
+    return (Structure(where, names, 0.0, axes.angle / float(np.sqrt(LEAST)), of_record=True),)

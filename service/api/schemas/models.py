@@ -27,13 +27,23 @@ class DiagnosisDocument(BaseModel):
     format: str = Field(description="`imu-diagnosis/1`.")
     unit: str = Field(description="Serial number of the unit.")
     findings: list[dict[str, Any]] = Field(
-        description="Named causes, strongest first: cause, sensors, amplitude and sigma in SI, p_value, alternatives, "
-        "what would distinguish them, ranking, sentence, advice."
+        description="Named causes, strongest first: cause, sensors, amplitude and sigma in SI, p_value, alternatives "
+        "(`unexplained`: a cause that is not in the catalogue), what would distinguish them, ranking, sentence, advice."
     )
     unexplained: bool = Field(description="Whether there is structure that no known cause explains.")
-    structures: list[dict[str, Any]] = Field(description="Where that structure lives.")
+    structures: list[dict[str, Any]] = Field(
+        description="Where that structure lives, no sensors where it is common to all. `course` is how the applied "
+        "vector must have run: `order`, `components` (`β` and `α` in rad, `size` relative) and `values`, one list a "
+        "row; null where nothing common was found. `of_record`: whether the record itself is mixed up."
+    )
+    noise: list[dict[str, Any]] = Field(
+        default=[],
+        description="Kinds of sensor whose stated standard errors the readings contradict: `kind`, `factor` by which "
+        "they are too small (below 1 they are too large), and the degrees of `freedom` that tell it.",
+    )
     gain: dict[str, Any] | None = Field(
-        description="Prediction of readings that were held out, before and after; null where causes are not looked for."
+        description="Prediction of readings that were held out, before and after, with `rms_by_kind` of sensor; null "
+        "where causes are not looked for."
     )
     limits: list[dict[str, Any]] = Field(description="Smallest amplitude of each cause that would have been found.")
     calibration: dict[str, Any] | None = Field(
@@ -69,7 +79,9 @@ class NewModelSchema(BaseModel):
         },
     )
 
-    cause: Name = Field(description="Identifier of a cause that the session's diagnosis names, or of an alternative.")
+    cause: Name = Field(
+        description="Identifier of a cause of the catalogue that the session's diagnosis names or lists as alternative."
+    )
     scope: AnyScope = Field(description="Whose model: the unit's, that of all units of its type, or the stand's.")
     by: Name = Field(description="Who accepts it.")
     note: LongText = Field(default="", description="Why.")

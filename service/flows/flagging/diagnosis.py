@@ -12,9 +12,9 @@ from service.records.flag import Concern, Flag, Matter
 from service.records.model import ModelRevision
 from service.records.session import StoredSession
 from service.storage.store import Store
-from service.words.causes import what_is_wrong
-from service.words.diagnosis import unexplained_in
+from service.words.causes import UNKNOWN_CAUSE, what_is_wrong
 from service.words.names import day_of
+from service.words.structures import summed_up
 
 MATTERS = (Matter.CAUSE, Matter.UNEXPLAINED, Matter.STAND)
 GONE = "The diagnosis of the session of {day} no longer finds it."
@@ -46,24 +46,26 @@ def _concerns(found: Diagnosed, session: StoredSession, accepted: tuple[ModelRev
     known = {(revision.cause, sensor) for revision in accepted for sensor in revision.sensors or ("",)}
     done: set[tuple[str, str]] = set()
     for finding in found.findings:
-        for concern in _of_finding(finding, session, known):
+        for concern in _of_finding(finding, found.findings, session, known):
             if concern.key not in done:
                 done.add(concern.key)
                 yield concern
     if found.structures:
-        yield Concern(Matter.UNEXPLAINED, "", 1, unexplained_in(found.structures))
+        yield Concern(Matter.UNEXPLAINED, "", 1, summed_up(found.structures))
 
 
-def _of_finding(finding: Finding, session: StoredSession, known: set[tuple[str, str]]) -> Iterator[Concern]:
-    """Where several causes are equally possible, all of them must act on the sensor, or all on the stand.
+def _of_finding(
+    finding: Finding, findings: tuple[Finding, ...], session: StoredSession, known: set[tuple[str, str]]
+) -> Iterator[Concern]:
+    """Where several causes are equally possible, all that are known must act on the sensor, or all on the stand.
 
     A mere change since earlier sessions is left to the tolerances: they say whether it matters.
     """
-    name = finding.cause
-    possible = [cause(identifier) for identifier in (name, *finding.alternatives)]
+    name, what = finding.cause, what_is_wrong(finding, findings)
+    possible = [cause(identifier) for identifier in (name, *finding.alternatives) if identifier != UNKNOWN_CAUSE]
     if all(one.is_of_sensor for one in possible):
         for sensor in finding.sensors:
             if (name, sensor) not in known:
-                yield Concern(Matter.CAUSE, sensor, 1, what_is_wrong(finding))
+                yield Concern(Matter.CAUSE, sensor, 1, what)
     elif all(one.scope == "stand" for one in possible) and session.stand is not None and (name, "") not in known:
-        yield Concern(Matter.STAND, session.stand, 1, what_is_wrong(finding))
+        yield Concern(Matter.STAND, session.stand, 1, what)

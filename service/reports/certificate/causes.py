@@ -23,7 +23,7 @@ def causes_of(found: CertifiedSession) -> tuple[Cause, ...]:
     """The findings of the diagnosis, in their order; none where there is no diagnosis yet."""
     diagnosis = found.diagnosis.found
     findings = () if diagnosis is None else diagnosis.findings
-    views = (finding_view(finding, found.revisions) for finding in findings)
+    views = (finding_view(finding, found.revisions, findings) for finding in findings)
     return tuple(
         Cause(
             sentence=view.sentence,

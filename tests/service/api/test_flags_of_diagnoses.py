@@ -6,7 +6,18 @@ import httpx
 import pytest
 
 from tests.conftest import Holding
-from tests.service.diagnosed import ECCENTRIC, TEMPERATURE, UNEXPLAINED, drawn, files_of, held, send, warm
+from tests.service.diagnosed import (
+    ECCENTRIC,
+    TEMPERATURE,
+    TWO_AT_ONCE,
+    UNEXPLAINED,
+    drawn,
+    files_of,
+    held,
+    send,
+    swaying_stand,
+    warm,
+)
 from tests.service.recordings import recording_document
 
 
@@ -23,6 +34,30 @@ def test_a_named_cause_raises_a_flag_on_its_sensor(holding: Holding) -> None:
 
 def test_an_unexplained_structure_raises_a_flag_on_the_unit(holding: Holding) -> None:
     assert ("unexplained", "", "raised") in flagged(*held(holding, UNEXPLAINED))
+
+
+def test_a_cause_that_an_unknown_one_may_be_raises_its_flag_with_the_doubt(holding: Holding) -> None:
+    client, id = held(holding, TWO_AT_ONCE)
+    assert ("cause", "G2", "raised") in flagged(client, id)
+    said = [flag["summary"] for flag in client.get("/api/v1/flags").json()["flags"] if flag["place"] == "G2"]
+    assert said == [
+        "Two causes at once, or one that is not in the catalogue (G2): cubic nonlinearity and scale asymmetry."
+    ]
+
+
+def test_what_all_sensors_show_is_a_matter_of_stand_or_fixture(holding: Holding) -> None:
+    content = json.dumps(swaying_stand()).encode()
+    (flag,) = holding(content).get("/api/v1/flags").json()["flags"]
+    assert (flag["matter"], flag["place"]) == ("unexplained", "")
+    assert flag["summary"].startswith("Something common to all sensors, of the stand or fixture")
+
+
+def test_a_cause_that_nobody_knows_cannot_be_accepted(holding: Holding) -> None:
+    client, id = held(holding, TWO_AT_ONCE)
+    new = {"cause": "unexplained", "scope": "unit", "by": "K. Ito"}
+    refused = client.post(f"/api/v1/sessions/{id}/diagnosis/accept", json=new)
+    assert refused.status_code == 422
+    assert "is not among the causes that this session shows" in refused.json()["problems"][0]["message"]
 
 
 def test_a_fault_of_the_stand_raises_a_flag_on_the_stand(holding: Holding) -> None:

@@ -9,7 +9,7 @@ from service.flows.receive import upload
 from service.settings import Settings
 from tests.databases import Databases
 from tests.service.cli.conftest import Run, write
-from tests.service.diagnosed import ALIASES, TEMPERATURE, UNEXPLAINED, drawn, warm
+from tests.service.diagnosed import ALIASES, TEMPERATURE, TWO_AT_ONCE, UNEXPLAINED, boasting, drawn, swaying_stand, warm
 from tests.service.flows.test_diagnose import NOW
 from tests.service.recordings import recording_document
 from tests.stock import stores
@@ -50,6 +50,23 @@ def test_a_choice_is_shown_with_what_would_decide_it(run: Run, tmp_path: Path) -
 
 def test_structure_without_a_name_is_shown_where_it_lives(run: Run, tmp_path: Path) -> None:
     assert "harmonic 5" in run("diagnose", write(tmp_path, "a.json", drawn(UNEXPLAINED).session)).out
+
+
+def test_wrong_standard_errors_are_said(run: Run, tmp_path: Path) -> None:
+    shown = run("diagnose", write(tmp_path, "a.json", boasting())).out
+    assert "Nothing wrong found, but the stated standard errors are about 4 times too small." in shown
+
+
+def test_what_all_sensors_show_sends_people_to_the_stand(run: Run, tmp_path: Path) -> None:
+    shown = run("diagnose", write(tmp_path, "a.json", swaying_stand())).out
+    assert "Something common to all sensors, of the stand or fixture" in shown
+    assert "What to do: All sensors show the same" in shown
+
+
+def test_a_name_beside_an_unknown_cause_keeps_its_advice(run: Run, tmp_path: Path) -> None:
+    shown = run("diagnose", write(tmp_path, "a.json", drawn(TWO_AT_ONCE).session)).out
+    assert "Two causes at once, or one that is not in the catalogue (G2)" in shown
+    assert "If it comes back: Model the cubic term" in shown
 
 
 def test_a_history_that_cannot_be_read_is_unusable_input(run: Run, warm_file: Path, bad_file: Path) -> None:

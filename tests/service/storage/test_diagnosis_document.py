@@ -1,12 +1,14 @@
 """A stored diagnosis comes back typed, whichever version wrote it."""
 
 import json
+from dataclasses import asdict
 from math import isnan
 from typing import Any
 
 import pytest
 
 from estimator import diagnose
+from estimator.diagnosis.results import Course, NoiseScale, Structure
 from estimator.reading import read_session
 from service.records.diagnosis import Diagnosed
 from service.storage.diagnosis_document import (
@@ -39,6 +41,16 @@ def test_what_was_found_comes_back(what: tuple[str, tuple[int, ...], str | None]
     assert after.residuals_before.to_dict() == before.baseline.residuals.to_dict()
 
 
+def test_a_mixed_up_record_a_course_and_wrong_standard_errors_come_back() -> None:
+    mixed = Structure("mixed up", ("A1",), 0.0, 9.0, of_record=True)
+    course = Structure("α", (), 1e-9, 7.0, Course("β", ("α", "size"), ((1e-5, 2e-6), (-1e-5, 3e-6))))
+    noise = NoiseScale("accelerometer", 4.0, 70.0)
+    document = earlier_document() | {"structures": [s.to_dict() for s in (mixed, course)], "noise": [asdict(noise)]}
+    found = read_diagnosis(json.dumps(document))
+    assert found is not None
+    assert (found.structures, found.noise) == ((mixed, course), (noise,))
+
+
 def test_an_earlier_version_gave_one_shape_for_all_sensors() -> None:
     (finding,) = read().findings
     assert finding.nonlinear_each == ({"row": 14.0},)
@@ -63,7 +75,8 @@ def test_evidence_of_an_earlier_version_keeps_all_it_states() -> None:
     stored = {name: finding[name] for name in names} | {"gain": earlier_document()["gain"]}
     again = evidence_to_dict(evidence_from_dict(stored))
     assert {name: again[name] for name in names} == {name: stored[name] for name in names}
-    assert again["gain"] == stored["gain"] | {"session": None}
+    scores = {side: score | {"rms_by_kind": {}} for side, score in stored["gain"].items() if side != "held_out"}
+    assert again["gain"] == stored["gain"] | scores | {"session": None}
 
 
 def test_a_withdrawal_rests_on_no_evidence() -> None:

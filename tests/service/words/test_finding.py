@@ -13,6 +13,7 @@ from service.words.finding import evidence, finding_view
 from tests.service.findings import JUMP
 
 NAMED = replace(JUMP, alternatives=())
+LONE = replace(JUMP, alternatives=("unexplained",))
 
 
 def test_two_shape_parameters_of_one_unit_are_told_apart() -> None:
@@ -40,6 +41,37 @@ def test_a_cause_that_this_version_does_not_know_is_called_by_its_identifier() -
     assert cause_name("bias-hum") == "bias hum"
     assert cause_on("bias-hum", ["A5"]) == "bias hum (A5)"
     assert finding_view(replace(NAMED, cause="bias-hum")).acceptable == ()
+
+
+def test_that_no_known_cause_may_act_is_said() -> None:
+    assert what_is_wrong(LONE) == "Cannot tell which: bias jump or one that is not in the catalogue (A1, A2)."
+    many = replace(JUMP, alternatives=("warm-up", "bias-ramp", "hysteresis", "unexplained"), sensors=())
+    listed = "bias jump, warm up, bias ramp, 1 more or one that is not in the catalogue"
+    assert what_is_wrong(many) == f"Cannot tell which: {listed}."
+
+
+def test_a_sensor_with_two_names_has_two_causes_at_once_or_an_unknown_one() -> None:
+    other = replace(LONE, cause="hysteresis")
+    said = "Two causes at once, or one that is not in the catalogue (A1, A2): bias jump and hysteresis."
+    assert what_is_wrong(LONE, (LONE, other)) == said
+    assert what_is_wrong(LONE, (LONE, replace(other, sensors=("A3",)))) == what_is_wrong(LONE)
+
+
+def test_no_model_can_take_in_a_cause_that_nobody_knows() -> None:
+    assert [name for name, _ in finding_view(LONE).acceptable] == ["bias-jump"]
+
+
+def test_a_cause_that_nobody_knows_has_no_share_among_the_known() -> None:
+    known, unknown = finding_view(LONE).choices
+    assert (known.share, unknown.name, unknown.share) == (
+        "70.0\u00a0%", "one that is not in the catalogue (A1, A2)", "–"
+    )  # fmt: skip
+
+
+def test_chance_rests_on_the_stated_noise_unless_noise_itself_is_found() -> None:
+    assert finding_view(NAMED, by_stated_noise=True).evidence.endswith("sound sessions, if the noise is as stated")
+    noisy = replace(NAMED, cause="excess-noise")
+    assert finding_view(noisy, by_stated_noise=True).evidence.endswith("sound sessions")
 
 
 def test_every_sensor_s_own_shape_is_said() -> None:

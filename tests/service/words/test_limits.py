@@ -30,6 +30,11 @@ def test_what_is_not_seen_stands_under_its_reason() -> None:
     assert blind_causes([RAMP, *blind]) == (BlindCauses("bias ramp, warm up", "the session lacks time"),)
 
 
+def test_vibration_that_tells_nothing_is_not_called_missing_where_it_was_recorded() -> None:
+    (blind,) = blind_causes([Limit("vibration-rectification", None, (), "the session lacks vibration")])
+    assert blind.reason == "no vibration was recorded, or it was the same everywhere"
+
+
 def test_every_unit_of_the_catalogue_has_a_measure() -> None:
     stated = {unit for cause in CATALOGUE for unit in cause.units}
     both = stated | {unit.replace("m/s²", "rad/s") for cause in CATALOGUE if not cause.kind for unit in cause.units}
