@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 
 from estimator.diagnosis.selection.forward import with_structures
-from estimator.diagnosis.selection.lack_of_fit import explained, two_valued, with_unlike_noise, without_misfits
+from estimator.diagnosis.selection.lack_of_fit import (
+    explained,
+    two_valued,
+    with_unlike_noise,
+    without_common_rows,
+    without_misfits,
+)
 from estimator.diagnosis.signatures.noise import ExcessVariance
 from tests.estimator.diagnosis.selection.small import ROWS, SENSOR, candidate, effect, names, on_sensor, start
 
@@ -63,3 +69,14 @@ def test_two_values_are_told_from_normal_noise() -> None:
     assert two_valued(np.sign(rng.standard_normal(40)) + 0.1 * rng.standard_normal(40)) < 1e-8
     marks = [two_valued(rng.standard_normal(40)) < 0.05 for _ in range(400)]
     assert 0.02 < np.mean(marks) < 0.08
+
+
+def test_rows_in_which_most_sensors_stand_out_are_no_matter_of_the_sensors() -> None:
+    far = np.where(np.arange(ROWS) == 7, 30.0, 0.0)
+    everywhere = sum((on_sensor(far, sensor) for sensor in range(4)), np.zeros((ROWS, 4)))
+    state = start(("reading-outlier",), everywhere)
+    found = tuple(candidate(state, "reading-outlier", (sensor,)) for sensor in range(4))
+    left = without_common_rows(replace(state, found=found))
+    assert names(left) == []
+    assert len(left.structures) == 4
+    assert without_common_rows(replace(state, found=found[:1])).found == found[:1]
