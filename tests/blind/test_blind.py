@@ -64,16 +64,16 @@ def test_structure_outside_the_catalogue_is_unexplained():
 
 def test_a_cause_left_out_of_the_catalogue_is_not_given_another_name():
     """Where no other explanation comes within ten standard errors."""
-    outcomes = examined(LEFT_OUT, [(k, cause) for k, cause in enumerate(CATALOGUE)])
+    outcomes = examined(LEFT_OUT, [(k, cause) for k, cause in enumerate(CATALOGUE) if k % 2])
     far = [o for o in outcomes if min(o.separations) >= FAR]
-    assert len(far) > 20
+    assert len(far) > 8
     assert enough([o.unexplained_listed for o in far], 0.95), [o for o in far if not o.unexplained_listed]
     assert enough([not o.findings for o in far], 0.90), [o for o in far if o.findings]
 
 
 @pytest.mark.parametrize("factor", [0.1, 1 / 3, 3.0])
 def test_wrongly_stated_noise_names_nothing_and_hides_nothing(factor: float):
-    answers = [perform(Wish(factor, "all", k % 2 == 1, (SEED, k), HIDDEN[5 * k % len(HIDDEN)])) for k in range(12)]
+    answers = [perform(Wish(factor, "all", k % 2 == 1, (SEED, k), HIDDEN[5 * k % len(HIDDEN)])) for k in range(8)]
     assert enough([not a.other_name for a in answers if not a.wish.hidden], 0.99)
     assert enough([a.offered for a in answers if a.wish.hidden], 0.95)
 

@@ -5,29 +5,25 @@ free course of the applied vector explains as much, no name is given, but those 
 was: causes that are seen in parity space alone, where no error of stand, fixture or reference shows.
 """
 
-import os
 from collections.abc import Callable, Sequence, Set
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import expit
 
-from estimator.calibration.noise import typical, with_the_others
-from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.refitted import refitted
-from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.backward import FURTHER
+from estimator.diagnosis.selection.crowd import crowded, without_crowd
 from estimator.diagnosis.selection.excess_noise import sensor_scatter
-from estimator.diagnosis.selection.forward import with_structures
 from estimator.diagnosis.selection.lack_of_fit import MISFIT
+from estimator.diagnosis.selection.parity_space import in_parity_space
 from estimator.diagnosis.selection.ranking import joint_log_evidence
 from estimator.diagnosis.selection.search_state import Found, SearchState
 from estimator.diagnosis.selection.start import begin
-from estimator.diagnosis.signatures.applied_course import SIZE, AppliedCourse, applied_course, components
+from estimator.diagnosis.signatures.applied_course import SIZE, AppliedCourse, applied_course
 from estimator.diagnosis.signatures.scores import score
 from estimator.diagnosis.signatures.traces import Group
 
-DEBUG = os.environ.get("DEBUGC")
 DISTINCT = 5.3
 """ln evidence by which a set of names must beat a course for the course to be no alternative: odds of 200."""
 
@@ -35,17 +31,11 @@ LEAST_FREEDOM = 3.0
 """Degrees of freedom of a sensor's residual from which on it tells what noise is left."""
 
 LEAST = 5.0
-"""ln evidence of a course beside names that would be believed by themselves."""
+"""ln evidence of a course that is believed at all: odds of 150."""
 
 LEAK = 0.025
 """Share of the energy of a common course below which what parity space shows of a sensor may be what is not linear in
 the course, or what an unseen change of all scale factors leaves of it."""
-
-ROUNDS = 8
-"""Steps of the noise in parity space: each halves what is left at least."""
-
-MOST_LIKELY = 2
-"""Different names in one session that are believed without a look at parity space."""
 
 
 def weighed(state: SearchState) -> float:
@@ -95,10 +85,10 @@ def common_or_own(start: SearchState, state: SearchState, search: Callable[[Sear
         return state
     rival = whatever_the_vector(start, begun, course, search)
     gained = rival.log_evidence - own
-    if gained > 0:
+    if gained > 0 and rival.course.log_evidence > LEAST:
         return without_leaks(replace(rival.parity, courses=(rival.course,)))
     held_there = {f.best.group for f in rival.parity.found}
-    return doubted(without_crowd(state, held_there), held_there, float(expit(gained)))
+    return with_doubt(without_crowd(state, held_there), held_there, float(expit(gained)))
 
 
 def without_leaks(state: SearchState) -> SearchState:
@@ -130,14 +120,14 @@ def whatever_the_vector(
     kept = seen_from(begun, parity.found)
     beside = likeliest_course(begun, kept)
     paid = beside.log_evidence + weighed(replace(begun, found=kept)) - FURTHER * bool(kept)
-    if kept and beside.log_evidence > LEAST and paid > course.log_evidence:
+    if kept and paid > course.log_evidence:
         return Rival(beside, parity, paid)
     if kept and SIZE in course.components:
         parity = search(in_parity_space(start, size=True))
     return Rival(course, parity, course.log_evidence)
 
 
-def doubted(state: SearchState, held_there: Set[Group], doubt: float) -> SearchState:
+def with_doubt(state: SearchState, held_there: Set[Group], doubt: float) -> SearchState:
     """The state with the probability that a course acts instead beside every name that parity does not bear out."""
     found = [f if f.best.group in held_there else replace(f, unnamed=max(f.unnamed, doubt)) for f in state.found]
     return replace(state, found=tuple(found))
@@ -152,7 +142,7 @@ def likeliest_course(start: SearchState, beside: Sequence[Found]) -> AppliedCour
 
 
 def seen_from(start: SearchState, found: Sequence[Found]) -> tuple[Found, ...]:
-    """Findings of parity space as the residuals of ``start`` show them, those that show there at all."""
+    """Findings of another search as the residuals of ``start`` show them, those that show there at all."""
     nothing = np.zeros((len(start.residuals.z), 0))
     seen = []
     for old in found:
@@ -162,59 +152,3 @@ def seen_from(start: SearchState, found: Sequence[Found]) -> tuple[Found, ...]:
         if same:
             seen.append(replace(old, best=max(same, key=lambda s: s.log_evidence)))
     return tuple(seen)
-
-
-def without_crowd(state: SearchState, held_there: Set[Group]) -> SearchState:
-    """The state without a crowd of names that parity space does not bear out, where none explains half of what they do.
-
-    ``held_there``: what holds in parity space.
-    """
-    if not crowded(state):
-        return state
-    loose = [f for f in state.found if f.best.group not in held_there]
-    share = [f.best.statistic for f in loose]
-    if len({f.best.cause.identifier for f in loose}) <= MOST_LIKELY or max(share) > 0.5 * sum(share):
-        return state
-    kept = tuple(f for f in state.found if f not in loose)
-    left = with_structures(replace(state, found=kept, structures=()))
-    return left if left.structures else state
-
-
-def crowded(state: SearchState) -> bool:
-    """Whether more happened than misfortunes are likely at once: different names, structures, sensors that scatter."""
-    names = {f.best.cause.identifier for f in state.found}
-    return len(names) + bool(state.structures) + len(state.scatter_attributed) > MOST_LIKELY
-
-
-def in_parity_space(start: SearchState, *, size: bool) -> SearchState:
-    """The search begun where no applied vector is believed: each row's is free, as in arbitrary orientations.
-
-    The parameters are fitted anew beside the free vectors, so that they too are what parity alone makes of them.
-    """
-    baseline, setting = start.baseline, start.baseline.setting
-    turns = [p.columns for p in components(setting) if size or p.words != SIZE]
-    if not turns:
-        return replace(start, traces=(), patterns=())
-    sigma = np.full((setting.rows, len(turns)), np.inf)
-    free = refitted(renoised(replace(baseline, row=np.stack(turns, axis=-1), row_sigma=sigma)))
-    return replace(begin(free, start.history, start.catalogue), noise_claims=start.noise_claims)
-
-
-def renoised(free: Baseline) -> Baseline:
-    """A baseline in parity space with the noise that is not stated estimated there (restricted likelihood).
-
-    The others of a kind are taken to be alike, as everywhere (`calibration.noise`).
-    """
-    variance, m = free.variance.copy(), len(free.unstated)
-    if not free.unstated.any():
-        return free
-    for _ in range(ROUNDS):
-        residuals = WhitenedResiduals.of(replace(free, variance=variance))
-        rows = residuals.rows
-        own = residuals.sensor_of_row[:rows] == np.arange(m)[:, None]
-        energy, freedom = own @ residuals.z[:rows] ** 2, own @ residuals.row_freedom
-        value = np.where(free.unstated, variance.mean(axis=0), np.nan)
-        expected = typical(value[None], free.unstated[None], free.setting.norm)[0] / variance.mean(axis=0)
-        energy, freedom = with_the_others(energy, freedom, expected)
-        variance = variance * np.where(free.unstated, energy / np.maximum(freedom, 1.0), 1.0)
-    return replace(free, variance=variance)
