@@ -31,9 +31,9 @@ one beside it."""
 MOST_AT_ONCE = 2
 """Names on one sensor that are believed: more of them patch up one cause that is missing."""
 
-CLEARLY = 20.0
-"""ln evidence by which two names on one sensor must beat a course for it to be no alternative: what a free course pays
-for its freedom beside a formula with as many amplitudes as theirs."""
+TWO_AS_ONE = 0.1
+"""Probability at least that two names on one sensor are one cause that is missing: a second, independent misfortune of
+the same sensor is no less rare than that."""
 
 NEEDLESS = 4.0
 """ln evidence by which a sensor's drift must improve on an effect that lasted to be kept beside it: odds of fifty,
@@ -92,7 +92,7 @@ def without_names_on_courses(state: SearchState) -> SearchState:
             course = replace(course, ratio=ratio, excess_log_evidence=larger)
             state = replace(rest, excess=excess, autocorrelated=(*others, course))
         else:
-            doubt = float(expit(gained + (CLEARLY if len(names) > 1 else 0.0)))
+            doubt = max(float(expit(gained)), TWO_AS_ONE if len(names) > 1 else 0.0)
             kept = tuple(replace(f, unnamed=max(f.unnamed, doubt)) if f in names else f for f in state.found)
             state = replace(state, found=kept)
     return state
