@@ -9,6 +9,7 @@ from service.charts.diagnosis import MOST_PANELS, Sides, diagnosis_charts
 from service.charts.noise import noise_of
 from service.judging.model_in_force import in_force
 from service.pages.course import CourseView, course_views
+from service.pages.diagnosis_line import PENDING, TONES
 from service.pages.gain import GainView, gain_view
 from service.pages.residual_table import ResidualTable, residual_table
 from service.records.diagnosis import Diagnosed, DiagnosisReport, DiagnosisState, StoredDiagnosis
@@ -21,19 +22,9 @@ from service.words.fit import bands_in_words
 from service.words.limits import BlindCauses, SeenCause, blind_causes, seen_causes
 from service.words.structures import where_of, who_of
 
-PENDING = "Still being found out"
 WAIT = "A large session takes some seconds; this page reads itself again."
-TONES = {
-    DiagnosisState.NOTHING: "pass",
-    DiagnosisState.NAMED: "conditional-fail",
-    DiagnosisState.UNDECIDED: "undecidable",
-    DiagnosisState.UNEXPLAINED: "undecidable",
-    DiagnosisState.FAILED: "none",
-    DiagnosisState.NOT_APPLICABLE: "none",
-}
-"""Style and icon, in the tones of the verdicts: how much it asks for attention."""
 CLAIM = "conditional-pass"
-"""The same where nothing is wrong but the standard errors that the file states."""
+"""Tone where nothing is wrong but the standard errors that the file states."""
 
 
 @dataclass(frozen=True)

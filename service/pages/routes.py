@@ -94,7 +94,9 @@ def show_upload(request: Request, settings: SettingsOf) -> HTMLResponse:
 def take_uploads(
     request: Request, files: FormFiles, reception: ReceptionOf, settings: SettingsOf, now: Now
 ) -> HTMLResponse:
-    """The form with the verdict on each file, or what is wrong with it; 422 when a file cannot be used."""
-    outcomes = outcomes_of(files, receive_all(reception, files, now))
+    """The form with verdict and diagnosis of each file, or what is wrong with it; 422 when a file cannot be used."""
+    found = receive_all(reception, files, now)
+    with reception.storage.database.reading() as store:
+        outcomes = outcomes_of(files, found, store.diagnoses.summary)
     page = upload_page(outcomes, settings.max_upload_bytes)
     return render(request, "upload.html", page, 422 if page.refused else 200)

@@ -22,7 +22,7 @@ from service.measures import (
     size_in_words,
     value_measure,
 )
-from service.pages.diagnosis import PENDING, TONES
+from service.pages.diagnosis_line import DiagnosisLine, diagnosis_line
 from service.pages.parity import ParityView, parity_view
 from service.pages.residual_table import ResidualTable, residual_table
 from service.records.decision import Decision, Verdict, nominal_factor_of
@@ -61,14 +61,6 @@ class SensorRow:
     cells: tuple[Cell, ...]
     known: tuple[str, ...]
     """What is known of parameters that the session cannot tell apart."""
-
-
-@dataclass(frozen=True)
-class DiagnosisLine:
-    """What the simulation gets wrong, in one line."""
-
-    tone: str
-    text: str
 
 
 @dataclass(frozen=True)
@@ -120,14 +112,10 @@ def session_page(report: SessionReport, diagnosis: DiagnosisSummary | None = Non
         rule=decisions[0].rule if decisions else "",
         coverage=coverage_in_words(calibration, coverage),
         size=size_in_words(report.session.size),
-        diagnosis=_diagnosis(diagnosis),
+        diagnosis=diagnosis_line(diagnosis),
         gives_correction=report.session.programme in CALIBRATIONS,
         motions=motions_in_words(report.motions, coverage),
     )
-
-
-def _diagnosis(found: DiagnosisSummary | None) -> DiagnosisLine:
-    return DiagnosisLine("none", PENDING) if found is None else DiagnosisLine(TONES[found.state], found.summary)
 
 
 def parameters_of(calibration: Calibration) -> tuple[str, ...]:

@@ -1,10 +1,12 @@
 """The upload page: what became of each file, or what is wrong with it and what to do."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from estimator.errors import Problem
 from service.errors import RefusedError
+from service.pages.diagnosis_line import DiagnosisLine, diagnosis_line
+from service.records.diagnosis import DiagnosisSummary
 from service.records.received import SentFile
 from service.records.session import Receipt
 from service.words.conditions import Condition, condition_of
@@ -17,6 +19,8 @@ class Outcome:
     filename: str
     receipt: Receipt | None = None
     problems: tuple[Problem, ...] = ()
+    diagnosis: DiagnosisLine | None = None
+    """None of a refused file, and where the diagnosis is made after the answer."""
 
     @property
     def condition(self) -> Condition:
@@ -39,12 +43,20 @@ class UploadPage:
         return sum(o.receipt is None for o in self.outcomes)
 
 
-def outcomes_of(files: Sequence[SentFile], found: Sequence[Receipt | RefusedError]) -> tuple[Outcome, ...]:
-    """Every file with what became of it."""
-    return tuple(
-        Outcome(file.filename, one) if isinstance(one, Receipt) else Outcome(file.filename, problems=one.problems)
-        for file, one in zip(files, found, strict=True)
-    )
+def outcomes_of(
+    files: Sequence[SentFile],
+    found: Sequence[Receipt | RefusedError],
+    summary: Callable[[str], DiagnosisSummary | None],
+) -> tuple[Outcome, ...]:
+    """Every file with what became of it; ``summary``: the diagnosis of a session, where it is made already."""
+    return tuple(_outcome(file.filename, one, summary) for file, one in zip(files, found, strict=True))
+
+
+def _outcome(filename: str, one: Receipt | RefusedError, summary: Callable[[str], DiagnosisSummary | None]) -> Outcome:
+    if isinstance(one, RefusedError):
+        return Outcome(filename, problems=one.problems)
+    made = summary(one.id)
+    return Outcome(filename, one, diagnosis=None if made is None else diagnosis_line(made))
 
 
 def upload_page(outcomes: Sequence[Outcome], max_bytes: int) -> UploadPage:

@@ -16,6 +16,7 @@ from service.flows.receive import upload as receive
 from tests.builders import Document, accelerometer_block, arbitrary_orientations, gyro_block, true_sensors
 from tests.conftest import StockOf
 from tests.databases import Databases
+from tests.service.diagnosed import swaying_stand
 from tests.service.recordings import recording_document
 from tests.service.sessions import session_bytes
 from tests.service.turntable import alignment_bytes
@@ -42,6 +43,7 @@ class Site:
     url: str
     unfit_session: str
     loose_session: str
+    swayed_session: str
     aligned_session: str
     flown_session: str
 
@@ -73,15 +75,16 @@ def upload(url: str, document: Document) -> str:
 
 @pytest.fixture(scope="session")
 def site(sqlite: Databases, stock_of: StockOf) -> Iterator[Site]:
-    """A service with six units: drifted out of tolerance, two fit, measured by hand, aligned on a turntable, flown."""
+    """A service with seven units: drifted, two fit, measured by hand, on a bad stand, aligned on a turntable, flown."""
     with stock_of(sqlite).holding() as settings, serving(settings) as url, stores(settings) as storage:
         for document in earlier():
             receive(storage, json.dumps(document).encode(), "earlier.json", NOW)
         unfit = upload(url, drifting(6))
         loose = upload(url, arbitrary_orientations() | {"unit": "HAND-1"})
+        swayed = upload(url, swaying_stand())
         aligned = upload(url, json.loads(alignment_bytes(seed=2, month=4)))
         flown = upload(url, recording_document(unit="FL-1", a3_moved=400.0))
-        yield Site(url, unfit, loose, aligned, flown)
+        yield Site(url, unfit, loose, swayed, aligned, flown)
 
 
 @pytest.fixture(scope="session")

@@ -24,6 +24,7 @@ PATHS = (
     "/sessions/{unfit}/diagnosis",
     "/sessions/{flown}/diagnosis",
     "/sessions/{loose}/diagnosis",
+    "/sessions/{swayed}/diagnosis",
     "/flags",
     "/upload",
     "/plan",
@@ -33,7 +34,7 @@ PATHS = (
 
 
 def address(site: Site, path: str) -> str:
-    sessions = {"unfit": site.unfit_session, "loose": site.loose_session}
+    sessions = {"unfit": site.unfit_session, "loose": site.loose_session, "swayed": site.swayed_session}
     return site.url + path.format(**sessions, aligned=site.aligned_session, flown=site.flown_session)
 
 

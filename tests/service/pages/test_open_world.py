@@ -9,6 +9,7 @@ import httpx
 from tests.conftest import Holding
 from tests.service.diagnosed import TWO_AT_ONCE, boasting, diagnosis_of, held, swaying_stand
 from tests.service.pages.test_diagnosis import page
+from tests.service.pages.test_http import HTML
 from tests.service.sessions import session_id
 
 SMALL = "the stated standard errors are about 4 times too small"
@@ -62,3 +63,10 @@ def test_gain_has_a_line_for_every_kind_of_sensor(holding: Holding) -> None:
     text = page(*held(holding, TWO_AT_ONCE))
     assert "error of prediction of accelerometers" in text
     assert "error of prediction of gyroscopes" in text
+
+
+def test_the_answer_to_an_upload_says_it_too(holding: Holding) -> None:
+    file = ("boast.json", json.dumps(boasting()).encode())
+    client = holding()
+    card = client.post("/upload", files={"files": file}, headers=HTML | {"Origin": str(client.base_url)}).text
+    assert SMALL in card

@@ -1,0 +1,29 @@
+"""A diagnosis in one line, with the tone in which it is said."""
+
+from dataclasses import dataclass
+
+from service.records.diagnosis import DiagnosisState, DiagnosisSummary
+
+PENDING = "Still being found out"
+TONES = {
+    DiagnosisState.NOTHING: "pass",
+    DiagnosisState.NAMED: "conditional-fail",
+    DiagnosisState.UNDECIDED: "undecidable",
+    DiagnosisState.UNEXPLAINED: "undecidable",
+    DiagnosisState.FAILED: "none",
+    DiagnosisState.NOT_APPLICABLE: "none",
+}
+"""Style and icon, in the tones of the verdicts: how much it asks for attention."""
+
+
+@dataclass(frozen=True)
+class DiagnosisLine:
+    """What the simulation gets wrong, in one line."""
+
+    tone: str
+    text: str
+
+
+def diagnosis_line(found: DiagnosisSummary | None) -> DiagnosisLine:
+    """What is known; None while it is still being found out."""
+    return DiagnosisLine("none", PENDING) if found is None else DiagnosisLine(TONES[found.state], found.summary)
