@@ -38,12 +38,7 @@ def gain(state: SearchState, given: Baseline | None, fitted: Amplitudes, new: Se
 
 def as_stated(state: SearchState) -> Baseline:
     """The baseline with the noise that the file states."""
-    variance = state.baseline.variance.copy()
-    for scatter in state.scatter:
-        variance[:, scatter.sensor] /= scatter.ratio
-    for claim in state.noise_claims:
-        variance[:, [kind == claim.kind for kind in state.baseline.setting.kinds]] /= claim.taken
-    return replace(state.baseline, variance=variance)
+    return replace(state.baseline, variance=state.stated)
 
 
 def volume(baseline: Baseline) -> float:

@@ -19,7 +19,7 @@ from estimator.diagnosis.selection.lack_of_fit import MISFIT
 from estimator.diagnosis.selection.parity_space import in_parity_space
 from estimator.diagnosis.selection.ranking import joint_log_evidence
 from estimator.diagnosis.selection.search_state import Found, SearchState
-from estimator.diagnosis.selection.start import begin
+from estimator.diagnosis.selection.start import begun_with
 from estimator.diagnosis.signatures.applied_course import SIZE, AppliedCourse, applied_course
 from estimator.diagnosis.signatures.scores import score
 from estimator.diagnosis.signatures.traces import Group
@@ -63,7 +63,7 @@ def settled(start: SearchState, state: SearchState) -> tuple[SearchState, Search
         return start, state
     left = np.where(baseline.unstated & (freedom >= LEAST_FREEDOM), energy / np.maximum(freedom, 1.0), 1.0)
     known = replace(baseline, variance=baseline.variance * left, unstated=np.zeros_like(baseline.unstated))
-    begun = replace(begin(refitted(known), start.history, start.catalogue), noise_claims=start.noise_claims)
+    begun = begun_with(start, refitted(known))
     found, structures = seen_from(begun, state.found), seen_from(begun, state.structures)
     seen = replace(begun, found=found, structures=structures)
     return begun, replace(seen, excess=state.excess, autocorrelated=state.autocorrelated)

@@ -21,7 +21,7 @@ from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.excess_noise import sensor_scatter
 from estimator.diagnosis.selection.search_state import SearchState
-from estimator.diagnosis.selection.start import begin
+from estimator.diagnosis.selection.start import begun_with
 from estimator.diagnosis.signatures.noise import NoiseClaim
 from estimator.session import Array
 
@@ -34,6 +34,9 @@ what they share of a row's β error lets it be seen faintly in others."""
 
 AGREES = 0.01
 """p-value above which differences of repeated rows agree with the stated noise."""
+
+SMALLEST = 1e-8
+"""Variance over the stated one below which none is told apart: readings simulated without noise leave rounding."""
 
 FEWEST = 6
 """Degrees of freedom of repeats, or of a kind's residuals, from which on they tell a scale."""
@@ -66,20 +69,15 @@ def doubted(state: SearchState) -> tuple[NoiseClaim, ...]:
         if whole.freedom < FEWEST or whole.tails[side] > DOUBTFUL or 2 * agreeing < len(each):
             continue
         if not stands(state.baseline, own):
-            found.append(NoiseClaim(kind, whole.energy / whole.freedom, whole.freedom, taken(state, kind)))
+            found.append(NoiseClaim(kind, max(whole.energy / whole.freedom, SMALLEST), whole.freedom))
     return tuple(found)
 
 
 def scatter_of(state: SearchState, own: Array) -> list[Scatter]:
     """What a search leaves of each of some sensors (m,) bool, dimensionless, in its stated errors."""
     energy, freedom = sensor_scatter(state)
-    kinds = state.baseline.setting.kinds
-    return [Scatter(float(energy[i]) * taken(state, kinds[i]), float(freedom[i])) for i in np.flatnonzero(own)]
-
-
-def taken(state: SearchState, kind: str) -> float:
-    """Variance over the stated one that a search took for a kind of sensor."""
-    return next((c.taken for c in state.noise_claims if c.kind == kind), 1.0)
+    scale = np.median(state.baseline.variance / state.stated, axis=0)
+    return [Scatter(float(energy[i] * scale[i]), float(freedom[i])) for i in np.flatnonzero(own)]
 
 
 def stands(baseline: Baseline, own: Array) -> bool:
@@ -115,7 +113,4 @@ def with_unknown_scale(start: SearchState, claims: tuple[NoiseClaim, ...]) -> Se
         variance[:, own] *= claim.ratio
         unstated[own], expected[own] = True, 1.0
     changed = replace(baseline, variance=variance, unstated=unstated, expected_ratio=expected)
-    return replace(
-        begin(refitted(changed), start.history, start.catalogue),
-        noise_claims=tuple(replace(c, taken=c.ratio) for c in claims),
-    )
+    return replace(begun_with(start, refitted(changed)), noise_claims=claims)

@@ -9,7 +9,7 @@ from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.search_state import SearchState
-from estimator.diagnosis.selection.start import begin
+from estimator.diagnosis.selection.start import begun_with
 from estimator.diagnosis.signatures.applied_course import SIZE, components
 
 ROUNDS = 8
@@ -27,7 +27,7 @@ def in_parity_space(start: SearchState, *, size: bool) -> SearchState:
         return replace(start, traces=(), patterns=())
     sigma = np.full((setting.rows, len(turns)), np.inf)
     free = refitted(renoised(replace(baseline, row=np.stack(turns, axis=-1), row_sigma=sigma)))
-    return replace(begin(free, start.history, start.catalogue), noise_claims=start.noise_claims)
+    return begun_with(start, free)
 
 
 def renoised(free: Baseline) -> Baseline:

@@ -56,6 +56,8 @@ class SearchState:
     """Of the catalogue's causes."""
     patterns: tuple[Traces, ...]
     """Of structure without a name."""
+    stated: Array
+    """(R, m) variance of the noise as the file states it, or as the baseline leaves it, (m/s²)² ((rad/s)²)."""
     found: tuple[Found, ...] = ()
     structures: tuple[Found, ...] = ()
     """Patterns found."""

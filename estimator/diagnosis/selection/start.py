@@ -26,6 +26,7 @@ def begin(baseline: Baseline, history: Sequence[Baseline], catalogue: Sequence[C
         residuals,
         tuple(traces_of(residuals, signatures)),
         tuple(traces_of(residuals, PATTERNS)),
+        baseline.variance,
     )
 
 
@@ -42,7 +43,13 @@ def begin_anew(state: SearchState, scatter: Sequence[ExcessVariance | Autocorrel
     for one in scatter:
         variance[:, one.sensor] *= one.ratio
         unstated[one.sensor] = True
-    again = begin(replace(state.baseline, variance=variance, unstated=unstated), state.history, state.catalogue)
+    again = begun_with(state, replace(state.baseline, variance=variance, unstated=unstated))
     excess = (*state.excess, *(s for s in scatter if isinstance(s, ExcessVariance)))
     autocorrelated = (*state.autocorrelated, *(s for s in scatter if isinstance(s, Autocorrelation)))
-    return replace(again, excess=excess, autocorrelated=autocorrelated, noise_claims=state.noise_claims)
+    return replace(again, excess=excess, autocorrelated=autocorrelated)
+
+
+def begun_with(state: SearchState, baseline: Baseline) -> SearchState:
+    """The search begun anew with another baseline; what the file states of the noise is kept."""
+    again = begin(baseline, state.history, state.catalogue)
+    return replace(again, stated=state.stated, noise_claims=state.noise_claims)

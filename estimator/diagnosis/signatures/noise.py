@@ -92,8 +92,6 @@ class NoiseClaim:
     """Variance over the stated one."""
     freedom: float
     """Degrees of freedom that tell it."""
-    taken: float = 1.0
-    """Variance over the stated one that the search took."""
 
 
 def normal_deviate(log_evidence: float) -> float:
