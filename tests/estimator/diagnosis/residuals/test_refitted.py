@@ -1,0 +1,24 @@
+"""A baseline fitted anew under other noise stays where its history can be compared with it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from estimator.diagnosis.residuals.between_sessions import deviation
+from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.diagnosis.residuals.gauge import turn_response
+from estimator.diagnosis.residuals.refitted import refitted
+from tests.estimator.calibration.cases import CASES
+
+(ARBITRARY,) = [case for case in CASES if case.name == "arbitrary-orientations"]
+
+
+def test_a_refit_in_arbitrary_orientations_turns_no_axes_in_common() -> None:
+    (session,) = ARBITRARY.simulated(1)
+    before = baseline_of(session)
+    after = refitted(replace(before, variance=before.variance * [1.0, 4.0, 0.25, 9.0]))
+    step = deviation(before.parameters, after.parameters, before.setting.norm).reshape(-1)
+    turn = np.linalg.lstsq(turn_response(before.parameters), step, rcond=None)[0]
+    assert np.abs(step).max() > 1e-8
+    assert turn == pytest.approx(np.zeros(3), abs=1e-12)
