@@ -20,6 +20,9 @@ from estimator.session import Array
 LEADERS = 6
 """Causes of a ranking among which one is chosen again: those behind are less likely by orders of magnitude."""
 
+WORSE = 2.0
+"""ln of the odds by which a prediction must be worse: less is the chance of which row lies in which fold."""
+
 VISIBLE = 1e-6
 """Share of a column that must be new for it to count as a direction of its own: rounding lies below."""
 
@@ -40,7 +43,7 @@ def without_unpredictive(state: SearchState) -> SearchState:
     named = predicted(state.baseline, chosen_in_folds(state, judged))
     known = not state.baseline.unstated.any()
     gained = named.log_score - nothing.log_score if known else named.scale_free - nothing.scale_free
-    if gained >= 0:
+    if gained > -WORSE:
         return state
     rest = with_structures(replace(state, found=tuple(f for f in state.found if f not in judged)))
     return rest if rest.structures else replace(rest, structures=tuple(judged))

@@ -15,6 +15,7 @@ from tests.estimator.causes.hiding import Scene
 from tests.estimator.causes.physics import World
 from tests.estimator.causes.worlds import truth_of, wandering
 from tests.estimator.diagnosis.selection.small import effect, measured
+from tests.estimator.diagnosis.selection.test_common_or_own import swaying
 
 
 def stated(session: CalibrationSession, factor: float, sensors: slice = slice(None)) -> CalibrationSession:
@@ -85,3 +86,14 @@ def test_where_repeats_agree_with_the_stated_noise_misfit_is_no_noise() -> None:
     bent = session.readings + 60 * where.noise * np.sign(np.sin(5 * beta))[:, None] * [1, -1, 1, -1]
     assert doubted(begin(baseline_of(replace(session, readings=bent)), (), ())) == ()
     assert doubted(begin(baseline_of(stated(session, 0.2)), (), ()))
+
+
+def test_a_course_of_the_applied_vector_is_no_wrong_claim() -> None:
+    assert diagnose(measured(swaying(2e-4))).noise == ()
+    assert diagnose(stated(measured(swaying(2e-4)), 0.3)).noise[0].factor == pytest.approx(1 / 0.3, rel=0.25)
+
+
+def test_readings_without_noise_leave_the_diagnosis_standing() -> None:
+    found = diagnose(stated(measured(seed=5), 1e6))
+    assert not found.findings
+    assert found.noise[0].factor < 1e-3

@@ -8,7 +8,16 @@ import pytest
 from estimator.diagnosis.explanation.extended_model import amplitudes
 from estimator.diagnosis.selection.refinement import with_refined_shapes
 from estimator.diagnosis.selection.search_state import SearchState
-from tests.estimator.diagnosis.selection.small import ROWS, SENSOR, TIME, candidate, effect, measured, on_sensor, start
+from tests.estimator.diagnosis.selection.small import (
+    ROWS,
+    SENSOR,
+    TIME,
+    candidate,
+    effect,
+    measured,
+    on_sensor,
+    start,
+)
 
 TAU = float(np.ptp(TIME)) / ROWS ** (8.5 / 9)
 """s, midway between two points of the grid."""
@@ -62,3 +71,13 @@ def test_what_has_no_continuous_parameter_stays_as_it_is() -> None:
     state = start(("bias-jump",), effect("bias-jump"))
     state = replace(state, found=(candidate(state, "bias-jump"),))
     assert with_refined_shapes(state) is state
+
+
+def test_where_the_session_does_not_tell_the_shape_the_simple_cause_leads() -> None:
+    """A ramp taken for a warm-up of endless time constant: amplitude and time constant would both mean nothing."""
+    state = start(("warm-up", "bias-ramp"), 0.3 * effect("bias-ramp"))
+    warm, ramp = candidate(state, "warm-up"), candidate(state, "bias-ramp")
+    ranking = tuple((f.best, f.best.log_evidence) for f in (warm, ramp))
+    (found,) = with_refined_shapes(replace(state, found=(replace(warm, ranking=ranking),))).found
+    assert found.best.cause.identifier == "bias-ramp"
+    assert found.ranking == ranking
