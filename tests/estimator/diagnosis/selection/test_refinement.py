@@ -75,7 +75,7 @@ def test_what_has_no_continuous_parameter_stays_as_it_is() -> None:
 
 def test_where_the_session_does_not_tell_the_shape_the_simple_cause_leads() -> None:
     """A ramp taken for a warm-up of endless time constant: amplitude and time constant would both mean nothing."""
-    state = start(("warm-up", "bias-ramp"), 0.3 * effect("bias-ramp"))
+    state = start(("warm-up", "bias-ramp"), 0.15 * effect("bias-ramp"))
     warm, ramp = candidate(state, "warm-up"), candidate(state, "bias-ramp")
     ranking = tuple((f.best, f.best.log_evidence) for f in (warm, ramp))
     (found,) = with_refined_shapes(replace(state, found=(replace(warm, ranking=ranking),))).found
