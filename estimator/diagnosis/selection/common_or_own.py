@@ -1,5 +1,7 @@
 """Common or own, without a catalogue: a set of names is weighed against an unknown course of the applied vector.
 
+That something acts which the catalogue lacks costs as much as a further name does: one misfortune in a hundred.
+
 Many names, or several of stand and fixture, may stand in for one error of the stand that no cause describes. Where a
 free course of the applied vector explains as much, no name is given, but those that hold whatever the applied vector
 was: causes that are seen in parity space alone, where no error of stand, fixture or reference shows.
@@ -81,10 +83,10 @@ def common_or_own(start: SearchState, state: SearchState, search: Callable[[Sear
         return state
     begun, seen = settled(start, state)
     own, course = weighed(seen) + nearly(seen), likeliest_course(begun, ())
-    if course.log_evidence - own < -DISTINCT and not crowded(state):
+    if course.log_evidence - FURTHER - own < -DISTINCT and not crowded(state):
         return state
     rival = whatever_the_vector(start, begun, course, search)
-    gained = rival.log_evidence - own
+    gained = rival.log_evidence - FURTHER - own
     if gained > 0 and rival.course.log_evidence > LEAST:
         return without_leaks(replace(rival.parity, courses=(rival.course,)))
     held_there = {f.best.group for f in rival.parity.found}

@@ -35,6 +35,9 @@ what they share of a row's β error lets it be seen faintly in others."""
 AGREES = 0.01
 """p-value above which differences of repeated rows agree with the stated noise."""
 
+LINEAR = 1e-4
+"""rad; a fit by other weights that moves axes further has met an effect, such as a turned run, that is not linear."""
+
 SMALLEST = 1e-8
 """Variance over the stated one below which none is told apart: readings simulated without noise leave rounding."""
 
@@ -113,4 +116,6 @@ def with_unknown_scale(start: SearchState, claims: tuple[NoiseClaim, ...]) -> Se
         variance[:, own] *= claim.ratio
         unstated[own], expected[own] = True, 1.0
     changed = replace(baseline, variance=variance, unstated=unstated, expected_ratio=expected)
-    return replace(begun_with(start, refitted(changed)), noise_claims=claims)
+    again = refitted(changed)
+    moved = np.abs(again.parameters.axis - baseline.parameters.axis).max()
+    return replace(begun_with(start, again if moved < LINEAR else changed), noise_claims=claims)
