@@ -107,14 +107,17 @@ def pure_error(baseline: Baseline, own: Array) -> Scatter:
 
 
 def with_unknown_scale(start: SearchState, claims: tuple[NoiseClaim, ...]) -> SearchState:
-    """The search begun anew with the noise of some kinds known up to a factor that their readings tell."""
+    """The search begun anew with the noise of some kinds known up to a factor, which each sensor's own readings tell.
+
+    The others of its kind tell nothing: what all show, such as a warm-up of the whole block, would pass for noise.
+    """
     baseline = start.baseline
     variance, unstated = baseline.variance.copy(), baseline.unstated.copy()
     expected = np.zeros(len(unstated)) if baseline.expected_ratio is None else baseline.expected_ratio.copy()
     for claim in claims:
         own = np.array([kind == claim.kind for kind in baseline.setting.kinds])
         variance[:, own] *= claim.ratio
-        unstated[own], expected[own] = True, 1.0
+        unstated[own], expected[own] = True, 0.0
     changed = replace(baseline, variance=variance, unstated=unstated, expected_ratio=expected)
     again = refitted(changed)
     moved = np.abs(again.parameters.axis - baseline.parameters.axis).max()
