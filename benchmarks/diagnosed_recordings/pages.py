@@ -3,20 +3,27 @@
 from pathlib import Path
 
 from benchmarks.diagnosed_recordings.pictures import draw
+from benchmarks.diagnosed_recordings.stated import stated_table
 from benchmarks.diagnosed_recordings.subjects import Diagnosed
 from benchmarks.diagnosed_recordings.words import section, summary, table
 
 COMMAND = "python -m benchmarks.diagnosed_recordings"
 PHYSICS = Path(__file__).parent / "physics"
 """What is argued of each recording, written by hand; the figures on the page are made by the command."""
+STATED = "stated-errors"
+"""The page that asks whether an answer depends on what the errors are stated as."""
 INDEX = f"""# Real recordings: what the simulation gets wrong
 
 Made by `{COMMAND}` from the recordings that
 [Real recordings](../recordings.md) describes. Each is diagnosed as it is, with the noise that its averaging states;
 nothing is tuned to it. Nobody knows the truth here: what a page says of the physics is an argument, and where it is
 inference it says so. The score of held-out positions is the evidence that a named cause predicts readings it has not
-seen. Accelerometers of a single position are no calibration and are refused; the pages say where.
+seen. Accelerometers of a single position are no calibration and are refused; the pages say where. Whether an answer
+depends on what the errors are stated as, and on which sensors are chosen, is asked
+[on a page of its own](recordings/{STATED}.md).
 """
+SET_BY_SET = "set-by-set.md"
+"""Of every recording what is named and what is not, by hand."""
 
 
 def page(name: str, made: list[Diagnosed], out: Path) -> None:
@@ -28,6 +35,13 @@ def page(name: str, made: list[Diagnosed], out: Path) -> None:
         draw(one.subject.session, one.diagnosis, out / picture)
         parts += [f"## {one.subject.title}", section(one.diagnosis), f"![measured minus simulated]({picture})"]
     (out / f"{name}.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
+
+
+def stated_page(out: Path) -> None:
+    """Write the page on errors stated otherwise."""
+    title, argued = (PHYSICS / f"{STATED}.md").read_text(encoding="utf-8").split("\n", 1)
+    parts = [title, f"Made by `{COMMAND} {STATED}`.", argued.strip(), stated_table()]
+    (out / f"{STATED}.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
 
 
 def index(made: dict[str, list[Diagnosed]]) -> str:
@@ -44,4 +58,5 @@ def index(made: dict[str, list[Diagnosed]]) -> str:
         for one in several
     ]
     head = ("recording", "rows × sensors", "what the simulation gets wrong", "held-out χ²/dof", "held-out log score")
-    return f"{INDEX}\n{table(head, body)}\n"
+    argued = (PHYSICS / SET_BY_SET).read_text(encoding="utf-8").strip()
+    return f"{INDEX}\n{table(head, body)}\n\n{argued}\n"

@@ -1,14 +1,13 @@
 """The recordings and their diagnoses."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-import numpy as np
-
+from benchmarks.diagnosed_recordings.groups import accelerometers, some
 from benchmarks.diagnosed_recordings.still import adis16405, mpu6050
 from benchmarks.recordings.sets import recordings
 from estimator import Diagnosis, diagnose
-from estimator.session import ACCELEROMETER, CalibrationSession
+from estimator.session import CalibrationSession
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,26 +27,19 @@ class Diagnosed:
     diagnosis: Diagnosis
 
 
-def only(session: CalibrationSession, kind: str) -> CalibrationSession:
-    """The session with the sensors of one kind."""
-    keep = np.array([s.kind == kind for s in session.sensors])
-    return replace(
-        session,
-        sensors=tuple(s for s, k in zip(session.sensors, keep, strict=True) if k),
-        readings=session.readings[:, keep],
-        standard_errors=session.standard_errors[:, keep],
-    )
-
-
 def sessions(format_name: str) -> list[Subject]:
     """Every session of a converted recording by itself."""
     return [Subject(r.name, r.session) for r in recordings(format_name)]
 
 
+TRIADS = 8
+"""On the sensor array's board."""
+
+
 def array_sessions() -> list[Subject]:
     """The sensor array's three sessions by themselves, and the accelerometers of the second against the first."""
     alone = sessions("kth-mimu")
-    first, second = (only(s.session, ACCELEROMETER) for s in alone[:2])
+    first, second = (some(s.session, accelerometers(s.session, TRIADS)) for s in alone[:2])
     return [*alone, Subject("kth-mimu-exp_4 since exp_1, accelerometers", second, (first,))]
 
 

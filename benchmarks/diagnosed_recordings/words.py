@@ -17,10 +17,11 @@ def table(head: Sequence[str], body: Iterable[Sequence[str]]) -> str:
 
 
 def summary(diagnosis: Diagnosis) -> str:
-    """The answer in one line: names with their sensors, and whether something stays unexplained."""
+    """The answer in one line: names with their sensors, what stays unexplained, and errors stated wrongly."""
     named = [f"`{f.cause}`{many(f)}{doubt(f)}" for f in diagnosis.findings]
     unexplained = [f"unexplained structure in {spoken([s for x in diagnosis.structures for s in x.sensors])}"]
-    return "; ".join([*named, *(unexplained if diagnosis.structures else [])]) or NOTHING
+    noise = [f"stated errors of {n.kind}s × {n.factor:.2g}" for n in diagnosis.noise]
+    return "; ".join([*named, *(unexplained if diagnosis.structures else []), *noise]) or NOTHING
 
 
 def many(finding: Finding) -> str:
@@ -73,6 +74,14 @@ def unexplained(diagnosis: Diagnosis) -> str:
     return "Unexplained:\n\n" + "\n".join(lines) if lines else ""
 
 
+def misjudged(diagnosis: Diagnosis) -> str:
+    """Which stated errors the readings contradict."""
+    return " ".join(
+        f"The stated standard errors of the {n.kind}s would have to be multiplied by {n.factor:.2g}."
+        for n in diagnosis.noise
+    )
+
+
 def gain_table(gain: Gain) -> str:
     """Held-out positions before and after."""
 
@@ -85,6 +94,6 @@ def gain_table(gain: Gain) -> str:
 
 def section(diagnosis: Diagnosis) -> str:
     """Everything that is said of one session, without its picture."""
-    parts = [*(finding_section(f) for f in diagnosis.findings), unexplained(diagnosis)]
+    parts = [*(finding_section(f) for f in diagnosis.findings), unexplained(diagnosis), misjudged(diagnosis)]
     said = [p for p in parts if p] or [NOTHING]
     return "\n\n".join([*said, gain_table(diagnosis.gain)])

@@ -1,7 +1,7 @@
 """The recordings, from the raw files to averaged sessions."""
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
@@ -47,11 +47,16 @@ class Recording:
 
 
 @cache
+def logs(format_name: str) -> tuple[Recording, ...]:
+    """The sessions of all files of a format as recorded, oldest first; raw logs where the files hold those."""
+    converted = convert(format_name, sorted(folder().glob(FILES[format_name])))
+    return tuple(Recording(name.removesuffix(".json"), read_session(document)) for name, document in converted)
+
+
+@cache
 def recordings(format_name: str) -> tuple[Recording, ...]:
     """The averaged sessions of all files of a format, oldest first."""
-    found = []
-    for name, document in convert(format_name, sorted(folder().glob(FILES[format_name]))):
-        session = read_session(document)
-        averaged = average(session, residual_per_freedom) if session.is_raw else session
-        found.append(Recording(name.removesuffix(".json"), averaged))
-    return tuple(found)
+    return tuple(
+        replace(log, session=average(log.session, residual_per_freedom)) if log.session.is_raw else log
+        for log in logs(format_name)
+    )
