@@ -50,7 +50,7 @@ def sections(sessions: int, seed: int, processes: int) -> Iterator[str]:
         yield stated_noise.section(performed(pool, stated_noise.wishes(sessions, seed + 1), stated_noise.perform))
         yield reliability.section(performed(pool, examine.tasks(50 * sessions, seed + 2), examine.perform))
         yield "## Few readings\n\n" + few.result()
-        yield "## Blocks turned between sessions\n\n" + turned.result()
+        yield turned.result()
         yield "## Parity checks of moving blocks\n\n" + moving.result()
 
 

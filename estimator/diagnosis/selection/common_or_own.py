@@ -58,14 +58,17 @@ def nearly(state: SearchState) -> float:
 def settled(start: SearchState, state: SearchState) -> tuple[SearchState, SearchState]:
     """Nothing found, and what was found, with noise that no file states taken as what was found leaves of it.
 
-    A noise estimated from residuals that hold an effect hides it, from a course more than from a name.
+    A noise estimated from residuals that hold an effect hides it, from a course more than from a name. Where no name is
+    of what changed since the history, that is left out: parameters are then known so well that minutes of arc are no
+    longer linear in it.
     """
     baseline, (energy, freedom) = start.baseline, sensor_scatter(state)
     if not baseline.unstated.any():
         return start, state
     left = np.where(baseline.unstated & (freedom >= LEAST_FREEDOM), energy / np.maximum(freedom, 1.0), 1.0)
     known = replace(baseline, variance=baseline.variance * left, unstated=np.zeros_like(baseline.unstated))
-    begun = begun_with(start, refitted(known))
+    past = start.history if any(f.best.cause.between for f in state.found) else ()
+    begun = begun_with(replace(start, history=past), refitted(known))
     found, structures = seen_from(begun, state.found), seen_from(begun, state.structures)
     seen = replace(begun, found=found, structures=structures)
     return begun, replace(seen, excess=state.excess, autocorrelated=state.autocorrelated)
