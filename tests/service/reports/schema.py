@@ -75,7 +75,7 @@ ENUMERATED = {
     "si:coverageFactor": r"\+?(([1-9]\d*\.\d*)|([1-9]\d*))",
     "si:coverageProbability": r"\+?((0(\.\d*)?)|(1(\.0*)?))",
     "si:unit": r"(\\[a-z]+(\\tothe\{-?\d+\})?)+",
-    "si:distribution": "normal",
+    "si:distribution": r"normal|t, [\d.e+]+ effective degrees of freedom",
 }
 NOT_EMPTY = r"[^\s]+(\s+[^\s]+)*"
 
