@@ -71,7 +71,7 @@ def doubted(state: SearchState) -> tuple[NoiseClaim, ...]:
         agreeing = sum(s.tails[side] < SEEN for s in each)
         if whole.freedom < FEWEST or whole.tails[side] > DOUBTFUL or 2 * agreeing < len(each):
             continue
-        if not stands(state.baseline, own):
+        if not stands(replace(state.baseline, variance=state.stated), own):
             found.append(NoiseClaim(kind, max(whole.energy / whole.freedom, SMALLEST), whole.freedom))
     return tuple(found)
 

@@ -68,6 +68,7 @@ def repeated() -> Scene:
         flipped=once.flipped[twice],
         time=np.arange(len(twice)) * 300.0,
         temperature=once.temperature[twice],
+        vibration=None,
     )
     return Scene(World(schedule, truth_of(schedule)), np.full(4, 3e-6))
 
@@ -97,3 +98,9 @@ def test_readings_without_noise_leave_the_diagnosis_standing() -> None:
     found = diagnose(stated(measured(seed=5), 1e6))
     assert not found.findings
     assert found.noise[0].factor < 1e-3
+
+
+def test_repeats_that_contradict_the_stated_noise_do_not_save_it() -> None:
+    found = diagnose(stated(repeated().measured(1), 0.2))
+    assert not found.findings
+    assert [scale.factor for scale in found.noise] == pytest.approx([5.0], rel=0.2)
