@@ -13,6 +13,7 @@ from estimator.causes.contract import Shape
 from estimator.diagnosis.residuals.prediction import FOLDS, fold_of, predicted
 from estimator.diagnosis.residuals.whitened import whitened_design
 from estimator.diagnosis.selection.forward import with_structures
+from estimator.diagnosis.selection.ranking import extended_basis
 from estimator.diagnosis.selection.search_state import Found, SearchState
 from estimator.diagnosis.signatures.scores import bayes_factor
 from estimator.session import Array
@@ -22,9 +23,6 @@ LEADERS = 6
 
 WORSE = 2.0
 """ln of the odds by which a prediction must be worse: less is the chance of which row lies in which fold."""
-
-VISIBLE = 1e-6
-"""Share of a column that must be new for it to count as a direction of its own: rounding lies below."""
 
 WITHIN = 0.5
 """Share of a finding's energy that the session's own rows must hold, and that no fold may hold, for its prediction of
@@ -77,13 +75,13 @@ def chosen_in_folds(state: SearchState, judged: list[Found]) -> list[list[Array]
     chosen = []
     for held in range(FOLDS):
         kept = fold != held
-        basis = extended(np.zeros((int(kept.sum()), 0)), design[kept])
+        basis = extended_basis(np.zeros((int(kept.sum()), 0)), design[kept])
         z = data[kept] - basis @ (basis.T @ data[kept])
         columns = []
         for own, seen in zip(candidates, whitened, strict=True):
             best = max(range(len(own)), key=lambda k: weight(basis, z, seen[k][kept]) - own[k][1])
             columns.append(own[best][0].columns)
-            basis = extended(basis, seen[best][kept])
+            basis = extended_basis(basis, seen[best][kept])
             z = z - basis @ (basis.T @ z)
         chosen.append(columns)
     return chosen
@@ -102,16 +100,7 @@ def shapes_of(state: SearchState, found: Found) -> Iterator[tuple[Shape, float]]
 
 def weight(basis: Array, z: Array, columns: Array) -> float:
     """ln evidence of columns (n, q) on what ``basis`` (n, p) leaves of residuals z (n,), standard errors."""
-    new = extended(basis, columns)[:, basis.shape[1] :]
+    new = extended_basis(basis, columns)[:, basis.shape[1] :]
     power, freedom = float(((new.T @ z) ** 2).sum()), new.shape[1]
     rest = max((float(z @ z) - power) / max(len(z) - basis.shape[1] - freedom, 1), 1e-300)
     return bayes_factor(power / max(rest, 1.0), freedom)
-
-
-def extended(basis: Array, columns: Array) -> Array:
-    """(n, p + r) orthonormal, dimensionless: ``basis`` (n, p) continued by what is new in columns (n, q)."""
-    size = np.linalg.norm(columns, axis=0)
-    new = columns[:, size > 0] / size[size > 0]
-    new = new - basis @ (basis.T @ new)
-    left, value, _ = np.linalg.svd(new, full_matrices=False)
-    return np.concatenate([basis, left[:, value > VISIBLE]], axis=1)

@@ -17,16 +17,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import logsumexp
 
 from estimator.causes.contract import Setting
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.signatures.autocorrelation import bending
+from estimator.diagnosis.signatures.autocorrelation import LENGTHS, around, bending, logmeanexp
 from estimator.diagnosis.signatures.noise import normal_deviate
 from estimator.session import ACCELEROMETER, Array
-
-SMOOTH = (0.08, 0.25)
-"""Share of the session over which a course in time keeps its value: a few rows, or a good part of it."""
 
 ROUND = (0.4, 1.0, 2.5)
 """Length, rad, over which a course in β keeps its value: some six harmonics, two, or little more than the first."""
@@ -109,17 +105,17 @@ def kernels(setting: Setting) -> Iterator[tuple[str, Array]]:
     """Orders along which a course may run, each with the covariance (R, R), dimensionless, of a unit course."""
     place = np.arange(setting.rows) / max(setting.rows - 1, 1)
     yield "the order measured", np.minimum(place[:, None], place) + 1 / setting.rows
-    for length in SMOOTH:
+    for length in LENGTHS:
         yield "the order measured", bending(place, length)
     yield "no order: anew at every row", np.eye(setting.rows)
     if setting.beta is None or setting.flipped is None:
         return
     same_run = setting.flipped[:, None] == setting.flipped
     for length in ROUND:
-        around = np.exp(-2 * (np.sin((setting.beta[:, None] - setting.beta) / 2) / length) ** 2)
-        yield "β", around
+        kernel = around(setting.beta, length)
+        yield "β", kernel
         if not same_run.all():
-            yield "β, each run for itself", around * same_run
+            yield "β, each run for itself", kernel * same_run
 
 
 def hypotheses(setting: Setting) -> Iterator[Hypothesis]:
@@ -157,18 +153,18 @@ def applied_course(residuals: WhitenedResiduals, attributed: Array, *, lasting: 
     the history's sessions had the same course. The noise is taken as it is in the residuals.
     """
     z = residuals.z - attributed @ (attributed.T @ residuals.z)
-    tried, best, leading = [], -np.inf, None
+    tried, leading = [], None
     for hypothesis in hypotheses(residuals.baseline.setting):
         trace = residuals.trace(hypothesis.columns, None if lasting else 0.0)
         trace = trace - attributed @ (attributed.T @ trace)
         log_evidence, coefficients = evidence(trace, z)
+        if leading is None or log_evidence > max(tried):
+            leading = hypothesis, coefficients
         tried.append(log_evidence)
-        if leading is None or log_evidence > best:
-            best, leading = log_evidence, (hypothesis, coefficients)
     assert leading is not None
     likeliest, coefficients = leading
     return AppliedCourse(
-        log_evidence=float(logsumexp(tried) - np.log(len(tried))),
+        log_evidence=logmeanexp(tried),
         order=likeliest.order,
         components=likeliest.components,
         value=(likeliest.lift @ coefficients).T,
@@ -194,4 +190,4 @@ def evidence(trace: Array, z: Array) -> tuple[float, Array]:
     volume = -0.5 * np.log1p(strengths[:, None] * size).sum(axis=1)
     values = volume + 0.5 * (power**2 * shrunk).sum(axis=1)
     value = turn @ (power * shrunk[int(np.argmax(values))])
-    return float(logsumexp(values) - np.log(len(values))), value
+    return logmeanexp(values), value

@@ -71,14 +71,13 @@ def kernels(residuals: WhitenedResiduals, sensor: int) -> dict[str, list[Array]]
     found = {name: along(place) for name, place in places.items()}
     if setting.beta is None or setting.flipped is None:
         return found
-    half = np.sin((setting.beta[:, None] - setting.beta) / 2)
-    around = [np.exp(-2 * (half / length) ** 2) for length in ROUND]
+    turning = [around(setting.beta, length) for length in ROUND]
     same_run = setting.flipped[:, None] == setting.flipped
     if not same_run.all():
-        found["β, each run for itself"] = [kernel * same_run for kernel in around]
+        found["β, each run for itself"] = [kernel * same_run for kernel in turning]
     for name in ("the order measured", "temperature"):
         if name in places:
-            found[f"β and {name}"] = [bending(places[name], LENGTHS[-1]) * kernel for kernel in around]
+            found[f"β and {name}"] = [bending(places[name], LENGTHS[-1]) * kernel for kernel in turning]
     return found
 
 
@@ -93,6 +92,12 @@ def bending(place: Array, length: float) -> Array:
     """(R, R) dimensionless covariance of a course along places (R,) that keeps its value over a length (Matérn 3/2)."""
     distance = np.sqrt(3) * np.abs(place[:, None] - place) / length
     return np.asarray((1 + distance) * np.exp(-distance))
+
+
+def around(beta: Array, length: float) -> Array:
+    """(R, R) dimensionless covariance of a course around β (R,), rad, that keeps its value over a length, rad (MacKay
+    1998, periodic)."""
+    return np.asarray(np.exp(-2 * (np.sin((beta[:, None] - beta) / 2) / length) ** 2))
 
 
 def own_covariance(residuals: WhitenedResiduals, attributed: Array, sensor: int) -> Array:
