@@ -156,6 +156,11 @@ class Fit:
     positions_to_add: int = 0
     """Positions to add so that the readings tell their noise; 0 when the uncertainties are known."""
 
+    @property
+    def is_exact(self) -> bool:
+        """Whether the parameters take all that the readings tell: nothing is left over to judge the model by."""
+        return self.dof < 1
+
     def to_dict(self) -> dict[str, Any]:
         return {
             "chi2": self.chi2,

@@ -33,9 +33,6 @@ from estimator.diagnosis.selection.search_state import SearchState
 from estimator.diagnosis.selection.start import begin
 from estimator.session import CalibrationSession
 
-NOTHING_LEFT = "Too few positions: the parameters take all that the readings tell, and nothing is left to judge by."
-"""Said of a session without a degree of freedom."""
-
 
 def diagnose(
     session: CalibrationSession,

@@ -43,7 +43,7 @@ def _told(diagnosis: Diagnosis) -> Iterator[RenderableType]:
         yield Text(_structure(structure), COLOURS[DiagnosisState.UNEXPLAINED])
     if state is DiagnosisState.UNEXPLAINED:
         yield Text(f"  What to do: {what_to_do(diagnosis)}")
-    if state is DiagnosisState.NOTHING:
+    if not diagnosis.findings and not diagnosis.structures:
         yield Text(nothing_of(diagnosis), COLOURS[state])
     else:
         yield from (Text(sentence, "yellow") for sentence in errors_of(diagnosis))

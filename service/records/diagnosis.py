@@ -29,10 +29,13 @@ class DiagnosisState(StrEnum):
 
 
 def state_of(diagnosis: Diagnosis) -> DiagnosisState:
-    """What people hear first: a name, a choice, structure without a name, or nothing."""
+    """What people hear first: a name, a choice, structure without a name, or nothing; undecided where no reading is
+    left over to judge by."""
     if diagnosis.findings:
         return DiagnosisState.UNDECIDED if diagnosis.findings[0].alternatives else DiagnosisState.NAMED
-    return DiagnosisState.UNEXPLAINED if diagnosis.unexplained else DiagnosisState.NOTHING
+    if diagnosis.unexplained:
+        return DiagnosisState.UNEXPLAINED
+    return DiagnosisState.UNDECIDED if diagnosis.calibration.fit.is_exact else DiagnosisState.NOTHING
 
 
 @dataclass(frozen=True)

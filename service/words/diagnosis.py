@@ -8,6 +8,7 @@ from estimator.diagnosis.results import NoiseScale, Structure
 from estimator.errors import SessionError
 from estimator.results import Calibration
 from service.records.diagnosis import DiagnosisState
+from service.words.advice import too_few
 from service.words.causes import ONE_NOT_KNOWN, at_once_with, is_lone, what_is_wrong
 from service.words.noise_claims import but_wrong_errors, wrong_errors
 from service.words.structures import UNEXPLAINED, headline_of, told, what_to_do_about
@@ -16,6 +17,8 @@ NOT_APPLICABLE = (
     "Not applicable to this programme: causes are looked for in calibrations, on a stand or in still orientations."
 )
 NOTHING = "Nothing wrong found"
+NOTHING_LEFT = "Too few positions to judge the simulation"
+TAKEN_UP = "The parameters take all that the readings tell, and nothing is left to find a cause by: add positions."
 MOST_FINDINGS = 3
 """Findings that one line tells before it counts the rest."""
 HEADLINES = {
@@ -65,7 +68,9 @@ def summary_of(answer: Answer) -> str:
 
 
 def nothing_of(answer: Answer) -> str:
-    """That nothing is wrong, unless it is what the file says of the noise."""
+    """That nothing is wrong, unless it is what the file says of the noise, or nothing is left to judge by."""
+    if answer.calibration.fit.is_exact:
+        return f"{NOTHING_LEFT}. {TAKEN_UP}"
     if answer.noise:
         return f"{NOTHING}{but_wrong_errors(answer.noise, _kinds(answer))}."
     return f"{NOTHING}: the simulation explains the readings."
@@ -107,6 +112,8 @@ def headline(answer: Answer) -> str:
         return what_is_wrong(answer.findings[0], answer.findings)
     if answer.structures:
         return headline_of(answer.structures)
+    if answer.calibration.fit.is_exact:
+        return NOTHING_LEFT
     return f"{NOTHING}{but_wrong_errors(answer.noise, _kinds(answer))}"
 
 
@@ -116,6 +123,8 @@ def what_to_do(answer: Answer) -> str:
         return _about(answer.findings[0], answer.findings)
     if answer.structures:
         return what_to_do_about(answer.structures)
+    if answer.calibration.fit.is_exact:
+        return too_few(answer.calibration) or TAKEN_UP
     return RESTATE if answer.noise else AGREE
 
 

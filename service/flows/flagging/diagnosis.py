@@ -22,7 +22,7 @@ GONE = "The diagnosis of the session of {day} no longer finds it."
 
 def flag_diagnosis(store: Store, made: StoredDiagnosis, at: datetime) -> None:
     """Settles the unit's flags. An older session than its latest says nothing, nor one without a diagnosis: a failed
-    one, or a recording in which no causes are looked for."""
+    one, or a recording in which no causes are looked for. One without a degree of freedom clears nothing."""
     session = store.sessions.get(made.session)
     summary = store.fleet.unit(session.unit)
     if made.found is None or summary is None or summary.last_session != session.id:
@@ -32,7 +32,7 @@ def flag_diagnosis(store: Store, made: StoredDiagnosis, at: datetime) -> None:
     accepted = in_force(store.models.of_session(session.id))
     concerns = tuple(_concerns(made.found, session, accepted))
     gone = GONE.format(day=day_of(session.started_at))
-    clear = {flag.key: gone for flag in opened if _speaks_of(session, flag)}
+    clear = {flag.key: gone for flag in opened if not made.found.calibration.fit.is_exact and _speaks_of(session, flag)}
     settle(store, Occasion(unit, session.id, at), opened, Found(concerns, clear))
 
 
