@@ -127,13 +127,15 @@ class Course:
 
 @dataclass(frozen=True)
 class NoiseScale:
-    """Stated standard errors of a kind of sensor that its readings contradict."""
+    """Stated standard errors of sensors of a kind that their readings contradict."""
 
     kind: str
     factor: float
     """By which they are too small; below one they are too large."""
     freedom: float
     """Degrees of freedom that tell it."""
+    sensors: tuple[str, ...] = ()
+    """Whose they are; none where they are those of all sensors of the kind."""
 
 
 @dataclass(frozen=True)

@@ -159,7 +159,8 @@ def _course(entry: dict[str, Any]) -> Course:
 
 
 def _noise(entry: dict[str, Any]) -> NoiseScale:
-    return NoiseScale(entry["kind"], _number(entry["factor"]), _number(entry["freedom"]))
+    sensors = tuple(entry.get("sensors", ()))
+    return NoiseScale(entry["kind"], _number(entry["factor"]), _number(entry["freedom"]), sensors)
 
 
 def _gain(entry: dict[str, Any]) -> Gain:

@@ -13,7 +13,8 @@ NEAR = 1.15
 
 
 def wrong_errors(noise: Sequence[NoiseScale], kinds: Collection[str]) -> tuple[str, ...]:
-    """``The stated standard errors are about 4 times too small.``; by kind where a session holds several."""
+    """``The stated standard errors are about 4 times too small.``; by kind where a session holds several,
+    and whose they are where not all sensors'."""
     return tuple(f"The {clause}." for clause in _clauses(noise, kinds))
 
 
@@ -24,11 +25,14 @@ def but_wrong_errors(noise: Sequence[NoiseScale], kinds: Collection[str]) -> str
 
 
 def _clauses(noise: Sequence[NoiseScale], kinds: Collection[str]) -> list[str]:
-    return [f"stated standard errors{_of(n.kind, kinds)} are {_how_far_off(n.factor)}" for n in noise]
+    return [f"stated standard errors{_whose(n, kinds)} are {_how_far_off(n.factor)}" for n in noise]
 
 
-def _of(kind: str, kinds: Collection[str]) -> str:
-    return f" of the {kind}s" if len(set(kinds)) > 1 else ""
+def _whose(scale: NoiseScale, kinds: Collection[str]) -> str:
+    if scale.sensors:
+        *others, last = scale.sensors
+        return f" of {', '.join(others)} and {last}" if others else f" of {last}"
+    return f" of the {scale.kind}s" if len(set(kinds)) > 1 else ""
 
 
 def _how_far_off(factor: float) -> str:

@@ -111,7 +111,7 @@ def true_errors(state: SearchState) -> Array:
     for noisy in state.scatter:
         larger[noisy.sensor] *= noisy.ratio
     for claim in state.noise_claims:
-        larger[[kind == claim.kind for kind in state.baseline.setting.kinds]] *= max(claim.ratio, 1.0)
+        larger[list(claim.sensors)] *= max(claim.ratio, 1.0)
     repeated = (scale * np.array([s.bias_repeatability for s in session.sensors])) ** 2
     return np.asarray(np.sqrt(larger * (session.standard_errors**2 + repeated) - repeated))
 

@@ -12,9 +12,10 @@ from estimator.diagnosis.explanation.naming import merged, named_cause
 from estimator.diagnosis.explanation.rivals import CREDIBLE, alternatives, ranking, separations
 from estimator.diagnosis.explanation.sensor_or_stand import parity_split
 from estimator.diagnosis.results import Course, Finding, NoiseScale, Structure
+from estimator.diagnosis.selection.excess_noise import sensor_scatter
 from estimator.diagnosis.selection.search_state import Found, SearchState
 from estimator.diagnosis.signatures.applied_course import AppliedCourse
-from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance, UnlikeNoise
+from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance, NoiseClaim, UnlikeNoise
 from estimator.diagnosis.signatures.patterns import Pattern
 from estimator.session import ACCELEROMETER
 
@@ -81,9 +82,11 @@ def noise_cause(state: SearchState) -> Cause | None:
 def excess_finding(state: SearchState, cause: Cause, excess: ExcessVariance) -> Finding:
     """A sensor noisier than stated: the amplitude is the extra standard deviation of a reading at the input."""
     sensor = state.baseline.session.sensors[excess.sensor]
-    stated = float(np.mean(state.baseline.variance[:, excess.sensor])) / excess.ratio
-    extra = float(np.sqrt(stated * (excess.ratio - 1)))
-    sigma = stated * excess.ratio * float(np.sqrt(2 / excess.freedom)) / (2 * extra)
+    stated, taken = (float(np.mean(v[:, excess.sensor])) for v in (state.stated, state.baseline.variance))
+    energy, freedom = (float(x[excess.sensor]) for x in sensor_scatter(state))
+    whole = max(taken * energy / max(freedom, 1.0), stated * (1 + 1 / excess.freedom))
+    extra = float(np.sqrt(whole - stated))
+    sigma = whole * float(np.sqrt(2 / excess.freedom)) / (2 * extra)
     return replace(
         named_cause(cause, (sensor.name,), excess.p_family, excess.strength),
         amplitude=(extra,),
@@ -137,8 +140,14 @@ def common_course(course: AppliedCourse) -> Structure:
 
 
 def noise_scales(state: SearchState) -> tuple[NoiseScale, ...]:
-    """Kinds of sensor whose stated standard errors the readings contradict."""
-    return tuple(NoiseScale(c.kind, float(np.sqrt(c.ratio)), c.freedom) for c in state.noise_claims)
+    """Sensors whose stated standard errors the readings contradict."""
+    return tuple(_noise_scale(state, claim) for claim in state.noise_claims)
+
+
+def _noise_scale(state: SearchState, claim: NoiseClaim) -> NoiseScale:
+    whole = state.baseline.setting.kinds.count(claim.kind) == len(claim.sensors)
+    sensors = () if whole else tuple(state.names[i] for i in claim.sensors)
+    return NoiseScale(claim.kind, float(np.sqrt(claim.ratio)), claim.freedom, sensors)
 
 
 def beyond_noise(state: SearchState) -> Iterator[Structure]:
@@ -146,7 +155,7 @@ def beyond_noise(state: SearchState) -> Iterator[Structure]:
     for scale in noise_scales(state):
         if scale.factor > BEYOND_NOISE:
             where = f"scatter {scale.factor:.0f} times the stated standard errors: more than noise can be"
-            yield Structure(where, (), 0.0, float(np.sqrt(scale.freedom)) * scale.factor)
+            yield Structure(where, scale.sensors, 0.0, float(np.sqrt(scale.freedom)) * scale.factor)
 
 
 def unlike_noise(state: SearchState, unlike: UnlikeNoise) -> Structure:

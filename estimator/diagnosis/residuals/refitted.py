@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from estimator.diagnosis.residuals.baseline import Baseline, block_columns
+from estimator.diagnosis.residuals.flipped_run import flip_effect
 from estimator.diagnosis.residuals.gauge import observable_directions
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 
@@ -11,11 +12,13 @@ def refitted(baseline: Baseline) -> Baseline:
     """The baseline with its parameters at their least squares under its own noise and nuisances: one linear step.
 
     The step holds no common turn of all axes where none can be observed: it would be rounding over nothing, and would
-    turn the session away from its history.
+    turn the session away from its history. The turn of the flipped run that the fit is linear about stays in the
+    residuals, as the effect that it is.
     """
     residuals, setting = WhitenedResiduals.of(baseline), baseline.setting
     keep = observable_directions(baseline.gauge_free, baseline.parameters)
-    step = keep @ (keep.T @ (residuals.response @ residuals.whitened(baseline.residual[..., None])[:, 0]))
+    own = residuals.whitened((baseline.residual - flip_effect(setting))[..., None])[:, 0]
+    step = keep @ (keep.T @ (residuals.response @ own))
     left = baseline.residual - block_columns(baseline.design) @ step
-    own = setting.parameters.stepped(step.reshape(-1, 5), setting.norm)
-    return replace(baseline, residual=left, setting=replace(setting, parameters=own))
+    parameters = setting.parameters.stepped(step.reshape(-1, 5), setting.norm)
+    return replace(baseline, residual=left, setting=replace(setting, parameters=parameters))

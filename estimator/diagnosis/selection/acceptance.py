@@ -5,10 +5,11 @@ from dataclasses import replace
 from estimator.diagnosis.selection.chosen_again import without_unpredictive
 from estimator.diagnosis.selection.common_or_own import common_or_own
 from estimator.diagnosis.selection.lack_of_fit import with_unlike_noise, without_common_rows, without_misfits
-from estimator.diagnosis.selection.noise_claim import doubted, with_unknown_scale
+from estimator.diagnosis.selection.noise_claim import doubted, of_whole_kinds, sensors_of, with_unknown_scale
 from estimator.diagnosis.selection.refinement import with_refined_shapes
 from estimator.diagnosis.selection.search import search
 from estimator.diagnosis.selection.search_state import SearchState
+from estimator.diagnosis.signatures.noise import NoiseClaim
 
 
 def accepted(start: SearchState) -> SearchState:
@@ -17,11 +18,24 @@ def accepted(start: SearchState) -> SearchState:
     if not claims:
         state = believed(start)
         claims = doubted(state)
-    if claims:
-        rival = believed(with_unknown_scale(start, claims))
-        if confirmed := doubted(rival):
-            return replace(rival, noise_claims=confirmed)
-    return state or believed(start)
+    rival = whatever_the_scale(start, claims) if claims else None
+    return rival or state or believed(start)
+
+
+def whatever_the_scale(start: SearchState, claims: tuple[NoiseClaim, ...]) -> SearchState | None:
+    """The causes that hold with the noise of some sensors known up to a factor; None where what they leave scatters as
+    stated.
+
+    An effect may hide that a sensor's errors are off too, so that all of a kind are looked at; those whose errors then
+    turn out to be right are believed again.
+    """
+    wide = of_whole_kinds(start, claims)
+    found = believed(with_unknown_scale(start, wide))
+    left = doubted(found)
+    if left and sensors_of(left) != sensors_of(wide):
+        found = believed(with_unknown_scale(start, left))
+        left = doubted(found) or left
+    return replace(found, noise_claims=left) if left else None
 
 
 def believed(start: SearchState) -> SearchState:

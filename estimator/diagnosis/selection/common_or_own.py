@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import expit
 
+from estimator.diagnosis.residuals.likelihood import log_likelihood_ratio
 from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.selection.backward import FURTHER
 from estimator.diagnosis.selection.crowd import crowded, without_crowd
@@ -25,6 +26,7 @@ from estimator.diagnosis.selection.start import begun_with
 from estimator.diagnosis.signatures.applied_course import SIZE, AppliedCourse, applied_course
 from estimator.diagnosis.signatures.scores import score
 from estimator.diagnosis.signatures.traces import Group
+from estimator.session import Array
 
 DISTINCT = 5.3
 """ln evidence by which a set of names must beat a course for the course to be no alternative: odds of 200."""
@@ -41,11 +43,9 @@ the course, or what an unseen change of all scale factors leaves of it."""
 
 
 def weighed(state: SearchState) -> float:
-    """ln evidence of all that was found together against nothing, every further name paid for."""
-    scatter = sum(s.log_evidence for s in state.excess)
-    scatter += sum(s.log_evidence + s.excess_log_evidence for s in state.autocorrelated)
-    number = len(state.found) + len(state.structures) + len(state.scatter_attributed)
-    return joint_log_evidence(state) + scatter - FURTHER * max(number - 1, 0)
+    """ln evidence of the names and structures found together against nothing, every further one paid for."""
+    number = len(state.found) + len(state.structures)
+    return joint_log_evidence(state) - FURTHER * max(number - 1, 0)
 
 
 def nearly(state: SearchState) -> float:
@@ -55,19 +55,21 @@ def nearly(state: SearchState) -> float:
     return 0.5 * MISFIT * state.found[0].best.statistic if alone else 0.0
 
 
-def settled(start: SearchState, state: SearchState) -> tuple[SearchState, SearchState]:
-    """Nothing found, and what was found, with noise that no file states taken as what was found leaves of it.
+def settled(start: SearchState, state: SearchState, unknown: Array) -> tuple[SearchState, SearchState]:
+    """Nothing found, and what was found, ``unknown`` sensors' (m,) bool noise taken as what that leaves.
 
     A noise estimated from residuals that hold an effect hides it, from a course more than from a name. Where no name is
     of what changed since the history, that is left out: parameters are then known so well that minutes of arc are no
     longer linear in it.
     """
-    baseline, (energy, freedom) = start.baseline, sensor_scatter(state)
-    if not baseline.unstated.any():
+    if not (unknown.any() or state.scatter):
         return start, state
-    left = np.where(baseline.unstated & (freedom >= LEAST_FREEDOM), energy / np.maximum(freedom, 1.0), 1.0)
-    known = replace(baseline, variance=baseline.variance * left, unstated=np.zeros_like(baseline.unstated))
-    past = start.history if any(f.best.cause.between for f in state.found) else ()
+    energy, freedom = sensor_scatter(state)
+    left = np.where(freedom >= LEAST_FREEDOM, energy / np.maximum(freedom, 1.0), 1.0)
+    variance = np.where(unknown, state.baseline.variance * left, start.baseline.variance)
+    known = replace(start.baseline, variance=variance, unstated=start.baseline.unstated & ~unknown)
+    as_stated = not (unknown & ~start.baseline.unstated).any()
+    past = (start if as_stated else state).history if any(f.best.cause.between for f in state.found) else ()
     begun = begun_with(replace(start, history=past), refitted(known))
     found, structures = seen_from(begun, state.found), seen_from(begun, state.structures)
     seen = replace(begun, found=found, structures=structures)
@@ -80,16 +82,56 @@ def concerns_all(state: SearchState) -> bool:
     return () in places or len(places) > 1
 
 
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """Nothing found, with the noise by which a course is weighed, and the course that explains most there."""
+
+    begun: SearchState
+    noise: float
+    """ln evidence of that noise against what is stated."""
+    course: AppliedCourse
+
+    @property
+    def log_evidence(self) -> float:
+        """Of the course in that noise against nothing in the noise as stated."""
+        return self.course.log_evidence + self.noise
+
+
+def likeliest_ground(begun: SearchState, plain: SearchState, noise: float) -> Ground:
+    """A course may act beside the scatter that was found, as in ``begun``, or explain it, in the noise as stated."""
+    beside = Ground(begun, noise, likeliest_course(begun, ()))
+    return beside if begun is plain else max(beside, Ground(plain, 0.0, likeliest_course(plain, ())), key=_evidence)
+
+
+def _evidence(ground: Ground) -> float:
+    return ground.log_evidence
+
+
+def weighed_noise(state: SearchState, begun: SearchState, plain: SearchState) -> float:
+    """ln evidence of scatter beyond what is stated, of sensors' own courses in it, every sensor paid for as a name.
+
+    ``begun``, ``plain``: nothing found, in the noise that was found and as stated.
+    """
+    _, freedom = sensor_scatter(state)
+    larger = log_likelihood_ratio(begun.residuals, plain.residuals) if begun is not plain else 0.0
+    courses = sum(s.log_evidence for s in state.autocorrelated)
+    sizes = sum(0.5 * np.log(max(freedom[i], 2.0) / 2) + np.log(state.sensor_count) for i in state.scatter_attributed)
+    return float(larger + courses - sizes) - FURTHER * len(state.scatter_attributed)
+
+
 def common_or_own(start: SearchState, state: SearchState, search: Callable[[SearchState], SearchState]) -> SearchState:
     """The state, or its rival with a course of the applied vector, whichever is likelier; ``start``: nothing found."""
     if not concerns_all(state):
         return state
-    begun, seen = settled(start, state)
-    own, course = weighed(seen) + nearly(seen), likeliest_course(begun, ())
-    if course.log_evidence - FURTHER - own < -DISTINCT and not crowded(state):
+    begun, seen = settled(start, state, state.baseline.unstated)
+    plain = settled(start, state, start.baseline.unstated)[0] if state.scatter else begun
+    noise = weighed_noise(state, begun, plain)
+    ground = likeliest_ground(begun, plain, noise)
+    own = weighed(seen) + nearly(seen) + noise
+    if ground.log_evidence - FURTHER - own < -DISTINCT and not crowded(state):
         return state
-    rival = whatever_the_vector(start, begun, course, search)
-    gained = rival.log_evidence - FURTHER - own
+    rival = whatever_the_vector(start, ground.begun, ground.course, search)
+    gained = rival.log_evidence + ground.noise - FURTHER - own
     if gained > 0 and rival.course.log_evidence > LEAST:
         return without_leaks(replace(rival.parity, courses=(rival.course,)))
     held_there = {f.best.group for f in rival.parity.found}

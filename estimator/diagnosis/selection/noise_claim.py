@@ -1,15 +1,17 @@
-"""The stated noise is a claim: where the readings of most sensors scatter otherwise, its scale is taken as unknown.
+"""The stated noise is a claim: where the readings of sensors scatter otherwise, its scale is taken as unknown.
 
 Theory
 ------
 With E the energy of a sensor's residuals in their stated sigmas and ν its degrees of freedom, E is χ² where the stated
-noise is right and nothing else acts. Where E is too large, or too small, for most sensors of a kind, causes are sought
-by F instead of χ²: their strength is then measured in the scatter that the readings show, whatever the file says. What
-the causes leave decides. Scatter as stated: the noise was right, and is believed again. Scatter as far off as before:
-the stated errors were wrong, by the factor √(E/ν). Where rows repeat a position, their differences are *pure error*,
-free of any model: where they agree with the stated noise, it stands.
+noise is right and nothing else acts. Where E is too large for most sensors of a kind, or too small for any, which no
+effect can make it, causes are sought by F instead of χ² on all of the kind: their strength is then measured in the
+scatter that the readings show, whatever the file says. What the causes leave decides. Scatter as stated: the noise was
+right, and is believed again. Scatter as far off as before: the stated errors were wrong, by the factor √(E/ν). Where
+that is so of some sensors only, causes are sought a last time with the others' noise as stated. Where rows repeat a
+position, their differences are *pure error*, free of any model: where they agree with the stated noise, it stands.
 """
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,7 +23,7 @@ from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.excess_noise import sensor_scatter
 from estimator.diagnosis.selection.search_state import SearchState
-from estimator.diagnosis.selection.start import begun_with
+from estimator.diagnosis.selection.start import begun_with, with_earlier_scatter
 from estimator.diagnosis.signatures.noise import NoiseClaim
 from estimator.session import Array
 
@@ -29,8 +31,15 @@ DOUBTFUL = 1e-3
 """p-value of all residuals of a kind together below which its stated noise is in doubt."""
 
 SEEN = 1e-3
-"""p-value by which half of its sensors must show the same, each for itself: one noisy sensor is no wrong claim, though
+"""p-value by which half of its sensors must show more, each for itself: one noisy sensor is no wrong claim, though
 what they share of a row's β error lets it be seen faintly in others."""
+
+QUIET = 1e-4
+"""p-value, over the sensors of a kind, of one that scatters less than stated: no effect makes a sensor quieter, so that
+one tells enough."""
+
+MORE = 1
+"""The sense in which an effect makes readings scatter, where one sensor tells nothing of the claim."""
 
 AGREES = 0.01
 """p-value above which differences of repeated rows agree with the stated noise."""
@@ -57,40 +66,62 @@ class Scatter:
         """Chance of less, and of more, under the stated noise."""
         return float(chdtr(self.freedom, self.energy)), float(chdtrc(self.freedom, self.energy))
 
+    def is_alike(self, others: "Scatter", side: int) -> bool:
+        """Whether this scatter may be off as that of ``others`` is: not in the other sense, nor plainly as stated."""
+        here = replace(self, energy=self.energy * others.freedom / max(others.energy, SMALLEST * others.freedom))
+        as_stated = min(self.tails) > SEEN > min(here.tails)
+        return self.tails[1 - side] > SEEN and not as_stated
+
 
 def doubted(state: SearchState) -> tuple[NoiseClaim, ...]:
-    """Kinds of sensor that scatter otherwise than stated, most sensors in the same sense, after all that was found."""
-    found = []
+    """Sensors that scatter otherwise than stated, most of a kind or less than they should, after all that was found."""
+    unstated = unstated_noise(state.baseline.session)
+    found: list[NoiseClaim] = []
     for kind in dict.fromkeys(state.baseline.setting.kinds):
         own = np.array([k == kind for k in state.baseline.setting.kinds])
-        each = scatter_of(state, own)
-        if len(each) < 2 or unstated_noise(state.baseline.session)[own].any():
-            continue
-        whole = Scatter(sum(s.energy for s in each), sum(s.freedom for s in each))
-        side = int(np.argmin(whole.tails))
-        agreeing = sum(s.tails[side] < SEEN for s in each)
-        if whole.freedom < FEWEST or whole.tails[side] > DOUBTFUL or 2 * agreeing < len(each):
-            continue
-        if not stands(replace(state.baseline, variance=state.stated), own):
-            found.append(NoiseClaim(kind, max(whole.energy / whole.freedom, SMALLEST), whole.freedom))
+        if own.sum() > 1 and not unstated[own].any():
+            found.extend(_claims(state, kind, np.flatnonzero(own)))
     return tuple(found)
 
 
+def _claims(state: SearchState, kind: str, own: Array) -> Iterator[NoiseClaim]:
+    """Of the sensors (k,) int of one kind; in either sense at most one."""
+    each = scatter_of(state, own)
+    whole = together(each)
+    for side, least in enumerate((QUIET / len(each), SEEN)):
+        seen = [s for s in each if s.tails[side] < least]
+        most = 2 * sum(s.tails[side] < SEEN for s in each) >= len(each) and whole.tails[side] < DOUBTFUL
+        if not most and (side == MORE or not seen):
+            continue
+        chosen = together([s for s in each if s.tails[side] < SEEN])
+        alike = [s.is_alike(chosen, side) for s in each]
+        claimed, sensors = together(s for s, yes in zip(each, alike, strict=True) if yes), own[alike]
+        if claimed.freedom >= FEWEST and not stands(replace(state.baseline, variance=state.stated), sensors):
+            ratio = max(claimed.energy / claimed.freedom, SMALLEST)
+            yield NoiseClaim(kind, tuple(sensors.tolist()), ratio, claimed.freedom)
+
+
+def together(each: Iterable[Scatter]) -> Scatter:
+    """The scatter of several sensors."""
+    parts = tuple(each)
+    return Scatter(sum(s.energy for s in parts), sum(s.freedom for s in parts))
+
+
 def scatter_of(state: SearchState, own: Array) -> list[Scatter]:
-    """What a search leaves of each of some sensors (m,) bool, dimensionless, in its stated errors."""
+    """What a search leaves of each of some sensors (k,) int, dimensionless, in its stated errors."""
     energy, freedom = sensor_scatter(state)
     scale = np.median(state.baseline.variance / state.stated, axis=0)
-    return [Scatter(float(energy[i] * scale[i]), float(freedom[i])) for i in np.flatnonzero(own)]
+    return [Scatter(float(energy[i] * scale[i]), float(freedom[i])) for i in own]
 
 
 def stands(baseline: Baseline, own: Array) -> bool:
-    """Whether rows of one position repeat as the stated noise says; ``own`` (m,) bool, dimensionless."""
+    """Whether rows of one position repeat as the stated noise says; ``own`` (k,) int, sensors."""
     pure = pure_error(baseline, own)
     return pure.freedom >= FEWEST and min(pure.tails) > AGREES
 
 
 def pure_error(baseline: Baseline, own: Array) -> Scatter:
-    """Scatter of rows at the same β in the same run about their mean; ``own`` (m,) bool, dimensionless.
+    """Scatter of rows at the same β in the same run about their mean; ``own`` (k,) int, sensors.
 
     In standard errors of a row, its β error among them.
     """
@@ -103,11 +134,27 @@ def pure_error(baseline: Baseline, own: Array) -> Scatter:
     count = np.bincount(group.ravel())
     mean = np.stack([np.bincount(group.ravel(), weights=column) / count for column in whitened.T], axis=-1)
     left = whitened - mean[group.ravel()]
-    return Scatter(float((left**2).sum()), float((count - 1).sum() * own.sum()))
+    return Scatter(float((left**2).sum()), float((count - 1).sum() * len(own)))
+
+
+def of_whole_kinds(state: SearchState, claims: Iterable[NoiseClaim]) -> tuple[NoiseClaim, ...]:
+    """The claims, every other sensor of their kinds in one of its own: an effect may hide that it is off too."""
+    wider = []
+    for claim in claims:
+        kinds = state.baseline.setting.kinds
+        rest = [i for i, k in enumerate(kinds) if k == claim.kind and i not in claim.sensors]
+        others = [NoiseClaim(claim.kind, (i,), 1.0, 0.0) for i in rest]
+        wider += [claim, *others]
+    return tuple(wider)
+
+
+def sensors_of(claims: Iterable[NoiseClaim]) -> set[int]:
+    """All that some claims are about."""
+    return {i for claim in claims for i in claim.sensors}
 
 
 def with_unknown_scale(start: SearchState, claims: tuple[NoiseClaim, ...]) -> SearchState:
-    """The search begun anew with the noise of some kinds known up to a factor, which each sensor's own readings tell.
+    """The search begun anew with the noise of some sensors known up to a factor, which each one's own readings tell.
 
     The others of its kind tell nothing: what all show, such as a warm-up of the whole block, would pass for noise.
     """
@@ -115,10 +162,11 @@ def with_unknown_scale(start: SearchState, claims: tuple[NoiseClaim, ...]) -> Se
     variance, unstated = baseline.variance.copy(), baseline.unstated.copy()
     expected = np.zeros(len(unstated)) if baseline.expected_ratio is None else baseline.expected_ratio.copy()
     for claim in claims:
-        own = np.array([kind == claim.kind for kind in baseline.setting.kinds])
+        own = list(claim.sensors)
         variance[:, own] *= claim.ratio
         unstated[own], expected[own] = True, 0.0
     changed = replace(baseline, variance=variance, unstated=unstated, expected_ratio=expected)
     again = refitted(changed)
     moved = np.abs(again.parameters.axis - baseline.parameters.axis).max()
-    return replace(begun_with(start, again if moved < LINEAR else changed), noise_claims=claims)
+    earlier = with_earlier_scatter(start, sorted(sensors_of(claims)))
+    return replace(begun_with(earlier, again if moved < LINEAR else changed), noise_claims=claims)

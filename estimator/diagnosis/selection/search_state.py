@@ -69,7 +69,7 @@ class SearchState:
     unlike_noise: tuple[UnlikeNoise, ...] = ()
     """Sensors whose scatter is not distributed as noise is."""
     noise_claims: tuple[NoiseClaim, ...] = ()
-    """Kinds of sensor whose stated noise is taken as known up to a factor only."""
+    """Sensors whose stated noise is taken as known up to a factor only."""
     refuted: frozenset[Group] = frozenset()
     """Causes on sensors that would have to act more often than they can."""
 

@@ -8,11 +8,18 @@ import numpy as np
 from estimator.causes.contract import Cause, Signature
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.between_sessions import parameter_change
+from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.search_state import SearchState
 from estimator.diagnosis.signatures.lasting import traces_of
 from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance
 from estimator.diagnosis.signatures.patterns import PATTERNS
+
+ROUNDS = 20
+"""Steps of a sensor's variance: each brings it half nearer at least."""
+
+CLOSE = 0.01
+"""Relative change of a variance below which it has settled: hundreds of readings tell it to some per cent."""
 
 
 def begin(baseline: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]) -> SearchState:
@@ -39,14 +46,40 @@ def since(baseline: Baseline, history: Sequence[Baseline]) -> Baseline:
 
 def begin_anew(state: SearchState, scatter: Sequence[ExcessVariance | Autocorrelation]) -> SearchState:
     """The search begun anew with one sensor's variance as it is, known from its own residuals alone."""
-    variance, unstated = state.baseline.variance.copy(), state.baseline.unstated.copy()
-    for one in scatter:
-        variance[:, one.sensor] *= one.ratio
-        unstated[one.sensor] = True
-    again = begun_with(state, replace(state.baseline, variance=variance, unstated=unstated))
-    excess = (*state.excess, *(s for s in scatter if isinstance(s, ExcessVariance)))
-    autocorrelated = (*state.autocorrelated, *(s for s in scatter if isinstance(s, Autocorrelation)))
-    return replace(again, excess=excess, autocorrelated=autocorrelated)
+    sensors = [one.sensor for one in scatter]
+    unstated = state.baseline.unstated.copy()
+    unstated[sensors] = True
+    known = as_they_scatter(replace(state.baseline, unstated=unstated), sensors)
+    ratio = np.median(known.variance / state.baseline.variance, axis=0)
+    found = [one if one.ratio == 1 else replace(one, ratio=float(ratio[one.sensor])) for one in scatter]
+    excess = (*state.excess, *(s for s in found if isinstance(s, ExcessVariance)))
+    autocorrelated = (*state.autocorrelated, *(s for s in found if isinstance(s, Autocorrelation)))
+    begun = begun_with(with_earlier_scatter(state, sensors), refitted(known))
+    return replace(begun, excess=excess, autocorrelated=autocorrelated)
+
+
+def with_earlier_scatter(state: SearchState, sensors: Sequence[int]) -> SearchState:
+    """The state whose earlier sessions state nothing of the noise of some sensors either: their residuals tell it."""
+    kinds = state.baseline.setting.kinds
+    history = (refitted(as_they_scatter(h, sensors)) if h.setting.kinds == kinds else h for h in state.history)
+    return replace(state, history=tuple(history))
+
+
+def as_they_scatter(baseline: Baseline, sensors: Sequence[int]) -> Baseline:
+    """The baseline with the variance of some sensors that of their own residuals (restricted likelihood).
+
+    Step by step: a sensor that is believed too much pulls what all share of a row to its own readings.
+    """
+    variance = baseline.variance.copy()
+    for _ in range(ROUNDS):
+        residuals = WhitenedResiduals.of(replace(baseline, variance=variance))
+        rows = residuals.rows
+        own = residuals.sensor_of_row[:rows] == np.array(sensors)[:, None]
+        larger = (own @ residuals.z[:rows] ** 2) / np.maximum(own @ residuals.row_freedom, 1.0)
+        variance[:, sensors] *= larger
+        if np.abs(np.log(larger)).max() < CLOSE:
+            break
+    return replace(baseline, variance=variance)
 
 
 def begun_with(state: SearchState, baseline: Baseline) -> SearchState:

@@ -85,9 +85,11 @@ class UnlikeNoise:
 
 @dataclass(frozen=True)
 class NoiseClaim:
-    """Stated noise of a kind of sensor that its readings do not bear out."""
+    """Stated noise of sensors of a kind that their readings do not bear out."""
 
     kind: str
+    sensors: tuple[int, ...]
+    """In a session's order."""
     ratio: float
     """Variance over the stated one."""
     freedom: float

@@ -44,7 +44,7 @@ def test_what_was_found_comes_back(what: tuple[str, tuple[int, ...], str | None]
 def test_a_mixed_up_record_a_course_and_wrong_standard_errors_come_back() -> None:
     mixed = Structure("mixed up", ("A1",), 0.0, 9.0, of_record=True)
     course = Structure("α", (), 1e-9, 7.0, Course("β", ("α", "size"), ((1e-5, 2e-6), (-1e-5, 3e-6))))
-    noise = NoiseScale("accelerometer", 4.0, 70.0)
+    noise = NoiseScale("accelerometer", 4.0, 70.0, ("A1", "A3"))
     document = earlier_document() | {"structures": [s.to_dict() for s in (mixed, course)], "noise": [asdict(noise)]}
     found = read_diagnosis(json.dumps(document))
     assert found is not None

@@ -36,3 +36,11 @@ def test_a_session_of_both_kinds_says_whose() -> None:
 
 def test_right_ones_are_not_spoken_of() -> None:
     assert (wrong_errors([], [ACCELEROMETER]), but_wrong_errors([], [ACCELEROMETER])) == ((), "")
+
+
+def test_wrong_ones_of_some_sensors_say_whose() -> None:
+    some = [NoiseScale(ACCELEROMETER, 1 / 3, 70.0, who) for who in (("A2",), ("A1", "A3", "A4"))]
+    assert wrong_errors(some, [ACCELEROMETER] * 6) == (
+        "The stated standard errors of A2 are about 3 times too large.",
+        "The stated standard errors of A1, A3 and A4 are about 3 times too large.",
+    )

@@ -90,7 +90,7 @@ def test_noise_that_no_file_states_is_what_the_names_leave() -> None:
     unstated = replace(measured(added), standard_errors=np.full((ROWS, 4), np.nan))
     begun = begin(baseline_of(unstated), (), [cause("beta-second-harmonic")])
     named = replace(begun, found=(candidate(begun, "beta-second-harmonic", ()),))
-    known, seen = settled(begun, named)
+    known, seen = settled(begun, named, begun.baseline.unstated)
     true = baseline_of(measured(0.0)).variance
     assert np.median(begun.baseline.variance / true) > 1.5
     assert np.median(known.baseline.variance / true) == pytest.approx(1, abs=0.3)

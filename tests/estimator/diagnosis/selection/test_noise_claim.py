@@ -56,6 +56,28 @@ def test_one_noisy_sensor_is_excess_noise_and_no_wrong_claim() -> None:
     assert found.noise == ()
 
 
+def test_some_sensors_of_too_large_errors_are_told_apart() -> None:
+    """Half of them: the others' stated errors are believed."""
+    found = diagnose(stated(measured(seed=3), 3.0, slice(0, 2)))
+    assert not found.findings
+    assert [(scale.sensors, scale.factor) for scale in found.noise] == [(("A1", "A2"), pytest.approx(1 / 3, rel=0.25))]
+
+
+@pytest.mark.parametrize("sensors", [slice(0, 1), slice(0, 2)])
+def test_a_cause_is_named_on_a_sensor_whose_errors_are_stated_too_large(sensors: slice) -> None:
+    """A2 jumps; it is one of those whose errors are wrong, or its own are right."""
+    found = diagnose(stated(measured(effect("bias-jump"), 3), 3.0, sensors))
+    assert [f.cause for f in found.findings] == ["bias-jump"]
+
+
+@pytest.mark.parametrize("identifier", ["stand-drift", "alpha-shift"])
+def test_what_is_common_is_named_beside_a_sensor_whose_errors_are_stated_too_small(identifier: str) -> None:
+    """Its noise, believed to be none, shows in all sensors and would pass for a course of the applied vector."""
+    found = diagnose(stated(measured(effect(identifier), 3), 0.1, slice(1, 2)))
+    assert {f.cause for f in found.findings} == {identifier, "excess-noise"}
+    assert not found.unexplained
+
+
 def repeated() -> Scene:
     """Four accelerometers, every position measured twice."""
     once = wandering(block(accelerometers(4), 12))
