@@ -12,7 +12,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 from scipy.stats import chi2 as chi2_distribution
 
-from estimator.alignment.axes import Triad, triad
+from estimator.alignment.axes import Triad, of_kind, require_alive, triad
 from estimator.alignment.coarse import Coarse, coarse
 from estimator.alignment.filtering import (
     PRIOR,
@@ -23,6 +23,7 @@ from estimator.alignment.filtering import (
     relative,
     run,
 )
+from estimator.alignment.levers import FARTHEST, taken_off
 from estimator.alignment.noise import LEAST_DENSITY, Noise, at_rest
 from estimator.alignment.positions import (
     Stop,
@@ -53,6 +54,9 @@ class Record:
     """A turntable session, reduced to three axes and checked, from the first stop on. R rows."""
 
     session: CalibrationSession
+    """Without what accelerometers at stated positions feel of the turns."""
+    first: int
+    """Row of the session at which the first stop begins."""
     motion: Motion
     """As the sensors say, before any bias is taken off."""
     per_step: int
@@ -64,7 +68,11 @@ class Record:
 
 
 def align(
-    session: CalibrationSession, *, model: Model = Model.TURNTABLE, mounting: tuple[float, float] = (0.0, 0.0)
+    session: CalibrationSession,
+    *,
+    model: Model = Model.TURNTABLE,
+    mounting: tuple[float, float] = (0.0, 0.0),
+    lever_arms: bool = True,
 ) -> AlignmentResult:
     """Align a block on a turntable and estimate its sensors' errors.
 
@@ -73,6 +81,7 @@ def align(
     session : of programme rotation-alignment.
     model : which states are estimated.
     mounting : E_xz, E_yz as known from a rate table, rad; their effect is taken off the gyros before.
+    lever_arms : whether accelerometers may stand away from the turn axis; the turntable's model alone looks for it.
 
     Raises
     ------
@@ -82,7 +91,7 @@ def align(
     record = prepared(session, mounting)
     start = coarse(record.stops, record.motion, record.noise.gyro)
     computed = _computed(record, start)
-    setting = _setting(record)
+    setting = _setting(record, lever_arms=lever_arms)
     measured = Measured(computed.velocity, _turned(record, computed))
     filtered = run(computed.path, setting, measured, model)
     return _result(record, start, computed, filtered, model)
@@ -94,12 +103,16 @@ def prepared(session: CalibrationSession, mounting: tuple[float, float] = (0.0, 
         raise ScheduleError([Problem("programme", f"is {session.programme}; an alignment is {ROTATION_ALIGNMENT}")])
     assert session.turn_angle is not None
     row = interval(session)
-    gyros, accelerometers = triad(session, GYROSCOPE, row), triad(session, ACCELEROMETER, row)
+    require_alive(session, of_kind(session, ACCELEROMETER))
+    gyros = triad(session, GYROSCOPE, row)
     rates = gyros.values - gyros.values[:, 2:] * np.array([*mounting, 0.0])
-    found = stops(session.turn_angle, row)
+    angle = session.turn_angle
+    found = stops(angle, row)
     require_positions(found)
     require_rest(found, rates, row)
-    require_turns(found, session.turn_angle, rates[:, 2], row)
+    require_turns(found, angle, rates[:, 2], row)
+    session = taken_off(session, gyros.values[:, 2], row)
+    accelerometers = triad(session, ACCELEROMETER, row)
     resting = np.concatenate([accelerometers.values[stop.first : stop.last] for stop in found])
     require_level(resting.mean(axis=0), gravity(session.site))
     per_step = max(round(STEP / row), 1)
@@ -107,9 +120,10 @@ def prepared(session: CalibrationSession, mounting: tuple[float, float] = (0.0, 
     noise = _noise(found, gyros, accelerometers, row, per_step)
     return Record(
         session=session,
+        first=begin,
         motion=Motion(rates[begin:], accelerometers.values[begin:], row),
         per_step=per_step,
-        angle=session.turn_angle[begin:],
+        angle=angle[begin:],
         stops=[Stop(stop.first - begin, stop.last - begin, stop.angle) for stop in found],
         noise=noise,
     )
@@ -147,18 +161,24 @@ def _computed(record: Record, start: Coarse) -> Strapdown:
     return strapdown(start.attitude, left, latitude, stop_of_row, record.per_step)
 
 
-def _setting(record: Record) -> Setting:
+def _setting(record: Record, *, lever_arms: bool) -> Setting:
     site, stand = record.session.site, record.session.stand
     assert site.latitude is not None
-    wobble = None if stand is None else stand.sigma.wobble
     table = None if stand is None else stand.sigma.beta
     return Setting(
         site.latitude,
         gravity(site),
         record.noise,
-        wobble=TABLE_SIGMA if wobble is None else max(wobble, 1e-12),
+        wobble=table_wobble(record.session),
         table=table or TABLE_SIGMA,
+        levers=FARTHEST**2 * np.eye(4) if lever_arms else np.zeros((4, 4)),
     )
+
+
+def table_wobble(session: CalibrationSession) -> float:
+    """One sigma of the turn axis' direction from stop to stop, per axis, rad."""
+    wobble = None if session.stand is None else session.stand.sigma.wobble
+    return TABLE_SIGMA if wobble is None else max(wobble, 1e-12)
 
 
 def _turned(record: Record, computed: Strapdown) -> Array:

@@ -48,19 +48,30 @@ def triad(session: CalibrationSession, kind: str, interval: float) -> Triad:
 
     Sensors are weighted by their stated standard errors, else by the scatter of their readings from row to row.
     """
-    chosen = [i for i, s in enumerate(session.sensors) if s.kind == kind]
-    _require_alive(session, chosen)
-    scale = np.array([session.sensors[i].nominal_scale for i in chosen])
-    offset = np.array([session.sensors[i].nominal_offset or 0.0 for i in chosen])
-    counted = kind != ACCELEROMETER and session.count_time is not None
-    per_input = scale * (session.count_time if counted and session.count_time else 1.0)
-    inputs = (session.readings[:, chosen] - offset) / per_input
+    chosen = of_kind(session, kind)
+    require_alive(session, chosen)
+    inputs, per_input = inputs_of(session, kind)
     stated = session.standard_errors[:, chosen] / per_input
     known = bool(np.isfinite(stated).all())
     variance = np.mean(stated**2, axis=0) if known else scatter(inputs)
     axes = np.stack([session.sensors[i].nominal_axis for i in chosen])
     matrix, covariance = reduction(axes, np.diag(variance))
     return Triad(inputs @ matrix.T, covariance if known else None, len(chosen))
+
+
+def of_kind(session: CalibrationSession, kind: str) -> list[int]:
+    """Places of the sensors of a kind among all."""
+    return [i for i, sensor in enumerate(session.sensors) if sensor.kind == kind]
+
+
+def inputs_of(session: CalibrationSession, kind: str) -> tuple[Array, Array]:
+    """(R, m) inputs of the sensors of a kind, m/s² or rad/s, and (m,) reading units per unit of input."""
+    chosen = of_kind(session, kind)
+    scale = np.array([session.sensors[i].nominal_scale for i in chosen])
+    offset = np.array([session.sensors[i].nominal_offset or 0.0 for i in chosen])
+    counted = kind != ACCELEROMETER and session.count_time is not None
+    per_input = scale * (session.count_time if counted and session.count_time else 1.0)
+    return (session.readings[:, chosen] - offset) / per_input, per_input
 
 
 def scatter(values: Array) -> Array:
@@ -74,7 +85,7 @@ def scatter(values: Array) -> Array:
     return np.maximum(variance, LEAST_SHARE * variance.max(initial=0.0)) + TINY**2
 
 
-def _require_alive(session: CalibrationSession, chosen: list[int]) -> None:
+def require_alive(session: CalibrationSession, chosen: list[int]) -> None:
     """ScheduleError for sensors that read the same in every row."""
     stuck = [session.sensors[i].name for i in chosen if np.ptp(session.readings[:, i]) == 0]
     if stuck:

@@ -1,12 +1,12 @@
 """The alignment filter run over a path: prior, measurements, and what the session tells beyond the prior."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from estimator.alignment.kalman import KalmanState, correct, predict
 from estimator.alignment.noise import TINY, Noise
-from estimator.alignment.sins import ALL, PHI, STOP, TAU, Model, Path, V, dynamics, process_noise, transition
+from estimator.alignment.sins import ALL, LEVER, PHI, STOP, TAU, Model, Path, V, dynamics, process_noise, transition
 from estimator.results import ARCSEC
 from estimator.session import Array
 
@@ -14,10 +14,10 @@ DEGREE = np.pi / 180
 """rad."""
 PRIOR = np.array(
     [TINY] * 2 + [0.2 * DEGREE] * 2 + [10 * DEGREE] + [10 * DEGREE / 3600] * 3 + [0.1] * 2
-    + [0.2 * DEGREE] * 2 + [1e-2] + [10 * DEGREE] * 3 + [0.0] * 3
+    + [0.2 * DEGREE] * 2 + [1e-2] + [10 * DEGREE] * 3 + [0.0] * 3 + [0.0] * 4
 )  # fmt: skip
-"""(19,) one sigma of every state before the session, SI: wide of what coarse alignment leaves. The deviation of a stop
-is drawn when the stop begins."""
+"""(23,) one sigma of every state before the session, SI: wide of what coarse alignment leaves. The deviation of a stop
+is drawn when the stop begins; the lever arms' covariance is in the setting."""
 USEFUL = np.array(
     [1e-2] * 2 + [60 * ARCSEC] * 2 + [1 * DEGREE] + [1 * DEGREE / 3600] * 3 + [3e-3] * 2
     + [60 * ARCSEC] * 2 + [1e-3] + [60 * ARCSEC] * 3
@@ -43,6 +43,8 @@ class Setting:
     """One sigma of the turn axis' direction from stop to stop, per axis, rad."""
     table: float
     """One sigma of the table's angle at a stop, rad."""
+    levers: Array = field(default_factory=lambda: np.zeros((4, 4)))
+    """(4, 4) covariance of the lever arms' coefficients before the session, m²; zero where they are known."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,19 +87,30 @@ def run(path: Path, setting: Setting, measured: Measured, model: Model) -> Filte
     H, R = velocity_measurement(n, setting)
     H_table, R_table = table_measurement()
     shown = path.begins | path.ends
-    state = KalmanState(np.zeros(n), np.diag(PRIOR[:n] ** 2))
+    state = KalmanState(np.zeros(n), prior(model, setting))
+    compared = path.rate_known | (model is not Model.TURNTABLE) | (not setting.levers.any())
     estimates, sigmas = np.empty((2, len(Phi), n))
     innovations, innovation_sigmas = np.empty((2, len(Phi), 2))
     chi2, count = 0.0, 0
     for k in range(len(Phi)):
-        state, found = correct(predict(state, Phi[k], Q[k]), measured.velocity[k], H, R)
+        ahead = predict(state, Phi[k], Q[k])
+        corrected, found = correct(ahead, measured.velocity[k], H, R)
         innovations[k], innovation_sigmas[k] = found.value, np.sqrt(np.diag(found.covariance))
-        chi2, count = chi2 + found.chi2, count + 2
+        state = corrected if compared[k] else ahead
+        if compared[k]:
+            chi2, count = chi2 + found.chi2, count + 2
         if model is Model.TURNTABLE and shown[k]:
             state, found = correct(state, measured.turned[k], H_table, R_table)
             chi2, count = chi2 + found.chi2, count + 3
         estimates[k], sigmas[k] = state.x, np.sqrt(np.diag(state.P))
     return Filtered(estimates, sigmas, innovations, innovation_sigmas, state, chi2, count)
+
+
+def prior(model: Model, setting: Setting) -> Array:
+    """(n, n) covariance of a model's states before the session, SI."""
+    P = np.diag(PRIOR**2)
+    P[LEVER, LEVER] = setting.levers
+    return P[: model.size, : model.size]
 
 
 def velocity_measurement(n: int, setting: Setting) -> tuple[Array, Array]:
@@ -108,14 +121,14 @@ def velocity_measurement(n: int, setting: Setting) -> tuple[Array, Array]:
 
 
 def table_measurement() -> tuple[Array, Array]:
-    """H (3, 19), dimensionless, and R (3, 3), rad², of the turntable's direction at a stop, y = φ + τ + ς."""
+    """H (3, 23), dimensionless, and R (3, 3), rad², of the turntable's direction at a stop, y = φ + τ + ς."""
     H = np.zeros((3, ALL))
     H[:, PHI], H[:, TAU], H[:, STOP] = np.eye(3), np.eye(3), np.eye(3)
     return H, REST_SIGMA**2 * np.eye(3)
 
 
 def drawn_anew(path: Path, Phi: Array, Q: Array, setting: Setting) -> tuple[Array, Array]:
-    """Φ and Q (K, 19, 19), SI, under which ς (rad) is drawn anew where a stop begins."""
+    """Φ and Q (K, 23, 23), SI, under which ς (rad) is drawn anew where a stop begins."""
     Phi, Q = Phi.copy(), Q.copy()
     Phi[path.begins, STOP, STOP] = 0.0
     Q[path.begins, STOP, STOP] = np.diag([setting.wobble, setting.wobble, setting.table]) ** 2

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from estimator.alignment.levers import coefficients
 from estimator.alignment.sins import earth_rate
 from estimator.alignment.strapdown import Motion
 from estimator.applied_vector import STANDARD_GRAVITY, gravity
@@ -35,6 +36,8 @@ class Programme:
     """rad/s between stops."""
     row: float = 0.1
     """Time of a row, s."""
+    ramp: float = 0.0
+    """s in which the table comes up to its rate, evenly, and in which it stops again; 0 for at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +56,8 @@ class Truth:
     """rad by which the table at angle 0 is turned from x east, y north, to the left."""
     tilt: tuple[float, float] = (0.0, 0.0)
     """Turns of the table's axis about east and north, rad."""
+    positions: Array | None = None
+    """(m, 3) where every sensor sits, m, block axes from the turn axis; None for all on it. Any other needs a ramp."""
 
 
 @dataclass(frozen=True)
@@ -88,14 +93,44 @@ def table_angle(programme: Programme) -> tuple[Array, Array]:
     for number, target in enumerate(programme.angles):
         if number:
             before = programme.angles[number - 1]
-            rows = max(round(abs(target - before) / programme.rate / programme.row), 1)
-            part = np.arange(1, rows) / rows
+            part = turned_part(abs(target - before), programme)
             angle.append(before + part * (target - before))
             course.append(number - 1 + part)
         rows = round(programme.dwell / programme.row) + 1
         angle.append(np.full(rows, target))
         course.append(np.full(rows, float(number)))
     return np.concatenate(angle), np.concatenate(course)
+
+
+def turned_part(turn: float, programme: Programme) -> Array:
+    """(r,) part of a turn by ``turn``, rad, done at the ends of its rows but the last, dimensionless."""
+    ramp = round(programme.ramp / programme.row)
+    rows = max(round(turn / programme.rate / programme.row), 1) + ramp
+    left = np.minimum(np.arange(rows + 1), np.arange(rows + 1)[::-1])
+    rate = np.minimum(left / ramp, 1.0) if ramp else np.ones(rows + 1)
+    done = np.cumsum(0.5 * (rate[1:] + rate[:-1]))
+    return np.asarray(done[:-1] / done[-1])
+
+
+def turn_rates(angle: Array, row: float) -> Array:
+    """(R + 1,) rate of the table, rad/s, at the ends of rows of ``row`` s, from its angle (R + 1,), rad.
+
+    Of a rate that changes evenly within every row, from rest: w_j = 2 Δθ_j/row − w_{j−1}.
+    """
+    mean = np.diff(angle) / row
+    sign = (-1.0) ** np.arange(len(mean))
+    return np.concatenate([[0.0], sign * np.cumsum(2 * sign * mean)])
+
+
+def at_a_distance(sensors: tuple[Sensor, ...], positions: Array, rate: Array, row: float) -> Array:
+    """(R, m) what sensors at positions (m, 3), m, feel of the turn, m/s²: means of a·(ω×(ω×r) + α×r) over each row.
+
+    rate : (R + 1,) of the table at the ends of rows of ``row`` s, rad/s, evenly changing in between.
+    """
+    square = (rate[1:] ** 2 + rate[1:] * rate[:-1] + rate[:-1] ** 2) / 3
+    axes = np.stack([sensor.nominal_axis for sensor in sensors])
+    felt = np.column_stack([-square, np.diff(rate) / row]) @ coefficients(axes, positions).T
+    return np.asarray(felt * [sensor.kind == ACCELEROMETER for sensor in sensors])
 
 
 def true_attitude(programme: Programme, truth: Truth, leaning: Array) -> Array:
@@ -145,12 +180,17 @@ def simulate_alignment(
     swayed = motion.forces + np.einsum("rji,rj->ri", attitude[1:], np.diff(velocity, axis=0) / programme.row)
     angle, course = table_angle(programme)
     misread = np.interp(course, np.arange(len(leaning)), noise.table * rng.standard_normal(len(leaning)))
+    readings = _readings(sensors, with_errors(replace(motion, forces=swayed), truth), noise, rng)
+    if truth.positions is not None:
+        rate = turn_rates(angle, programme.row)
+        felt = at_a_distance(sensors, truth.positions, rate, programme.row)
+        readings = readings + np.array([sensor.nominal_scale for sensor in sensors]) * felt
     session = CalibrationSession(
         unit=unit,
         block=GYROSCOPE,
         programme=ROTATION_ALIGNMENT,
         sensors=sensors,
-        readings=_readings(sensors, with_errors(replace(motion, forces=swayed), truth), noise, rng),
+        readings=readings,
         standard_errors=np.full((rows, len(sensors)), np.nan),
         site=site,
         stand=Stand("turntable", sigma=StandErrors(beta=noise.table, wobble=noise.wobble or None)),

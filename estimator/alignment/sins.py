@@ -18,12 +18,16 @@ counts the turn θ, so that C·R_z(−θ) is one rotation T. The computed C̃·R
 a constant τ and for the deviation ς of each stop, by which the axis wobbles and the encoder errs:
 
     y = φ + τ + ς,  when a stop begins and when it ends.
+
+Accelerometers that stand away from the turn axis feel the turn (`levers`): C·(−ω²·c + α·d) of the block's x and y axes,
+with c and d as the last four states. The turntable's model alone has them.
 """
 
 from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import expm
 
 from estimator.applied_vector import EARTH_RATE
@@ -32,12 +36,13 @@ from estimator.session import Array
 STATES = (
     "v_E", "v_N", "phi_E", "phi_N", "phi_U", "eps_x", "eps_y", "eps_z", "nabla_x", "nabla_y",
     "E_xz", "E_yz", "kappa_z", "tau_E", "tau_N", "tau_U", "stop_E", "stop_N", "stop_U",
+    "along_x", "along_y", "across_x", "across_y",
 )  # fmt: skip
 """Of every model the first ones."""
-UNITS = ("m/s",) * 2 + ("rad",) * 3 + ("rad/s",) * 3 + ("m/s²",) * 2 + ("rad", "rad", "1") + ("rad",) * 6
+UNITS = ("m/s",) * 2 + ("rad",) * 3 + ("rad/s",) * 3 + ("m/s²",) * 2 + ("rad", "rad", "1") + ("rad",) * 6 + ("m",) * 4
 """Of `STATES`."""
 V, PHI, EPS, NABLA, MOUNTING = slice(0, 2), slice(2, 5), slice(5, 8), slice(8, 10), slice(10, 13)
-TAU, STOP = slice(13, 16), slice(16, 19)
+TAU, STOP, LEVER = slice(13, 16), slice(16, 19), slice(19, 23)
 ALL = len(STATES)
 """Places of the states, and their number."""
 
@@ -50,7 +55,7 @@ class Model(StrEnum):
     MOUNTING = "mounting"
     """With E_xz, E_yz, κ, measured by velocity alone."""
     TURNTABLE = "turntable"
-    """With E_xz, E_yz, κ, and the direction of the turntable measured at every stop."""
+    """With E_xz, E_yz, κ, the lever arms, and the direction of the turntable measured at every stop."""
 
     @property
     def size(self) -> int:
@@ -68,6 +73,10 @@ class Path:
     """(K, 3, 3) mean of C over each step, dimensionless."""
     turning: Array
     """(K, 3, 3) mean of C·ω_z over each step, rad/s."""
+    levers: Array
+    """(K, 3, 4) mean over each step of what (c_x, c_y, d_x, d_y) add to the specific force in n, 1/s²."""
+    rate_known: NDArray[np.bool_]
+    """(K,) whether the turn rate at the end of the step is known well enough to compare velocities there."""
     stop: Array
     """(K,) number of the stop that the table stands at for the whole step, −1 while it turns."""
 
@@ -96,12 +105,13 @@ def cross(v: Array) -> Array:
 
 
 def dynamics(path: Path, latitude: float, g: float) -> Array:
-    """F (K, 19, 19) of ẋ = F·x, equation (1) with the states added, the mean over each step; SI."""
+    """F (K, 23, 23) of ẋ = F·x, equation (1) with the states added, the mean over each step; SI."""
     F = np.zeros((len(path.mean), ALL, ALL))
     omega = earth_rate(latitude)
     F[:, 0, 1], F[:, 1, 0] = 2 * omega[2], -2 * omega[2]
     F[:, 0, 3], F[:, 1, 2] = -g, g
     F[:, V, NABLA] = path.mean[:, :2, :2]
+    F[:, V, LEVER] = path.levers[:, :2]
     F[:, PHI, PHI] = -cross(omega)
     F[:, PHI, EPS] = -path.mean
     F[:, PHI, MOUNTING] = -path.turning
@@ -115,9 +125,9 @@ def transition(F: Array, step: float) -> Array:
 
 
 def process_noise(path: Path, Phi: Array, accelerometer: Array, gyro: Array) -> Array:
-    """Q (K, 19, 19), SI, of white noise of densities (3, 3), (m/s²)²/Hz and (rad/s)²/Hz, by the trapezium in time.
+    """Q (K, 23, 23), SI, of white noise of densities (3, 3), (m/s²)²/Hz and (rad/s)²/Hz, by the trapezium in time.
 
-    Phi : (K, 19, 19), SI.
+    Phi : (K, 23, 23), SI.
     """
     density = np.zeros_like(Phi)
     C = path.mean

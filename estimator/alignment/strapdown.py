@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from estimator.alignment.levers import turning
 from estimator.alignment.sins import Path, earth_rate
 from estimator.session import Array
 
@@ -79,10 +80,15 @@ def strapdown(start: Array, motion: Motion, latitude: float, stop_of_row: Array,
     middle = Rotation.from_rotvec(0.5 * row * earth_rate(latitude)).as_matrix() @ ends @ back
     increments = (middle @ forces.reshape(steps, per_step, 3, 1))[..., 0].sum(axis=1) * row
     rate_z = rates[:, 2].reshape(steps, per_step, 1, 1)
+    turned = turning(motion.rates[:, 2], row)
+    felt = turned.columns[:rows].reshape(steps, per_step, 1, 2)
+    level = middle[..., :2]
     path = Path(
         step=row * per_step,
         mean=middle.mean(axis=1),
         turning=(middle * rate_z).mean(axis=1),
+        levers=np.concatenate([(level * felt[..., :1]).mean(axis=1), (level * felt[..., 1:]).mean(axis=1)], axis=2),
+        rate_known=turned.known[:rows].reshape(steps, per_step)[:, -1],
         stop=stop_of_steps(stop_of_row[:rows].reshape(steps, per_step)),
     )
     return Strapdown(path, ends[:, -1], velocities(increments, path.step, latitude))
