@@ -9,6 +9,7 @@ the misalignments E_xz and E_yz, the third with the scale 1 + κ. What a program
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from estimator.alignment.results import AlignmentResult, RateTableResult
@@ -46,10 +47,13 @@ UNITS = {(ACCELEROMETER, "bias"): "m/s²", (GYROSCOPE, "bias"): "rad/s", (GYROSC
 """Of a parameter of an axis; a scale, 1 + κ, has none."""
 
 
-def alignment_calibration(result: AlignmentResult) -> Calibration:
-    """∇, ε, E and κ of an alignment; the residuals are the velocity's innovations as specific force along x and y."""
+def alignment_calibration(result: AlignmentResult, rows: NDArray[np.bool_] | None = None) -> Calibration:
+    """∇, ε, E and κ of an alignment; the residuals are the velocity's innovations as specific force along x and y.
+
+    rows : (K,) steps whose innovations count; those after the filter has `settled` unless given.
+    """
     axes = [_known(axis, result.names) for axis in AXES]
-    value, sigma, time = _innovations(result)
+    value, sigma, time = _innovations(result, settled(result) if rows is None else rows)
     nothing = np.full((len(value), 3), np.nan)
     residuals = _residuals(np.hstack([value, nothing]), np.hstack([sigma, nothing]), time)
     return _calibration(f"rotation-alignment/{result.model}", result, axes, residuals, "turn axis vertical")
@@ -112,22 +116,28 @@ def _estimate(result: AlignmentResult | RateTableResult, parameter: str, state: 
     return Estimate(value, found.sigma, found.sigma, dof)
 
 
-def _innovations(result: AlignmentResult) -> tuple[Array, Array, Array]:
+def settled(result: AlignmentResult) -> NDArray[np.bool_]:
+    """(K,) whether the innovation of a step says how the sensors behaved, not what the prior was."""
+    sigmas = result.course.innovation_sigmas
+    return np.asarray((sigmas < SETTLED * np.median(sigmas)).all(axis=1))
+
+
+def _innovations(result: AlignmentResult, counted: NDArray[np.bool_]) -> tuple[Array, Array, Array]:
     """(R, 2) innovations and their sigmas as specific force along the block's x and y, m/s², and the times (R,), s."""
     course = result.course
     step = float(course.time[0])
-    settled = np.flatnonzero((course.innovation_sigmas < SETTLED * np.median(course.innovation_sigmas)).all(axis=1))
-    level = np.pad(course.innovations[settled], ((0, 0), (0, 1)))
-    value = Rotation.from_matrix(course.attitude[settled]).inv().apply(level)[:, :2] / step
-    sigma = course.innovation_sigmas[settled] / step
-    chunk = -(-len(settled) // MOST_ROWS)
-    rows = len(settled) // chunk
+    chosen = np.flatnonzero(counted)
+    level = np.pad(course.innovations[chosen], ((0, 0), (0, 1)))
+    value = Rotation.from_matrix(course.attitude[chosen]).inv().apply(level)[:, :2] / step
+    sigma = course.innovation_sigmas[chosen] / step
+    chunk = -(-len(chosen) // MOST_ROWS)
+    rows = len(chosen) // chunk
 
     def means(column: Array) -> Array:
         """Means over chunks of a column (K,) or (K, 2): m/s², its square, or s."""
         return column[: rows * chunk].reshape(rows, chunk, *column.shape[1:]).mean(axis=1)
 
-    return means(value), np.sqrt(means(sigma**2) / chunk), means(course.time[settled])
+    return means(value), np.sqrt(means(sigma**2) / chunk), means(course.time[chosen])
 
 
 def _residuals(value: Array, sigma: Array, time: Array) -> Residuals:

@@ -31,7 +31,8 @@ from estimator.diagnosis.results import Diagnosis
 from estimator.diagnosis.selection.acceptance import accepted
 from estimator.diagnosis.selection.search_state import SearchState
 from estimator.diagnosis.selection.start import begin
-from estimator.session import CalibrationSession
+from estimator.diagnosis.turntable import diagnose_alignment
+from estimator.session import ROTATION_ALIGNMENT, CalibrationSession
 
 
 def diagnose(
@@ -44,7 +45,7 @@ def diagnose(
 
     Parameters
     ----------
-    session : of a programme that calibrates a block.
+    session : of a programme that calibrates a block; of an alignment on a turntable, where lever arms are looked for.
     history : earlier sessions of the unit, oldest first.
     catalogue : the causes to consider.
 
@@ -52,6 +53,8 @@ def diagnose(
     ------
     ScheduleError : the session cannot be calibrated at all.
     """
+    if session.programme == ROTATION_ALIGNMENT:
+        return diagnose_alignment(session)
     rows = averaged(session)
     clips, right = unclipped(rows, catalogue)
     earlier = [unclipped(averaged(h), catalogue)[1] for h in history]

@@ -1,0 +1,78 @@
+"""How well turns are predicted that took no part in the fit, without lever arms and with them.
+
+Every turn is held out once; of a single turn every fifth piece. The rest, with the stops, fits k, p, q and, for sensors
+whose lever arm is named, c and d; prediction with full covariance, the lean that pieces of one turn share included.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from estimator.alignment.lever_arms import LeverArm, LeverArms
+from estimator.alignment.pieces import Pieces
+from estimator.alignment.turned import weighed
+from estimator.session import Array
+
+PARTS = 5
+"""Folds that a single turn is cut into, as the positions of a calibration are."""
+FOLDS = 10
+"""Folds that many turns are put into."""
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """Of the pieces of all turns."""
+
+    rms: float
+    """m/s²."""
+    chi2: float
+    """Of a piece."""
+    log_score: float
+    """Mean log density of a piece, in units of its own sigma."""
+
+
+def held_out(arms: LeverArms) -> str:
+    """What is held out, in words."""
+    return "turns" if arms.pieces.turn.max() > 0 else "parts of the turn"
+
+
+def prediction(arms: LeverArms, *, named: bool) -> Prediction:
+    """Of all turns; ``named``: with the named lever arms in the model."""
+    parts = arms.pieces
+    told = [_told(parts, arm, arms.lean, fold, named=named) for arm in arms.found for fold in _folds(parts)]
+    errors, squares, logs = (np.concatenate(column) for column in zip(*told, strict=True))
+    return Prediction(float(np.sqrt(np.mean(errors**2))), float(squares.mean()), float(logs.mean()))
+
+
+def _folds(parts: Pieces) -> list[NDArray[np.bool_]]:
+    """(N,) bool of the pieces that each fold holds out."""
+    if parts.turn.max() > 0:
+        fold = np.where(parts.turn >= 0, parts.turn % FOLDS, -1)
+        return [fold == number for number in range(fold.max() + 1)]
+    place = np.cumsum(parts.turn >= 0) % PARTS
+    folds = [(parts.turn >= 0) & (place == number) for number in range(PARTS)]
+    return [fold for fold in folds if fold.any()]
+
+
+def _told(
+    parts: Pieces, arm: LeverArm, lean: float, out: NDArray[np.bool_], *, named: bool
+) -> tuple[Array, Array, Array]:
+    """Errors (n,), m/s², of held-out pieces, their whitened squares and log densities, without unit."""
+    i, known = arm.felt.sensor, ~out
+    root = weighed(parts, i, lean * float(np.hypot(*arm.sensor.nominal_axis[:2])), arm.felt.noise_ratio).root
+    V, z = root @ root.T, parts.values[:, i]
+    X = np.column_stack([parts.level, parts.levers]) if named and arm.named else parts.level
+    inverse = np.linalg.inv(V[np.ix_(known, known)])
+    information = X[known].T @ inverse @ X[known]
+    scale = 1 / np.sqrt(np.diag(information))
+    C = np.linalg.pinv(information * np.outer(scale, scale), hermitian=True) * np.outer(scale, scale)
+    beta = C @ X[known].T @ inverse @ z[known]
+    gain = V[np.ix_(out, known)] @ inverse
+    rest = X[out] - gain @ X[known]
+    errors = z[out] - gain @ z[known] - rest @ beta
+    S = V[np.ix_(out, out)] - gain @ V[np.ix_(known, out)] + rest @ C @ rest.T
+    L = np.linalg.cholesky(S)
+    white = np.linalg.solve(L, errors)
+    own = np.sqrt(parts.density[i] / parts.time[out])
+    return errors, white**2, -0.5 * white**2 - np.log(np.diag(L) / own) - 0.5 * np.log(2 * np.pi)

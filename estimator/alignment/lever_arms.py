@@ -1,0 +1,163 @@
+"""Where accelerometers stand from the turn axis, which of them surely do, and what it is worth to know it.
+
+A sensor is named where the turns move it significantly, over all sensors together, and no rival does as well; a rival
+within 9 of it in χ², its columns paid for, stands beside the name. Where rivals add to the lever arm, its uncertainty
+grows with what it leaves.
+
+Positions that the file states count from any one origin. They are taken off first; what is left must be one lever arm
+common to all sensors, that of the origin. Sensors that need another one do not sit where the file says.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.stats import f as f_distribution
+
+from estimator.alignment.align import Record, table_wobble
+from estimator.alignment.axes import inputs_of, of_kind
+from estimator.alignment.levers import coefficients, place_of, positions_of, turning
+from estimator.alignment.pieces import Pieces, pieces
+from estimator.alignment.turned import RIVALS, Felt, felt
+from estimator.applied_vector import gravity
+from estimator.session import ACCELEROMETER, Array, Sensor
+
+LEVEL = 0.003
+"""False-alarm rate over all accelerometers of a session, as in diagnoses of calibrations."""
+TOLD_APART = 9.0
+"""Difference of χ² from which a rival is told apart: three standard errors."""
+FEWEST = 3
+"""Sensors of which one that contradicts the others can be told."""
+
+
+@dataclass(frozen=True, eq=False)
+class LeverArm:
+    """One accelerometer and how far it stands from the turn axis, or from where the file says."""
+
+    sensor: Sensor
+    place: Array
+    """(2,) r_x, r_y, m."""
+    covariance: Array
+    """(2, 2) m²."""
+    felt: Felt
+    named: bool
+    rivals: tuple[str, ...]
+    """Of `RIVALS`: what does as well."""
+    more: float
+    """Probability of what else the turns do to it, where they do nothing else; 1 where the lever arm is not named."""
+    other: str
+    """The rival that fits instead, far better; empty where none does."""
+
+    @property
+    def distance(self) -> tuple[float, float]:
+        """Length of the horizontal lever arm and its sigma, m."""
+        length = float(np.hypot(*self.place))
+        along = self.place / length if length else np.array([1.0, 0.0])
+        return length, float(np.sqrt(along @ self.covariance @ along))
+
+
+@dataclass(frozen=True, eq=False)
+class LeverArms:
+    """Of a session."""
+
+    found: tuple[LeverArm, ...]
+    """Every accelerometer whose lever arm shows."""
+    upright: tuple[str, ...]
+    """Accelerometers along the turn axis, whose lever arm does not."""
+    origin: tuple[Array, Array] | None
+    """Where the origin of the stated positions lies from the turn axis, (2,) m, and covariance (2, 2); None where the
+    file states none or they contradict the turns altogether."""
+    stated: bool
+    pieces: Pieces
+    lean: float
+    """One sigma of what the axis' lean adds across it, m/s²."""
+
+    @property
+    def named(self) -> tuple[LeverArm, ...]:
+        """Those that surely stand away."""
+        return tuple(arm for arm in self.found if arm.named)
+
+
+def lever_arms(record: Record) -> LeverArms:
+    """The lever arms of an alignment."""
+    session, motion = record.session, record.motion
+    sensors = [session.sensors[i] for i in of_kind(session, ACCELEROMETER)]
+    inputs = inputs_of(session, ACCELEROMETER)[0][record.first :]
+    parts = pieces(inputs, turning(motion.rates[:, 2], motion.row), record.angle, record.stops, motion.row)
+    lean = gravity(session.site) * table_wobble(session)
+    each = _each(parts, sensors, lean)
+    stated, origin = positions_of(sensors) is not None, None
+    if stated and len(each) > 1:
+        origin = _origin(each, sensors)
+        parts = replace(parts, values=parts.values - parts.levers @ _common(sensors, origin[0]).T)
+        each = _each(parts, sensors, lean)
+    seen = {one.sensor for one in each}
+    arms = tuple(_judged(one, sensors[one.sensor], len(parts.time), LEVEL / len(each)) for one in each)
+    upright = tuple(sensor.name for i, sensor in enumerate(sensors) if i not in seen)
+    return LeverArms(arms, upright, origin, stated, parts, lean)
+
+
+def _each(parts: Pieces, sensors: Sequence[Sensor], lean: float) -> list[Felt]:
+    found = (felt(parts, i, sensor.nominal_axis, lean) for i, sensor in enumerate(sensors))
+    return [one for one in found if one is not None]
+
+
+def _common(sensors: Sequence[Sensor], origin: Array) -> Array:
+    """(m, 2) c and d of all sensors, m, where all stand at ``origin`` (2,), m."""
+    axes = np.stack([sensor.nominal_axis for sensor in sensors])
+    return coefficients(axes, np.tile([*origin, 0.0], (len(sensors), 1)))
+
+
+def _origin(each: Sequence[Felt], sensors: Sequence[Sensor]) -> tuple[Array, Array]:
+    """The lever arm (2,), m, that all sensors share, and its covariance; one that contradicts all others left out."""
+    p_value, origin = _shared(each, sensors)
+    if p_value >= LEVEL or len(each) < FEWEST:
+        return origin
+    others = [_shared([one for one in each if one is not left], sensors) for left in each]
+    best, without = max(others, key=lambda other: other[0])
+    return without if best >= LEVEL else origin
+
+
+def _shared(each: Sequence[Felt], sensors: Sequence[Sensor]) -> tuple[float, tuple[Array, Array]]:
+    """How likely the lever arms are to differ as much where they are one; that one and its covariance."""
+    information, weighted, square = np.zeros((2, 2)), np.zeros(2), 0.0
+    for one in each:
+        place, covariance = _place(one, sensors[one.sensor])
+        weight = np.linalg.inv(covariance)
+        information, weighted = information + weight, weighted + weight @ place
+        square += float(place @ weight @ place)
+    origin = np.linalg.solve(information, weighted)
+    columns = 2 * len(each) - 2
+    freedom = min(one.freedom for one in each)
+    if columns < 1 or freedom <= 0:
+        return 1.0, (origin, np.linalg.inv(information))
+    apart = max(square - float(weighted @ origin), 0.0)
+    return float(f_distribution.sf(apart / columns, columns, freedom)), (origin, np.linalg.inv(information))
+
+
+def _place(one: Felt, sensor: Sensor) -> tuple[Array, Array]:
+    """Position (2,), m, and covariance (2, 2), m²."""
+    matrix = place_of(sensor.nominal_axis)
+    return matrix @ one.lever, matrix @ one.covariance @ matrix.T
+
+
+def _judged(one: Felt, sensor: Sensor, count: int, level: float) -> LeverArm:
+    """Whether the lever arm is named, and what stands beside it; ``count``: of pieces."""
+    worth = {rival: one.worth(rival, count) for rival in RIVALS}
+    own, best = one.worth("lever arm", count), max(worth, key=lambda rival: worth[rival])
+    beaten = worth[best] > own + TOLD_APART
+    more = one.p_value("beyond")
+    excess = one.excess if more < level else 1.0
+    named = one.p_value("lever arm", excess) < level and not beaten
+    acts = beaten and one.p_value(best) < level
+    place, covariance = _place(one, sensor)
+    return LeverArm(
+        sensor=sensor,
+        place=place,
+        covariance=excess * covariance,
+        felt=one,
+        named=named,
+        rivals=tuple(rival for rival in RIVALS if worth[rival] > own - TOLD_APART) if named else (),
+        more=more if named else 1.0,
+        other=best if acts else "",
+    )

@@ -1,0 +1,39 @@
+"""Causes that show only while a turntable turns; the columns of their effect are in `estimator.alignment.levers`."""
+
+from collections.abc import Sequence
+
+from estimator.causes.contract import Cause
+
+
+class LeverArm(Cause):
+    """A property of how the block sits on the table, and no fault: an alignment estimates it and takes it off."""
+
+    identifier = "lever-arm"
+    scope = "fixture"
+    equation = (
+        "−ω²·(a_x r_x + a_y r_y) + α·(a_y r_x − a_x r_y) while the table turns, k = (r_x, r_y) from the turn axis"
+    )
+    units = ("m", "m")
+    amplitude_words = ("x =", "y =")
+    kind = "accelerometer"
+    sentence = "{sensors} stands away from the turn axis and feels the turns."
+    advice = (
+        "Nothing is wrong with the sensor, and the alignment has taken the effect off. State where the sensors sit "
+        "(position_m); the file is then held to it."
+    )
+    correct = (
+        "Measure where the sensors sit and correct position_m; look whether any is another than the file takes it for."
+    )
+    """What to do where the turns contradict a stated position."""
+
+    def told(self, sensor: str, distance: str) -> str:
+        """The sentence with the size: ``A2 stands 4.1 ± 0.2 cm from the turn axis and feels the turns.``"""
+        return f"{sensor} stands {distance} from the turn axis and feels the turns."
+
+    def contradicted(self, sensor: str, distance: str) -> str:
+        """The same where the file states positions, and the turns contradict that of this sensor."""
+        return f"{sensor} stands {distance} from where the file says."
+
+    def apart(self, sensors: Sequence[str], distance: str) -> str:
+        """The same where the turns cannot tell which of two sensors sits elsewhere."""
+        return f"{' and '.join(sensors)} do not stand to one another as the file says: one of them is {distance} off."

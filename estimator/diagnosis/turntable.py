@@ -1,0 +1,181 @@
+"""What the simulation gets wrong about an alignment on a turntable: lever arms, and what else the turns do."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from estimator.alignment.align import align, prepared
+from estimator.alignment.as_calibration import alignment_calibration, settled
+from estimator.alignment.held_out import Prediction, held_out, prediction
+from estimator.alignment.lever_arms import FEWEST, LEVEL, TOLD_APART, LeverArm, LeverArms, lever_arms
+from estimator.alignment.results import AlignmentResult
+from estimator.applied_vector import STANDARD_GRAVITY
+from estimator.causes.catalogue import UNEXPLAINED
+from estimator.causes.turntable import LeverArm as Cause
+from estimator.diagnosis.explanation.detection_limits import required
+from estimator.diagnosis.results import Diagnosis, Finding, Gain, Limit, Rival, Score, Separation, Structure
+from estimator.results import ARCSEC
+from estimator.session import ACCELEROMETER, CalibrationSession
+
+CENTIMETRE, MICRO_G = 0.01, STANDARD_GRAVITY * 1e-6
+"""m, m/s²."""
+CAUSE = Cause()
+CALLED = {"vibration": "vibration-rectification", "wobble": "axis-wobble", "delay or rate": UNEXPLAINED}
+"""The catalogue's names of rivals; it has none of a delay."""
+TELLS = {
+    "vibration": "measure with a rule where the sensor stands, or mount it so that it stands across its axis",
+    "wobble": "turn both ways, and to stops a quarter turn apart",
+    "delay or rate": "turn the other way round as well",
+}
+"""What would tell a rival from a lever arm."""
+WHERE = {
+    "vibration": "a shift while the table turns, as of a bearing that shakes",
+    "wobble": "a lean of the turn axis while the table turns",
+    "delay or rate": "readings that lag while the table turns, or follow its rate",
+}
+"""What is there where a rival fits far better than a lever arm."""
+COARSE = 5e-4
+"""m of uncertainty from which a tenth of a centimetre is fine enough."""
+ALIKE = (
+    "The part of a lever arm along the sensor's input axis acts as the square of the turn rate. What else does, as a "
+    "bearing's vibration that the sensor rectifies, counts as part of it. The part across is told by starting and "
+    "stopping alone."
+)
+BEYOND = "while the table turns, beyond any lever arm"
+
+
+def diagnose_alignment(session: CalibrationSession) -> Diagnosis:
+    """The lever arms of a session of programme rotation-alignment.
+
+    Raises
+    ------
+    ScheduleError : the session cannot be aligned.
+    """
+    arms = lever_arms(prepared(session))
+    without, result = align(session, lever_arms=False), align(session)
+    rows = settled(result) & settled(without)
+    return Diagnosis(
+        unit=session.unit,
+        findings=tuple(_findings(arms)),
+        structures=tuple(_structures(arms)),
+        gain=_gain(arms),
+        limits=(_limit(arms),),
+        baseline=alignment_calibration(without, rows),
+        calibration=alignment_calibration(result, rows),
+        notes=tuple(_notes(arms, without, result)),
+    )
+
+
+def _findings(arms: LeverArms) -> Iterator[Finding]:
+    """One a sensor; where the file states positions and only two show, one of both: either may sit elsewhere."""
+    found = [(arm, _finding(arm, arms)) for arm in arms.named]
+    if not (arms.stated and found and len(arms.found) < FEWEST):
+        yield from (finding for _, finding in found)
+        return
+    arm, first = max(found, key=lambda pair: pair[1].strength)
+    sensors = tuple(one.sensor.name for one in arms.found)
+    said = CAUSE.apart(sensors, _centimetres(*arm.distance))
+    yield replace(first, sentence=said, sensors=sensors, amplitude=(), sigma=(), units=())
+
+
+def _finding(arm: LeverArm, arms: LeverArms) -> Finding:
+    name, (length, sigma) = arm.sensor.name, arm.distance
+    told = _centimetres(length, sigma)
+    said = CAUSE.contradicted(name, told) if arms.stated else CAUSE.told(name, told)
+    return Finding(
+        cause=CAUSE.identifier,
+        sentence=said,
+        advice=CAUSE.correct if arms.stated else CAUSE.advice,
+        sensors=(name,),
+        p_value=min(1.0, arm.felt.p_value("lever arm") * len(arms.found)),
+        strength=_strength(arm, "lever arm"),
+        amplitude=tuple(map(float, arm.place)),
+        sigma=tuple(map(float, np.sqrt(np.diag(arm.covariance)))),
+        units=CAUSE.units,
+        alternatives=tuple(dict.fromkeys(CALLED[rival] for rival in arm.rivals)),
+        separations=tuple(_separation(arm, rival) for rival in arm.rivals),
+        ranking=tuple(_ranking(arm, len(arms.pieces.time))),
+    )
+
+
+def _centimetres(length: float, sigma: float) -> str:
+    """``4.1 ± 0.2 cm``, with two digits of the uncertainty at most."""
+    digits = 1 if sigma >= COARSE else 2
+    return f"{length / CENTIMETRE:.{digits}f} ± {sigma / CENTIMETRE:.{digits}f} cm"
+
+
+def _strength(arm: LeverArm, model: str) -> float:
+    return float(np.sqrt(max(arm.felt.drop[model][0], 0.0)))
+
+
+def _separation(arm: LeverArm, rival: str) -> Separation:
+    now = _strength(arm, f"lever arm beside {rival}")
+    return Separation(CALLED[rival], (arm.sensor.name,), now, TELLS[rival], None)
+
+
+def _ranking(arm: LeverArm, pieces: int) -> Iterator[Rival]:
+    """Shares by BIC."""
+    names = {"lever arm": CAUSE.identifier, **CALLED}
+    worth = np.array([arm.felt.worth(model, pieces) for model in names])
+    share = np.exp(0.5 * (worth - worth.max()))
+    lines = zip(names, share / share.sum(), strict=True)
+    for model, probability in sorted(lines, key=lambda line: -line[1]):
+        yield Rival(names[model], (arm.sensor.name,), float(probability), _strength(arm, model))
+
+
+def _structures(arms: LeverArms) -> Iterator[Structure]:
+    level = LEVEL / max(len(arms.found), 1)
+    for arm in arms.found:
+        who = (arm.sensor.name,)
+        if arm.other:
+            yield Structure(WHERE[arm.other], who, arm.felt.p_value(arm.other), _strength(arm, arm.other))
+        elif arm.more < level:
+            yield Structure(BEYOND, who, arm.more, _strength(arm, "beyond"))
+
+
+def _gain(arms: LeverArms) -> Gain:
+    before, after = (_score(prediction(arms, named=named)) for named in (False, True))
+    return Gain(before, after, held_out(arms), None)
+
+
+def _score(told: Prediction) -> Score:
+    return Score(told.rms, told.chi2, told.log_score, {ACCELEROMETER: told.rms})
+
+
+def _limit(arms: LeverArms) -> Limit:
+    if not arms.found:
+        return Limit(CAUSE.identifier, None, CAUSE.units, "every accelerometer points along the turn axis")
+    need = required(1, LEVEL / len(arms.found))
+    sigma = np.max([np.sqrt(np.diag(arm.covariance)) for arm in arms.found], axis=0)
+    return Limit(CAUSE.identifier, tuple(map(float, need * sigma)), CAUSE.units, "")
+
+
+def _notes(arms: LeverArms, without: AlignmentResult, result: AlignmentResult) -> Iterator[str]:
+    if arms.upright:
+        points = "points" if len(arms.upright) == 1 else "point"
+        yield (
+            f"{' and '.join(arms.upright)} {points} along the turn axis: where it stands does not show. Nor does any "
+            "sensor's place along the axis."
+        )
+    if arms.origin is not None:
+        place, covariance = arms.origin
+        length, sigma = float(np.hypot(*place)), float(np.sqrt(np.linalg.eigvalsh(covariance)[-1]))
+        if length > TOLD_APART**0.5 * sigma:
+            said = _centimetres(length, sigma)
+            yield f"The origin of the stated positions lies {said} from the turn axis, and that is taken off."
+    if arms.named:
+        yield f"Lever arms are part of every alignment's model. Without them {_off(without, result)}."
+        yield ALIKE
+
+
+def _off(without: AlignmentResult, result: AlignmentResult) -> str:
+    """By how much the zeros and mounting errors would be off."""
+    moved = {name: _value(without, name) - _value(result, name) for name in ("nabla_x", "nabla_y", "E_xz", "E_yz")}
+    zeros = max(abs(moved["nabla_x"]), abs(moved["nabla_y"])) / MICRO_G
+    mounting = max(abs(moved["E_xz"]), abs(moved["E_yz"])) / ARCSEC
+    return f"a zero would be off by {zeros:.1f} µg and a mounting error by {mounting:.1f}″"
+
+
+def _value(result: AlignmentResult, name: str) -> float:
+    return float(result.estimate[result.names.index(name)])
