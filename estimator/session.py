@@ -19,6 +19,8 @@ RATE_TABLE = "rate-table"
 IN_SERVICE = "in-service"
 CALIBRATIONS = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS)
 """Programmes that calibrate every sensor of a block."""
+DIAGNOSED = (*CALIBRATIONS, ROTATION_ALIGNMENT)
+"""Programmes in which causes are looked for: in alignments lever arms alone."""
 PROGRAMMES = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, ROTATION_ALIGNMENT, RATE_TABLE, IN_SERVICE)
 """All, as session files name them."""
 AS_FOUND, AS_LEFT = "as-found", "as-left"

@@ -9,7 +9,7 @@ import typer
 from estimator import CalibrationSession, diagnose
 from estimator.diagnosis import Diagnosis
 from estimator.errors import SessionError
-from estimator.session import CALIBRATIONS
+from estimator.session import DIAGNOSED
 from service.commands.console import UNUSABLE, AsJson, Files, for_each, print_json, problem_line, say, screen
 from service.commands.diagnosis_tables import diagnosis_view
 from service.ingest import read_file
@@ -43,7 +43,7 @@ def _earlier(file: Path) -> CalibrationSession:
 
 def _diagnosed(file: Path, earlier: list[CalibrationSession]) -> Result:
     session = read_file(file)
-    return session, diagnose(session, history=earlier) if session.programme in CALIBRATIONS else None
+    return session, diagnose(session, history=earlier) if session.programme in DIAGNOSED else None
 
 
 def _print_json(result: Result) -> None:

@@ -20,6 +20,7 @@ from estimator.session import (
     RATE_TABLE,
     ROTATION_ALIGNMENT,
     TWO_AXIS_STAND,
+    Array,
     CalibrationSession,
 )
 from estimator.simulate import StandDraw, draw_stand, scattered, simulate
@@ -43,6 +44,10 @@ STAND_ERRORS = ("theta_x", "theta_y", "alpha")
 """That stay the same over a session and are told with the truth."""
 DRIFT = re.compile(r"A(?P<sensor>\d+)\.(?P<parameter>\w+)=(?P<amount>[-+]?\d+(\.\d*)?)")
 """SENSOR.PARAMETER=AMOUNT."""
+LEVER = re.compile(r"A(?P<sensor>[1-3])=(?P<x>[-+]?\d+(\.\d*)?),(?P<y>[-+]?\d+(\.\d*)?)")
+"""SENSOR=X,Y."""
+CENTIMETRE = 0.01
+"""m."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +66,18 @@ def read_drift(text: str) -> Change:
     if match is None or match["parameter"] not in ELEMENT or match["sensor"] == "0":
         raise typer.BadParameter(f"{text!r}: write SENSOR.PARAMETER=AMOUNT, for instance A3.bias=20")
     return Change(int(match["sensor"]) - 1, match["parameter"], float(match["amount"]))
+
+
+def read_levers(texts: list[str]) -> Array | None:
+    """(6, 3) m: ``A2=4,-1`` as the place of A2 from the turn axis, of all others on it; None without any."""
+    matches = [LEVER.fullmatch(text) for text in texts]
+    wrong = next((text for text, match in zip(texts, matches, strict=True) if match is None), None)
+    if wrong is not None:
+        raise typer.BadParameter(f"{wrong!r}: write SENSOR=X,Y in cm from the turn axis, for instance A2=4,-1.5")
+    places = np.zeros((6, 3))
+    for match in filter(None, matches):
+        places[int(match["sensor"]) - 1, :2] = CENTIMETRE * float(match["x"]), CENTIMETRE * float(match["y"])
+    return places if matches else None
 
 
 def safe_name(unit: str) -> str:
@@ -86,6 +103,14 @@ def simulate_files(
             show_default=False,
         ),
     ] = None,
+    lever_arm: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Where an accelerometer stands from the turn axis in rotation-alignment, SENSOR=X,Y in cm. May be "
+            "repeated.",
+            show_default=False,
+        ),
+    ] = None,
     programme: Annotated[str, typer.Option(help=f"One of {', '.join(SIMULATED)}.")] = TWO_AXIS_STAND,
     as_json: AsJson = False,
 ) -> None:
@@ -102,11 +127,14 @@ def simulate_files(
         raise typer.BadParameter(f"--drift names a sensor that is not there; the block has A1 to A{sensors}")
     if programme in ON_TURNTABLE and any(c.parameter != "bias" or c.sensor > 1 for c in changes):
         raise typer.BadParameter(f"--drift: {programme} shows A1.bias and A2.bias only, the zeros of x and y")
+    levers = read_levers(lever_arm or [])
+    if levers is not None and programme != ROTATION_ALIGNMENT:
+        raise typer.BadParameter(f"--lever-arm: {programme} does not show it; {ROTATION_ALIGNMENT} does")
     schedule = replace(schedule_of(ACCELEROMETER, sensors, "SIM", alpha, positions), unit=unit)
     out.mkdir(parents=True, exist_ok=True)
     rng = np.random.default_rng(seed)
     made = (
-        _turned(unit, programme, changes, sessions, rng)
+        _turned(unit, programme, changes, sessions, rng, levers=levers)
         if programme in ON_TURNTABLE
         else _simulated(schedule, changes, sessions, noise, rng, in_service=programme == IN_SERVICE)
     )
@@ -147,7 +175,13 @@ def _simulated(
 
 
 def _turned(
-    unit: str, programme: str, changes: tuple[Change, ...], sessions: int, rng: np.random.Generator
+    unit: str,
+    programme: str,
+    changes: tuple[Change, ...],
+    sessions: int,
+    rng: np.random.Generator,
+    *,
+    levers: Array | None,
 ) -> Iterator[Simulated]:
     """Sessions on a turntable in order."""
     make = alignment if programme == ROTATION_ALIGNMENT else rate_table
@@ -155,7 +189,7 @@ def _turned(
     moved = step_of(changes, 2, ACCELEROMETER)
     for number in range(sessions):
         zeros = np.append(start + number * moved[:2, ELEMENT["bias"]] / MICRO, 0.0)
-        truth = turntable_truth(zeros, drifts, rng)
+        truth = replace(turntable_truth(zeros, drifts, rng), positions=levers)
         session = make(unit, truth, rng)
         yield Simulated(_dated(session, FIRST_SESSION + number * INTERVAL), truth, None)
 
@@ -178,6 +212,7 @@ def _turntable(truth: Truth) -> dict[str, Any]:
         "gyro_bias": truth.gyro_bias.tolist(),
         "mounting": list(truth.mounting),
         "kappa": truth.kappa,
+        "positions_m": None if truth.positions is None else truth.positions[:3].tolist(),
     }
 
 

@@ -20,6 +20,8 @@ from service.demo.blocks import MICRO_G, SITE
 
 STOPS = Programme(dwell=200.0, row=1.0)
 """Seconds: 200 at rest a stop, one a row."""
+START = 2.0
+"""s in which the table comes up to its rate: whole rows."""
 TURNTABLE = Imperfections(wobble=0.3 * ARCSEC, table=0.3 * ARCSEC)
 """A good one: 0.3″."""
 TURNS = ((0.5, 80.0), (-0.5, 80.0))
@@ -46,8 +48,9 @@ def turntable_truth(zeros: Array, drifts: Array, rng: np.random.Generator) -> Tr
 
 
 def alignment(unit: str, truth: Truth, rng: np.random.Generator) -> CalibrationSession:
-    """Two positions 180° apart of three accelerometers and three gyros."""
-    session, _ = simulate_alignment(triads(), SITE, STOPS, truth, rng, imperfections=TURNTABLE, unit=unit)
+    """Two positions 180° apart of three accelerometers and three gyros; off the turn axis they need a gentle start."""
+    stops = STOPS if truth.positions is None else replace(STOPS, ramp=START)
+    session, _ = simulate_alignment(triads(), SITE, stops, truth, rng, imperfections=TURNTABLE, unit=unit)
     return session
 
 

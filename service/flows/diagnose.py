@@ -13,7 +13,7 @@ from threading import Lock
 from estimator.diagnosis import Diagnosis
 from estimator.diagnosis import diagnose as find_causes
 from estimator.errors import SessionError
-from estimator.session import CALIBRATIONS, CalibrationSession
+from estimator.session import DIAGNOSED, CalibrationSession
 from service.errors import NotFoundError
 from service.flows.flagging.diagnosis import flag_diagnosis
 from service.ingest import read_upload
@@ -49,7 +49,7 @@ class Task:
     @property
     def is_quick(self) -> bool:
         """Whether it is made within a request."""
-        if self.session.programme not in CALIBRATIONS:
+        if self.session.programme not in DIAGNOSED:
             return True
         earlier = sum(past.size for past in self.earlier)
         return self.session.size <= QUICK_BYTES and earlier <= QUICK_EARLIER_BYTES
@@ -123,11 +123,11 @@ def _known(store: Store, id: str) -> StoredDiagnosis | None:
 
 
 def _made(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
-    """Reads the stored bytes again and looks for causes, where the programme is one that calibrates.
+    """Reads the stored bytes again and looks for causes, where the programme is one that can show any.
 
     Where the program fails it says so, and this version does not try again; the next one does.
     """
-    if task.session.programme not in CALIBRATIONS:
+    if task.session.programme not in DIAGNOSED:
         nothing = written(inapplicable_to_dict(task.session.unit))
         return replace(_nothing_found(task, DiagnosisState.NOT_APPLICABLE, NOT_APPLICABLE, now), document=nothing)
     try:

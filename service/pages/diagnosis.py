@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from estimator.diagnosis.results import Structure
+from estimator.session import CALIBRATIONS
 from service.charts import ChartSet
 from service.charts.diagnosis import MOST_PANELS, Sides, diagnosis_charts
 from service.charts.noise import noise_of
@@ -147,7 +148,8 @@ def _evidence(report: DiagnosisReport, made: StoredDiagnosis, found: Diagnosed) 
 
 
 def _findings(report: DiagnosisReport, found: Diagnosed) -> tuple[FindingView, ...]:
-    revisions, is_claim = in_force(report.revisions), found.calibration.fit.noise == "stated" and not found.noise
+    revisions, is_stated = in_force(report.revisions), found.calibration.fit.noise == "stated" and not found.noise
+    is_claim = is_stated and report.session.programme in CALIBRATIONS  # an alignment takes its turns' own scatter
     return tuple(finding_view(f, revisions, found.findings, by_stated_noise=is_claim) for f in found.findings)
 
 

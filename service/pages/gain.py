@@ -43,10 +43,12 @@ class Moved:
 class GainView:
     """The gain of the extended model."""
 
+    held_out: str
+    """What took no part in the fit: ``positions``, ``turns``."""
     is_none: bool
     """Whether the named causes show elsewhere than in the prediction of held-out readings."""
     rows: tuple[GainRow, ...]
-    """Positions of this session that took no part in the fit."""
+    """What of this session took no part in the fit."""
     earlier_rows: tuple[GainRow, ...]
     """The earlier session, with the size found in this one; empty where the causes cannot have acted there."""
     earlier_at: datetime | None
@@ -62,6 +64,7 @@ def gain_view(
     """Before is the calibration in force, after the one with the named causes; each with its verdict."""
     earlier, kinds = gain.session, _kinds(gain, after)
     return GainView(
+        held_out=gain.held_out,
         is_none=_is_same(gain.before, gain.after),
         rows=_rows(gain.before, gain.after, kinds),
         earlier_rows=() if earlier is None else _rows(earlier.before, earlier.after, kinds),

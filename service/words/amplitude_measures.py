@@ -18,6 +18,7 @@ AMPLITUDE_MEASURES = {
     "m/s²/(K/s)": Measure("µg/(K/h)", MICRO_G / PER_HOUR),
     "(m/s²)⁻¹": Measure("µg/g²", 1e6 * STANDARD_GRAVITY),
     "(m/s²)⁻²": Measure("µg/g³", 1e6 * STANDARD_GRAVITY**2),
+    "m": Measure("cm", 100.0),
     "rad": ARCSEC,
     "rad/s": Measure("°/h", PER_HOUR / DEGREE),
     "rad/s/K": Measure("(°/h)/K", PER_HOUR / DEGREE),

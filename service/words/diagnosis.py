@@ -14,7 +14,8 @@ from service.words.noise_claims import but_wrong_errors, wrong_errors
 from service.words.structures import UNEXPLAINED, headline_of, told, what_to_do_about
 
 NOT_APPLICABLE = (
-    "Not applicable to this programme: causes are looked for in calibrations, on a stand or in still orientations."
+    "Not applicable to this programme: causes are looked for in calibrations, on a stand or in still orientations, and "
+    "in alignments on a turntable."
 )
 NOTHING = "Nothing wrong found"
 NOTHING_LEFT = "Too few positions to judge the simulation"

@@ -27,11 +27,20 @@ def _bytes(session: CalibrationSession, month: int) -> bytes:
 
 
 def alignment_bytes(
-    *, seed: int = 1, month: int = 3, unit: str = "RA-1", x_moved: float = 0.0, mounting: tuple[float, float] = MOUNTING
+    *,
+    seed: int = 1,
+    month: int = 3,
+    unit: str = "RA-1",
+    x_moved: float = 0.0,
+    mounting: tuple[float, float] = MOUNTING,
+    a2_stands: tuple[float, float] | None = None,
 ) -> bytes:
-    """An alignment; ``x_moved`` is ∇_x in µg."""
-    truth = Truth(accelerometer_bias=np.array([x_moved * MICRO_G, 0.0, 0.0]), mounting=mounting)
-    programme = Programme(dwell=200.0, row=1.0)
+    """An alignment; ``x_moved`` is ∇_x in µg, ``a2_stands`` where A2 stands from the turn axis, m."""
+    places = None if a2_stands is None else np.zeros((6, 3))
+    if places is not None:
+        places[1, :2] = a2_stands
+    truth = Truth(accelerometer_bias=np.array([x_moved * MICRO_G, 0.0, 0.0]), mounting=mounting, positions=places)
+    programme = Programme(dwell=200.0, row=1.0, ramp=0.0 if places is None else 2.0)
     rng = np.random.default_rng(seed)
     session, _ = simulate_alignment(triads(), SITE, programme, truth, rng, imperfections=NOISE, unit=unit)
     return _bytes(session, month)

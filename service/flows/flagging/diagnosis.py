@@ -5,6 +5,7 @@ from datetime import datetime
 
 from estimator.causes import cause
 from estimator.diagnosis import Finding
+from estimator.session import CALIBRATIONS
 from service.flows.flagging.settle import Found, Occasion, settle
 from service.judging.model_in_force import in_force
 from service.records.diagnosis import Diagnosed, StoredDiagnosis
@@ -22,10 +23,16 @@ GONE = "The diagnosis of the session of {day} no longer finds it."
 
 def flag_diagnosis(store: Store, made: StoredDiagnosis, at: datetime) -> None:
     """Settles the unit's flags. An older session than its latest says nothing, nor one without a diagnosis: a failed
-    one, or a recording in which no causes are looked for. One without a degree of freedom clears nothing."""
+    one, or a recording in which no causes are looked for. Nor does an alignment: how a block sits on a turntable is no
+    fault of the unit, and nothing else is looked for there. One without a degree of freedom clears nothing."""
     session = store.sessions.get(made.session)
     summary = store.fleet.unit(session.unit)
-    if made.found is None or summary is None or summary.last_session != session.id:
+    if (
+        made.found is None
+        or session.programme not in CALIBRATIONS
+        or summary is None
+        or summary.last_session != session.id
+    ):
         return
     unit = store.units.hold(session.unit)
     opened = tuple(flag for flag in store.flags.open_of(unit) if flag.matter in MATTERS)

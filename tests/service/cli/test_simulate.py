@@ -76,6 +76,24 @@ def test_a_turntable_session_says_the_truth(run: Run, tmp_path: Path, programme:
             assert abs(estimate.value - true) < 4 * estimate.sigma
 
 
+def test_a_hidden_lever_arm_is_found_again(run: Run, tmp_path: Path) -> None:
+    options = ("--programme", "rotation-alignment", "--lever-arm", "A2=4,-1.5")
+    [truth] = run("simulate", "--out", tmp_path, *options, "--json").documents
+    assert truth["positions_m"][1] == pytest.approx([0.04, -0.015, 0.0])
+    [found] = run("diagnose", truth["file"], "--json").documents
+    [finding] = found["findings"]
+    assert (finding["cause"], finding["sensors"]) == ("lever-arm", ["A2"])
+    apart = (np.array(finding["amplitude"]) - [0.04, -0.015]) / finding["sigma"]
+    assert np.abs(apart).max() < 4
+
+
+@pytest.mark.parametrize(("programme", "lever"), [("rotation-alignment", "A4=1,2"), ("rate-table", "A2=1,2")])
+def test_a_lever_arm_that_nothing_would_show_is_refused(run: Run, tmp_path: Path, programme: str, lever: str) -> None:
+    ran = run("simulate", "--out", tmp_path / "none", "--programme", programme, "--lever-arm", lever)
+    assert ran.code == 1
+    assert not (tmp_path / "none").exists()
+
+
 def test_what_a_programme_does_not_show_cannot_drift_in_it(run: Run, tmp_path: Path) -> None:
     for options in (("rotation-alignment", "A3.bias=1"), ("rate-table", "A1.scale=1"), ("flying", "A1.bias=1")):
         ran = run("simulate", "--out", tmp_path / "none", "--programme", options[0], "--drift", options[1])

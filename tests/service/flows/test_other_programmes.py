@@ -1,5 +1,7 @@
 """Alignments, rate tables and recordings in service through the flows that were made for calibrations."""
 
+import json
+import re
 from dataclasses import replace
 from datetime import UTC, datetime
 
@@ -12,9 +14,11 @@ from service.flows.receive import upload
 from service.judging.calibrate import rests_on_model
 from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState
+from service.records.flag import Matter
 from service.records.model import ModelRevision, Scope
 from service.storage import Storage
 from tests.conftest import Holding
+from tests.service.diagnosed import TEMPERATURE, drawn
 from tests.service.recordings import recording_bytes
 from tests.service.sessions import session_bytes, session_id
 from tests.service.turntable import alignment_bytes, rate_table_bytes
@@ -39,7 +43,7 @@ def accepted(storage: Storage, session: str) -> None:
         store.models.add(replace(CUBIC, session=session))
 
 
-@pytest.mark.parametrize("programme", OTHERS)
+@pytest.mark.parametrize("programme", ["rate table", "recording"])
 def test_causes_are_not_looked_for_and_that_is_no_failure(storage: Storage, programme: str) -> None:
     stored(storage, session_bytes())
     found = diagnose(storage, stored(storage, OTHERS[programme]), NOW)
@@ -47,7 +51,7 @@ def test_causes_are_not_looked_for_and_that_is_no_failure(storage: Storage, prog
     assert found.summary.startswith("Not applicable to this programme")
 
 
-@pytest.mark.parametrize("programme", OTHERS)
+@pytest.mark.parametrize("programme", ["rate table", "recording"])
 def test_pages_and_answers_say_so(holding: Holding, programme: str) -> None:
     client, id = holding(session_bytes(), OTHERS[programme]), session_id(OTHERS[programme])
     answer = client.get(f"/api/v1/sessions/{id}/diagnosis")
@@ -56,6 +60,30 @@ def test_pages_and_answers_say_so(holding: Holding, programme: str) -> None:
     assert (document["state"], document["findings"], document["gain"]) == ("not applicable", [], None)
     for page in (f"/sessions/{id}", f"/sessions/{id}/diagnosis"):
         assert "Not applicable to this programme" in client.get(page).text
+
+
+def test_a_lever_arm_is_said_on_the_pages_and_by_the_api(holding: Holding) -> None:
+    content = alignment_bytes(a2_stands=(0.04, -0.03))
+    client, id = holding(content), session_id(content)
+    for page in (f"/sessions/{id}", f"/sessions/{id}/diagnosis"):
+        assert re.search(r"A2 stands [45]\.\d ± 0\.\d cm from the turn axis", client.get(page).text)
+    document = client.get(f"/api/v1/sessions/{id}/diagnosis").json()
+    assert [finding["cause"] for finding in document["findings"]] == ["lever-arm"]
+    assert "Parts of the turn held out" in client.get(f"/sessions/{id}/diagnosis").text
+
+
+def test_a_sound_alignment_has_nothing_wrong(storage: Storage) -> None:
+    found = diagnose(storage, stored(storage, OTHERS["alignment"]), NOW)
+    assert found.state is DiagnosisState.NOTHING
+
+
+def test_an_alignment_neither_raises_nor_clears_a_flag(storage: Storage) -> None:
+    cubic = drawn(TEMPERATURE).session | {"started_at": "2026-01-05T08:00:00Z"}
+    diagnose(storage, stored(storage, json.dumps(cubic).encode()), NOW)
+    diagnose(storage, stored(storage, alignment_bytes(unit=cubic["unit"], month=6, a2_stands=(0.04, -0.03))), NOW)
+    with storage.database.reading() as store:
+        open_now = store.flags.open_of(store.units.key(cubic["unit"]))
+    assert [flag.matter for flag in open_now] == [Matter.CAUSE]
 
 
 def test_recordings_between_two_calibrations_do_not_hide_the_earlier_one(storage: Storage) -> None:
