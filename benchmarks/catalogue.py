@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-from estimator.causes import CATALOGUE, Cause
+from estimator.causes import CATALOGUE, ON_TURNTABLE, Cause
 
 PAGE = Path(__file__).parents[1] / "docs" / "diagnosis" / "causes.md"
 HEAD = """# The catalogue of causes
@@ -29,9 +29,15 @@ def page() -> str:
     for scope, heading in SCOPES.items():
         rows = [_row(cause) for cause in CATALOGUE if cause.scope == scope]
         parts.append(f"## {heading}\n\n{_line(COLUMNS)}\n{RULE}\n" + "\n".join(rows) + "\n")
+    rows = "\n".join(map(_row, ON_TURNTABLE))
+    parts.append(f"{TURNTABLE}\n\n{_line(COLUMNS)}\n{RULE}\n{rows}\n")
     return "\n".join(parts)
 
 
+TURNTABLE = """## One sensor, on a turntable
+
+Looked for in alignments, where nothing else is. ω is the turn rate, α the angular acceleration, r the sensor's place
+from the turn axis."""
 COLUMNS = ("identifier", "adds", "unit", "needs", "what it says, and what to do", "accepted")
 RULE = "| --- | --- | --- | --- | --- | --- |"
 
@@ -40,7 +46,7 @@ def _row(cause: Cause) -> str:
     sentence = cause.sentence.format(sensors="the sensor")
     said = f"{sentence[0].upper()}{sentence[1:]} {cause.advice}"
     needs = ", ".join(sorted(cause.needs)) or "–"
-    accepted = "yes" if cause.can_be_modelled else "no"
+    accepted = "always" if cause.always_modelled else "yes" if cause.can_be_modelled else "no"
     units = ", ".join(dict.fromkeys(cause.units)) or "–"
     return _line((f"`{cause.identifier}`", cause.equation, units, needs, said, accepted))
 

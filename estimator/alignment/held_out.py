@@ -1,7 +1,8 @@
 """How well turns are predicted that took no part in the fit, without lever arms and with them.
 
-Every turn is held out once; of a single turn every fifth piece. The rest, with the stops, fits k, p, q and, for sensors
-whose lever arm is named, c and d; prediction with full covariance, the lean that pieces of one turn share included.
+Every turn is held out once; of a single turn every fifth piece or so. The rest, with the stops, fits k, p, q and, for
+sensors whose lever arm is named, c and d. Prediction is with full covariance, the lean that pieces of a turn share
+included.
 """
 
 from dataclasses import dataclass
@@ -14,8 +15,9 @@ from estimator.alignment.pieces import Pieces
 from estimator.alignment.turned import weighed
 from estimator.session import Array
 
-PARTS = 5
-"""Folds that a single turn is cut into, as the positions of a calibration are."""
+PARTS = (5, 4, 3, 2)
+"""Folds that a single turn is cut into: five as the positions of a calibration are, or fewer, so that its start and its
+stop are not held out together. They alone tell what acceleration adds."""
 FOLDS = 10
 """Folds that many turns are put into."""
 
@@ -50,8 +52,10 @@ def _folds(parts: Pieces) -> list[NDArray[np.bool_]]:
     if parts.turn.max() > 0:
         fold = np.where(parts.turn >= 0, parts.turn % FOLDS, -1)
         return [fold == number for number in range(fold.max() + 1)]
-    place = np.cumsum(parts.turn >= 0) % PARTS
-    folds = [(parts.turn >= 0) & (place == number) for number in range(PARTS)]
+    moving = parts.turn >= 0
+    count = next((n for n in PARTS if (moving.sum() - 1) % n), PARTS[-1])
+    place = np.cumsum(moving) % count
+    folds = [moving & (place == number) for number in range(count)]
     return [fold for fold in folds if fold.any()]
 
 

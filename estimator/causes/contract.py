@@ -173,6 +173,8 @@ class Cause(ABC):
     """Whether its rad/s is an angle that grows with time, not a rate that is measured."""
     clips: ClassVar[bool] = False
     """Whether it cuts readings off at a limit, beyond which they tell nothing."""
+    always_modelled: ClassVar[bool] = False
+    """Whether the model of its programme holds it in every session, so that nothing is left to accept."""
     shape_words: ClassVar[str] = ""
     """What its nonlinear parameter is, for people: ``time constant``, ``from`` (a row)."""
     amplitude_words: ClassVar[tuple[str, ...]] = ()

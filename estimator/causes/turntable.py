@@ -16,6 +16,7 @@ class LeverArm(Cause):
     units = ("m", "m")
     amplitude_words = ("x =", "y =")
     kind = "accelerometer"
+    always_modelled = True
     sentence = "{sensors} stands away from the turn axis and feels the turns."
     advice = (
         "Nothing is wrong with the sensor, and the alignment has taken the effect off. State where the sensors sit "

@@ -42,8 +42,12 @@ class Sides:
 
 
 def diagnosis_charts(sides: Sides, named: Sequence[str]) -> tuple[ChartSet, ...]:
-    """One set a way of looking and kind of sensor; the named sensors stand first, and of many only some are drawn."""
-    order = sorted(range(len(sides.sensors)), key=lambda i: (sides.sensors[i].name not in named, i))
+    """One set a way of looking and kind of sensor; the named sensors stand first, and of many only some are drawn.
+
+    A sensor without residuals, as a gyro of an alignment, is not drawn.
+    """
+    drawn = np.flatnonzero(np.isfinite(sides.before.value).any(axis=0)).tolist()
+    order = sorted(drawn, key=lambda i: (sides.sensors[i].name not in named, i))
     kinds = dict.fromkeys(sides.sensors[i].kind for i in order)
     return tuple(
         _chart_set(sides, across, [i for i in order if sides.sensors[i].kind == kind][:MOST_PANELS], len(kinds) > 1)

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from estimator.causes import find
 from estimator.diagnosis.results import Structure
 from estimator.session import CALIBRATIONS
 from service.charts import ChartSet
@@ -25,7 +26,7 @@ from service.words.structures import where_of, who_of
 
 WAIT = "A large session takes some seconds; this page reads itself again."
 CLAIM = "conditional-pass"
-"""Tone where nothing is wrong but the standard errors that the file states."""
+"""Tone where nothing is wrong but the standard errors that the file states, or only what the model always holds."""
 
 
 @dataclass(frozen=True)
@@ -121,8 +122,10 @@ def _made(pending: DiagnosisPage, report: DiagnosisReport, made: StoredDiagnosis
 
 
 def _tone(state: DiagnosisState, found: Diagnosed) -> str:
-    """Wrong standard errors are not all well, though nothing else is wrong."""
-    return CLAIM if state is DiagnosisState.NOTHING and found.noise else TONES[state]
+    """Wrong standard errors are not all well, though nothing else is wrong; what the model always holds is no alarm."""
+    known = [find(finding.cause) for finding in found.findings]
+    is_held = state is DiagnosisState.NAMED and all(cause is not None and cause.always_modelled for cause in known)
+    return CLAIM if is_held or (state is DiagnosisState.NOTHING and found.noise) else TONES[state]
 
 
 def _evidence(report: DiagnosisReport, made: StoredDiagnosis, found: Diagnosed) -> EvidenceView:

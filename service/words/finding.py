@@ -44,6 +44,8 @@ class FindingView:
     since: str
     acceptable: tuple[tuple[str, str], ...]
     """Causes that can become part of a model: identifier and name."""
+    held: bool
+    """Whether the model holds it in every session, accepted or not."""
     sensors: tuple[str, ...]
     accepted: tuple[int, ...]
     """Revisions that already hold it for this session."""
@@ -58,7 +60,9 @@ def finding_view(
 ) -> FindingView:
     """What a technician and an engineer read of a finding; ``findings``: all of its diagnosis."""
     names = (finding.cause, *finding.alternatives)
-    of_noise = isinstance(find(finding.cause), ExcessNoise)
+    first = find(finding.cause)
+    of_noise, held = isinstance(first, ExcessNoise), first is not None and first.always_modelled
+    known = [] if held else [one for name in names if (one := find(name)) and one.can_be_modelled]
     return FindingView(
         cause=finding.cause,
         name=cause_name(finding.cause),
@@ -74,7 +78,8 @@ def finding_view(
         ranking=tuple(ranking_of(finding)),
         parity=_parity(finding.parity),
         since=_since(finding.new),
-        acceptable=tuple((name, known.name) for name in names if (known := find(name)) and known.can_be_modelled),
+        acceptable=tuple((one.identifier, one.name) for one in known),
+        held=held,
         sensors=finding.sensors,
         accepted=tuple(r.id for r in revisions if r.cause in names),
     )

@@ -60,10 +60,11 @@ def aligned(
     programme: Programme = SHORT,
     noise: Imperfections = TYPICAL,
     site: Site = SITE,
+    lever_arms: bool = True,
 ) -> Case:
     """The alignment of a simulated session."""
     measured, attitude = session(truth, seed, programme=programme, noise=noise, site=site)
-    result = align(measured, model=model)
+    result = align(measured, model=model, lever_arms=lever_arms)
     last = round(result.course.time[-1] / programme.row) - 1
     phi = Rotation.from_matrix(attitude[last] @ result.course.attitude[-1].T).as_rotvec()
     return Case(result, truth, phi)

@@ -74,6 +74,14 @@ def test_sound_sessions_of_misstated_noise_are_called_sound(stated_noise: float)
         assert (found.findings, found.structures) == ((), ())
 
 
+@pytest.mark.parametrize("row", [0.5, 1.0])
+@pytest.mark.parametrize("rate", [5.0, 6.0, 8.0])
+def test_start_and_stop_of_one_turn_are_not_held_out_together(row: float, rate: float) -> None:
+    """They alone tell the part across; without both it would be predicted by nothing."""
+    gain = diagnose(turned(replace(AWAY, row=row, rates=(rate,)))).gain
+    assert gain.after.rms < 0.3 * gain.before.rms
+
+
 @pytest.mark.parametrize("factor", [1 / 3, 3.0])
 def test_misstated_noise_changes_no_name(factor: float) -> None:
     found = diagnose(turned(AWAY, stated_noise=factor))
