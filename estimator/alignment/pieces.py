@@ -47,6 +47,8 @@ class Pieces:
     """(N,) number of the turn that a piece belongs to, −1 for a stop."""
     stop: NDArray[np.intp]
     """(N,) number of the stop, −1 in a turn."""
+    bend: Array
+    """(N,) rad by which the mean angle may be off, because the rate bends within rows."""
     density: Array
     """(m,) of the white noise at the stops, (m/s²)²/Hz."""
 
@@ -72,14 +74,18 @@ def pieces(inputs: Array, turned: Turning, angle: Array, found: list[Stop], row:
     first = np.array([edge[0] for edge in edges])
     last = np.array([edge[1] for edge in edges])
     theta = _angle(turned, angle, found, row)
-    cos, sin, rate = np.cos(theta), np.sin(theta), turned.rate
+    rate = turned.rate
+    bend = np.abs(turned.faster) * row**2 / 12
+    theta = theta - turned.faster * row**2 / 12
+    mean = np.sinc(rate * row / (2 * np.pi))
+    cos, sin = mean * np.cos(theta), mean * np.sin(theta)
     told = np.column_stack(
-        [cos, sin, turned.columns, rate, cos**2 - sin**2, 2 * sin * cos, rate * cos, rate * sin, inputs]
+        [cos, sin, turned.columns, rate, cos**2 - sin**2, 2 * sin * cos, rate * cos, rate * sin, bend, inputs]
     )
     total = np.vstack([np.zeros(told.shape[1]), np.cumsum(told, axis=0)])
     means = (total[last] - total[first]) / (last - first)[:, None]
     return Pieces(
-        values=means[:, 9:],
+        values=means[:, 10:],
         level=np.column_stack([np.ones(len(edges)), means[:, :2]]),
         levers=means[:, 2:4],
         rate=means[:, 4],
@@ -88,6 +94,7 @@ def pieces(inputs: Array, turned: Turning, angle: Array, found: list[Stop], row:
         time=row * (last - first),
         turn=np.array([edge[2] for edge in edges]),
         stop=np.array([edge[3] for edge in edges]),
+        bend=means[:, 9],
         density=_density(inputs, found, row),
     )
 

@@ -2,8 +2,9 @@
 
 Of every accelerometer the pieces of stops and turns are regressed on k + p·cos θ + q·sin θ − c·⟨ω²⟩ + d·⟨α⟩ by
 generalised least squares. Noise: white, of the density found at the stops; the axis' lean, drawn anew at every stop and
-in every turn. While the table turns the sensors may be noisier: the scatter of the turns' own pieces says by how much,
-neighbours that resemble one another included, and every test of turns is an F test on their degrees of freedom.
+in every turn; the angle, where the rate bends within rows. While the table turns the sensors may be noisier: the
+scatter of the turns' own pieces says by how much, neighbours that resemble one another included. Every test of turns is
+an F test on their degrees of freedom.
 
 Rivals
 ------
@@ -123,7 +124,8 @@ def weighed(found: Pieces, i: int, lean: float, ratio: float = 1.0) -> Weighed:
     ratio : variance of a piece of a turn over that at rest.
     """
     white = found.density[i] / found.time * np.where(found.turn >= 0, ratio, 1.0)
-    V = np.diag(white)
+    _, p, q = least_squares(found.level, found.values[:, i]).beta
+    V = np.diag(white + found.bend**2 * (p**2 + q**2))
     for number in range(found.stop.max() + 1):
         V[np.ix_(found.stop == number, found.stop == number)] += lean**2
     for number in range(found.turn.max() + 1):

@@ -95,6 +95,7 @@ def turned(
     rate = (body[:-1].inv() * body[1:]).as_rotvec() / FINE
     moving = np.abs(np.gradient(angle, FINE))
     force[:, 0] += run.shaking * (moving / np.radians(6.0)) ** 2
+    force = 0.5 * (force + np.vstack([force[1:], force[-1:]]))  # in the middle of a fine step, as the rate is
     late = np.stack([np.interp(time - run.delay, time, column) for column in force.T], axis=1)
     per_row = round(run.row / FINE)
 
@@ -120,7 +121,7 @@ def turned(
         site=Site(latitude=float(LATITUDE), gravity=G),
         stand=Stand("turntable", sigma=StandErrors(beta=run.wobble * arcsec, wobble=run.wobble * arcsec)),
         time=run.row * np.arange(1, len(readings) + 1),
-        turn_angle=angle[per_row - 1 :: per_row],
+        turn_angle=np.append(angle, angle[-1])[per_row::per_row],
     )
 
 

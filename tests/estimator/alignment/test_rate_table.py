@@ -35,6 +35,13 @@ def test_errors_are_as_large_as_their_covariance_says() -> None:
     assert low < total < 1.4 * high, "1.4: a covariance of 15 turns is itself uncertain"
 
 
+def test_where_sensors_stand_is_nothing_to_a_rate_table() -> None:
+    """Gyros feel no lever arm, stated or not."""
+    given = measured()
+    placed = replace(given, sensors=tuple(replace(s, position=np.array([0.3, -0.2, 0.1])) for s in given.sensors))
+    assert rate_table(placed).estimate == pytest.approx(rate_table(given).estimate, rel=1e-12)
+
+
 def test_a_hundredth_of_an_arcsecond_is_told() -> None:
     found = rate_table(measured())
     assert found.parameter("E_xz").sigma == pytest.approx(0.015 * ARCSEC, rel=0.5)
