@@ -48,6 +48,13 @@ LEVER = re.compile(r"A(?P<sensor>[1-3])=(?P<x>[-+]?\d+(\.\d*)?),(?P<y>[-+]?\d+(\
 """SENSOR=X,Y."""
 CENTIMETRE = 0.01
 """m."""
+Levers = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="Where an accelerometer stands from the axis in rotation-alignment, SENSOR=X,Y in cm. May be repeated.",
+        show_default=False,
+    ),
+]
 
 
 @dataclass(frozen=True)
@@ -103,14 +110,7 @@ def simulate_files(
             show_default=False,
         ),
     ] = None,
-    lever_arm: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Where an accelerometer stands from the turn axis in rotation-alignment, SENSOR=X,Y in cm. May be "
-            "repeated.",
-            show_default=False,
-        ),
-    ] = None,
+    lever_arm: Levers = None,
     programme: Annotated[str, typer.Option(help=f"One of {', '.join(SIMULATED)}.")] = TWO_AXIS_STAND,
     as_json: AsJson = False,
 ) -> None:
