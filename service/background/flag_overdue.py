@@ -2,7 +2,7 @@
 
 from datetime import datetime
 
-from service.flows.flagging.settle import Found, Occasion, resolve_as_done, settle
+from service.flows.flagging.settle import Occasion, raise_flag, resolve_as_done
 from service.records.flag import Concern, Matter
 from service.records.outlook import UnitOutlook
 from service.storage import Storage
@@ -28,4 +28,4 @@ def _settle(storage: Storage, serial: str, outlook: UnitOutlook | None, now: dat
                 resolve_as_done(store, occasion, flag, "Nothing is due any more.")
         elif not opened and outlook.due is not None:
             summary = f"Calibration was due on {day_of(outlook.due)}. {outlook.reason}"
-            settle(store, occasion, (), Found((Concern(Matter.OVERDUE, "", 1, summary),), {}))
+            raise_flag(store, occasion, Concern(Matter.OVERDUE, "", 1, summary))

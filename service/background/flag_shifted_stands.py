@@ -2,7 +2,7 @@
 
 from datetime import datetime
 
-from service.flows.flagging.settle import Found, Occasion, settle
+from service.flows.flagging.settle import Occasion, raise_flag
 from service.records.flag import Concern, Matter
 from service.records.stand import StandCondition
 from service.storage import Storage
@@ -34,4 +34,4 @@ def _flag(storage: Storage, serial: str, condition: StandCondition, since: datet
         unit = store.units.hold(serial)
         known = store.flags.page(FlagQuery(unit=serial, limit=EVERY))
         if not any(flag.key == concern.key and flag.raised_at >= since for flag in known):
-            settle(store, Occasion(unit, None, now), (), Found((concern,), {}))
+            raise_flag(store, Occasion(unit, None, now), concern)

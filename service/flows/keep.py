@@ -1,17 +1,16 @@
-"""Step: what the database keeps of a judged session under one model revision, beside what other revisions gave."""
+"""Step: what the database keeps of a session's calibration under one model revision, beside what others gave."""
 
 from datetime import datetime
 
+from estimator.results import Calibration
 from service.judging.parameter_values import parameter_values
 from service.records.decision import Judged
 from service.records.session import StoredSession
 from service.storage.store import Store
 
 
-def keep(store: Store, unit: int, record: StoredSession, judged: Judged, at: datetime) -> None:
-    """The calibration with its verdict, the parameters of the history, the decisions and the common motions."""
-    id, revision = record.id, record.revision
-    store.calibrations.add(id, revision, judged, at)
-    store.history.add(unit, record, parameter_values(judged.calibration))
-    store.sessions.add_decisions(id, judged.decisions, revision)
-    store.sessions.add_motions(id, judged.motions, revision)
+def keep(store: Store, unit: int, record: StoredSession, calibration: Calibration, at: datetime) -> None:
+    """The calibration and the parameters of the history; what is decided of them is derived."""
+    unjudged = Judged(calibration, (), record.reason, is_reference=False)
+    store.calibrations.put(record.id, record.revision, unjudged, at)
+    store.history.add(unit, record, parameter_values(calibration))

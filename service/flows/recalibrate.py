@@ -1,26 +1,26 @@
 """Flow: a unit's stored sessions, computed again under the model that is in force now; nothing is overwritten."""
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
 from estimator.errors import SessionError
-from service.flows.flagging.settle import Occasion
-from service.flows.flagging.verdict import flag_verdict
+from estimator.results import Calibration
+from estimator.session import IN_SERVICE
+from service.flows.derive_again import Deriving, derive_again
 from service.flows.keep import keep
-from service.flows.refresh_outlook import refresh_outlook
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
-from service.judging.calibrate import Calibrated, basis_of, calibrate, rests_on_model
-from service.judging.judge import judge_in_epoch
+from service.judging.calibrate import Basis, calibrate, rests_on_model
 from service.judging.model_in_force import model_of
 from service.records.model import Model
 from service.records.session import StoredSession
 from service.storage import Storage
 from service.storage.store import Store
 
-RECOMPUTED, UNCHANGED, LEFT = "recomputed", "unchanged", "left"
-"""What can become of a session."""
+UNCHANGED, LEFT = "unchanged", "left"
+"""What becomes of a session that is not computed again."""
 
 
 @dataclass(frozen=True)
@@ -41,68 +41,63 @@ class Recalibrated:
 def recalibrate(
     storage: Storage, serial: str, now: datetime, *, coverage_factor: float = 2.0, who: str = "engineer"
 ) -> Recalibrated:
-    """Computes and judges every session of a unit under its model; references first, because others hang on them."""
+    """Computes every session of a unit under its model, those that do not count too, and judges what rests on them."""
     with storage.database.reading() as store:
         store.units.key(serial)
         stored = store.sessions.of_unit(serial)
-    outcome: Counter[str] = Counter()
-    revision = 0
-    for session in sorted(stored, key=lambda s: (not s.is_reference, s.started_at, s.id)):
-        done, used = _recalibrate(storage, session, now, coverage_factor, who)
-        outcome[done] += 1
-        revision = max(revision, used)
-    if outcome[RECOMPUTED]:
+    outcomes = [_recalibrated(storage, session) for session in stored]
+    made = [one for one in outcomes if isinstance(one, _Made)]
+    if made:
+        way = Deriving(storage.files, coverage_factor, now, at_once=None)
         with storage.database.writing() as store:
-            refresh_outlook(store, serial)
-            _settle_flags(store, serial, now)
-    return Recalibrated(serial, len(stored), outcome[RECOMPUTED], outcome[UNCHANGED], outcome[LEFT], revision)
+            _put_in_force(store, way, serial, made, who)
+    used = [
+        one.model.revision if isinstance(one, _Made) else s.revision for one, s in zip(outcomes, stored, strict=True)
+    ]
+    counted = Counter(one for one in outcomes if isinstance(one, str))
+    return Recalibrated(serial, len(stored), len(made), counted[UNCHANGED], counted[LEFT], max(used, default=0))
 
 
-def _settle_flags(store: Store, serial: str, now: datetime) -> None:
-    """The unit's latest session may have another verdict now."""
-    unit = store.units.hold(serial)
-    was = store.fleet.refresh(unit)
-    latest = was.last_session
-    occasion = Occasion(unit, latest, now)
-    flag_verdict(store, occasion, store.sessions.get(latest), store.sessions.decisions(latest), was)
+@dataclass(frozen=True, eq=False)
+class _Made:
+    """A session computed again."""
+
+    session: StoredSession
+    model: Model
+    calibration: Calibration
 
 
-def _recalibrate(
-    storage: Storage, stored: StoredSession, now: datetime, coverage_factor: float, who: str
-) -> tuple[str, int]:
-    """One session: what became of it and the revision that it now rests on."""
+def _recalibrated(storage: Storage, stored: StoredSession) -> _Made | str:
+    """One session under the model in force, or what became of it instead.
+
+    A recording keeps its calibration here: it is compared anew with the reference that was computed again.
+    """
     with storage.database.reading() as store:
         model = model_of(store.models.of_session(stored.id))
+        known = store.calibrations.get(stored.id) if stored.programme == IN_SERVICE else None
     if model.revision == stored.revision or not rests_on_model(stored.programme):
-        return UNCHANGED, stored.revision
+        return UNCHANGED
+    if known is not None:
+        return _Made(stored, model, known)
     try:
-        new = _recomputed(storage, stored, model)
+        session = read_upload(storage.files.read(stored.sha256), stored.filename)
+        return _Made(stored, model, calibrate(as_checked(session, stored.started_at), Basis(model, None)).calibration)
     except SessionError:
-        return LEFT, stored.revision
-    with storage.database.writing() as store:
-        _put_in_force(store, stored, new, coverage_factor, who=who, now=now)
-    return RECOMPUTED, model.revision
+        return LEFT
 
 
-def _recomputed(storage: Storage, stored: StoredSession, model: Model) -> Calibrated:
-    """The stored bytes read and computed again; a recording is compared with the reference that was computed again."""
-    session = read_upload(storage.files.read(stored.sha256), stored.filename)
-    checked = as_checked(session, stored.started_at)
-    with storage.database.reading() as store:
-        basis = basis_of(store, checked, model)
-    return calibrate(checked, basis)
-
-
-def _put_in_force(
-    store: Store, stored: StoredSession, new: Calibrated, coverage_factor: float, *, who: str, now: datetime
-) -> None:
-    """Another calibration with its decisions beside the ones before, in force from now on."""
-    unit, id, revision = store.units.hold(stored.unit), stored.id, new.model.revision
-    current = store.sessions.get(id)
-    if current.revision >= revision:
+def _put_in_force(store: Store, way: Deriving, serial: str, made: Sequence[_Made], who: str) -> None:
+    """Other calibrations beside the ones before, in force from now on, with what follows from them."""
+    unit = store.units.hold(serial)
+    before = {one.session.id: store.sessions.get(one.session.id) for one in made}
+    new = [one for one in made if before[one.session.id].revision < one.model.revision]
+    for one in new:
+        store.derivations.put_revision(one.session.id, one.model.revision)
+        keep(store, unit, store.sessions.get(one.session.id), one.calibration, way.at)
+    if not new:
         return
-    judged = judge_in_epoch(store, unit, new, coverage_factor, is_reference=stored.is_reference)
-    store.sessions.put_in_force(id, revision, judged)
-    keep(store, unit, store.sessions.get(id), judged, now)
-    details = {"revision": revision, "verdict": judged.verdict.value, "before": current.verdict.value}
-    store.log.audit(now, who, "recalibrate", id, details)
+    derive_again(store, way, serial, min(one.session.started_at for one in new), [s.id for s in before.values()])
+    for one in new:
+        known, now = before[one.session.id], store.sessions.get(one.session.id)
+        details = {"revision": now.revision, "verdict": now.verdict.value, "before": known.verdict.value}
+        store.log.audit(way.at, who, "recalibrate", now.id, details)

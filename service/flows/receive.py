@@ -1,29 +1,28 @@
-"""Flow: uploaded bytes → checked → calibrated under the model in force → judged → stored, once → diagnosed → counted.
+"""Flow: uploaded bytes → checked → calibrated under the model in force → stored, once → derived → diagnosed → counted.
 
 The one entry of the API and of the pages.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
 from estimator.errors import SessionError
 from service.errors import RefusedError, ServiceError
+from service.flows.derive_again import Derived, Deriving, derive_again
 from service.flows.diagnose import diagnose_now_or_later
-from service.flows.flagging.settle import Occasion
-from service.flows.flagging.verdict import flag_verdict
 from service.flows.keep import keep
-from service.flows.refresh_outlook import refresh_outlook
 from service.flows.refuse import refuse
+from service.flows.supersede_session import give_way, supersede
 from service.ingest.checked import Checked, check, plain_filename
+from service.ingest.digest import content_digest
 from service.judging.calibrate import Calibrated, basis_of, calibrate
-from service.judging.judge import judge_in_epoch
 from service.judging.model_in_force import model_for
 from service.judging.tolerances import type_of
 from service.log import log
 from service.metrics import Metrics
-from service.records.decision import Judged
-from service.records.received import Received, SentFile
+from service.records.decision import Verdict
+from service.records.received import Received, Replaced, SentFile
 from service.records.session import Receipt, StoredSession
 from service.storage import Storage
 from service.storage.files import content_hash
@@ -57,17 +56,24 @@ def receive(reception: Reception, file: SentFile, now: datetime) -> Receipt:
 def receive_all(reception: Reception, files: Sequence[SentFile], now: datetime) -> tuple[Receipt | RefusedError, ...]:
     """The same for several files, or why one cannot be used; all are stored before the first is diagnosed."""
     outcomes = tuple(_stored_or_refused(reception, file, now) for file in files)
-    for receipt in outcomes:
-        if isinstance(receipt, Receipt):
-            _diagnose(reception, receipt.id, now, wait=len(files) <= FEW)
-            reception.metrics.count_upload(receipt)
+    receipts = [receipt for receipt in outcomes if isinstance(receipt, Receipt)]
+    for receipt in receipts:
+        _diagnose(reception, receipt.id, now, wait=len(files) <= FEW)
+        reception.metrics.count_upload(receipt)
+    ask_again(reception, (id for receipt in receipts for id in receipt.undiagnosed))
     return outcomes
+
+
+def ask_again(reception: Reception, ids: Iterable[str]) -> None:
+    """Asks for diagnoses that look at records that have changed."""
+    for id in dict.fromkeys(ids):
+        reception.later(id)
 
 
 def _stored_or_refused(reception: Reception, file: SentFile, now: datetime) -> Receipt | RefusedError:
     k = reception.coverage_factor
     try:
-        return upload(reception.storage, file.content, file.filename, now, coverage_factor=k)
+        return upload(reception.storage, file.content, file.filename, now, coverage_factor=k, replaces=file.replaces)
     except RefusedError as refusal:
         return refusal
 
@@ -89,23 +95,37 @@ def upload(
     coverage_factor: float = 2.0,
     simulated: bool = False,
     who: str = "crew",
+    replaces: Replaced | None = None,
 ) -> Receipt:
-    """Stores a session file with its calibration and verdict; the same bytes again give the same receipt.
+    """Stores a session file with its calibration and verdict; the same content again gives the same receipt.
 
-    Raises RefusedError with every problem when the file cannot be used; then only the refusal is recorded.
+    A corrected file names the session that it replaces, whatever unit or date that one is of. Raises RefusedError with
+    every problem when the file cannot be used; then only the refusal is recorded.
     """
     received = Received(content, content_hash(content), plain_filename(filename), now, who, simulated)
+    way = Deriving(storage.files, coverage_factor, now)
     with storage.database.reading() as store:
+        if replaces is not None:
+            store.sessions.get(replaces.session)
         known = store.sessions.by_hash(received.sha256)
     if known is not None:
-        return _receipt(known, created=False)
+        return _known(storage, way, known, replaces)
     try:
         calibrated = _calibrated(storage, check(content, received.filename, now))
     except SessionError as fault:
         raise refuse(storage, received, fault.problems) from fault
     storage.files.keep(content)
     with storage.database.writing() as store:
-        return _store(store, received, calibrated, coverage_factor)
+        return _store(store, way, received, calibrated, replaces)
+
+
+def _known(storage: Storage, way: Deriving, known: StoredSession, replaces: Replaced | None) -> Receipt:
+    """The receipt of a session that was stored before; also that replaces the one named now."""
+    if replaces is None:
+        return _receipt(known, created=False)
+    with storage.database.writing() as store:
+        derived = supersede(store, way, replaces, store.sessions.get(known.id))
+        return _receipt(store.sessions.get(known.id), created=False, derived=derived)
 
 
 def _calibrated(storage: Storage, checked: Checked) -> Calibrated:
@@ -115,22 +135,29 @@ def _calibrated(storage: Storage, checked: Checked) -> Calibrated:
     return calibrate(checked, basis)
 
 
-def _store(store: Store, received: Received, new: Calibrated, coverage_factor: float) -> Receipt:
-    """Judged, and everything that the database keeps of an upload, within one transaction."""
+def _store(store: Store, way: Deriving, received: Received, new: Calibrated, replaces: Replaced | None) -> Receipt:
+    """The record, and everything that follows from it, within one transaction."""
     unit = _unit(store, received, new)
-    known = store.sessions.by_hash(received.sha256)
+    digest = content_digest(new.checked.session)
+    known = store.sessions.by_hash(received.sha256) or store.sessions.by_digest(digest)
     if known is not None:
-        return _receipt(known, created=False)
-    judged = judge_in_epoch(store, unit, new, coverage_factor)
-    record = _record(received, new, judged)
+        derived = None if replaces is None else supersede(store, way, replaces, known)
+        return _receipt(store.sessions.get(known.id), created=False, derived=derived)
+    record = _record(received, new)
     stand = store.units.stand_key(record.stand)
-    store.sessions.add(record, unit, stand, new.checked.session.block, judged.worst)
-    keep(store, unit, record, judged, received.at)
-    refresh_outlook(store, record.unit)
-    flag_verdict(store, Occasion(unit, record.id, received.at), record, judged.decisions, store.fleet.refresh(unit))
-    details = {"unit": record.unit, "verdict": record.verdict.value, "revision": record.revision}
-    store.log.audit(received.at, received.who, "upload", record.id, details)
-    return _receipt(record, created=True)
+    store.sessions.add(record, unit, stand, new.checked.session.block, digest)
+    keep(store, unit, record, new.calibration, received.at)
+    old = None if replaces is None else give_way(store, way.at, replaces, record)
+    gone, since = None, record.started_at
+    if old is not None and old.unit == record.unit:
+        since = min(since, old.started_at)
+    elif old is not None:
+        gone = derive_again(store, way, old.unit, old.started_at, (old.id,))
+    derived = derive_again(store, way, record.unit, since, (record.id,))
+    stored = store.sessions.get(record.id)
+    details = {"unit": stored.unit, "verdict": stored.verdict.value, "revision": stored.revision}
+    store.log.audit(received.at, received.who, "upload", stored.id, details)
+    return _receipt(stored, created=True, derived=derived, before=gone)
 
 
 def _unit(store: Store, received: Received, new: Calibrated) -> int:
@@ -143,7 +170,8 @@ def _unit(store: Store, received: Received, new: Calibrated) -> int:
     return store.units.hold(serial)
 
 
-def _record(received: Received, new: Calibrated, judged: Judged) -> StoredSession:
+def _record(received: Received, new: Calibrated) -> StoredSession:
+    """Still to be judged."""
     session = new.checked.session
     return StoredSession(
         id=received.sha256[:ID_DIGITS],
@@ -157,14 +185,26 @@ def _record(received: Received, new: Calibrated, judged: Judged) -> StoredSessio
         notes=session.notes,
         started_at=new.checked.measured_at,
         uploaded_at=received.at,
-        verdict=judged.verdict,
-        reason=judged.reason,
-        is_reference=judged.is_reference,
+        verdict=Verdict.UNDECIDABLE,
+        reason="",
+        is_reference=False,
         simulated=received.simulated,
         revision=new.model.revision,
         stage=session.stage,
     )
 
 
-def _receipt(record: StoredSession, *, created: bool) -> Receipt:
-    return Receipt(record.id, record.unit, record.verdict, record.reason, created, record.is_reference)
+def _receipt(
+    record: StoredSession, *, created: bool, derived: Derived | None = None, before: Derived | None = None
+) -> Receipt:
+    undiagnosed = tuple(id for one in (before, derived) if one is not None for id in one.undiagnosed)
+    return Receipt(
+        id=record.id,
+        unit=record.unit,
+        verdict=record.verdict,
+        reason=record.reason,
+        created=created,
+        is_reference=record.is_reference,
+        state=record.state,
+        undiagnosed=undiagnosed,
+    )

@@ -1,29 +1,43 @@
-"""Flow: a known break in a unit's history; the next session measured after it becomes the new reference."""
+"""Flow: a known break in a unit's history; the first session measured after it is the new reference, whenever either
+was entered."""
 
 from datetime import datetime
 
 from estimator.errors import Problem
 from service.errors import RefusedError
-from service.flows.refresh_outlook import refresh_outlook
+from service.flows.derive_again import Derived, Deriving, derive_again
 from service.ingest.checked import CLOCK_LEEWAY
 from service.records.event import NewService, Service
+from service.records.state import RecordKind, RecordState, Step
 from service.storage import Storage
 from service.storage.store import Store
 
 
-def record_service(storage: Storage, serial: str, new: NewService, now: datetime) -> tuple[Service, bool]:
-    """Records a break once, and returns it and whether it is new; a trend never runs across it."""
+def record_service(
+    storage: Storage, serial: str, new: NewService, now: datetime, *, coverage_factor: float = 2.0
+) -> tuple[Service, Derived | None]:
+    """Records a break once; returns it and what followed, None where it was known. A trend never runs across it.
+
+    One that was withdrawn and is recorded again counts again.
+    """
     with storage.database.writing() as store:
         unit = store.units.hold(serial)
         problems = _problems(store, serial, new, now)
         if problems:
             raise RefusedError("The service cannot be recorded.", problems)
         number, created = store.services.add(unit, new, now)
-        if created:
-            refresh_outlook(store, serial)
-            details = {"kind": new.kind, "at": new.at.isoformat(), "note": new.note, "sensor": new.sensor}
-            store.log.audit(now, new.who or "crew", "service", serial, details)
-        return store.services.get(number), created
+        known = store.services.get(number)
+        if not created and known.state is RecordState.ACCEPTED:
+            return known, None
+        who = new.who or "crew"
+        if not created:
+            store.services.put_state(number, RecordState.ACCEPTED)
+            step = Step(who, now, new.note or "recorded again")
+            store.states.add(RecordKind.SERVICE, str(number), RecordState.ACCEPTED, step)
+        details = {"kind": new.kind, "at": new.at.isoformat(), "note": new.note, "sensor": new.sensor}
+        store.log.audit(now, who, "service", serial, details)
+        derived = derive_again(store, Deriving(storage.files, coverage_factor, now), serial, new.at)
+        return store.services.get(number), derived
 
 
 def _problems(store: Store, serial: str, new: NewService, now: datetime) -> tuple[Problem, ...]:

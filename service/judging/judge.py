@@ -9,31 +9,13 @@ from estimator.health.parity import RULE as PARITY_RULE
 from estimator.health.parity import judge_parity
 from estimator.health.rule import RULE
 from estimator.results import Calibration
-from service.judging.calibrate import Calibrated, Comparison
-from service.judging.reference import reference_of
+from service.judging.calibrate import Comparison
 from service.judging.tolerances import tolerances_of
 from service.records.decision import Decision, Judged, Verdict
 from service.records.unit import UnitType
-from service.storage.store import Store
 from service.words.advice import too_few
 from service.words.in_service import reason as recording_in_words
 from service.words.verdict import first_in_words, reason
-
-
-def judge_in_epoch(
-    store: Store, unit: int, new: Calibrated, coverage_factor: float, *, is_reference: bool = False
-) -> Judged:
-    """A session judged against the reference of its epoch; it becomes, or remains, the reference where there is none.
-
-    A recording in service was compared with that reference before, and is judged by what the comparison shows.
-    """
-    session = new.checked.session
-    unit_type = store.unit_types.of_unit(session.unit)
-    if new.comparison is not None:
-        return _judge_recording(new.calibration, new.comparison, unit_type, coverage_factor)
-    found = reference_of(store, unit, session.block, session.programme, new.checked.measured_at)
-    known = None if is_reference or found.session is None else store.calibrations.get(found.session)
-    return judge(new.calibration, known, unit_type, coverage_factor, after_service=found.since is not None)
 
 
 def judge(
@@ -70,7 +52,7 @@ def decisions_of(
     return judge(calibration, reference, unit_type, coverage_factor).decisions
 
 
-def _judge_recording(moved: Calibration, found: Comparison, unit_type: UnitType, coverage_factor: float) -> Judged:
+def judge_recording(moved: Calibration, found: Comparison, unit_type: UnitType, coverage_factor: float) -> Judged:
     """Every parameter that parity sees, judged, and the recording by its worst."""
     tolerances = tolerances_of(unit_type)
     seen = judge_parity(found.result, found.reference, tolerances, coverage_factor=coverage_factor)

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from datetime import datetime
 
+from service.records.state import RecordState
+
 SERVICES = ("adjustment", "repair", "sensor-swap", "reference", "service")
 """What can be done to a unit: each is a break, after which the next session is the new reference."""
 
@@ -19,6 +21,8 @@ class Service:
     who: str = ""
     sensor: str = ""
     """That it concerns; empty for the whole unit."""
+    state: RecordState = RecordState.ACCEPTED
+    """One that was withdrawn is no break."""
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,21 @@ from datetime import datetime
 
 
 @dataclass(frozen=True)
+class Replaced:
+    """The session that a corrected file stands for, who says so and why."""
+
+    session: str
+    who: str
+    why: str
+
+
+@dataclass(frozen=True)
 class SentFile:
     """A file as its sender named it."""
 
     filename: str
     content: bytes
+    replaces: Replaced | None = None
 
 
 @dataclass(frozen=True)

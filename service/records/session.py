@@ -6,6 +6,7 @@ from datetime import datetime
 from estimator.health.common_motion import CommonMotion
 from estimator.results import Calibration
 from service.records.decision import Decision, Verdict
+from service.records.state import RecordState, StateChange
 
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
 """What a calibration gives of every sensor."""
@@ -40,6 +41,10 @@ class StoredSession:
     """The model revision that the calibration in force was made under; 0 is the baseline."""
     stage: str | None = None
     """``as-found`` before the unit was worked on, ``as-left`` after; None where neither was said."""
+    state: RecordState = RecordState.ACCEPTED
+    """Only an accepted session tells of its unit."""
+    superseded_by: str | None = None
+    """The session that stands for a superseded one."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +74,9 @@ class Receipt:
     """False when the same bytes were already stored."""
     is_reference: bool
     """Whether later sessions are judged against this one."""
+    state: RecordState = RecordState.ACCEPTED
+    undiagnosed: tuple[str, ...] = ()
+    """Other sessions whose diagnosis is made again, because it looked at records that have changed."""
 
 
 @dataclass(frozen=True)
@@ -81,3 +89,5 @@ class SessionReport:
     decisions: tuple[Decision, ...]
     motions: tuple[CommonMotion, ...] = ()
     """What all sensors did together since the reference."""
+    states: tuple[StateChange, ...] = ()
+    """What became of it since it was received, oldest first; empty where it was accepted and remained so."""

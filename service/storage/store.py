@@ -5,6 +5,7 @@ from functools import cached_property
 from sqlalchemy.orm import Session
 
 from service.storage.queries.calibrations import Calibrations
+from service.storage.queries.derivations import Derivations
 from service.storage.queries.diagnoses import Diagnoses
 from service.storage.queries.flags import Flags
 from service.storage.queries.fleet import Fleet
@@ -18,6 +19,7 @@ from service.storage.queries.outlooks import Outlooks
 from service.storage.queries.services import Services
 from service.storage.queries.sessions import Sessions
 from service.storage.queries.stands import Stands
+from service.storage.queries.states import States
 from service.storage.queries.unit_types import UnitTypes
 from service.storage.queries.units import Units
 from service.storage.queries.webhooks import Webhooks
@@ -43,6 +45,16 @@ class Store:
     def sessions(self) -> Sessions:
         """Uploaded sessions and their decisions."""
         return Sessions(self._session)
+
+    @cached_property
+    def states(self) -> States:
+        """What became of sessions and services."""
+        return States(self._session)
+
+    @cached_property
+    def derivations(self) -> Derivations:
+        """What is derived of accepted sessions."""
+        return Derivations(self._session)
 
     @cached_property
     def calibrations(self) -> Calibrations:

@@ -15,6 +15,7 @@ unit_types ──< tolerance_revisions          stands
                    ├──< decisions
                    ├──< common_motions
                    ├──1 diagnoses
+                   ├──< reference_choices     record_states   what became of sessions and services, append-only
                    └──< model_revisions       causes that engineers accepted, numbered through
 """
 
@@ -124,6 +125,11 @@ class SessionRow(Base):
     simulated: Mapped[bool]
     revision: Mapped[int]
     stage: Mapped[str | None] = mapped_column(String(20))
+    state: Mapped[str] = mapped_column(String(20), default="accepted")
+    superseded_by: Mapped[str | None] = mapped_column(String(20))
+    content_digest: Mapped[str | None] = mapped_column(String(64), index=True)
+    basis: Mapped[str | None] = mapped_column(String(160), index=True)
+    tells: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
 
 
 class CalibrationRow(Base):
@@ -221,6 +227,7 @@ class DiagnosisRow(Base):
     verdict_after: Mapped[str | None] = mapped_column(String(20))
     estimator_version: Mapped[str] = mapped_column(String(40))
     created_at: Mapped[datetime]
+    tells: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
 
 
 class ModelRow(Base):
@@ -277,6 +284,7 @@ class ServiceRow(Base):
     recorded_at: Mapped[datetime]
     who: Mapped[str]
     sensor: Mapped[str] = mapped_column(String(200))
+    state: Mapped[str] = mapped_column(String(20), default="accepted")
 
 
 class NoteRow(Base):

@@ -1,4 +1,4 @@
-"""Step: what the diagnosis of a unit's latest session means for its flags."""
+"""Step: what the diagnosis of a session tells of its unit's flags."""
 
 from collections.abc import Iterator
 from datetime import datetime
@@ -6,10 +6,12 @@ from datetime import datetime
 from estimator.causes import cause
 from estimator.diagnosis import Finding
 from estimator.session import CALIBRATIONS
-from service.flows.flagging.settle import Found, Occasion, settle
+from service.flows.flagging.fold import ANY, settle_sessions
+from service.flows.flagging.settle import Occasion
 from service.judging.model_in_force import in_force
+from service.records.derivation import Told
 from service.records.diagnosis import Diagnosed, StoredDiagnosis
-from service.records.flag import Concern, Flag, Matter
+from service.records.flag import Concern, Matter
 from service.records.model import ModelRevision
 from service.records.session import StoredSession
 from service.storage.store import Store
@@ -17,35 +19,31 @@ from service.words.causes import UNKNOWN_CAUSE, what_is_wrong
 from service.words.names import day_of
 from service.words.structures import summed_up
 
-MATTERS = (Matter.CAUSE, Matter.UNEXPLAINED, Matter.STAND)
 GONE = "The diagnosis of the session of {day} no longer finds it."
 
 
 def flag_diagnosis(store: Store, made: StoredDiagnosis, at: datetime) -> None:
-    """Settles the unit's flags. An older session than its latest says nothing, nor one without a diagnosis: a failed
-    one, or a recording in which no causes are looked for. Nor does an alignment: how a block sits on a turntable is no
-    fault of the unit, and nothing else is looked for there. One without a degree of freedom clears nothing."""
+    """Keeps what the diagnosis tells and settles the unit's flags. A session without a diagnosis tells nothing: a
+    failed one, or a recording in which no causes are looked for. Nor does an alignment: how a block sits on a turntable
+    is no fault of the unit, and nothing else is looked for there. One without a degree of freedom clears nothing."""
     session = store.sessions.get(made.session)
-    summary = store.fleet.unit(session.unit)
-    if (
-        made.found is None
-        or session.programme not in CALIBRATIONS
-        or summary is None
-        or summary.last_session != session.id
-    ):
+    if made.found is None or session.programme not in CALIBRATIONS:
         return
     unit = store.units.hold(session.unit)
-    opened = tuple(flag for flag in store.flags.open_of(unit) if flag.matter in MATTERS)
     accepted = in_force(store.models.of_session(session.id))
     concerns = tuple(_concerns(made.found, session, accepted))
+    clear = () if made.found.calibration.fit.is_exact else tuple(_clear(session))
+    store.derivations.tell(session.id, Told(concerns, clear))
+    settle_sessions(store, Occasion(unit, session.id, at))
+
+
+def _clear(session: StoredSession) -> Iterator[tuple[str, str, str]]:
+    """What the session no longer shows where it names nothing; on one stand it says nothing of another."""
     gone = GONE.format(day=day_of(session.started_at))
-    clear = {flag.key: gone for flag in opened if not made.found.calibration.fit.is_exact and _speaks_of(session, flag)}
-    settle(store, Occasion(unit, session.id, at), opened, Found(concerns, clear))
-
-
-def _speaks_of(session: StoredSession, flag: Flag) -> bool:
-    """A session on one stand says nothing of another."""
-    return flag.matter is not Matter.STAND or flag.place == session.stand
+    yield Matter.CAUSE.value, ANY, gone
+    yield Matter.UNEXPLAINED.value, ANY, gone
+    if session.stand is not None:
+        yield Matter.STAND.value, session.stand, gone
 
 
 def _concerns(found: Diagnosed, session: StoredSession, accepted: tuple[ModelRevision, ...]) -> Iterator[Concern]:

@@ -1,9 +1,9 @@
-"""Step: what the decisions of a unit's latest session mean for its verdict and its flags."""
+"""Step: what the decisions of a session tell of its unit's flags, and that its unit's verdict is another one now."""
 
-from estimator.session import CALIBRATIONS
-from service.flows.flagging.settle import SERVICE, Found, Occasion, resolve_as_done, settle
-from service.records.decision import Decision, Verdict, worst_of
-from service.records.flag import Concern, Flag, Matter, NoticeKind
+from service.flows.flagging.settle import SERVICE, Occasion, resolve_as_done
+from service.records.decision import Decision, Judged, Verdict, worst_of
+from service.records.derivation import Told
+from service.records.flag import Concern, Matter, NoticeKind
 from service.records.session import StoredSession
 from service.storage.queries.fleet import Refreshed
 from service.storage.store import Store
@@ -19,39 +19,37 @@ WITHIN = "The session of {day} finds every parameter of {sensor} within its tole
 NEW_REFERENCE = "The session of {day}, after a service, is the new reference."
 
 
-def flag_verdict(
-    store: Store, occasion: Occasion, session: StoredSession, decisions: tuple[Decision, ...], was: Refreshed
-) -> None:
-    """Tells of another verdict of the unit and settles its flags; an older session than its latest says nothing."""
-    if was.last_session != session.id:
+def tell_verdict(store: Store, occasion: Occasion, latest: StoredSession, was: Refreshed) -> None:
+    """Tells of another verdict of the unit, where its latest session has another than was known."""
+    if was.before is None or was.before is latest.verdict:
         return
-    if was.before is not None and was.before is not session.verdict:
-        before = condition_of(was.before, is_reference=was.was_reference).word
-        now = condition_of(session.verdict, is_reference=session.is_reference).word
-        text = f"{before} → {now}. {session.reason}"
-        store.notices.add(occasion.unit, NoticeKind.VERDICT, occasion.at, SERVICE, text, session=session.id)
-    opened = store.flags.open_of(occasion.unit)
-    settle(store, occasion, opened, found_by(session, decisions))
-    if session.programme in CALIBRATIONS:
-        _no_longer_overdue(store, occasion, opened, session)
+    before = condition_of(was.before, is_reference=was.was_reference).word
+    now = condition_of(latest.verdict, is_reference=latest.is_reference).word
+    text = f"{before} → {now}. {latest.reason}"
+    store.notices.add(occasion.unit, NoticeKind.VERDICT, occasion.at, SERVICE, text, session=latest.id)
 
 
-def found_by(session: StoredSession, decisions: tuple[Decision, ...]) -> Found:
-    """One concern a sensor that is out of tolerance; a sensor that is wholly within it is clear."""
-    by_sensor: dict[str, list[Decision]] = {}
-    for decision in decisions:
-        by_sensor.setdefault(decision.sensor, []).append(decision)
+def told_by(session: StoredSession, judged: Judged) -> Told:
+    """One concern a sensor that is out of tolerance; a sensor that is wholly within it is clear, and every sensor of a
+    new reference."""
     day = day_of(session.started_at)
-    concerns, clear = [], {}
-    for sensor, own in by_sensor.items():
+    concerns, clear = [], []
+    for sensor, own in _by_sensor(judged).items():
         failed = tuple(d for d in own if d.verdict in FAILS)
         if failed:
             concerns.append(_concern(sensor, failed))
-        elif session.is_reference:
-            clear[(Matter.TOLERANCE.value, sensor)] = NEW_REFERENCE.format(day=day)
-        elif all(d.verdict in PASSES for d in own):
-            clear[(Matter.TOLERANCE.value, sensor)] = WITHIN.format(day=day, sensor=sensor)
-    return Found(tuple(concerns), clear)
+        elif judged.is_reference:
+            clear.append((Matter.TOLERANCE.value, sensor, NEW_REFERENCE.format(day=day)))
+        elif own and all(d.verdict in PASSES for d in own):
+            clear.append((Matter.TOLERANCE.value, sensor, WITHIN.format(day=day, sensor=sensor)))
+    return Told(tuple(concerns), tuple(clear))
+
+
+def _by_sensor(judged: Judged) -> dict[str, list[Decision]]:
+    by_sensor: dict[str, list[Decision]] = {sensor.name: [] for sensor in judged.calibration.sensors}
+    for decision in judged.decisions:
+        by_sensor.setdefault(decision.sensor, []).append(decision)
+    return by_sensor
 
 
 def _concern(sensor: str, failed: tuple[Decision, ...]) -> Concern:
@@ -62,11 +60,11 @@ def _concern(sensor: str, failed: tuple[Decision, ...]) -> Concern:
     return Concern(Matter.TOLERANCE, sensor, severity, reason(failed) + more)
 
 
-def _no_longer_overdue(store: Store, occasion: Occasion, opened: tuple[Flag, ...], session: StoredSession) -> None:
+def no_longer_overdue(store: Store, occasion: Occasion, latest: StoredSession) -> None:
     """The one matter that resolves itself: the calibration that was due has been done, and the next is not yet due."""
-    overdue = [flag for flag in opened if flag.matter is Matter.OVERDUE]
-    outlook = store.outlooks.of_unit(session.unit) if overdue else None
+    overdue = [flag for flag in store.flags.open_of(occasion.unit) if flag.matter is Matter.OVERDUE]
+    outlook = store.outlooks.of_unit(latest.unit) if overdue else None
     if outlook is None or (outlook.due is not None and outlook.due < occasion.at):
         return
     for flag in overdue:
-        resolve_as_done(store, occasion, flag, f"Calibrated on {day_of(session.started_at)}.")
+        resolve_as_done(store, occasion, flag, f"Calibrated on {day_of(latest.started_at)}.")

@@ -19,10 +19,10 @@ from service.storage.tables import CalibrationRow, SessionRow
 class Calibrations(Queries):
     """Calibrations by session and model revision."""
 
-    def add(self, session: str, revision: int, judged: Judged, at: datetime) -> None:
+    def put(self, session: str, revision: int, judged: Judged, at: datetime) -> None:
         """Stores the calibration of a session with its full covariance and residuals, and the verdict it led to."""
         document = json.dumps(judged.calibration.to_dict(), separators=(",", ":"), allow_nan=False)
-        self._session.add(
+        self._session.merge(
             CalibrationRow(
                 session_id=session,
                 revision=revision,

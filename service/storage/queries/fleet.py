@@ -5,13 +5,14 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Select, func, select, update
+from sqlalchemy import Select, delete, func, select, update
 from sqlalchemy.orm import defer
 
 from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState
 from service.records.flag import FlagState
 from service.records.unit import FleetCondition, UnitSummary, UnitType
+from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
 from service.storage.queries.unit_types import unit_type_of
 from service.storage.tables import (
@@ -43,7 +44,8 @@ class FleetQuery:
 class Refreshed:
     """A unit's row, and what it said before."""
 
-    last_session: str
+    last_session: str | None
+    """None where the unit has no accepted session, and so no row."""
     before: Verdict | None
     """None where there was no row."""
     was_reference: bool
@@ -54,16 +56,16 @@ class Fleet(Queries):
     """All units at a glance."""
 
     def refresh(self, unit: int) -> Refreshed:
-        """Rewrites a unit's row from its latest session."""
+        """Rewrites a unit's row from its latest accepted session; without one it has none."""
         row = self._session.get(ConditionRow, unit)
-        own = SessionRow.unit_id == unit
-        count = self._session.scalar(select(func.count()).select_from(SessionRow).where(own))
-        last = self._session.scalars(
-            select(SessionRow)
-            .where(own)
-            .order_by(SessionRow.started_at.desc(), SessionRow.uploaded_at.desc(), SessionRow.id)
-            .limit(1)
-        ).one()
+        own = (SessionRow.unit_id == unit, IS_ACCEPTED)
+        count = self._session.scalar(select(func.count()).select_from(SessionRow).where(*own))
+        newest = select(SessionRow).where(*own).order_by(SessionRow.started_at.desc(), SessionRow.id.desc())
+        last = self._session.scalars(newest.limit(1)).one_or_none()
+        if last is None:
+            self._session.execute(delete(ConditionRow).where(ConditionRow.unit_id == unit))
+            self._session.expire_all()
+            return Refreshed(None, None, was_reference=False)
         changed = row is not None and row.severity != Verdict(last.verdict).severity
         before = self._session.get_one(SessionRow, row.last_session) if row is not None and changed else None
         refreshed = Refreshed(
@@ -95,13 +97,13 @@ class Fleet(Queries):
 
     def unit(self, serial: str) -> UnitSummary | None:
         """One unit."""
-        row = self._session.execute(_summaries().where(UnitRow.serial == serial)).one_or_none()
+        row = self._session.execute(_summaries(measured=False).where(UnitRow.serial == serial)).one_or_none()
         return None if row is None else _summary(row)
 
     def unit_with_type(self, serial: str) -> tuple[UnitSummary, UnitType] | None:
         """One unit, and its type with the tolerances that hold now, in one query."""
         in_force = (ToleranceRow.unit_type_id == UnitTypeRow.id) & (ToleranceRow.revision == UnitTypeRow.revision)
-        query = _summaries().add_columns(UnitTypeRow, ToleranceRow).join(ToleranceRow, in_force)
+        query = _summaries(measured=False).add_columns(UnitTypeRow, ToleranceRow).join(ToleranceRow, in_force)
         row = self._session.execute(query.where(UnitRow.serial == serial)).one_or_none()
         if row is None:
             return None
@@ -123,13 +125,14 @@ class Fleet(Queries):
         return FleetCondition(units=sum(verdicts.values()), verdicts=verdicts, simulated=simulated, flags=flags)
 
 
-def _summaries() -> Summaries:
+def _summaries(*, measured: bool = True) -> Summaries:
+    """Units with their latest accepted session; those without one too where they need not be measured."""
     return (
         select(UnitRow, UnitTypeRow.name, ConditionRow, SessionRow, DiagnosisRow, OutlookRow.due)
         .options(defer(DiagnosisRow.document))
         .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
-        .join(ConditionRow, ConditionRow.unit_id == UnitRow.id)
-        .join(SessionRow, SessionRow.id == ConditionRow.last_session)
+        .join(ConditionRow, ConditionRow.unit_id == UnitRow.id, isouter=not measured)
+        .join(SessionRow, SessionRow.id == ConditionRow.last_session, isouter=not measured)
         .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
         .outerjoin(OutlookRow, OutlookRow.unit_id == UnitRow.id)
     )
@@ -148,6 +151,8 @@ def _matching(query: Summaries, wanted: FleetQuery) -> Summaries:
 
 def _summary(row: Sequence[Any]) -> UnitSummary:
     unit, type_name, condition, last = row[0], row[1], row[2], row[3]
+    if condition is None:
+        return _unmeasured(unit, type_name)
     return UnitSummary(
         serial=unit.serial,
         unit_type=type_name,
@@ -164,6 +169,25 @@ def _summary(row: Sequence[Any]) -> UnitSummary:
         diagnosis=_diagnosis(row[4]),
         flags=condition.flags,
         due=row[5],
+        lot=unit.lot,
+    )
+
+
+def _unmeasured(unit: UnitRow, type_name: str) -> UnitSummary:
+    """A unit of which no session is accepted."""
+    return UnitSummary(
+        serial=unit.serial,
+        unit_type=type_name,
+        simulated=unit.simulated,
+        sessions=0,
+        last_session=None,
+        last_at=None,
+        verdict=None,
+        is_reference=False,
+        reason="No session of this unit is accepted, so nothing is known of it.",
+        worst_sensor=None,
+        worst_parameter=None,
+        margin=None,
         lot=unit.lot,
     )
 

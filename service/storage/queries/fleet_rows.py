@@ -8,6 +8,7 @@ from sqlalchemy.orm import aliased
 from service.records.decision import Decision
 from service.records.event import Service
 from service.records.history import HistoryPoint
+from service.storage.queries.accepted import IS_ACCEPTED, IS_BREAK
 from service.storage.queries.base import Queries
 from service.storage.queries.history import DECIDED, point_record
 from service.storage.queries.services import service_record
@@ -61,7 +62,7 @@ class FleetRows(Queries):
         place = func.row_number().over(
             partition_by=SessionRow.unit_id, order_by=(SessionRow.started_at.desc(), SessionRow.id.desc())
         )
-        newest = select(SessionRow.id.label("id"), place.label("place")).subquery()
+        newest = select(SessionRow.id.label("id"), place.label("place")).where(IS_ACCEPTED).subquery()
         wanted = select(newest.c.id).where(newest.c.place <= sessions)
         query = _points().where(SessionRow.id.in_(wanted))
         yield from _by_serial(self._session.execute(query.execution_options(yield_per=AT_A_TIME)))
@@ -85,7 +86,7 @@ class FleetRows(Queries):
         query = (
             select(ServiceRow, UnitRow.serial)
             .join(UnitRow, UnitRow.id == ServiceRow.unit_id)
-            .where(UnitRow.serial.in_(serials))
+            .where(UnitRow.serial.in_(serials), IS_BREAK)
             .order_by(ServiceRow.at, ServiceRow.id)
         )
         return tuple(service_record(row, serial) for row, serial in self._session.execute(query))
@@ -97,7 +98,7 @@ def _points() -> Points:
         .join(SessionRow, SessionRow.id == ParameterRow.session_id)
         .join(UnitRow, UnitRow.id == SessionRow.unit_id)
         .outerjoin(DecisionRow, DECIDED)
-        .where(ParameterRow.revision == SessionRow.revision)
+        .where(ParameterRow.revision == SessionRow.revision, IS_ACCEPTED)
         .order_by(
             UnitRow.serial,
             ParameterRow.at,

@@ -4,11 +4,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
 
-from sqlalchemy import ColumnElement, func, select
+from sqlalchemy import ColumnElement, delete, func, select
 
 from service.records.decision import Verdict
 from service.records.history import HistoryPoint
 from service.records.session import ParameterValue, StoredSession
+from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
 from service.storage.tables import CalibrationRow, DecisionRow, ParameterRow, SessionRow
 
@@ -62,13 +63,18 @@ class History(Queries):
         )
         self._session.flush()
 
+    def drop(self, record: StoredSession) -> None:
+        """Takes out what a session gave under its model revision: a recording moves another calibration now."""
+        own = (ParameterRow.session_id == record.id, ParameterRow.revision == record.revision)
+        self._session.execute(delete(ParameterRow).where(*own))
+
     def points(self, unit: int, wanted: HistoryQuery) -> tuple[HistoryPoint, ...]:
         """The wanted part of a unit's history, oldest first, in one query."""
         query = (
             select(ParameterRow, DecisionRow, SessionRow.is_reference)
             .join(SessionRow, SessionRow.id == ParameterRow.session_id)
             .outerjoin(DecisionRow, DECIDED)
-            .where(ParameterRow.unit_id == unit, ParameterRow.revision == _revision(wanted.revision))
+            .where(ParameterRow.unit_id == unit, ParameterRow.revision == _revision(wanted.revision), IS_ACCEPTED)
         )
         if wanted.parameter is not None:
             query = query.where(ParameterRow.parameter == wanted.parameter)

@@ -5,12 +5,13 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import ColumnElement, Row, Select, func, select
+from sqlalchemy import ColumnElement, Row, Select, delete, func, select
 from sqlalchemy.orm import defer
 
 from estimator.session import IN_SERVICE
 from service.records.outlook import Rate, UnitOutlook
 from service.storage.outlook_document import outlook_from_dicts, outlook_to_dicts
+from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
 from service.storage.tables import DecisionRow, OutlookRow, SessionRow, UnitRow, UnitTypeRow
 
@@ -54,22 +55,25 @@ class Outlooks(Queries):
             .join(DecisionRow, DecisionRow.session_id == SessionRow.id)
             .where(DecisionRow.revision == SessionRow.revision, DecisionRow.change.is_not(None))
         )  # fmt: skip
-        query = query.where(*_within(unit, since)).order_by(SessionRow.started_at, DecisionRow.position)
+        query = query.where(*_within(unit, since)).order_by(SessionRow.started_at, SessionRow.id, DecisionRow.position)
         found = self._session.execute(query)
         return tuple(ChangeRow(*row) for row in found)
 
     def references(self, unit: int, since: datetime | None) -> tuple[ReferenceRow, ...]:
         """The sessions since a time that others are judged against, oldest first."""
         query = select(SessionRow.started_at, SessionRow.block, SessionRow.programme).where(SessionRow.is_reference)
-        found = self._session.execute(query.where(*_within(unit, since)).order_by(SessionRow.started_at))
+        order = (SessionRow.started_at, SessionRow.id)
+        found = self._session.execute(query.where(*_within(unit, since)).order_by(*order))
         return tuple(ReferenceRow(*row) for row in found)
 
     def last_calibration(self, unit: int) -> tuple[str, datetime] | None:
         """The session that last measured the unit, recordings in service apart, and when."""
         newest = select(SessionRow.id, SessionRow.started_at).where(
-            SessionRow.unit_id == unit, SessionRow.programme != IN_SERVICE
+            SessionRow.unit_id == unit, SessionRow.programme != IN_SERVICE, IS_ACCEPTED
         )
-        found = self._session.execute(newest.order_by(SessionRow.started_at.desc()).limit(1)).one_or_none()
+        found = self._session.execute(
+            newest.order_by(SessionRow.started_at.desc(), SessionRow.id.desc()).limit(1)
+        ).one_or_none()
         return None if found is None else (found[0], found[1])
 
     def put(self, unit: int, outlook: UnitOutlook) -> None:
@@ -77,6 +81,10 @@ class Outlooks(Queries):
         document, drawn = outlook_to_dicts(outlook)
         self._session.merge(OutlookRow(unit_id=unit, due=outlook.due, document=document, drawn=drawn))
         self._session.flush()
+
+    def drop(self, unit: int) -> None:
+        """Of a unit without an accepted session there is no outlook."""
+        self._session.execute(delete(OutlookRow).where(OutlookRow.unit_id == unit))
 
     def of_unit(self, serial: str) -> UnitOutlook | None:
         """The outlook of one unit; None before its first session is judged."""
@@ -100,7 +108,7 @@ class Outlooks(Queries):
 
 def _within(unit: int, since: datetime | None) -> list[ColumnElement[bool]]:
     """Sessions of a unit from a time on."""
-    own = [SessionRow.unit_id == unit]
+    own = [SessionRow.unit_id == unit, IS_ACCEPTED]
     return own if since is None else [*own, SessionRow.started_at >= since]
 
 

@@ -3,9 +3,12 @@
 from dataclasses import asdict
 from datetime import datetime
 
-from sqlalchemy import Select, select
+from sqlalchemy import Select, select, update
 
+from service.errors import NotFoundError
 from service.records.event import NewService, Service
+from service.records.state import RecordState
+from service.storage.queries.accepted import IS_BREAK
 from service.storage.queries.base import Queries
 from service.storage.tables import ServiceRow, UnitRow
 
@@ -28,19 +31,30 @@ class Services(Queries):
 
     def get(self, number: int) -> Service:
         """One recorded break."""
-        row, serial = self._session.execute(_services().where(ServiceRow.id == number)).one()
-        return service_record(row, serial)
+        found = self._session.execute(_services().where(ServiceRow.id == number)).one_or_none()
+        if found is None:
+            raise NotFoundError(f"There is no service {number}.")
+        return service_record(*found)
 
-    def of_unit(self, serial: str) -> tuple[Service, ...]:
-        """All breaks of a unit, oldest first."""
-        found = self._session.execute(
-            _services().where(UnitRow.serial == serial).order_by(ServiceRow.at, ServiceRow.id)
-        )
+    def put_state(self, number: int, state: RecordState) -> None:
+        """Whether it counts as a break."""
+        self._session.execute(update(ServiceRow).where(ServiceRow.id == number).values(state=state))
+        self._session.expire_all()
+
+    def of_unit(self, serial: str, state: RecordState = RecordState.ACCEPTED) -> tuple[Service, ...]:
+        """The breaks of a unit, or those that were withdrawn, oldest first."""
+        own = (UnitRow.serial == serial, ServiceRow.state == state)
+        found = self._session.execute(_services().where(*own).order_by(ServiceRow.at, ServiceRow.id))
         return tuple(service_record(row, owner) for row, owner in found)
+
+    def breaks(self, unit: int) -> tuple[datetime, ...]:
+        """When the epochs of a unit begin, its first one apart, in order."""
+        query = select(ServiceRow.at).where(ServiceRow.unit_id == unit, IS_BREAK)
+        return tuple(sorted(set(self._session.scalars(query))))
 
     def around(self, unit: int, at: datetime) -> tuple[datetime | None, datetime | None]:
         """The last break at or before a time and the first one after it: the epoch that the time is in."""
-        return epoch(tuple(self._session.scalars(select(ServiceRow.at).where(ServiceRow.unit_id == unit))), at)
+        return epoch(self.breaks(unit), at)
 
 
 def epoch(breaks: tuple[datetime, ...], at: datetime) -> tuple[datetime | None, datetime | None]:
@@ -55,4 +69,13 @@ def _services() -> Select[ServiceRow, str]:
 
 def service_record(row: ServiceRow, serial: str) -> Service:
     """A stored break."""
-    return Service(id=row.id, unit=serial, at=row.at, kind=row.kind, note=row.note, who=row.who, sensor=row.sensor)
+    return Service(
+        id=row.id,
+        unit=serial,
+        at=row.at,
+        kind=row.kind,
+        note=row.note,
+        who=row.who,
+        sensor=row.sensor,
+        state=RecordState(row.state),
+    )

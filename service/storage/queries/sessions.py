@@ -9,11 +9,18 @@ from sqlalchemy import Select, and_, or_, select, update
 from estimator.health.common_motion import CommonMotion
 from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
-from service.records.decision import Decision, Judged, Verdict
+from service.records.decision import Decision, Verdict
 from service.records.diagnosis import DiagnosisState
 from service.records.session import StoredSession
+from service.records.state import RecordState
+from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
 from service.storage.tables import CommonMotionRow, DecisionRow, DiagnosisRow, SessionRow, StandRow, UnitRow
+
+NOT_JUDGED = ""
+"""What the verdict rests on of a session that is still to be judged, or judged again."""
+TURNED = ("unit", "stand", "verdict", "state")
+"""Fields of a session that its row holds otherwise."""
 
 
 class Sessions(Queries):
@@ -22,6 +29,11 @@ class Sessions(Queries):
     def by_hash(self, sha256: str) -> StoredSession | None:
         """The session made of these bytes, if they were uploaded before."""
         found = self._session.execute(_sessions().where(SessionRow.sha256 == sha256)).one_or_none()
+        return None if found is None else _session_record(*found)
+
+    def by_digest(self, digest: str) -> StoredSession | None:
+        """The session of this content, whatever the format of its file."""
+        found = self._session.execute(_sessions().where(SessionRow.content_digest == digest)).first()
         return None if found is None else _session_record(*found)
 
     def get(self, id: str) -> StoredSession:
@@ -46,24 +58,27 @@ class Sessions(Queries):
         until: datetime | None,
         programmes: tuple[str, ...] = CALIBRATIONS,
     ) -> str | None:
-        """The session that others of the block, epoch and programmes are judged against: the first kept as one."""
+        """The session that others of the block, epoch and programmes are judged against."""
         query = select(SessionRow.id).where(
             SessionRow.unit_id == unit,
             SessionRow.block == block,
             SessionRow.programme.in_(programmes),
             SessionRow.is_reference,
+            IS_ACCEPTED,
         )
         if since is not None:
             query = query.where(SessionRow.started_at >= since)
         if until is not None:
             query = query.where(SessionRow.started_at < until)
-        return self._session.scalar(query.order_by(SessionRow.uploaded_at, SessionRow.id).limit(1))
+        return self._session.scalar(query.order_by(SessionRow.started_at, SessionRow.id).limit(1))
 
-    def add(self, record: StoredSession, unit: int, stand: int | None, block: str, worst: Decision | None) -> None:
-        """Stores a session; its hash is unique."""
+    def add(self, record: StoredSession, unit: int, stand: int | None, block: str, digest: str) -> None:
+        """Stores a session that is still to be judged; its hash is unique."""
         values = asdict(record)
         del values["unit"], values["stand"]
-        self._session.add(SessionRow(unit_id=unit, stand_id=stand, block=block, **values, **worst_columns(worst)))
+        self._session.add(
+            SessionRow(unit_id=unit, stand_id=stand, block=block, content_digest=digest, basis=NOT_JUDGED, **values)
+        )
         self._session.flush()
 
     def set_stage(self, id: str, stage: str | None) -> None:
@@ -82,11 +97,24 @@ class Sessions(Queries):
             UnitRow.serial == session.unit,
             SessionRow.programme == session.programme,
             SessionRow.started_at < session.started_at,
+            IS_ACCEPTED,
         )
         if since is not None:
             query = query.where(SessionRow.started_at >= since)
         latest = query.order_by(SessionRow.started_at.desc(), SessionRow.id.desc()).limit(most)
         return tuple(_session_record(*found) for found in self._session.execute(latest))[::-1]
+
+    def corrected(self, session: StoredSession) -> tuple[str, ...]:
+        """Accepted sessions that were uploaded later than one, of the same unit, programme and date."""
+        query = _sessions().where(
+            UnitRow.serial == session.unit,
+            SessionRow.programme == session.programme,
+            SessionRow.started_at == session.started_at,
+            SessionRow.uploaded_at >= session.uploaded_at,
+            SessionRow.id != session.id,
+            IS_ACCEPTED,
+        )
+        return tuple(row.id for row, _, _ in self._session.execute(query.order_by(SessionRow.id)))
 
     def without_diagnosis(self, after: str, limit: int, version: str) -> tuple[str, ...]:
         """Ids of sessions, from an id on, that were never diagnosed, or on which another version failed."""
@@ -102,12 +130,6 @@ class Sessions(Queries):
             )
         )
         return tuple(self._session.scalars(query.order_by(SessionRow.id).limit(limit)))
-
-    def put_in_force(self, id: str, revision: int, judged: Judged) -> None:
-        """Makes a session speak for its calibration of a revision; the ones before stay where they are."""
-        summary = {"verdict": judged.verdict, "reason": judged.reason, **worst_columns(judged.worst)}
-        self._session.execute(update(SessionRow).where(SessionRow.id == id).values(revision=revision, **summary))
-        self._session.expire_all()
 
     def add_decisions(self, id: str, decisions: tuple[Decision, ...], revision: int) -> None:
         """Stores what was decided of a session's parameters under a model revision."""
@@ -161,8 +183,9 @@ def _sessions() -> Select[SessionRow, str, str]:
 
 
 def _session_record(row: SessionRow, unit: str, stand: str | None) -> StoredSession:
-    own = {f.name: getattr(row, f.name) for f in fields(StoredSession) if f.name not in ("unit", "stand", "verdict")}
-    return StoredSession(unit=unit, stand=stand, verdict=Verdict(row.verdict), **own)
+    own = {f.name: getattr(row, f.name) for f in fields(StoredSession) if f.name not in TURNED}
+    verdict, state = Verdict(row.verdict), RecordState(row.state)
+    return StoredSession(unit=unit, stand=stand, verdict=verdict, state=state, **own)
 
 
 def decision_record(row: DecisionRow) -> Decision:

@@ -6,6 +6,7 @@ from sqlalchemy import Integer, cast, func, select
 
 from estimator.health.common_motion import AXES, SCALES, SEPARATED
 from service.records.stand import MotionOnStand
+from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
 from service.storage.tables import CommonMotionRow, ConditionRow, SessionRow, StandRow, UnitRow
 
@@ -35,7 +36,7 @@ class Stands(Queries):
         epoch = is_reference.over(
             partition_by=(SessionRow.unit_id, SessionRow.block), order_by=(SessionRow.started_at, SessionRow.id)
         )
-        numbered = select(SessionRow.id, epoch.label("epoch")).subquery()
+        numbered = select(SessionRow.id, epoch.label("epoch")).where(IS_ACCEPTED).subquery()
         query = (
             select(SessionRow, StandRow.name, UnitRow.serial, numbered.c.epoch, CommonMotionRow)
             .join(StandRow, StandRow.id == SessionRow.stand_id)
@@ -48,7 +49,7 @@ class Stands(Queries):
                 & (CommonMotionRow.state == SEPARATED),
             )
             .where(SessionRow.is_reference | CommonMotionRow.session_id.is_not(None))
-            .order_by(SessionRow.started_at.desc(), SessionRow.id)
+            .order_by(SessionRow.started_at.desc(), SessionRow.id, CommonMotionRow.kind, CommonMotionRow.quantity)
             .limit(MOST)
         )
         found: list[MotionOnStand] = []

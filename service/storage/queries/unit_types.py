@@ -42,6 +42,19 @@ class UnitTypes(Queries):
             raise NotFoundError(f"There is no unit {serial!r}.")
         return unit_type_of(*found)
 
+    def of_unit_at(self, serial: str, at: datetime) -> UnitType:
+        """The type of a unit with the tolerances that held at a time; with its first ones before that."""
+        query = (
+            select(UnitTypeRow, ToleranceRow)
+            .join(UnitRow, UnitRow.unit_type_id == UnitTypeRow.id)
+            .join(ToleranceRow, ToleranceRow.unit_type_id == UnitTypeRow.id)
+            .where(UnitRow.serial == serial)
+            .order_by(ToleranceRow.revision)
+        )
+        found = self._session.execute(query).all()
+        held = [row for row in found if row[1].since <= at] or found[:1]
+        return unit_type_of(*held[-1])
+
     def page(self, offset: int, limit: int) -> tuple[UnitType, ...]:
         """Types by name."""
         rows = self._session.execute(_with_tolerances().order_by(UnitTypeRow.name).offset(offset).limit(limit))

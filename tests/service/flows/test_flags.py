@@ -111,11 +111,21 @@ def test_what_does_not_fit_the_state_is_refused(flagged: Storage) -> None:
             act(flagged, id + 1, "K. Ito", "why", NOW)
 
 
-def test_a_late_older_session_says_nothing_of_today(flagged: Storage) -> None:
+def test_a_session_that_comes_in_late_says_what_it_would_have_said_in_time(flagged: Storage) -> None:
     measured(flagged, 4)
     measured(flagged, 3, 300.0)
     [flag] = flags(flagged)
-    assert kinds(flag) == ["raised", "clear"]
+    assert flag.summary.startswith("A3 bias moved +30")
+    assert flag.proposal == "The session of 1 Apr 2026 finds every parameter of A3 within its tolerance."
+    assert kinds(flag) == ["raised", "clear", "seen", "clear"]
+
+
+def test_what_a_person_resolved_no_older_session_raises_again(flagged: Storage) -> None:
+    resolve_flag(flagged, flags(flagged)[0].id, "K. Ito", "cable", NOW)
+    measured(flagged, 4)
+    content = session_bytes(seed=9, a3_moved=300.0, started_at="2026-01-20T09:00:00Z")
+    upload(flagged, content, "late.json", NOW)
+    assert [flag.state for flag in flags(flagged)] == [FlagState.RESOLVED]
 
 
 def test_the_fleet_counts_open_flags(flagged: Storage) -> None:

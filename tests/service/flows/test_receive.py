@@ -67,8 +67,11 @@ def test_rival_first_sessions_of_a_unit_leave_one_reference(storage: Storage, tw
     with ThreadPoolExecutor(6) as pool:
         jobs = zip((storage, twin) * 3, contents, strict=True)
         futures = [pool.submit(upload, place, content, "a.json", NOW) for place, content in jobs]
-        verdicts = [future.result().verdict.value for future in futures]
-    assert sorted(verdicts) == ["pass"] * 5 + ["undecidable"]
+        ids = [future.result().id for future in futures]
+    with storage.database.reading() as store:
+        stored = [store.sessions.get(id) for id in ids]
+    assert [one.id for one in stored if one.is_reference] == [min(ids)]
+    assert sorted(one.verdict.value for one in stored) == ["pass"] * 5 + ["undecidable"]
 
 
 def test_a_refusal_is_recorded_with_its_problems_and_nothing_else_is(storage: Storage) -> None:

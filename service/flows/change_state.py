@@ -1,0 +1,23 @@
+"""Step: another line of a session's life, its state and the audit, within one transaction."""
+
+from service.records.session import StoredSession
+from service.records.state import RecordKind, RecordState, Step
+from service.storage.store import Store
+
+DONE = {
+    RecordState.ACCEPTED: "accept session",
+    RecordState.QUESTIONED: "question session",
+    RecordState.WITHDRAWN: "withdraw session",
+    RecordState.SUPERSEDED: "supersede session",
+}
+"""What the audit calls each."""
+
+
+def change(
+    store: Store, session: StoredSession, state: RecordState, step: Step, superseded_by: str | None = None
+) -> None:
+    """Writes down what becomes of a session, by whom and why; what follows from it is derived afterwards."""
+    store.states.put_session(session.id, state, superseded_by)
+    store.states.add(RecordKind.SESSION, session.id, state, step, superseded_by)
+    details = {"unit": session.unit, "before": session.state.value, "why": step.why, "superseded_by": superseded_by}
+    store.log.audit(step.at, step.who, DONE[state], session.id, details)

@@ -1,0 +1,170 @@
+"""Step: everything that is derived of a unit's accepted records, brought in line with them after a change.
+
+References, verdicts with their decisions and common motions, the outlook, the unit's line in the fleet and its open
+flags. Every flow that changes which records count ends with it, within its own transaction. A session whose verdict
+rests on what it must rest on is left alone, so an ordinary upload judges one session.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+
+from estimator.parity import parity_check
+from estimator.parity.as_calibration import parity_calibration
+from estimator.results import Calibration
+from estimator.session import CALIBRATIONS, IN_SERVICE
+from service.flows.flagging.fold import settle_sessions
+from service.flows.flagging.settle import Occasion
+from service.flows.flagging.verdict import no_longer_overdue, tell_verdict, told_by
+from service.flows.refresh_outlook import refresh_outlook
+from service.ingest import read_upload
+from service.judging.calibrate import Comparison
+from service.judging.epochs import Place, needs_judging, placed
+from service.judging.judge import judge, judge_recording
+from service.judging.parameter_values import parameter_values
+from service.records.decision import Judged
+from service.records.derivation import Counted
+from service.records.session import StoredSession
+from service.storage import Files
+from service.storage.store import Store
+from service.words.advice import too_few
+
+AT_ONCE = 20
+"""Sessions that are judged within the request that changed a record, about a second; of more, all but the request's
+own are judged after it."""
+NOTHING_TO_COMPARE = (
+    "No calibration of the unit is accepted in this epoch, and a recording in service is compared with one."
+)
+
+
+@dataclass(frozen=True)
+class Deriving:
+    """What a derivation takes beside the transaction that changes a record."""
+
+    files: Files
+    coverage_factor: float
+    at: datetime
+    at_once: int | None = AT_ONCE
+    """None where all are judged now."""
+
+
+@dataclass(frozen=True)
+class Derived:
+    """What a derivation did and left."""
+
+    judged: tuple[str, ...]
+    waiting: int
+    """Sessions that are to be judged after the answer."""
+    undiagnosed: tuple[str, ...]
+    """Sessions whose diagnosis looked at records that have changed: it is made again."""
+
+
+@dataclass(frozen=True)
+class _Known:
+    """Calibrations that this derivation has read."""
+
+    store: Store
+    by_id: dict[str, Calibration] = field(default_factory=dict)
+
+    def get(self, id: str) -> Calibration:
+        if id not in self.by_id:
+            self.by_id[id] = self.store.calibrations.get(id)
+        return self.by_id[id]
+
+    def is_blind(self, one: Counted) -> bool:
+        """Whether a session gives no uncertainty; a reference gave one when it was taken for it."""
+        return not one.is_reference and bool(too_few(self.get(one.id)))
+
+
+def derive_again(store: Store, way: Deriving, serial: str, since: datetime, touched: Sequence[str] = ()) -> Derived:
+    """Derives what is known of a unit after its records changed from a date on; ``touched`` are judged in any case."""
+    unit, known = store.units.hold(serial), _Known(store)
+    choices = tuple(choice.session for choice in store.states.choices(unit))
+    places = placed(store.derivations.counted(unit), store.services.breaks(unit), choices, known.is_blind)
+    stale = needs_judging(places, since)
+    store.derivations.put_references(unit, (p.session.id for p in places if p.is_reference))
+    now, later = _shared(stale, touched, way.at_once)
+    for place in now:
+        _judge(store, way, place, known)
+    store.derivations.wait(p.session.id for p in later)
+    undiagnosed = store.derivations.forget_diagnoses(unit, since, touched)
+    _sum_up(store, way, serial, touched)
+    return Derived(tuple(p.session.id for p in now), len(later), undiagnosed)
+
+
+def _shared(
+    stale: Sequence[Place], touched: Sequence[str], most: int | None
+) -> tuple[tuple[Place, ...], tuple[Place, ...]]:
+    """What is judged now and what later."""
+    if most is None or len(stale) <= most:
+        return tuple(stale), ()
+    return (
+        tuple(p for p in stale if p.session.id in touched),
+        tuple(p for p in stale if p.session.id not in touched),
+    )
+
+
+def derive_batch(store: Store, way: Deriving, serial: str, most: int) -> int:
+    """Judges the first of the sessions that wait, and returns how many still do."""
+    unit, known = store.units.hold(serial), _Known(store)
+    choices = tuple(choice.session for choice in store.states.choices(unit))
+    places = placed(store.derivations.counted(unit), store.services.breaks(unit), choices, known.is_blind)
+    waiting = tuple(p for p in places if p.session.basis == "")
+    for place in waiting[:most]:
+        _judge(store, way, place, known)
+    left = max(len(waiting) - most, 0)
+    if not left:
+        _sum_up(store, way, serial, ())
+    return left
+
+
+def _judge(store: Store, way: Deriving, place: Place, known: _Known) -> None:
+    """A session judged as its place says, with what it tells of flags."""
+    session = store.sessions.get(place.session.id)
+    judged = _recording(store, way, session, place, known) if session.programme == IN_SERVICE else None
+    if judged is None:
+        judged = _calibration(store, way, session, place, known)
+    store.derivations.put_judged(session.id, session.revision, judged, place.basis, told_by(session, judged))
+    store.sessions.add_decisions(session.id, judged.decisions, session.revision)
+    store.sessions.add_motions(session.id, judged.motions, session.revision)
+
+
+def _calibration(store: Store, way: Deriving, session: StoredSession, place: Place, known: _Known) -> Judged:
+    """By the tolerances that held when it was computed."""
+    against = None if place.is_reference or place.reference is None else known.get(place.reference.id)
+    unit_type = store.unit_types.of_unit_at(session.unit, store.derivations.computed_at(session.id))
+    after_service = place.since is not None
+    return judge(known.get(session.id), against, unit_type, way.coverage_factor, after_service=after_service)
+
+
+def _recording(store: Store, way: Deriving, session: StoredSession, place: Place, known: _Known) -> Judged:
+    """A recording in service moves the calibration that it is compared with, so it is compared anew."""
+    computed_at = store.derivations.computed_at(session.id)
+    store.history.drop(session)
+    if place.reference is None:
+        return Judged(known.get(session.id), (), NOTHING_TO_COMPARE, is_reference=False)
+    source = read_upload(way.files.read(session.sha256), session.filename)
+    reference = known.get(place.reference.id)
+    found = Comparison(reference, parity_check(source, reference))
+    unit_type = store.unit_types.of_unit_at(session.unit, computed_at)
+    judged = judge_recording(parity_calibration(found.result, reference), found, unit_type, way.coverage_factor)
+    store.calibrations.put(session.id, session.revision, judged, computed_at)
+    store.history.add(store.units.key(session.unit), session, parameter_values(judged.calibration))
+    return judged
+
+
+def _sum_up(store: Store, way: Deriving, serial: str, touched: Sequence[str]) -> None:
+    """The outlook, the unit's line and its flags."""
+    unit = store.units.key(serial)
+    was = store.fleet.refresh(unit)
+    occasion = Occasion(unit, was.last_session, way.at)
+    if was.last_session is None:
+        store.outlooks.drop(unit)
+        settle_sessions(store, occasion)
+        return
+    refresh_outlook(store, serial)
+    latest = store.sessions.get(was.last_session)
+    tell_verdict(store, occasion, latest, was)
+    settle_sessions(store, occasion)
+    if latest.id in touched and latest.programme in CALIBRATIONS:
+        no_longer_overdue(store, occasion, latest)

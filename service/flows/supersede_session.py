@@ -1,0 +1,55 @@
+"""Flow: a session gives way to another one: a corrected file, the right unit, the right date. Both stay on record."""
+
+from datetime import datetime
+
+from service.errors import ConflictError
+from service.flows.change_state import change
+from service.flows.derive_again import Derived, Deriving, derive_again
+from service.records.received import Replaced
+from service.records.session import StoredSession
+from service.records.state import RecordState, Step
+from service.storage import Storage
+from service.storage.store import Store
+
+REPLACEABLE = (RecordState.ACCEPTED, RecordState.QUESTIONED)
+"""States of a session that another one can stand for."""
+
+
+def supersede_session(storage: Storage, way: Deriving, replaced: Replaced, by: str) -> tuple[StoredSession, Derived]:
+    """Says that a stored session stands for another one; ConflictError where either does not count."""
+    with storage.database.writing() as store:
+        derived = supersede(store, way, replaced, store.sessions.get(by))
+        return store.sessions.get(replaced.session), derived
+
+
+def supersede(store: Store, way: Deriving, replaced: Replaced, by: StoredSession) -> Derived:
+    """The same within a transaction; derives what is known of the unit of the session that gives way."""
+    known = give_way(store, way.at, replaced, by)
+    return derive_again(store, way, known.unit, known.started_at, (known.id, by.id))
+
+
+def give_way(store: Store, at: datetime, replaced: Replaced, by: StoredSession) -> StoredSession:
+    """Writes down that a session gives way to another, and returns it as it was."""
+    store.units.hold(store.sessions.get(replaced.session).unit)
+    known = store.sessions.get(replaced.session)
+    if known.id == by.id:
+        raise ConflictError(f"Session {known.id} cannot stand for itself: the file holds what is stored already.")
+    if known.state not in REPLACEABLE:
+        raise ConflictError(f"Session {known.id} is {known.state} already, so nothing stands for it.")
+    if by.state not in REPLACEABLE:
+        raise ConflictError(f"Session {by.id} is {by.state} itself, so it stands for none.")
+    change(store, known, RecordState.SUPERSEDED, Step(replaced.who, at, replaced.why), superseded_by=by.id)
+    return known
+
+
+def successor_of(storage: Storage, id: str) -> str:
+    """The session that can only be meant as the corrected one: uploaded later, of the same unit, block and date."""
+    with storage.database.reading() as store:
+        known = store.sessions.get(id)
+        found = store.sessions.corrected(known)
+    if len(found) != 1:
+        raise ConflictError(
+            f"Which session stands for {id} cannot be told: name it in `superseded_by`. "
+            f"{len(found)} were uploaded later of the same unit and date."
+        )
+    return found[0]

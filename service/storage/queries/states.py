@@ -1,0 +1,67 @@
+"""What became of sessions and services, and the references that engineers chose."""
+
+from sqlalchemy import select, update
+
+from service.records.state import RecordKind, RecordState, ReferenceChoice, StateChange, Step
+from service.storage.queries.base import Queries
+from service.storage.state_tables import RecordStateRow, ReferenceChoiceRow
+from service.storage.tables import SessionRow
+
+
+class States(Queries):
+    """The lives of records; a line is written once."""
+
+    def add(
+        self, kind: RecordKind, record: str, state: RecordState, step: Step, superseded_by: str | None = None
+    ) -> None:
+        """Writes another line of a record's life."""
+        self._session.add(
+            RecordStateRow(
+                kind=kind,
+                record=record,
+                state=state,
+                who=step.who,
+                at=step.at,
+                why=step.why,
+                superseded_by=superseded_by,
+            )
+        )
+        self._session.flush()
+
+    def of(self, kind: RecordKind, record: str) -> tuple[StateChange, ...]:
+        """The life of a record, oldest first; empty where it was accepted and remained so."""
+        query = select(RecordStateRow).where(RecordStateRow.kind == kind, RecordStateRow.record == record)
+        return tuple(map(_change, self._session.scalars(query.order_by(RecordStateRow.id))))
+
+    def last_of(self, kind: RecordKind, records: tuple[str, ...]) -> dict[str, StateChange]:
+        """The last line of the lives of some records."""
+        query = select(RecordStateRow).where(RecordStateRow.kind == kind, RecordStateRow.record.in_(records))
+        return {row.record: _change(row) for row in self._session.scalars(query.order_by(RecordStateRow.id))}
+
+    def put_session(self, id: str, state: RecordState, superseded_by: str | None = None) -> None:
+        """Whether a session counts, and which one stands for it."""
+        values = {"state": state, "superseded_by": superseded_by}
+        self._session.execute(update(SessionRow).where(SessionRow.id == id).values(**values))
+        self._session.expire_all()
+
+    def choose(self, unit: int, session: str, step: Step) -> None:
+        """A session is chosen as the reference of its epoch."""
+        self._session.add(ReferenceChoiceRow(unit_id=unit, session_id=session, who=step.who, at=step.at, why=step.why))
+        self._session.flush()
+
+    def choices(self, unit: int) -> tuple[ReferenceChoice, ...]:
+        """What engineers chose, oldest first."""
+        query = select(ReferenceChoiceRow).where(ReferenceChoiceRow.unit_id == unit).order_by(ReferenceChoiceRow.id)
+        return tuple(ReferenceChoice(r.session_id, r.who, r.at, r.why) for r in self._session.scalars(query))
+
+
+def _change(row: RecordStateRow) -> StateChange:
+    return StateChange(
+        kind=RecordKind(row.kind),
+        record=row.record,
+        state=RecordState(row.state),
+        who=row.who,
+        at=row.at,
+        why=row.why,
+        superseded_by=row.superseded_by,
+    )
