@@ -11,6 +11,7 @@ from fastapi.concurrency import run_in_threadpool
 from service import api, pages
 from service.api.measured import Measured
 from service.background.deliver_messages import deliver_until
+from service.background.derive_pending import derive_pending
 from service.background.diagnose_pending import diagnose_pending
 from service.background.watch_fleet import watch_fleet
 from service.dependencies import Application
@@ -73,6 +74,7 @@ def _work(application: Application) -> Iterator[tuple[str, Callable[..., None], 
     """What is done beside the requests: its name, what does it, and what that needs."""
     storage, clock, hosts = application.storage, application.clock, application.settings.webhook_hosts
     yield "pending diagnoses", diagnose_pending, (storage, clock, application.diagnosing)
+    yield "pending derivations", derive_pending, (storage, application.settings.coverage_factor, clock)
     yield "fleet", watch_fleet, (storage, clock)
     if hosts:
         yield "outbox", deliver_until, (storage, hosts, clock)

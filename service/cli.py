@@ -24,6 +24,8 @@ COMMANDS = {
     "report": "report.report",
     "flags": "flags.flags",
     "service": "events.record",
+    "session": "records.session",
+    "withdraw-service": "records.withdraw_service",
     "note": "events.write_note",
     "certificate": "certificate.certificate",
     "correction": "certificate.correction",

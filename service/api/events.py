@@ -14,8 +14,9 @@ from service.api.schemas.events import (
 from service.api.schemas.fields import Serial
 from service.api.schemas.problem import errors
 from service.api.schemas.sessions import DecisionSchema, SessionSchema
-from service.dependencies import Now, Reading, SettingsOf, StorageOf
+from service.dependencies import Now, Reading, ReceptionOf, SettingsOf, StorageOf
 from service.flows.add_note import add_note
+from service.flows.receive import ask_again
 from service.flows.record_service import record_service
 from service.records.event import NewService
 from service.views.found_and_left import found_and_left
@@ -25,10 +26,12 @@ router = APIRouter(prefix="/units", tags=["units"])
 
 
 @router.post("/{serial:path}/services", status_code=201, responses=errors(400, 404, 422))
-def add_service(serial: Serial, new: NewServiceSchema, storage: StorageOf, now: Now) -> ServiceSchema:
-    """Record a known break; the next session measured after it becomes the unit's new reference."""
+def add_service(serial: Serial, new: NewServiceSchema, reception: ReceptionOf, now: Now) -> ServiceSchema:
+    """Record a known break; the first session measured after it is the new reference, whenever it was uploaded."""
     done = NewService(new.kind, new.at or now, new.note, new.by, new.sensor)
-    service, _ = record_service(storage, serial, done, now)
+    k = reception.coverage_factor
+    service, derived = record_service(reception.storage, serial, done, now, coverage_factor=k)
+    ask_again(reception, () if derived is None else derived.undiagnosed)
     return ServiceSchema.model_validate(service)
 
 

@@ -1,35 +1,67 @@
 """What came with an upload: the bytes unchanged, however they were sent, and never more than the limit."""
 
+from collections.abc import Mapping
 from typing import Annotated, Any
 
-from fastapi import Depends, Request
+from fastapi import Depends, Query, Request
 from starlette.datastructures import UploadFile
 
 from estimator.errors import Problem
+from service.api.schemas.fields import LongText, Text
 from service.api.schemas.sessions import SessionFile
 from service.dependencies import SettingsOf, limited
 from service.errors import RefusedError
-from service.records.received import SentFile
+from service.records.received import Replaced, SentFile
 
+NEEDED = "is missing; a session is replaced by somebody and for a reason"
+LONGEST_WHY = 2000
+"""Characters, as for every reason."""
 NO_FILE = "The form holds no file. Send the session as the body, or as the form's part `file`."
 
 
-async def _received(request: Request, settings: SettingsOf) -> SentFile:
+Supersedes = Annotated[
+    Text | None, Query(description="The stored session that this corrected file stands for from now on.")
+]
+By = Annotated[Text | None, Query(description="Who says so; with `supersedes`.")]
+Why = Annotated[LongText | None, Query(description="What was wrong; with `supersedes`.")]
+FIELDS = ("supersedes", "by", "why")
+"""That a corrected file may bring as parts of its form too."""
+
+
+async def _received(
+    request: Request, settings: SettingsOf, supersedes: Supersedes = None, by: By = None, why: Why = None
+) -> SentFile:
     """The file, from the body or from the part `file` of a form."""
+    stated = dict(zip(FIELDS, (supersedes, by, why), strict=True))
     content_type = request.headers.get("content-type", "").lower()
     is_form = content_type.startswith("multipart/form-data")
     body = limited(request, settings.max_upload_bytes, is_form=is_form)
     if is_form:
-        return await _from_form(body)
-    return SentFile("upload.csv" if "csv" in content_type else "upload.json", await body.body())
+        return await _from_form(body, stated)
+    name = "upload.csv" if "csv" in content_type else "upload.json"
+    return SentFile(name, await body.body(), _replaced(stated))
 
 
-async def _from_form(request: Request) -> SentFile:
+async def _from_form(request: Request, stated: dict[str, str | None]) -> SentFile:
     async with request.form(max_files=1, max_fields=10) as form:
         file = form.get("file")
         if not isinstance(file, UploadFile):
             raise RefusedError(NO_FILE, (Problem("file", "is missing from the form"),))
-        return SentFile(file.filename or "upload", await file.read())
+        own = {name: text for name in FIELDS if isinstance(text := form.get(name), str)}
+        return SentFile(file.filename or "upload", await file.read(), _replaced(stated | own))
+
+
+def _replaced(stated: Mapping[str, str | None]) -> Replaced | None:
+    """What the file stands for; RefusedError where nobody says so or why."""
+    known, by, why = ((stated[name] or "").replace("\x00", "").strip() for name in FIELDS)
+    if not known:
+        return None
+    faults = [Problem(name, NEEDED) for name, text in (("by", by), ("why", why)) if not text]
+    if len(why) > LONGEST_WHY:
+        faults.append(Problem("why", f"is {len(why)} characters long; at most {LONGEST_WHY} are kept"))
+    if faults:
+        raise RefusedError("A corrected file says who replaces a session and why.", tuple(faults))
+    return Replaced(known, by, why)
 
 
 FileOf = Annotated[SentFile, Depends(_received)]
@@ -46,7 +78,8 @@ REQUEST_BODY: dict[str, Any] = {
                 "schema": {
                     "type": "object",
                     "required": ["file"],
-                    "properties": {"file": {"type": "string", "format": "binary", "description": "The session file."}},
+                    "properties": {"file": {"type": "string", "format": "binary", "description": "The session file."}}
+                    | {name: {"type": "string"} for name in FIELDS},
                 }
             },
         },

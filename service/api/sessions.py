@@ -29,13 +29,16 @@ ANY_BYTES = {"application/octet-stream": {"schema": {"type": "string", "format":
 @router.post(
     "",
     status_code=201,
-    responses={200: {"model": ReceiptSchema, "description": "Stored before."}, **errors(400, 413, 422, 507)},
+    responses={200: {"model": ReceiptSchema, "description": "Stored before."}, **errors(400, 404, 409, 413, 422, 507)},
     openapi_extra=REQUEST_BODY,
 )
 def upload_session(
     request: Request, response: Response, file: FileOf, reception: ReceptionOf, now: Now
 ) -> ReceiptSchema:
-    """Upload a session file: it is checked, calibrated, judged, stored, diagnosed. The same bytes are stored once."""
+    """Upload a session file: it is checked, calibrated, judged, stored, diagnosed. The same content is stored once.
+
+    A corrected file names the session that it `supersedes`, by whom and why; unit and date may be others.
+    """
     receipt = receive(reception, file, now)
     url = str(request.url_for("read_session", id=receipt.id))
     response.status_code = 201 if receipt.created else 200

@@ -64,6 +64,11 @@ def receive_all(reception: Reception, files: Sequence[SentFile], now: datetime) 
     return outcomes
 
 
+def deriving(reception: Reception, now: datetime) -> Deriving:
+    """How what follows from a change is derived."""
+    return Deriving(reception.storage.files, reception.coverage_factor, now)
+
+
 def ask_again(reception: Reception, ids: Iterable[str]) -> None:
     """Asks for diagnoses that look at records that have changed."""
     for id in dict.fromkeys(ids):

@@ -6,7 +6,7 @@
 from fastapi import FastAPI
 from starlette.middleware.gzip import GZipMiddleware
 
-from service.pages import assets, diagnosis_routes, event_routes, flag_routes, plan_routes, routes
+from service.pages import assets, diagnosis_routes, event_routes, flag_routes, plan_routes, record_routes, routes
 from service.pages.headers import SecurityHeaders
 from service.pages.problem import ProblemPages, unexpected_pages
 
@@ -17,6 +17,7 @@ def mount(app: FastAPI) -> None:
     app.include_router(diagnosis_routes.router)
     app.include_router(flag_routes.router)
     app.include_router(event_routes.router)
+    app.include_router(record_routes.router)
     app.include_router(plan_routes.router)
     app.include_router(assets.router)
     unexpected_pages(app)

@@ -7,8 +7,9 @@ from urllib.parse import quote
 from fastapi import APIRouter, Form
 from fastapi.responses import RedirectResponse
 
-from service.dependencies import Now, StorageOf
+from service.dependencies import Now, ReceptionOf, StorageOf
 from service.flows.add_note import add_note
+from service.flows.receive import ask_again
 from service.flows.record_service import record_service
 from service.flows.set_stage import set_stage
 from service.flows.withdraw_note import withdraw_note
@@ -27,7 +28,7 @@ def add_service(
     serial: Key,
     kind: Kind,
     by: By,
-    storage: StorageOf,
+    reception: ReceptionOf,
     now: Now,
     *,
     at: At = None,
@@ -35,7 +36,9 @@ def add_service(
     note: Annotated[str, Form(max_length=2000, pattern=NO_NUL)] = "",
 ) -> RedirectResponse:
     """Records what was done to the unit."""
-    record_service(storage, serial, NewService(kind, _utc(at, now), note, by, sensor), now)
+    new, k = NewService(kind, _utc(at, now), note, by, sensor), reception.coverage_factor
+    _, derived = record_service(reception.storage, serial, new, now, coverage_factor=k)
+    ask_again(reception, () if derived is None else derived.undiagnosed)
     return _unit(serial, "events")
 
 

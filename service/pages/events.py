@@ -30,6 +30,7 @@ class Event:
     who: str
     note: Note | None
     """None for a service, which is a break in the history."""
+    service: Service | None = None
 
 
 @dataclass(frozen=True)
@@ -64,7 +65,7 @@ class StageTable:
 def events_of(services: Sequence[Service], notes: Sequence[Note]) -> tuple[Event, ...]:
     """Newest first."""
     listed = [
-        Event(s.at, f"{KINDS.get(s.kind, s.kind)}{f' of {s.sensor}' if s.sensor else ''}", s.note, s.who, None)
+        Event(s.at, f"{KINDS.get(s.kind, s.kind)}{f' of {s.sensor}' if s.sensor else ''}", s.note, s.who, None, s)
         for s in services
     ]
     listed += [Event(note.at, "Note", note.text, note.who, note) for note in notes]

@@ -28,6 +28,7 @@ from service.pages.residual_table import ResidualTable, residual_table
 from service.records.decision import Decision, Verdict, nominal_factor_of
 from service.records.diagnosis import DiagnosisSummary
 from service.records.session import ALL_PARAMETERS, SessionReport, StoredSession
+from service.records.state import RecordState
 from service.storage.parity_document import parity_from_dict
 from service.words.conditions import Condition, condition_of
 from service.words.coverage import coverage_in_words
@@ -36,6 +37,7 @@ from service.words.known import combination_in_words
 from service.words.motion import MotionLine, motions_in_words
 from service.words.names import method_name
 from service.words.parity import agreement_in_words
+from service.words.states import MEANINGS, STATES, state_in_words
 
 
 @dataclass(frozen=True)
@@ -88,6 +90,10 @@ class SessionPage:
     """Whether its programme calibrates every sensor of the block."""
     motions: tuple[MotionLine, ...]
     """What all sensors did together, in words."""
+    state: str
+    """What became of it, said before everything else; empty where it counts."""
+    states: tuple[str, ...]
+    """Its life, newest first."""
 
 
 def session_page(report: SessionReport, diagnosis: DiagnosisSummary | None = None) -> SessionPage:
@@ -115,7 +121,18 @@ def session_page(report: SessionReport, diagnosis: DiagnosisSummary | None = Non
         diagnosis=diagnosis_line(diagnosis),
         gives_correction=report.session.programme in CALIBRATIONS,
         motions=motions_in_words(report.motions, coverage),
+        state=_state(report),
+        states=tuple(state_in_words(line) for line in reversed(report.states)),
     )
+
+
+def _state(report: SessionReport) -> str:
+    """Why a session does not count."""
+    state = report.session.state
+    if state is RecordState.ACCEPTED:
+        return ""
+    said = f"{state_in_words(report.states[-1])}." if report.states else f"{STATES[state]}."
+    return f"{said.replace('..', '.')} {MEANINGS[state]}"
 
 
 def parameters_of(calibration: Calibration) -> tuple[str, ...]:

@@ -93,3 +93,6 @@ class UnitReport:
     """The latest ones, newest first."""
     services: tuple[Service, ...]
     """All known breaks, oldest first."""
+    withdrawn_services: tuple[Service, ...] = ()
+    waiting: int = 0
+    """Sessions that are still to be judged again after a change of the records."""

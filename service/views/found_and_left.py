@@ -9,6 +9,7 @@ from service.judging.judge import decisions_of
 from service.records.decision import Decision
 from service.records.event import Service
 from service.records.session import StoredSession
+from service.records.state import RecordState
 from service.records.unit import UnitType
 from service.storage.queries.services import epoch
 from service.storage.store import Store
@@ -34,6 +35,7 @@ def found_and_left(
     coverage_factor: float,
 ) -> FoundAndLeft | None:
     """The latest as-found session among some, and the first as-left one after it; None where nothing was found."""
+    sessions = [s for s in sessions if s.state is RecordState.ACCEPTED]
     found = max((s for s in sessions if s.stage == AS_FOUND), key=_when, default=None)
     if found is None:
         return None

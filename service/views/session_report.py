@@ -1,6 +1,7 @@
 """Everything that is known of one session."""
 
 from service.records.session import SessionReport
+from service.records.state import RecordKind
 from service.storage.store import Store
 
 
@@ -11,4 +12,5 @@ def session_report(store: Store, id: str) -> SessionReport:
         calibration=store.calibrations.get(id),
         decisions=store.sessions.decisions(id),
         motions=store.sessions.motions(id),
+        states=store.states.of(RecordKind.SESSION, id),
     )

@@ -4,6 +4,7 @@ from datetime import datetime
 
 from estimator.session import PROGRAMMES
 from service.errors import NotFoundError
+from service.records.state import RecordState
 from service.records.unit import UnitReport
 from service.storage.queries.services import epoch
 from service.storage.store import Store
@@ -27,4 +28,6 @@ def unit_report(store: Store, serial: str, now: datetime) -> UnitReport:
         reference_session=store.sessions.reference(unit, unit_type.block, since, until, PROGRAMMES),
         sessions=store.sessions.page(serial, 0, LATEST),
         services=services,
+        withdrawn_services=store.services.of_unit(serial, RecordState.WITHDRAWN),
+        waiting=store.derivations.waiting_of(serial),
     )

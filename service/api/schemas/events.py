@@ -7,6 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from service.api.schemas.fields import LongText, Moment, Name, Reason, Text
 from service.api.schemas.sessions import DecisionSchema, SessionSchema
+from service.records.state import RecordState
 
 ServiceKind = Literal["adjustment", "repair", "sensor-swap", "reference", "service"]
 Stage = Literal["as-found", "as-left"]
@@ -47,6 +48,7 @@ class ServiceSchema(BaseModel):
     note: str = Field(description="Why, what exactly.")
     who: str = Field(description="Who did it.")
     sensor: str = Field(description="The sensor that it concerns; empty for the whole unit.")
+    state: RecordState = Field(description="One that was withdrawn is no break.")
 
 
 class NewNote(BaseModel):

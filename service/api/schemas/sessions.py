@@ -7,6 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from pydantic.config import JsonDict
 
 from service.records.decision import Verdict
+from service.records.state import RecordState
 
 RECEIPT_EXAMPLE: JsonDict = {
     "id": "3f9a0c5be1d24786aa10",
@@ -15,6 +16,7 @@ RECEIPT_EXAMPLE: JsonDict = {
     "reason": "A3 bias moved +62 µg (U 8.1 µg) beyond the tolerance of 50 µg.",
     "created": True,
     "is_reference": False,
+    "state": "accepted",
     "url": "http://127.0.0.1:8000/api/v1/sessions/3f9a0c5be1d24786aa10",
 }
 
@@ -32,6 +34,7 @@ class ReceiptSchema(BaseModel):
     is_reference: bool = Field(
         description="Whether later sessions are judged against this one; then its own verdict is `undecidable`."
     )
+    state: RecordState = Field(description="`questioned` where the file cannot be as it says; then it tells nothing.")
     url: str = Field(description="Where the session can be read.")
 
 
@@ -57,6 +60,8 @@ class SessionSchema(BaseModel):
     simulated: bool = Field(description="Whether it belongs to the demonstration fleet.")
     revision: int = Field(description="Model revision that its calibration in force was made under; 0 is the baseline.")
     stage: str | None = Field(description="`as-found`, `as-left`, or null where neither was said.")
+    state: RecordState = Field(description="Only an accepted session tells of its unit.")
+    superseded_by: str | None = Field(description="The session that stands for a superseded one.")
 
 
 class DecisionSchema(BaseModel):

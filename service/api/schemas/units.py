@@ -128,3 +128,5 @@ class UnitReportSchema(BaseModel):
     )
     sessions: list[SessionSchema] = Field(description="The latest sessions, newest first.")
     services: list[ServiceSchema] = Field(description="All known breaks, oldest first.")
+    withdrawn_services: list[ServiceSchema] = Field(description="Services that were withdrawn, oldest first.")
+    waiting: int = Field(description="Sessions that are still to be judged again after a change of the records.")

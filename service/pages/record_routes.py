@@ -1,0 +1,49 @@
+"""The forms of what becomes of records: sessions and services withdrawn, sessions accepted or chosen as reference."""
+
+from urllib.parse import quote
+
+from fastapi import APIRouter
+from fastapi.responses import RedirectResponse
+
+from service.dependencies import Now, ReceptionOf
+from service.flows.accept_session import accept_session
+from service.flows.choose_reference import choose_reference
+from service.flows.receive import ask_again, deriving
+from service.flows.withdraw_service import withdraw_service
+from service.flows.withdraw_session import withdraw_session
+from service.pages.forms import OWN_FORM, SEE_OTHER, By, Key, Number, Why
+from service.records.state import Step
+
+router = APIRouter(include_in_schema=False, dependencies=OWN_FORM)
+
+
+@router.post("/sessions/{id}/withdraw")
+def withdraw(id: Key, by: By, why: Why, reception: ReceptionOf, now: Now) -> RedirectResponse:
+    """A session is taken back."""
+    _, derived = withdraw_session(reception.storage, deriving(reception, now), id, Step(by, now, why))
+    ask_again(reception, derived.undiagnosed)
+    return RedirectResponse(f"/sessions/{id}", SEE_OTHER)
+
+
+@router.post("/sessions/{id}/accept")
+def accept(id: Key, by: By, why: Why, reception: ReceptionOf, now: Now) -> RedirectResponse:
+    """A session counts."""
+    _, derived = accept_session(reception.storage, deriving(reception, now), id, Step(by, now, why))
+    ask_again(reception, derived.undiagnosed)
+    return RedirectResponse(f"/sessions/{id}", SEE_OTHER)
+
+
+@router.post("/sessions/{id}/reference")
+def choose(id: Key, by: By, why: Why, reception: ReceptionOf, now: Now) -> RedirectResponse:
+    """A session is chosen as the reference of its epoch."""
+    _, derived = choose_reference(reception.storage, deriving(reception, now), id, Step(by, now, why))
+    ask_again(reception, derived.undiagnosed)
+    return RedirectResponse(f"/sessions/{id}", SEE_OTHER)
+
+
+@router.post("/services/{id}/withdraw")
+def withdraw_break(id: Number, by: By, why: Why, reception: ReceptionOf, now: Now) -> RedirectResponse:
+    """A service is taken back."""
+    service, derived = withdraw_service(reception.storage, deriving(reception, now), id, Step(by, now, why))
+    ask_again(reception, derived.undiagnosed)
+    return RedirectResponse(f"/units/{quote(service.unit)}#events", SEE_OTHER)

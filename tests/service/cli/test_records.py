@@ -1,0 +1,34 @@
+"""`imu-health session` and `imu-health withdraw-service` against a running service."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from tests.conftest import StockOf
+from tests.databases import Databases
+from tests.service.cli.conftest import Run
+from tests.service.sessions import FAILED, session_id
+from tests.serving import serving
+
+SECOND = session_id(FAILED[1])
+
+
+@pytest.fixture
+def address(sqlite: Databases, stock_of: StockOf) -> Iterator[str]:
+    """A running service with two sessions of a unit."""
+    with stock_of(sqlite).holding(*FAILED) as settings, serving(settings) as address:
+        yield address
+
+
+def test_a_session_is_withdrawn_accepted_and_chosen(run: Run, address: str) -> None:
+    own = (SECOND, "--by", "K. Ito", "--why", "cable", "--server", address)
+    assert "withdrawn" in run("session", "withdraw", *own).out
+    assert "accepted" in run("session", "accept", *own).out
+    assert "reference" in run("session", "reference", *own).out
+    assert run("session", "accept", *own).err.endswith("accepted already.\n")
+
+
+def test_a_service_is_withdrawn(run: Run, address: str) -> None:
+    own = ("--by", "K. Ito", "--server", address)
+    run("service", "BA-017", "repair", "--at", "2026-01-15", *own)
+    assert "withdrawn" in run("withdraw-service", 1, "--why", "another unit", *own).out
