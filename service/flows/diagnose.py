@@ -13,9 +13,12 @@ from threading import Lock
 from estimator.diagnosis import Diagnosis
 from estimator.diagnosis import diagnose as find_causes
 from estimator.errors import SessionError
+from estimator.results import COVERAGE
 from estimator.session import DIAGNOSED, CalibrationSession
 from service.errors import NotFoundError
+from service.flows.derive_again import Deriving
 from service.flows.flagging.diagnosis import flag_diagnosis
+from service.flows.question_session import question_diagnosed
 from service.ingest import read_upload
 from service.judging.judge import judge
 from service.judging.reference import reference_of
@@ -97,6 +100,8 @@ def diagnose(storage: Storage, id: str, now: datetime) -> StoredDiagnosis:
             details = {"state": made.state.value, "summary": made.summary}
             store.log.audit(now, "diagnosis", "diagnose", id, details)
             flag_diagnosis(store, made, now)
+            if made.found is not None:
+                question_diagnosed(store, Deriving(storage.files, COVERAGE, now), id, made.found)
     return made
 
 

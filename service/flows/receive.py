@@ -4,7 +4,7 @@ The one entry of the API and of the pages.
 """
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 
 from estimator.errors import SessionError
@@ -12,12 +12,14 @@ from service.errors import RefusedError, ServiceError
 from service.flows.derive_again import Derived, Deriving, derive_again
 from service.flows.diagnose import diagnose_now_or_later
 from service.flows.keep import keep
+from service.flows.question_session import question
 from service.flows.refuse import refuse
 from service.flows.supersede_session import give_way, supersede
 from service.ingest.checked import Checked, check, plain_filename
 from service.ingest.digest import content_digest
 from service.judging.calibrate import Calibrated, basis_of, calibrate
 from service.judging.model_in_force import model_for
+from service.judging.plausible import doubts
 from service.judging.tolerances import type_of
 from service.log import log
 from service.metrics import Metrics
@@ -61,7 +63,14 @@ def receive_all(reception: Reception, files: Sequence[SentFile], now: datetime) 
         _diagnose(reception, receipt.id, now, wait=len(files) <= FEW)
         reception.metrics.count_upload(receipt)
     ask_again(reception, (id for receipt in receipts for id in receipt.undiagnosed))
-    return outcomes
+    return tuple(_as_diagnosed(reception, one) if isinstance(one, Receipt) else one for one in outcomes)
+
+
+def _as_diagnosed(reception: Reception, receipt: Receipt) -> Receipt:
+    """A diagnosis may have questioned the session."""
+    with reception.storage.database.reading() as store:
+        now = store.sessions.get(receipt.id)
+    return replace(receipt, verdict=now.verdict, reason=now.reason, is_reference=now.is_reference, state=now.state)
 
 
 def deriving(reception: Reception, now: datetime) -> Deriving:
@@ -152,6 +161,9 @@ def _store(store: Store, way: Deriving, received: Received, new: Calibrated, rep
     stand = store.units.stand_key(record.stand)
     store.sessions.add(record, unit, stand, new.checked.session.block, digest)
     keep(store, unit, record, new.calibration, received.at)
+    doubted = doubts(store, new.checked, new.calibration)
+    if doubted:
+        question(store, way, record, " ".join(doubt.text for doubt in doubted))
     old = None if replaces is None else give_way(store, way.at, replaces, record)
     gone, since = None, record.started_at
     if old is not None and old.unit == record.unit:

@@ -96,11 +96,14 @@ def test_the_same_content_in_another_format_is_the_same_session(storage: Storage
     assert (again.id, again.created) == (first.id, False)
 
 
-def test_a_clock_of_1970_moves_nothing_once_the_session_is_withdrawn(storage: Storage) -> None:
+def test_a_clock_of_1970_moves_nothing_unless_an_engineer_accepts_it(storage: Storage) -> None:
     for month in (3, 4, 5):
         measured(storage, month, 5.0 * month)
     before = state_of(storage, UNIT)
     wrong = upload(storage, session_bytes(seed=9, started_at="1970-01-01T00:00:00Z"), "c.json", NOW)
+    assert (wrong.state, wrong.reason.split(":")[0]) == (RecordState.QUESTIONED, "Questioned, not judged")
+    assert state_of(storage, UNIT) == before
+    accept_session(storage, way(storage), wrong.id, step("it was so"))
     assert state_of(storage, UNIT) != before
     withdraw_session(storage, way(storage), wrong.id, step("the clock had stopped"))
     assert state_of(storage, UNIT) == before

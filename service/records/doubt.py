@@ -1,0 +1,49 @@
+"""What of a session cannot be as its file says, which slip is likely, and what would put it right."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Remedy(StrEnum):
+    """What a corrected file does to the first one."""
+
+    READINGS = "readings"
+    """The readings of some sensors, and their standard errors, times a factor."""
+    NOMINAL = "nominal scale"
+    """The nominal scale factor of some sensors times a factor."""
+    EXCHANGE = "exchange"
+    """The readings of two sensors, one for the other."""
+
+
+@dataclass(frozen=True)
+class Correction:
+    """A corrected file that can be made of the first one."""
+
+    remedy: Remedy
+    sensors: tuple[str, ...]
+    factor: float = 1.0
+
+    @property
+    def text(self) -> str:
+        """What it does, as the corrected file's notes say it."""
+        who = " and ".join(self.sensors) if len(self.sensors) < 3 else f"{self.sensors[0]}–{self.sensors[-1]}"
+        if self.remedy is Remedy.EXCHANGE:
+            return f"readings of {who} exchanged"
+        return f"{self.remedy.value} of {who} × {self.factor:.6g}"
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """One thing that cannot be as the file says."""
+
+    what: str
+    """Beyond what physics allows, with the numbers."""
+    slip: str
+    """What has probably happened."""
+    correction: Correction | None = None
+    """None where no factor and no exchange puts it right."""
+
+    @property
+    def text(self) -> str:
+        """In a sentence or two."""
+        return f"{self.what}: {self.slip}."

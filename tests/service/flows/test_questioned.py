@@ -1,0 +1,126 @@
+"""What cannot be as its file says is questioned, the likely slip is named, and an engineer may accept it still."""
+
+import json
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from service.flows.accept_session import accept_session
+from service.flows.diagnose import diagnose
+from service.flows.question_session import OTHERWISE_WRITTEN
+from service.flows.receive import upload
+from service.records.decision import Verdict
+from service.records.session import Receipt
+from service.records.state import RecordKind, RecordState
+from service.storage import Storage
+from tests.builders import accelerometer_block, true_sensors
+from tests.service.records import NOW, state_of, step, way
+from tests.service.sessions import session_bytes
+
+Slip = Callable[[dict[str, Any]], None]
+A1, A2 = "A1", "A2"
+
+
+def slipped(slip: Slip, **given: Any) -> bytes:
+    """A session file with a slip."""
+    document = json.loads(session_bytes(**given))
+    slip(document)
+    return json.dumps(document).encode()
+
+
+def times(factor: float, *names: str) -> Slip:
+    """Readings of some sensors, of all without names, times a factor."""
+
+    def slip(document: dict[str, Any]) -> None:
+        table = document["table"]
+        for name in names or [sensor["name"] for sensor in document["sensors"]]:
+            table[name] = [factor * reading for reading in table[name]]
+            table[f"{name}_se"] = [abs(factor) * error for error in table[f"{name}_se"]]
+
+    return slip
+
+
+def exchanged(document: dict[str, Any]) -> None:
+    table = document["table"]
+    table[A1], table[A2] = table[A2], table[A1]
+
+
+def per_g(document: dict[str, Any]) -> None:
+    for sensor in document["sensors"]:
+        sensor["nominal_scale"] *= 9.80665
+
+
+SWAPPED = accelerometer_block(6, seed=3, unit="BA-017", sensors=true_sensors(6, bias=1e-3, tilt=1e-4), positions=24)
+"""With both runs under one another's name."""
+SLIPS: dict[str, tuple[Slip, str]] = {
+    "mV for V": (times(1000.0), "such as mV for V"),
+    "one channel in mV": (times(1000.0, A1), "The scale factor of A1 is 1"),
+    "per g": (per_g, "g and m/s² were taken for one another"),
+    "sign": (times(-1.0, A1), "its sign is reversed"),
+    "exchange": (exchanged, "their channels are exchanged"),
+}
+
+
+@pytest.mark.parametrize("name", SLIPS)
+def test_a_slip_is_named_and_makes_neither_reference_nor_verdict(storage: Storage, name: str) -> None:
+    slip, words = SLIPS[name]
+    receipt = upload(storage, slipped(slip), "a.json", NOW)
+    assert words in receipt.reason
+    assert (receipt.state, receipt.verdict, receipt.is_reference) == (
+        RecordState.QUESTIONED,
+        Verdict.UNDECIDABLE,
+        False,
+    )
+    assert state_of(storage, "BA-017")["BA-017"]["sessions"] == []
+
+
+def test_readings_and_nominal_in_another_unit_than_the_units_history_are_questioned(storage: Storage) -> None:
+    upload(storage, session_bytes(), "a.json", NOW)
+
+    def in_mv(document: dict[str, Any]) -> None:
+        times(1000.0)(document)
+        for sensor in document["sensors"]:
+            sensor["nominal_scale"] *= 1000
+
+    assert "1000 times its value at the unit's reference" in later(storage, in_mv).reason
+
+
+def later(storage: Storage, slip: Slip) -> Receipt:
+    return upload(storage, slipped(slip, seed=2, month=5), "b.json", NOW)
+
+
+def test_an_engineer_accepts_what_was_questioned_and_it_is_judged(storage: Storage) -> None:
+    upload(storage, session_bytes(), "a.json", NOW)
+    questioned = later(storage, times(1000.0))
+    session, _ = accept_session(storage, way(storage), questioned.id, step("it is so"))
+    assert session.state is RecordState.ACCEPTED
+    assert "Questioned" in questioned.reason
+    assert "Questioned" not in session.reason
+
+
+def runs_swapped() -> bytes:
+    document = json.loads(json.dumps(SWAPPED))
+    document["table"]["run"] = ["flipped" if run == "direct" else "direct" for run in document["table"]["run"]]
+    return json.dumps(document).encode()
+
+
+def test_a_diagnosis_that_says_it_was_done_otherwise_questions_the_session_once(storage: Storage) -> None:
+    id = upload(storage, runs_swapped(), "a.json", NOW).id
+    found = diagnose(storage, id, NOW).found
+    assert found is not None
+    assert {finding.cause for finding in found.findings} & set(OTHERWISE_WRITTEN)
+    assert states(storage, id) == [RecordState.QUESTIONED]
+    accept_session(storage, way(storage), id, step("it was so"))
+    assert states(storage, id) == [RecordState.QUESTIONED, RecordState.ACCEPTED]
+
+
+def states(storage: Storage, id: str) -> list[RecordState]:
+    with storage.database.reading() as store:
+        return [line.state for line in store.states.of(RecordKind.SESSION, id)]
+
+
+def test_a_unit_that_is_merely_out_of_tolerance_is_judged(storage: Storage) -> None:
+    upload(storage, session_bytes(), "a.json", NOW)
+    receipt = upload(storage, session_bytes(seed=2, month=5, a3_moved=5000.0), "b.json", NOW)
+    assert (receipt.state, receipt.verdict) == (RecordState.ACCEPTED, Verdict.FAIL)
