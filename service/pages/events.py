@@ -8,8 +8,10 @@ from service.measures import deviation_measure, limit, measured, signed
 from service.records.decision import Decision
 from service.records.event import Note, Service
 from service.records.session import StoredSession
+from service.records.state import StateChange
 from service.views.found_and_left import FoundAndLeft
 from service.words.conditions import NOT_JUDGED, Condition, condition_of
+from service.words.states import state_in_words
 
 KINDS = {
     "adjustment": "Adjustment",
@@ -31,6 +33,8 @@ class Event:
     note: Note | None
     """None for a service, which is a break in the history."""
     service: Service | None = None
+    withdrawn: str = ""
+    """Of a service that was withdrawn: when, by whom and why."""
 
 
 @dataclass(frozen=True)
@@ -62,10 +66,21 @@ class StageTable:
     """Empty where the unit was found at its reference."""
 
 
-def events_of(services: Sequence[Service], notes: Sequence[Note]) -> tuple[Event, ...]:
+def events_of(
+    services: Sequence[Service], notes: Sequence[Note], withdrawals: Sequence[StateChange] = ()
+) -> tuple[Event, ...]:
     """Newest first."""
+    gone = {line.record: state_in_words(line) for line in withdrawals}
     listed = [
-        Event(s.at, f"{KINDS.get(s.kind, s.kind)}{f' of {s.sensor}' if s.sensor else ''}", s.note, s.who, None, s)
+        Event(
+            s.at,
+            f"{KINDS.get(s.kind, s.kind)}{f' of {s.sensor}' if s.sensor else ''}",
+            s.note,
+            s.who,
+            None,
+            s,
+            gone.get(str(s.id), ""),
+        )
         for s in services
     ]
     listed += [Event(note.at, "Note", note.text, note.who, note) for note in notes]

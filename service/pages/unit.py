@@ -108,7 +108,7 @@ def unit_page(
         reference=_reference(report),
         drawn=len({point.session for point in history}),
         flags=flag_cards(flags),
-        events=events_of((*report.services, *report.withdrawn_services), notes),
+        events=events_of((*report.services, *report.withdrawn_services), notes, report.withdrawals),
         stages=stage_table(pair),
         kinds=tuple(KINDS.items()),
         next=None if outlook is None else next_calibration(outlook),

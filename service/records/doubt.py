@@ -46,4 +46,5 @@ class Doubt:
     @property
     def text(self) -> str:
         """In a sentence or two."""
-        return f"{self.what}: {self.slip}."
+        remedy = "" if self.correction is None else f" A file with the {self.correction.text} would put it right."
+        return f"{self.what}: {self.slip}.{remedy}"

@@ -6,6 +6,7 @@ from datetime import datetime
 from service.records.decision import Verdict
 from service.records.event import Service
 from service.records.session import StoredSession
+from service.records.state import StateChange
 
 
 @dataclass(frozen=True)
@@ -94,5 +95,7 @@ class UnitReport:
     services: tuple[Service, ...]
     """All known breaks, oldest first."""
     withdrawn_services: tuple[Service, ...] = ()
+    withdrawals: tuple[StateChange, ...] = ()
+    """Of these services: by whom, when and why."""
     waiting: int = 0
     """Sessions that are still to be judged again after a change of the records."""

@@ -4,7 +4,7 @@ from datetime import datetime
 
 from estimator.session import PROGRAMMES
 from service.errors import NotFoundError
-from service.records.state import RecordState
+from service.records.state import RecordKind, RecordState
 from service.records.unit import UnitReport
 from service.storage.queries.services import epoch
 from service.storage.store import Store
@@ -21,6 +21,7 @@ def unit_report(store: Store, serial: str, now: datetime) -> UnitReport:
     summary, unit_type = found
     unit = store.units.key(serial)
     services = store.services.of_unit(serial)
+    withdrawn = store.services.of_unit(serial, RecordState.WITHDRAWN)
     since, until = epoch(tuple(service.at for service in services), now)
     return UnitReport(
         summary=summary,
@@ -28,6 +29,7 @@ def unit_report(store: Store, serial: str, now: datetime) -> UnitReport:
         reference_session=store.sessions.reference(unit, unit_type.block, since, until, PROGRAMMES),
         sessions=store.sessions.page(serial, 0, LATEST),
         services=services,
-        withdrawn_services=store.services.of_unit(serial, RecordState.WITHDRAWN),
+        withdrawn_services=withdrawn,
+        withdrawals=tuple(store.states.last_of(RecordKind.SERVICE, tuple(str(s.id) for s in withdrawn)).values()),
         waiting=store.derivations.waiting_of(serial),
     )

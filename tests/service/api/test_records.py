@@ -75,6 +75,7 @@ def test_a_service_is_withdrawn_and_stays_on_record(http: httpx.Client) -> None:
     report = http.get(UNIT).json()
     assert (report["services"], [s["id"] for s in report["withdrawn_services"]]) == ([], [number])
     assert http.get(f"/api/v1/sessions/{SECOND}").json()["verdict"] == "fail"
+    assert "by K. Ito: wrong cable" in http.get("/units/BA-017").text
     post(http, f"/services/{number}/withdraw", 409)
 
 
