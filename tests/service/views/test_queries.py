@@ -66,6 +66,6 @@ def test_queries_of_a_page_do_not_grow_with_the_fleet(storage: Storage, name: st
     assert queries(storage, page) == few <= most
 
 
-def test_a_session_report_is_four_queries(storage: Storage) -> None:
+def test_a_session_report_is_five_queries(storage: Storage) -> None:
     id = upload(storage, session_bytes(), "a.json", NOW).id
-    assert queries(storage, lambda store: session_report(store, id)) == 4
+    assert queries(storage, lambda store: session_report(store, id)) == 5
