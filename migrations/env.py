@@ -2,7 +2,7 @@
 
 from alembic import context
 
-from service.storage.tables import Base
+from service.storage.paper_tables import Base  # knows its own tables and those of `tables`
 
 context.configure(
     connection=context.config.attributes["connection"],

@@ -43,6 +43,20 @@ class Settings(BaseSettings):
         description="Hosts that webhooks may call, separated by commas: example.org, or 10.0.0.5:8443 with a port.",
     )
 
+    laboratory_name: str = Field(default="", max_length=200, description="Who calibrates, as certificates name it.")
+    laboratory_address: str = Field(default="", max_length=2000, description="Its address.")
+    laboratory_country: str = Field(
+        default="", pattern="^([A-Z]{2})?$", description="Its country, ISO 3166-1: two capital letters, such as JP."
+    )
+    laboratory_place: str = Field(
+        default="", max_length=2000, description="Where it measures, if that is not at its address."
+    )
+    public_url: str = Field(
+        default="",
+        pattern=r"^(https?://\S+)?$",
+        description="Address under which people reach the pages, for labels; default: that of the request.",
+    )
+
     @field_validator("webhook_hosts", mode="before")
     @classmethod
     def _split(cls, given: object) -> object:

@@ -7,6 +7,7 @@ from fastapi import APIRouter, Query, Request, Response
 from service.api.received import REQUEST_BODY, FileOf
 from service.api.schemas.events import NewStage
 from service.api.schemas.fields import Revision, SessionId, Text, WindowOf
+from service.api.schemas.papers import TraceabilitySchema
 from service.api.schemas.problem import errors
 from service.api.schemas.sessions import (
     CalibrationDocument,
@@ -20,6 +21,7 @@ from service.api.schemas.sessions import (
 from service.dependencies import Now, Reading, ReceptionOf, StorageOf
 from service.flows.receive import receive
 from service.flows.set_stage import set_stage
+from service.views.traceability import traceability_of
 
 router = APIRouter(prefix="/sessions", tags=["sessions"])
 ANY_BYTES = {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}}
@@ -64,7 +66,14 @@ def read_session(id: SessionId, store: Reading) -> SessionReportSchema:
     session = store.sessions.get(id)
     judged = [DecisionSchema.model_validate(decision) for decision in store.sessions.decisions(id)]
     together = [CommonMotionSchema.model_validate(motion) for motion in store.sessions.motions(id)]
-    return SessionReportSchema(**vars(session), decisions=judged, common_motion=together)
+    chain = traceability_of(store, session)
+    return SessionReportSchema(
+        **vars(session),
+        decisions=judged,
+        common_motion=together,
+        stand_certificate_expired=chain.has_expired,
+        traceability=TraceabilitySchema.model_validate(chain),
+    )
 
 
 @router.get("/{id}/calibration", responses=errors(404, 422), response_model=CalibrationDocument)

@@ -11,6 +11,7 @@ from service.api.schemas.flags import FlagPage
 from service.api.schemas.history import HistoryAsked, HistoryPage, HistoryPointSchema
 from service.api.schemas.models import RecalibratedSchema
 from service.api.schemas.outlook import OutlookSchema
+from service.api.schemas.papers import CustomerSchema, NewCustomer
 from service.api.schemas.problem import errors
 from service.api.schemas.units import (
     NewLot,
@@ -20,8 +21,10 @@ from service.api.schemas.units import (
 )
 from service.dependencies import Now, Reading, SettingsOf, StorageOf
 from service.flows.recalibrate import recalibrate
+from service.flows.set_customer import set_customer
 from service.flows.set_lot import set_lot
 from service.records.outlook import RiskPoint
+from service.records.paper import Customer
 from service.storage.queries.fleet import FleetQuery
 from service.views.outlook import outlook_of
 from service.views.unit_report import unit_report
@@ -87,6 +90,19 @@ def read_outlook(
 def change_lot(serial: Serial, new: NewLot, storage: StorageOf, now: Now) -> UnitSummarySchema:
     """Record the unit's production lot; a lot that drifts unlike the others is named on the fleet page."""
     return UnitSummarySchema.model_validate(set_lot(storage, serial, new.lot or None, now))
+
+
+@router.get("/{serial:path}/customer", responses=errors(404, 422))
+def read_customer(serial: Serial, store: Reading) -> CustomerSchema:
+    """For whom the unit is calibrated."""
+    return CustomerSchema.model_validate(store.units.customer(serial))
+
+
+@router.put("/{serial:path}/customer", responses=errors(400, 404, 422))
+def change_customer(serial: Serial, new: NewCustomer, storage: StorageOf, now: Now) -> CustomerSchema:
+    """Record for whom the unit is calibrated; its certificates name them."""
+    customer = Customer(new.name.strip(), new.address.strip())
+    return CustomerSchema.model_validate(set_customer(storage, serial, customer, now, who=new.by))
 
 
 @router.post("/{serial:path}/recalibrate", responses=errors(404, 422))

@@ -5,6 +5,7 @@ from functools import cached_property
 from sqlalchemy.orm import Session
 
 from service.storage.queries.calibrations import Calibrations
+from service.storage.queries.certificates import Certificates
 from service.storage.queries.derivations import Derivations
 from service.storage.queries.diagnoses import Diagnoses
 from service.storage.queries.flags import Flags
@@ -18,6 +19,7 @@ from service.storage.queries.notices import Notices
 from service.storage.queries.outlooks import Outlooks
 from service.storage.queries.services import Services
 from service.storage.queries.sessions import Sessions
+from service.storage.queries.stand_certificates import StandCertificates
 from service.storage.queries.stands import Stands
 from service.storage.queries.states import States
 from service.storage.queries.unit_types import UnitTypes
@@ -100,6 +102,16 @@ class Store:
     def stands(self) -> Stands:
         """What stands do to the units that are measured on them."""
         return Stands(self._session)
+
+    @cached_property
+    def stand_certificates(self) -> StandCertificates:
+        """What the traceability of sessions on stands hangs on."""
+        return StandCertificates(self._session)
+
+    @cached_property
+    def certificates(self) -> Certificates:
+        """Numbers of the certificates that were issued."""
+        return Certificates(self._session)
 
     @cached_property
     def outlooks(self) -> Outlooks:

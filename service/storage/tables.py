@@ -2,7 +2,7 @@
 `conditions`, `outlooks`, `flags`, which repeat their notices, and of a session the revision in force with its verdict,
 which repeat its calibration's, and its stage, whose changes are in the audit. A delivery says how far it has come.
 
-unit_types ──< tolerance_revisions          stands
+unit_types ──< tolerance_revisions          stands ──< stand_certificates, append-only
     └──< units ──< services                   │
            ├──< notes ──1 note_withdrawals    │
            ├──< flags ──┐                     │
@@ -16,6 +16,7 @@ unit_types ──< tolerance_revisions          stands
                    ├──< common_motions
                    ├──1 diagnoses
                    ├──< reference_choices     record_states   what became of sessions and services, append-only
+                   ├──< certificates          numbers of the papers that were issued, append-only
                    └──< model_revisions       causes that engineers accepted, numbered through
 """
 
@@ -89,6 +90,8 @@ class UnitRow(Base):
     unit_type_id: Mapped[int] = mapped_column(ForeignKey("unit_types.id"), index=True)
     simulated: Mapped[bool]
     lot: Mapped[str | None] = mapped_column(String(200))
+    customer: Mapped[str] = mapped_column(String(200), server_default="")
+    customer_address: Mapped[str] = mapped_column(String(2000), server_default="")
 
 
 class StandRow(Base):

@@ -13,14 +13,16 @@ from service.records.diagnosis import StoredDiagnosis
 from service.records.event import Service
 from service.records.history import HistoryPoint
 from service.records.model import ModelRevision
+from service.records.paper import Customer, Laboratory, Traceability
 from service.records.session import SessionReport, StoredSession
 from service.records.unit import UnitType
-from service.settings import VERSION
+from service.settings import VERSION, Settings
 from service.storage import Storage
 from service.storage.store import Store
 from service.views.found_and_left import FoundAndLeft, found_and_left
 from service.views.history import recent_history
 from service.views.session_report import session_report
+from service.views.traceability import traceability_of
 
 MOST_POINTS = 10_000
 """Points of the unit's history that are read, of the newest sessions up to the certified one."""
@@ -36,6 +38,7 @@ class ReferenceSession:
 
     session: StoredSession
     calibration: Calibration
+    traceability: Traceability
 
 
 @dataclass(frozen=True)
@@ -56,11 +59,26 @@ class CertifiedSession:
     services: tuple[Service, ...]
     """Of the unit, up to the session."""
     history: tuple[HistoryPoint, ...]
+    laboratory: Laboratory
+    customer: Customer
+    traceability: Traceability
+    calibration_json: bytes
+    """imu-calibration/1 as it was written: every number that the certificate rests on."""
     software: str
     """Version."""
 
 
-def certified_session(storage: Storage, diagnosis: StoredDiagnosis) -> CertifiedSession:
+def laboratory_of(settings: Settings) -> Laboratory:
+    """Who calibrates, as the operator set it."""
+    return Laboratory(
+        name=settings.laboratory_name.strip(),
+        address=settings.laboratory_address.strip(),
+        country=settings.laboratory_country,
+        place=settings.laboratory_place.strip(),
+    )
+
+
+def certified_session(storage: Storage, diagnosis: StoredDiagnosis, laboratory: Laboratory) -> CertifiedSession:
     """The session of a diagnosis with all that its certificate needs."""
     id = diagnosis.session
     with storage.database.reading() as store:
@@ -77,6 +95,10 @@ def certified_session(storage: Storage, diagnosis: StoredDiagnosis) -> Certified
             revisions=in_force([r for r in store.models.of_session(id) if r.id <= stored.revision]),
             services=tuple(s for s in store.services.of_unit(stored.unit) if s.at < until),
             history=recent_history(store, stored.unit, MOST_POINTS, until=until),
+            laboratory=laboratory,
+            customer=store.units.customer(stored.unit),
+            traceability=traceability_of(store, stored),
+            calibration_json=store.calibrations.json(id),
             software=VERSION,
         )
 
@@ -89,7 +111,8 @@ def _reference(store: Store, stored: StoredSession) -> ReferenceSession | None:
     found = reference_of(store, unit, block, stored.programme, stored.started_at).session
     if found is None:
         return None
-    return ReferenceSession(store.sessions.get(found), store.calibrations.get(found))
+    session = store.sessions.get(found)
+    return ReferenceSession(session, store.calibrations.get(found), traceability_of(store, session))
 
 
 def _pair(store: Store, report: SessionReport) -> FoundAndLeft | None:

@@ -1,6 +1,6 @@
 """What parameters, programmes and methods are called, and dates as people write them."""
 
-from datetime import datetime, timedelta
+from datetime import date, timedelta
 
 from estimator.parity.results import SEVERAL
 
@@ -34,11 +34,11 @@ def method_name(method: str) -> str:
     return spaced(method.replace("/", ", "))
 
 
-def day_of(at: datetime) -> str:
+def day_of(at: date) -> str:
     """``7 Mar 2026``."""
     return f"{at.day} {at:%b %Y}"
 
 
-def month_of(at: datetime) -> str:
+def month_of(at: date) -> str:
     """``Mar 2026``."""
     return f"{at:%b %Y}"

@@ -2,7 +2,7 @@
 
 import re
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import UTC, date, datetime
 from typing import Annotated
 
 from fastapi import Depends, Path, Query
@@ -30,11 +30,21 @@ def _written(given: object) -> object:
     return given
 
 
+def _day_written(given: object) -> object:
+    if isinstance(given, int | float) or (isinstance(given, str) and NUMBER.fullmatch(given)):
+        raise ValueError("must be a day like 2026-03-01")
+    return given
+
+
 Moment = Annotated[datetime, BeforeValidator(_written), AfterValidator(_in_utc)]
 """A time; without a zone it is UTC."""
+Day = Annotated[date, BeforeValidator(_day_written)]
+"""A day, as on a calendar."""
 Text = Annotated[str, StringConstraints(pattern=TEXT, max_length=200)]
 LongText = Annotated[str, StringConstraints(pattern=TEXT, max_length=2000)]
 Name = Annotated[str, StringConstraints(pattern=TEXT, min_length=1, max_length=200)]
+Said = Annotated[str, StringConstraints(pattern=r"^[^\x00]*\S[^\x00]*$", max_length=200)]
+"""A name that says something."""
 Reason = Annotated[str, StringConstraints(pattern=r"^[^\x00]*\S[^\x00]*$", max_length=2000)]
 """A text that says something."""
 Number = Annotated[int, Path(ge=1, le=2_000_000_000, description="Number of the entry.", examples=[1])]

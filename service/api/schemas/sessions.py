@@ -6,6 +6,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic.config import JsonDict
 
+from service.api.schemas.papers import TraceabilitySchema
 from service.records.decision import Verdict
 from service.records.state import RecordState
 
@@ -127,6 +128,11 @@ class SessionReportSchema(SessionSchema):
     common_motion: list[CommonMotionSchema] = Field(
         description="What all sensors did together; empty for a reference and for sessions judged before this was kept."
     )
+    stand_certificate_expired: bool = Field(
+        description="Whether the stand's own certificate had expired at the day of measurement: the verdict stands, "
+        "its traceability does not."
+    )
+    traceability: TraceabilitySchema = Field(description="What the numbers hang on.")
 
 
 class SessionPage(BaseModel):

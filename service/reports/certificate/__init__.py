@@ -2,101 +2,23 @@
 
 from dataclasses import dataclass
 
-from estimator.health.rule import WITH_SESSION_LEVEL
-from service.records.decision import nominal_factor_of
-from service.reports.certificate.causes import Cause, causes_of
+from service.records.paper import Issue
 from service.reports.certificate.drawings import Drawing, histories_of, residuals_of
-from service.reports.certificate.facts import Fact, facts_of, record_of, title_of
-from service.reports.certificate.pair import Pair, pair_of
-from service.reports.certificate.results import ResultTable, result_tables
+from service.reports.certificate.words import Certificate, certificate
 from service.reports.typeset import typeset
 from service.views.certificate import CertifiedSession
-from service.words.conditions import CONDITIONS, Condition, condition_of
-from service.words.coverage import coverage_in_words
-from service.words.fit import FitWords, fit_in_words
-from service.words.known import combination_in_words
-from service.words.motion import motions_in_words
-from service.words.names import day_of, spaced
 
 
 @dataclass(frozen=True)
-class Certificate:
-    """Everything that the paper says."""
+class DrawnCertificate:
+    """The words with their charts."""
 
-    title: str
-    number: str
-    unit: str
-    day: str
-    simulated: bool
-    condition: Condition
-    reason: str
-    facts: tuple[Fact, ...]
-    record: tuple[Fact, ...]
-    """Input, method, model, software."""
-    sha256: str
-    notes: str
-    coverage: str
-    judged: bool
-    """Whether there was a reference to judge it by, and a tolerance."""
-    rule: str
-    whole_level: bool
-    """Whether a number counts as out of tolerance only if it is a change at the level of all of them."""
-    states: tuple[Condition, ...]
-    """Of the decision rule, best first, each explained once."""
-    tables: tuple[ResultTable, ...]
-    together: tuple[str, ...]
-    """What all sensors did together since the reference."""
-    stage: str
-    """``as found``, ``as left``, or empty."""
-    pair: Pair | None
-    known: tuple[Fact, ...]
-    """What is known of parameters that the session cannot tell apart."""
-    diagnosis: str
-    causes: tuple[Cause, ...]
-    fit: FitWords
+    words: Certificate
     histories: tuple[Drawing, ...]
     residuals: tuple[Drawing, ...]
-    stand: bool
-    software: str
 
 
-def certificate_pdf(found: CertifiedSession) -> bytes:
-    """The certificate as PDF; its date is the upload's, so that the same record gives the same bytes."""
-    return typeset("certificate.typ", certificate(found), found.report.session.uploaded_at)
-
-
-def certificate(found: CertifiedSession) -> Certificate:
-    """What the paper says of a session."""
-    session, calibration, decisions = found.report.session, found.report.calibration, found.report.decisions
-    k = nominal_factor_of(decisions)
-    known = ((s.name, combination_in_words(c, s.kind)) for s in calibration.sensors for c in s.known)
-    return Certificate(
-        title=title_of(session),
-        number=session.id[:12],
-        unit=session.unit,
-        day=day_of(session.started_at),
-        simulated=session.simulated,
-        condition=condition_of(session.verdict, is_reference=session.is_reference),
-        reason=session.reason,
-        facts=facts_of(found),
-        record=record_of(found),
-        sha256=session.sha256,
-        notes=session.notes,
-        coverage=coverage_in_words(calibration, k),
-        judged=bool(decisions) and not session.is_reference,
-        rule=decisions[0].rule if decisions else "",
-        whole_level=any(d.rule.startswith(WITH_SESSION_LEVEL) for d in decisions),
-        states=tuple(reversed(CONDITIONS)),
-        tables=result_tables(found, k),
-        together=tuple(line.text for line in motions_in_words(found.report.motions, k)),
-        stage=spaced(session.stage or ""),
-        pair=None if found.pair is None else pair_of(found.pair),
-        known=tuple(Fact(name, words) for name, words in known),
-        diagnosis=found.diagnosis.summary,
-        causes=causes_of(found),
-        fit=fit_in_words(calibration),
-        histories=histories_of(found),
-        residuals=residuals_of(found),
-        stand=calibration.residuals.beta is not None,
-        software=found.software,
-    )
+def certificate_pdf(found: CertifiedSession, issue: Issue) -> bytes:
+    """The certificate as PDF; it carries the date of issue, so that one issue gives the same bytes every time."""
+    drawn = DrawnCertificate(certificate(found, issue), histories_of(found), residuals_of(found))
+    return typeset("certificate.typ", drawn, issue.issued_at)

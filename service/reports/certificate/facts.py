@@ -1,26 +1,19 @@
 """What was measured, with what, by whom, and what it was worked out from."""
 
-from dataclasses import dataclass
 from math import degrees
 
 from estimator.applied_vector import gravity
 from estimator.session import ACCELEROMETER, IN_SERVICE, CalibrationSession
 from service.measures import THIN, number, size_in_words
 from service.records.session import StoredSession
+from service.reports.certificate.fact import Fact
 from service.views.certificate import CertifiedSession
 from service.words.causes import cause_on
 from service.words.names import day_of, method_name, spaced
+from service.words.paper import stated
 
 STEADY = 0.05
 """°C: a temperature that moved by less is one number, as it is printed to a tenth."""
-
-
-@dataclass(frozen=True)
-class Fact:
-    """One line of what was measured, with what, by whom."""
-
-    name: str
-    value: str
 
 
 def title_of(session: StoredSession) -> str:
@@ -29,22 +22,29 @@ def title_of(session: StoredSession) -> str:
 
 
 def facts_of(found: CertifiedSession) -> tuple[Fact, ...]:
-    """What was measured, with what, by whom; the temperature where it was recorded."""
+    """What was measured, with what, by whom, under which conditions."""
     session, source = found.report.session, found.source
-    temperature = _temperature(source)
     return (
         Fact("Unit", session.unit),
         Fact("Unit type", found.unit_type.name),
         Fact("Sensors", _sensors(source)),
         Fact("Programme", spaced(session.programme)),
-        Fact("Measured", f"{day_of(session.started_at)}, {session.started_at:%H:%M} UTC"),
-        Fact("Operator", session.operator or "not stated"),
+        Fact("Method", f"{method_name(found.report.calibration.method)}, version {found.software}"),
+        Fact("Measured", _measured(found)),
+        Fact("Operator", stated(session.operator)),
         Fact("Stand", _stand(source)),
         Fact("Site", _site(source)),
         Fact("Judged against", _judged_against(found)),
         Fact("State of the unit", _state(found)),
-        *((Fact("Temperature", temperature),) if temperature else ()),
+        Fact("Temperature", _temperature(source)),
     )
+
+
+def _measured(found: CertifiedSession) -> str:
+    if found.source.started_at is None:
+        return "day not stated; see the upload under Record"
+    at = found.report.session.started_at
+    return f"{day_of(at)}, {at:%H:%M} UTC"
 
 
 def _sensors(source: CalibrationSession) -> str:
@@ -56,8 +56,8 @@ def _stand(source: CalibrationSession) -> str:
     if source.stand is None:
         return "none"
     angles = (("α", source.stand.alpha), ("χ", source.stand.chi))
-    stated = (f"{name} = {number(degrees(angle))}°" for name, angle in angles if angle is not None)
-    return ", ".join([source.stand.id, *stated])
+    set_to = (f"{name} = {number(degrees(angle))}°" for name, angle in angles if angle is not None)
+    return ", ".join([source.stand.id, *set_to])
 
 
 def _site(source: CalibrationSession) -> str:
@@ -65,14 +65,14 @@ def _site(source: CalibrationSession) -> str:
     if site.latitude is not None:
         parts.append(f"latitude {number(degrees(site.latitude), 4)}°, height {number(site.height)}{THIN}m")
     if any(s.kind == ACCELEROMETER for s in source.sensors):
-        stated = "measured" if site.gravity is not None else "by formula"
-        parts.append(f"g = {number(gravity(site), 6)}{THIN}m/s² ({stated})")
-    return ", ".join(parts) or "not stated"
+        origin = "measured" if site.gravity is not None else "by formula"
+        parts.append(f"g = {number(gravity(site), 6)}{THIN}m/s² ({origin})")
+    return ", ".join(parts) or stated("")
 
 
 def _temperature(source: CalibrationSession) -> str:
     if source.temperature is None:
-        return ""
+        return "not recorded"
     low, high = float(source.temperature.min()), float(source.temperature.max())
     return f"{number(low, 1)} to {number(high, 1)}{THIN}°C" if high - low > STEADY else f"{number(low, 1)}{THIN}°C"
 
@@ -87,8 +87,8 @@ def _judged_against(found: CertifiedSession) -> str:
 def _state(found: CertifiedSession) -> str:
     """As found or as left, and what was last done to the unit."""
     last = f"last service: {found.services[-1].kind}, {day_of(found.services[-1].at)}" if found.services else ""
-    stated = [part for part in (spaced(found.report.session.stage or ""), last) if part]
-    return ", ".join(stated) or "no service recorded"
+    known = [part for part in (spaced(found.report.session.stage or ""), last) if part]
+    return ", ".join(known) or "no service recorded"
 
 
 def record_of(found: CertifiedSession) -> tuple[Fact, ...]:
@@ -99,7 +99,6 @@ def record_of(found: CertifiedSession) -> tuple[Fact, ...]:
     return (
         Fact("Input file", f"{session.filename}, {size_in_words(session.size)}"),
         Fact("Uploaded", f"{day_of(session.uploaded_at)}, {session.uploaded_at:%H:%M} UTC"),
-        Fact("Method", method_name(found.report.calibration.method)),
         Fact("Model revision", model),
         Fact("Session", session.id),
         Fact("Software", f"imu-health {found.software}"),

@@ -1,23 +1,24 @@
-"""The certificate for programs: a PTB Digital Calibration Certificate, schema 3.2.0 with D-SI 2.1.0. SI throughout."""
+"""The certificate for programs: a PTB Digital Calibration Certificate, release 3.3.0 with D-SI 2.2.1. SI throughout."""
 
+from service.records.paper import Issue
 from service.reports.dcc.administrative import administrative
 from service.reports.dcc.elements import DCC, NAMESPACES
 from service.reports.dcc.measurement import measurement
 from service.reports.xml import document
 from service.views.certificate import CertifiedSession
 
-SCHEMA = "3.2.0"
-"""Of the DCC, as PTB published it; with it goes D-SI 2.1.0."""
+SCHEMA = "3.3.0"
+"""Of the DCC, as PTB published it; with it goes D-SI 2.2.1."""
 LOCATION = f"{{{NAMESPACES['xsi']}}}schemaLocation"
-LOCATIONS = "{dcc} {dcc}/v{schema}/dcc.xsd {si} {si}/v2.1.0/SI_Format.xsd".format(schema=SCHEMA, **NAMESPACES)
+LOCATIONS = "{dcc} {dcc}/v{schema}/dcc.xsd {si} {si}/v2.2.1/SI_Format.xsd".format(schema=SCHEMA, **NAMESPACES)
 """The attribute that names, and the text that holds, where the schema of each namespace is found."""
 
 
-def certificate_dcc(found: CertifiedSession) -> bytes:
-    """The certificate as XML; the same record gives the same bytes."""
+def certificate_dcc(found: CertifiedSession, issue: Issue) -> bytes:
+    """The certificate as XML; one issue gives the same bytes every time."""
     root = DCC.digitalCalibrationCertificate(
         {"schemaVersion": SCHEMA, LOCATION: LOCATIONS},
-        administrative(found),
+        administrative(found, issue),
         DCC.measurementResults(measurement(found)),
     )
     return document(root)

@@ -1,44 +1,65 @@
-"""Who calibrated what, for whom, and what is stated of it."""
+"""Who calibrated what, for whom, under which number."""
 
 from collections.abc import Iterator
 
-from service.records.decision import Verdict
-from service.reports.dcc.elements import DCC, NOT_STATED, conformity, english, software
+from service.records.paper import NOT_STATED, Issue
+from service.reports.dcc.elements import DCC, english, plain, software
+from service.reports.dcc.statements import statements
 from service.reports.xml import Element
 from service.views.certificate import CertifiedSession
 
 UNKNOWN_COUNTRY = "ZZ"
-"""User-assigned in ISO 3166-1: the files of sessions name no country."""
+"""User-assigned in ISO 3166-1: nobody set the laboratory's country. PTB's rules refuse it, as they should a draft."""
 
 
-def administrative(found: CertifiedSession) -> Element:
+def administrative(found: CertifiedSession, issue: Issue) -> Element:
     """Everything but the results."""
-    operator = DCC.person(english("name", found.report.session.operator))
+    own, customer = found.laboratory, found.customer
     return DCC.administrativeData(
         DCC.dccSoftware(software(found.software)),
-        _core(found),
+        _core(found, issue),
         DCC.items(_item(found)),
-        DCC.calibrationLaboratory(_contact("contact")),
-        DCC.respPersons(DCC.respPerson(operator, DCC.role("operator"), DCC.mainSigner("true"))),
-        _contact("customer"),
-        DCC.statements(*_statements(found)),
+        DCC.calibrationLaboratory(_contact("contact", own.name, own.address, own.country)),
+        DCC.respPersons(DCC.respPerson(*_operator(found.report.session.operator))),
+        _contact("customer", customer.name, customer.address, ""),
+        DCC.statements(*statements(found)),
     )
 
 
-def _core(found: CertifiedSession) -> Element:
+def _operator(name: str) -> Iterator[Element]:
+    """Nobody whose name is not known signs anything."""
+    yield DCC.person(english("name", name))
+    yield DCC.role("operator")
+    if plain(name) != NOT_STATED:
+        yield DCC.mainSigner("true")
+
+
+def _core(found: CertifiedSession, issue: Issue) -> Element:
     session = found.report.session
     measured = f"{session.started_at:%Y-%m-%d}"
     return DCC.coreData(
-        DCC.countryCodeISO3166_1(UNKNOWN_COUNTRY),
+        DCC.countryCodeISO3166_1(found.laboratory.country or UNKNOWN_COUNTRY),
         DCC.usedLangCodeISO639_1("en"),
         DCC.mandatoryLangCodeISO639_1("en"),
-        DCC.uniqueIdentifier(f"imu-health:{session.id}:{session.revision}"),
-        DCC.identifications(_identification("other", session.sha256, "SHA-256 of the input file")),
+        DCC.uniqueIdentifier(issue.number),
+        DCC.identifications(
+            _identification("other", session.id, "Session"),
+            _identification("other", session.sha256, "SHA-256 of the input file"),
+        ),
         DCC.beginPerformanceDate(measured),
         DCC.endPerformanceDate(measured),
-        DCC.performanceLocation("laboratory"),
-        DCC.issueDate(f"{session.uploaded_at:%Y-%m-%d}"),
+        DCC.performanceLocation("other" if found.laboratory.place else "laboratory"),
+        DCC.issueDate(f"{issue.issued_at:%Y-%m-%d}"),
+        *_replaced(issue),
     )
+
+
+def _replaced(issue: Issue) -> Iterator[Element]:
+    """The certificate that this one takes the place of."""
+    if issue.replaces is not None:
+        yield DCC.reportAmendedSubstituted(
+            DCC.typeOfChange("substituted"), DCC.replacedUniqueIdentifier(issue.replaces)
+        )
 
 
 def _item(found: CertifiedSession) -> Element:
@@ -55,19 +76,7 @@ def _identification(issuer: str, value: str, name: str) -> Element:
     return DCC.identification(DCC.issuer(issuer), DCC.value(value), english("name", name))
 
 
-def _contact(name: str) -> Element:
-    return DCC(name, english("name", NOT_STATED), DCC.location(DCC.countryCode(UNKNOWN_COUNTRY)))
-
-
-def _statements(found: CertifiedSession) -> Iterator[Element]:
-    session, decisions = found.report.session, found.report.decisions
-    yield _statement("Verdict", session.reason, None if session.is_reference else session.verdict)
-    rule = decisions[0].rule if decisions and not session.is_reference else "none: nothing was there to judge it by"
-    yield _statement("Decision rule", f"{rule}; guard band w = U.")
-    yield _statement("What the simulation gets wrong", found.diagnosis.summary)
-    if session.simulated:
-        yield _statement("Simulated", "SIMULATED: not a measurement of real hardware.")
-
-
-def _statement(name: str, declaration: str, verdict: Verdict | None = None) -> Element:
-    return DCC.statement(english("name", name), english("declaration", declaration), *conformity(verdict))
+def _contact(element: str, name: str, address: str, country: str) -> Element:
+    """The address as one text: nobody is asked for its parts."""
+    codes = [DCC.countryCode(country)] if country else []
+    return DCC(element, english("name", name), DCC.location(*codes, english("further", address)))

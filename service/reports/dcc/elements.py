@@ -1,10 +1,12 @@
 """Elements of a Digital Calibration Certificate, built as a tree: no text is ever taken for markup."""
 
+import re
 from collections.abc import Iterator
 
 from lxml.builder import ElementMaker
 
 from service.records.decision import Verdict
+from service.records.paper import NOT_STATED
 from service.reports.xml import ILLEGAL, Element
 
 NAMESPACES = {
@@ -13,8 +15,8 @@ NAMESPACES = {
     "xsi": "http://www.w3.org/2001/XMLSchema-instance",
 }
 """Under the prefixes that PTB writes them with."""
-NOT_STATED = "not stated"
-"""Stands where the schema wants a text and the session has none."""
+NUMBERED = re.compile(r"\d{1,3}(\.\d{1,3}){0,3}")
+"""What of a version PTB's rules let stand behind its letter."""
 CONFORMITY = {
     Verdict.PASS: "pass",
     Verdict.CONDITIONAL_PASS: "conditionalPass",
@@ -43,8 +45,11 @@ def english(name: str, text: str) -> Element:
 
 
 def software(release: str) -> Element:
-    """This program."""
-    return DCC.software(english("name", "imu-health"), DCC.release(release), DCC.type("application"))
+    """This program; a version that is more than numbers stands whole in the name."""
+    numbers = NUMBERED.match(release)
+    shown = numbers[0] if numbers else "0"
+    name = "imu-health" if shown == release else f"imu-health {release}"
+    return DCC.software(english("name", name), DCC.release(f"v{shown}"), DCC.type("application"))
 
 
 def conformity(verdict: Verdict | None) -> Iterator[Element]:

@@ -1,6 +1,6 @@
 """What was measured: method, equipment and, a sensor a result, every value with U and the decision on it."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -8,8 +8,10 @@ from estimator.results import SensorCalibration
 from estimator.session import ACCELEROMETER
 from service.records.decision import Decision, nominal_factor_of
 from service.reports.certificate.facts import title_of
+from service.reports.dcc.conditions import conditions
+from service.reports.dcc.covariance import covariance
 from service.reports.dcc.elements import DCC, conformity, english, software
-from service.reports.dcc.quantities import ONE, Factor, deviation_measure, quantity, value_measure
+from service.reports.dcc.quantities import ONE, Factor, bare_quantity, deviation_measure, quantity, value_measure
 from service.reports.xml import Element
 from service.views.certificate import CertifiedSession
 from service.words.names import spaced
@@ -17,17 +19,51 @@ from service.words.names import spaced
 
 def measurement(found: CertifiedSession) -> Element:
     """The one measurement result of a session."""
-    session, calibration, stand = found.report.session, found.report.calibration, found.source.stand
-    model = f"Model revision {session.revision}; block axes held by {calibration.gauge}."
-    method = DCC.usedMethod(english("name", calibration.method), english("description", model))
-    equipment = () if stand is None else (english("name", f"Stand {stand.id}"),)
+    session, calibration = found.report.session, found.report.calibration
+    together = covariance(found)
     decisions = {(d.sensor, d.parameter): d for d in found.report.decisions if not session.is_reference}
     return DCC.measurementResult(
         english("name", f"{title_of(session)}: {spaced(session.programme)}"),
-        DCC.usedMethods(method),
+        DCC.usedMethods(*_methods(found)),
         DCC.usedSoftware(software(found.software)),
-        *(DCC.measuringEquipments(DCC.measuringEquipment(name)) for name in equipment),
-        DCC.results(*(_result(sensor, found, decisions) for sensor in calibration.sensors)),
+        *_equipment(found),
+        conditions(found.source),
+        DCC.results(
+            *(_result(sensor, found, decisions) for sensor in calibration.sensors),
+            *(() if together is None else (together,)),
+        ),
+    )
+
+
+def _methods(found: CertifiedSession) -> Iterator[Element]:
+    """With their versions: how it was measured, how its uncertainty was found, how it was judged."""
+    session, calibration = found.report.session, found.report.calibration
+    model = (
+        f"Model revision {session.revision}; block axes held by {calibration.gauge}; "
+        f"computed by imu-health, version {found.software}."
+    )
+    yield DCC.usedMethod(english("name", calibration.method), english("description", model))
+    yield DCC.usedMethod(english("name", "Evaluation of uncertainty"), DCC.norm("EA-4/02"))
+    if found.report.decisions and not session.is_reference:
+        rule = f"{found.report.decisions[0].rule}; guard band w = U"
+        yield DCC.usedMethod(english("name", "Decision rule"), english("description", rule), DCC.norm("ILAC-G8"))
+
+
+def _equipment(found: CertifiedSession) -> Iterator[Element]:
+    """The stand, with the number of its certificate where one is on record."""
+    stand, certificate = found.source.stand, found.traceability.certificate
+    if stand is None:
+        return
+    numbered = []
+    if certificate is not None:
+        name = english("name", f"Certificate of the stand, issued by {certificate.issued_by}")
+        numbered = [DCC.identification(DCC.issuer("other"), DCC.value(certificate.number), name)]
+    yield DCC.measuringEquipments(
+        DCC.measuringEquipment(
+            english("name", f"Stand {stand.id}"),
+            english("description", found.traceability.text),
+            *(DCC.identifications(number) for number in numbered),
+        )
     )
 
 
@@ -81,7 +117,16 @@ def _deviation(decision: Decision, deviation: float) -> Element:
     judged = DCC.metaData(
         english("declaration", f"{decision.rule}: {decision.verdict.value}"),
         *conformity(decision.verdict),
-        DCC.data(quantity("tolerance", decision.tolerance, unit, None, k)),
+        DCC.data(*_limits(decision, unit)),
     )
     found.append(DCC.measurementMetaData(judged))
     return found
+
+
+def _limits(decision: Decision, unit: str) -> Iterator[Element]:
+    """What the decision was made by."""
+    yield bare_quantity("tolerance", decision.tolerance, unit)
+    if decision.guard_band is not None:
+        yield bare_quantity("guard band", decision.guard_band, unit)
+    if decision.probability_out is not None:
+        yield bare_quantity("probability of being out of tolerance", decision.probability_out, ONE)

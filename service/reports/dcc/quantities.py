@@ -48,16 +48,23 @@ class Factor:
         return "normal" if self.dof is None else f"t, {self.dof:.3g} effective degrees of freedom"
 
 
+def bare_quantity(name: str, value: float, unit: str) -> Element:
+    """A number without an uncertainty: what was set, or is stated elsewhere."""
+    return DCC.quantity(english("name", name), SI.real(SI.value(repr(float(value))), SI.unit(unit)))
+
+
 def quantity(name: str, value: float, unit: str, sigma: float | None, factor: Factor) -> Element:
     """``dcc:quantity`` with ``si:real``; k and its coverage stand with U."""
     real = SI.real(SI.value(repr(float(value))), SI.unit(unit))
     if sigma is not None:
         real.append(
-            SI.expandedUnc(
-                SI.uncertainty(repr(float(factor.k * sigma))),
-                SI.coverageFactor(f"{factor.k:g}"),
-                SI.coverageProbability(f"{factor.probability:.4f}"),
-                SI.distribution(factor.distribution),
+            SI.measurementUncertaintyUnivariate(
+                SI.expandedMU(
+                    SI.valueExpandedMU(repr(float(factor.k * sigma))),
+                    SI.coverageFactor(f"{factor.k:g}"),
+                    SI.coverageProbability(f"{factor.probability:.4f}"),
+                    SI.distribution(factor.distribution),
+                )
             )
         )
     return DCC.quantity(english("name", name), real)

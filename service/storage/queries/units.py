@@ -3,6 +3,7 @@
 from sqlalchemy import select
 
 from service.errors import NotFoundError
+from service.records.paper import Customer
 from service.storage.queries.base import Queries
 from service.storage.tables import StandRow, UnitRow, UnitTypeRow
 
@@ -20,6 +21,21 @@ class Units(Queries):
         changed, unit.lot = unit.lot != lot, lot
         self._session.flush()
         return changed
+
+    def customer(self, serial: str) -> Customer:
+        """For whom a unit is calibrated."""
+        found = self._session.execute(
+            select(UnitRow.customer, UnitRow.customer_address).where(UnitRow.serial == serial)
+        ).one_or_none()
+        if found is None:
+            raise NotFoundError(f"There is no unit {serial!r}.")
+        return Customer(*found)
+
+    def set_customer(self, serial: str, new: Customer) -> None:
+        """Records for whom a unit is calibrated."""
+        unit = self._session.scalars(select(UnitRow).where(UnitRow.serial == serial)).one()
+        unit.customer, unit.customer_address = new.name, new.address
+        self._session.flush()
 
     def of_type(self, name: str) -> tuple[str, ...]:
         """Serial numbers of a type's units, in order."""

@@ -1,7 +1,8 @@
-"""The parts of the DCC schema 3.2.0 and of D-SI 2.1.0 that our certificates use, as their documentation states them.
+"""The parts of the DCC schema 3.3.0 and of D-SI 2.2.1 that our certificates use, as their documentation states them.
 
-No package of the Python or npm registries holds the schema files, so a test cannot load them; it holds every element
-to its place instead: which children may come, in which order, which must, and how numbers are written.
+No package of the Python or npm registries holds the schema files. `test_dcc_schema` validates by them where they are at
+hand; everywhere else every element is held to its place: which children may come, in which order, which must, and how
+numbers are written.
 """
 
 import re
@@ -9,8 +10,10 @@ from xml.etree.ElementTree import Element
 
 DCC, SI = "{https://ptb.de/dcc}", "{https://ptb.de/si}"
 TEXT = "content+"
-METADATA = "name? description? countryCodeISO3166_1* convention? traceable? norm* reference* declaration? valid? date? \
+METADATA = (
+    "name? description? countryCodeISO3166_1* convention? traceable? norm* reference* link* declaration? valid? date? \
 period? respAuthority? conformity? data? nonSIDefinition? nonSIUnit? location?"
+)
 CONTACT = "name eMail? phone? fax? location descriptionData?"
 SEQUENCES = {
     "digitalCalibrationCertificate": "administrativeData measurementResults comment? document?",
@@ -21,7 +24,8 @@ SEQUENCES = {
     "software": "name release type? description?",
     "coreData": "countryCodeISO3166_1 usedLangCodeISO639_1+ mandatoryLangCodeISO639_1+ uniqueIdentifier "
     "identifications? receiptDate? beginPerformanceDate endPerformanceDate performanceLocation issueDate? "
-    "previousReport?",
+    "reportAmendedSubstituted? previousReport?",
+    "reportAmendedSubstituted": "typeOfChange replacedUniqueIdentifier",
     "identifications": "identification+",
     "identification": "issuer value name?",
     "items": "name? equipmentClass* description? owner? identifications? item+",
@@ -32,7 +36,8 @@ SEQUENCES = {
     "cryptElectronicTimeStamp?",
     "contact": CONTACT,
     "customer": CONTACT,
-    "location": "countryCode+",
+    "location": "(countryCode|further)+",
+    "further": TEXT,
     "respPersons": "respPerson+",
     "respPerson": "person description? role? mainSigner?",
     "statements": "statement+",
@@ -42,18 +47,22 @@ SEQUENCES = {
     "measurementResult": "name description? usedMethods? usedSoftware? measuringEquipments? influenceConditions? "
     "results measurementMetaData?",
     "usedMethods": "usedMethod+",
-    "usedMethod": "name description? norm* reference*",
+    "usedMethod": "name description? norm* reference* link*",
+    "influenceConditions": "influenceCondition+",
+    "influenceCondition": "name description? status? certificate? data",
     "measuringEquipments": "name? equipmentClass* description? owner? identifications? measuringEquipment+",
     "measuringEquipment": "name equipmentClass* description? certificate? manufacturer? model? identifications?",
     "results": "result+",
     "result": "name description? data",
     "data": "(text|quantity|list)+",
     "list": "name? description? (list|quantity)+",
-    "quantity": "name? description? (noQuantity|si:real) relativeUncertainty? usedMethods? usedSoftware? "
-    "measuringEquipments? influenceConditions? measurementMetaData?",
+    "quantity": "name? description? (noQuantity|si:real|si:realListXMLList) relativeUncertainty? usedMethods? "
+    "usedSoftware? measuringEquipments? influenceConditions? measurementMetaData?",
     "measurementMetaData": "metaData+",
-    "si:real": "si:label? si:value si:unit si:dateTime? (si:expandedUnc)?",
-    "si:expandedUnc": "si:uncertainty si:coverageFactor si:coverageProbability si:distribution?",
+    "si:real": "si:label? si:value si:unit si:dateTime? (si:measurementUncertaintyUnivariate)?",
+    "si:measurementUncertaintyUnivariate": "si:expandedMU",
+    "si:expandedMU": "si:valueExpandedMU si:coverageFactor si:coverageProbability si:distribution?",
+    "si:realListXMLList": "si:labelXMLList? si:valueXMLList si:unitXMLList",
     **dict.fromkeys(("name", "description", "declaration", "text"), TEXT),
 }
 DECIMAL = r"((\d*\.\d+)|(\d+\.\d*)|(\d+\.?))([Ee][-+]?\d+)?"
@@ -67,11 +76,16 @@ ENUMERATED = {
     "usedLangCodeISO639_1": "[a-z]{2}",
     "mandatoryLangCodeISO639_1": "[a-z]{2}",
     "mainSigner": "true|false|0|1",
+    "traceable": "true|false|0|1",
+    "typeOfChange": "amended|substituted",
+    "release": r"[a-zA-Z] ?(\d{1,3}\.){0,3}\d{1,3}",
     "beginPerformanceDate": r"\d{4}-\d\d-\d\d",
     "endPerformanceDate": r"\d{4}-\d\d-\d\d",
     "issueDate": r"\d{4}-\d\d-\d\d",
     "si:value": f"[-+]?{DECIMAL}",
-    "si:uncertainty": rf"\+?{DECIMAL}",
+    "si:valueExpandedMU": rf"\+?{DECIMAL}",
+    "si:valueXMLList": rf"[-+]?{DECIMAL}( [-+]?{DECIMAL})*",
+    "si:unitXMLList": r"(\\[a-z]+(\\tothe\{-?\d+\})?)+",
     "si:coverageFactor": r"\+?(([1-9]\d*\.\d*)|([1-9]\d*))",
     "si:coverageProbability": r"\+?((0(\.\d*)?)|(1(\.0*)?))",
     "si:unit": r"(\\[a-z]+(\\tothe\{-?\d+\})?)+",

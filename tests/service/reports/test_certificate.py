@@ -78,7 +78,7 @@ def test_pages_are_numbered_and_name_the_unit(failed: httpx.Client) -> None:
     assert len(pages) > 1
     for number, text in enumerate(pages, 1):
         assert f"Page {number} of {len(pages)}" in text
-        assert f"No. {ID[:12]}" in text
+        assert f"No. {ID}-0-1" in text
         assert "SIMULATED" not in text
 
 

@@ -70,7 +70,7 @@ def test_numbers_are_the_calibration_s_in_si(failed: httpx.Client) -> None:
     a3 = calibration["sensors"][2]
     bias = found(root, "A3", "bias")
     assert float(bias["value"]) == a3["bias"]["value"]
-    assert float(bias["uncertainty"]) == pytest.approx(2 * a3["bias"]["sigma"], rel=1e-12)
+    assert float(bias["valueExpandedMU"]) == pytest.approx(2 * a3["bias"]["sigma"], rel=1e-12)
     assert (bias["unit"], bias["coverageFactor"], bias["coverageProbability"]) == (
         r"\metre\second\tothe{-2}",
         "2",
@@ -84,9 +84,10 @@ def test_deviations_carry_tolerance_and_conformity(failed: httpx.Client) -> None
     decisions = failed.get(f"/api/v1/sessions/{ID}").json()["decisions"]
     [a3] = [d for d in decisions if (d["sensor"], d["parameter"]) == ("A3", "bias")]
     values = quantity(root, "A3", "bias, deviation from the reference").iter(f"{SI}value")
-    assert [float(value.text or "") for value in values] == [a3["deviation"], a3["tolerance"]]
-    stated = [element.text for element in root.iter(f"{DCC}conformity")]
-    assert stated.count("fail") == 1 + sum(d["verdict"] == "fail" for d in decisions)
+    stated = [a3[name] for name in ("deviation", "tolerance", "guard_band", "probability_out")]
+    assert [float(value.text or "") for value in values] == stated
+    conformities = [element.text for element in root.iter(f"{DCC}conformity")]
+    assert conformities.count("fail") == 1 + sum(d["verdict"] == "fail" for d in decisions)
     assert faults(root) == []
 
 
@@ -112,9 +113,9 @@ def test_no_text_is_taken_for_markup(client: httpx.Client, name: str) -> None:
 def test_a_fault_of_the_structure_would_be_seen(client: httpx.Client) -> None:
     root = dcc(client, send(client, accelerometer_block()))
     core = root.find(f".//{DCC}coreData")
-    value = root.find(f".//{SI}uncertainty")
+    value = root.find(f".//{SI}valueExpandedMU")
     assert core is not None
     assert value is not None
     core[:] = reversed(list(core))
     value.text = "-1.0"
-    assert [fault.split()[0] for fault in faults(root)] == ["coreData", "si:uncertainty"]
+    assert [fault.split()[0] for fault in faults(root)] == ["coreData", "si:valueExpandedMU"]

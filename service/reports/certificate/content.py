@@ -1,0 +1,28 @@
+"""What a certificate states, as one hash: another number is due when it changes, and only then."""
+
+import json
+from dataclasses import asdict
+from datetime import UTC, datetime
+from hashlib import sha256
+
+from service.flows.issue_certificate import Statement
+from service.records.paper import Issue
+from service.reports.certificate.words import certificate
+from service.views.certificate import CertifiedSession
+
+UNISSUED = Issue("", "", 0, datetime(1970, 1, 1, tzinfo=UTC), "", None, "")
+"""Stands in for an issue while what it states is being hashed."""
+
+
+def statement_of(found: CertifiedSession) -> Statement:
+    """What is about to be issued: the words of the paper, and every number in full that paper or XML rests on."""
+    session = found.report.session
+    words = certificate(found, UNISSUED)
+    parts = (
+        json.dumps(asdict(words), sort_keys=True).encode(),
+        found.calibration_json,
+        repr(found.report.decisions).encode(),
+        repr(found.history).encode(),
+    )
+    digest = sha256(b"".join(sha256(part).digest() for part in parts)).hexdigest()
+    return Statement(session.unit, session.id, session.revision, digest)

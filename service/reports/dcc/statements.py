@@ -1,0 +1,58 @@
+"""What a Digital Calibration Certificate states beside its numbers, in the words of the paper."""
+
+from collections.abc import Iterator
+
+from service.records.decision import Verdict, nominal_factor_of
+from service.records.paper import Traceability, TraceState
+from service.reports.dcc.elements import DCC, conformity, english
+from service.reports.xml import Element
+from service.views.certificate import CertifiedSession
+from service.words.names import day_of
+from service.words.paper import RELATES, WHOLE, draft_in_words, lacks
+from service.words.uncertainty import uncertainty_in_words
+
+NOTHING_JUDGED = "none: nothing was there to judge it by"
+TRACEABLE = {TraceState.TRACEABLE: "true", TraceState.INTERRUPTED: "false"}
+"""Of a chain that is not on record nothing is claimed."""
+
+
+def statements(found: CertifiedSession) -> Iterator[Element]:
+    """In the order of the paper."""
+    session, decisions = found.report.session, found.report.decisions
+    draft = draft_in_words(lacks(found.laboratory, found.customer, dated=found.source.started_at is not None))
+    if draft:
+        yield _statement("Draft", draft)
+    yield _verdict(session.reason, None if session.is_reference else session.verdict)
+    judged = bool(decisions) and not session.is_reference
+    rule = f"{decisions[0].rule}; guard band w = U." if judged else NOTHING_JUDGED
+    yield _statement("Decision rule", rule)
+    yield _statement("Reference session", _reference(found))
+    yield _chain("Traceability", found.traceability)
+    if found.reference is not None:
+        yield _chain("Traceability of the reference session", found.reference.traceability)
+    yield _statement("Uncertainty", uncertainty_in_words(found.report.calibration, nominal_factor_of(decisions)))
+    yield _statement("Item", RELATES)
+    yield _statement("Reproduction", WHOLE)
+    yield _statement("What the simulation gets wrong", found.diagnosis.summary)
+    if session.simulated:
+        yield _statement("Simulated", "SIMULATED: not a measurement of real hardware.")
+
+
+def _reference(found: CertifiedSession) -> str:
+    if found.reference is None:
+        return "none: this session is a reference itself, or there was none"
+    other = found.reference.session
+    return f"session {other.id} of {day_of(other.started_at)}, model revision {other.revision}"
+
+
+def _verdict(reason: str, verdict: Verdict | None) -> Element:
+    return DCC.statement(english("name", "Verdict"), english("declaration", reason), *conformity(verdict))
+
+
+def _chain(name: str, chain: Traceability) -> Element:
+    claimed = [DCC.traceable(TRACEABLE[chain.state])] if chain.state in TRACEABLE else []
+    return DCC.statement(english("name", name), *claimed, english("declaration", chain.text))
+
+
+def _statement(name: str, declaration: str) -> Element:
+    return DCC.statement(english("name", name), english("declaration", declaration))

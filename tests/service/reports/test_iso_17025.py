@@ -1,0 +1,48 @@
+"""Every item that ISO/IEC 17025:2017 wants on a certificate stands where the documentation says it does."""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import SettingsHolding
+from tests.databases import one_engine
+from tests.service.reports.documents import pages_of
+from tests.service.reports.laboratory import named, state_all
+from tests.service.sessions import session_bytes, session_id
+
+PAGE = Path(__file__).parents[3] / "docs" / "reports.md"
+ROW = re.compile(r"^\| (7\.8\.[\d.]+ ?\w?) \| .*? \| .*? \| `(.+)` \|$", re.MULTILINE)
+CLAUSES = ROW.findall(PAGE.read_text("utf-8"))
+WANTED = [f"7.8.2.1 {item}" for item in "abcdefghijklmnop"] + [f"7.8.4.1 {item}" for item in "abcdef"]
+FOUND = session_bytes(seed=2, month=5, a3_moved=90.0, stage="as-found")
+LEFT = session_bytes(seed=3, month=6, stage="as-left")
+
+
+@pytest.fixture
+def text(settings_holding: SettingsHolding) -> Iterator[str]:
+    """The certificate of a unit as left, all that can be stated being stated, in its second issue."""
+    settings = settings_holding(session_bytes(), FOUND)
+    with named(settings) as client:
+        repair = {"kind": "adjustment", "at": "2026-05-20T12:00:00Z", "by": "K. Ito"}
+        client.post("/api/v1/units/BA-017/services", json=repair).raise_for_status()
+        client.post("/api/v1/sessions", content=LEFT).raise_for_status()
+        address = f"/api/v1/sessions/{session_id(LEFT)}/certificate"
+        client.get(address).raise_for_status()
+        state_all(client)
+        yield " ".join(pages_of(client.get(address).raise_for_status().content))
+
+
+def test_no_clause_is_left_out() -> None:
+    assert sorted(set(WANTED) - {clause for clause, _ in CLAUSES}) == []
+
+
+@one_engine
+def test_every_clause_is_on_the_paper(text: str) -> None:
+    assert [(clause, words) for clause, words in CLAUSES if words not in text] == []
+
+
+@one_engine
+def test_a_paper_that_states_all_is_no_draft(text: str) -> None:
+    assert ("Draft" in text, "interrupted" in text) == (False, False)
