@@ -1,6 +1,6 @@
 """What papers name: the customer of a unit, the certificates of stands, and the numbers of certificates issued.
 
-Revision: 0009, after 0007
+Revision: 0009, after 0008
 """
 
 import sqlalchemy as sa

@@ -9,6 +9,7 @@ from service.api import (
     feeds,
     flags,
     fleet,
+    labels,
     models,
     notes,
     operations,
@@ -18,6 +19,7 @@ from service.api import (
     stands,
     unit_types,
     units,
+    usable,
     webhooks,
 )
 from service.api.openapi import describe
@@ -33,6 +35,8 @@ def mount(app: FastAPI) -> None:
     for resource in (
         sessions, records, certificates, diagnoses, events, units, unit_types, models, plans, stands, flags, notes,
         webhooks, feeds, fleet,
+        sessions, certificates, diagnoses, events, usable, labels, units, unit_types, models, plans, stands, flags,
+        notes, webhooks, feeds, fleet,
     ):  # fmt: skip
         api.include_router(resource.router)
     app.include_router(api)

@@ -49,6 +49,11 @@ class Client:
         answer: dict[str, Any] = self._answer("POST", path, json=body).json()
         return answer
 
+    def put(self, path: str, body: dict[str, Any]) -> dict[str, Any]:
+        """Puts JSON in the place of a resource below /api/v1."""
+        answer: dict[str, Any] = self._answer("PUT", path, json=body).json()
+        return answer
+
     def _answer(self, method: str, path: str, **request: Any) -> httpx.Response:
         """The answer, or the error that it states."""
         try:

@@ -2,6 +2,7 @@
 
 from enum import StrEnum
 from typing import Annotated, Any
+from urllib.parse import quote
 
 import typer
 from rich.markup import escape
@@ -33,14 +34,42 @@ def fleet(server: Server = DEFAULT_SERVER, as_json: AsJson = False) -> None:
             screen().print(_summary(condition), _table(client.get("/fleet/report").json()["units"]))
 
 
-def report(
+class LabelFormat(StrEnum):
+    """What a label can be written as."""
+
+    PDF = "pdf"
+    SVG = "svg"
+
+
+report = typer.Typer(add_completion=False, rich_markup_mode="markdown", invoke_without_command=True)
+
+
+@report.callback()
+def write_report(
+    context: typer.Context,
     server: Server = DEFAULT_SERVER,
     format: Annotated[Format, typer.Option("--format", help="json, csv, xlsx or pdf.")] = Format.CSV,
     out: Out = None,
 ) -> None:
     """Write the fleet's condition as a file for other programs."""
+    if context.invoked_subcommand is not None:
+        return
     with connected(server) as client:
         deliver(client.get("/fleet/report", format=format.value).content, out)
+
+
+@report.command("label")
+def write_label(
+    unit: Annotated[str, typer.Argument(metavar="UNIT", help="Serial number.")],
+    server: Server = DEFAULT_SERVER,
+    format: Annotated[LabelFormat, typer.Option("--format", help="pdf or svg.")] = LabelFormat.PDF,
+    due: Annotated[bool, typer.Option(help="Say when the calibration is due.")] = True,
+    out: Out = None,
+) -> None:
+    """Write a unit's label: serial number, due date, and a QR code that opens its page."""
+    path = f"/units/{quote(unit, safe='')}/label.{format.value}"
+    with connected(server) as client:
+        deliver(client.get(path, due=str(due).lower()).content, out)
 
 
 def _summary(condition: dict[str, Any]) -> str:

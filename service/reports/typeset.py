@@ -15,14 +15,18 @@ TEMPLATES = Path(__file__).parent / "templates"
 
 def typeset(template: str, record: Any, at: datetime) -> bytes:
     """The document of a frozen record; the same record gives the same bytes. ``at`` is the date that it carries."""
+    return _compiled(template, record, format="pdf", timestamp=at.replace(microsecond=0))
+
+
+def typeset_svg(template: str, record: Any) -> bytes:
+    """The one page of a frozen record as a drawing."""
+    return _compiled(template, record, format="svg")
+
+
+def _compiled(template: str, record: Any, **wanted: Any) -> bytes:
     data = json.dumps(printable_data(record), ensure_ascii=False, allow_nan=False)
     document = typst.compile(
-        TEMPLATES / template,
-        root=TEMPLATES,
-        format="pdf",
-        sys_inputs={"data": data},
-        ignore_system_fonts=True,
-        timestamp=at.replace(microsecond=0),
+        TEMPLATES / template, root=TEMPLATES, sys_inputs={"data": data}, ignore_system_fonts=True, **wanted
     )
     assert isinstance(document, bytes)
     return document

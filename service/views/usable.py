@@ -1,0 +1,117 @@
+"""May a unit be used? By its latest judged session, its due date and its open flags; in doubt it may not."""
+
+from collections.abc import Iterator
+from datetime import datetime, timedelta
+
+from estimator.session import CALIBRATIONS
+from service.records.decision import Verdict
+from service.records.flag import Flag, Matter
+from service.records.session import StoredSession
+from service.records.unit import UnitReport
+from service.records.usable import Usable
+from service.storage.store import Store
+from service.views.traceability import traceability_of
+from service.views.unit_report import unit_report
+from service.words import usable as words
+from service.words.names import day_of
+
+FIT = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
+"""Verdicts that a unit may be used with; the second with a reservation."""
+FORBIDDING = (Matter.TOLERANCE,)
+"""Flags that forbid the use until they are resolved, acknowledged or not: others are reservations. That a calibration
+is overdue is asked of the clock, because its flag is raised once an hour only."""
+SLACK = timedelta(days=1)
+"""A clock may be in another zone than it says."""
+
+
+def usable(store: Store, serial: str, now: datetime) -> Usable:
+    """The answer for one unit; NotFoundError when there is none of that serial number."""
+    report = unit_report(store, serial, now)
+    flags = store.flags.open_of(store.units.key(serial))
+    session, since = _latest_judged(report, now), _last_service(report, now)
+    against = tuple(_against(report, session, flags, now))
+    return Usable(
+        usable=not against,
+        why=against[0] if against else words.on(words.YES, _at(session), due=_day(report.summary.due)),
+        reasons=against,
+        reservations=tuple(_reservations(store, session, flags)),
+        until=report.summary.due,
+        verdict=None if session is None else session.verdict,
+        session=None if session is None else session.id,
+        correction=_correction(report, since),
+        as_of=now,
+    )
+
+
+def _last_service(report: UnitReport, now: datetime) -> datetime | None:
+    return max((service.at for service in report.services if service.at <= now), default=None)
+
+
+def _latest_judged(report: UnitReport, now: datetime) -> StoredSession | None:
+    """The latest session that was held against a reference, since the last service."""
+    since = _last_service(report, now)
+    judged = (s for s in report.sessions if not s.is_reference and (since is None or s.started_at >= since))
+    return next(judged, None)
+
+
+def _correction(report: UnitReport, since: datetime | None) -> str | None:
+    """The latest calibration of every sensor since the last service."""
+    own = (s for s in report.sessions if s.programme in CALIBRATIONS and (since is None or s.started_at >= since))
+    return next((session.id for session in own), None)
+
+
+def _against(
+    report: UnitReport, session: StoredSession | None, flags: tuple[Flag, ...], now: datetime
+) -> Iterator[str]:
+    """Everything that forbids the use, the gravest first."""
+    if session is None:
+        yield _nothing_judged(report, now)
+    else:
+        yield from _of_session(session, now)
+    yield from (words.flagged(flag) for flag in flags if flag.matter in FORBIDDING)
+    due = report.summary.due
+    if due is not None and due < now:
+        yield words.OVERDUE.format(due=day_of(due))
+    elif due is None and session is not None:
+        yield words.NO_DUE
+
+
+def _nothing_judged(report: UnitReport, now: datetime) -> str:
+    since = _last_service(report, now)
+    if since is not None:
+        return words.on(words.SINCE_SERVICE, since)
+    return words.NOTHING_JUDGED if report.sessions else words.NO_SESSION
+
+
+def _of_session(session: StoredSession, now: datetime) -> Iterator[str]:
+    at = session.started_at
+    if session.verdict is Verdict.UNDECIDABLE:
+        yield words.on(words.UNDECIDED, at, reason=session.reason)
+    elif session.verdict not in FIT:
+        yield words.on(words.NOT_FIT, at, reason=session.reason)
+    if at > now + SLACK:
+        yield words.on(words.FUTURE, at)
+
+
+def _reservations(store: Store, session: StoredSession | None, flags: tuple[Flag, ...]) -> Iterator[str]:
+    """What does not forbid the use, but must be known."""
+    if session is not None:
+        if session.verdict is Verdict.CONDITIONAL_PASS:
+            yield words.CLOSE.format(reason=session.reason)
+        chain = traceability_of(store, session)
+        if chain.has_expired:
+            yield chain.text
+        if store.diagnoses.summary(session.id) is None:
+            yield words.on(words.NOT_DIAGNOSED, session.started_at)
+    yield from (words.flagged(flag) for flag in flags if flag.matter not in (*FORBIDDING, Matter.OVERDUE))
+
+
+def _at(session: StoredSession | None) -> datetime:
+    """Of a session that must be there: without one something speaks against the use."""
+    assert session is not None
+    return session.started_at
+
+
+def _day(due: datetime | None) -> str:
+    assert due is not None
+    return day_of(due)

@@ -1,0 +1,34 @@
+"""Why a unit may be used, or may not and what to do about it."""
+
+from datetime import datetime
+
+from service.records.flag import Flag
+from service.words.names import day_of
+
+YES = "Fit by its session of {day}, and not due before {due}."
+NO_SESSION = "No session is stored: calibrate the unit."
+NOTHING_JUDGED = (
+    "Nothing was judged yet: its sessions are references only. Measure one more, which is held against them."
+)
+SINCE_SERVICE = (
+    "Nothing was judged since the service of {day}: measure the new reference, if that was not done, and one session "
+    "that is held against it."
+)
+NOT_FIT = "Not fit by its session of {day}: {reason}"
+UNDECIDED = "Not decided by its session of {day}: {reason}"
+OVERDUE = "Its calibration was due on {due}: calibrate it."
+NO_DUE = "It is not known when its calibration is due: calibrate it."
+FUTURE = "Its session is dated {day}, which is still to come: put the date right."
+FLAGGED = "Flag {id} is open: {summary}"
+CLOSE = "Within tolerance, but by less than the uncertainty of the measurement: {reason}"
+NOT_DIAGNOSED = "The session of {day} is not diagnosed yet: ask again in a minute."
+
+
+def flagged(flag: Flag) -> str:
+    """An open flag."""
+    return FLAGGED.format(id=flag.id, summary=flag.summary)
+
+
+def on(sentence: str, at: datetime, **more: str) -> str:
+    """The sentence with its day."""
+    return sentence.format(day=day_of(at), **more)

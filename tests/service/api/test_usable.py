@@ -1,0 +1,129 @@
+"""May a unit be used? Every rule on its own, over HTTP and on the command line."""
+
+from collections.abc import Callable
+from datetime import UTC, datetime
+from typing import Any
+
+import httpx
+import pytest
+
+from service.app import create_app
+from tests.conftest import Holding, SettingsHolding
+from tests.service.reports.laboratory import state_all
+from tests.service.sessions import FAILED, session_bytes, session_id
+from tests.serving import http_client
+
+FIT = (session_bytes(month=1), session_bytes(seed=2, month=2))
+SOON, LATE = datetime(2026, 2, 5, tzinfo=UTC), datetime(2028, 3, 1, tzinfo=UTC)
+Asking = Callable[..., dict[str, Any]]
+
+
+def answer(client: httpx.Client, **headers: str) -> httpx.Response:
+    """The answer for the unit of `tests.service.sessions`."""
+    return client.get("/api/v1/units/BA-017/usable", headers=headers)
+
+
+@pytest.fixture
+def asked(settings_holding: SettingsHolding) -> Asking:
+    """Asks a service that holds uploads, at a time, after something was done to it."""
+
+    def ask(
+        *uploads: bytes, at: datetime = SOON, first: Callable[[httpx.Client], Any] = lambda _: None
+    ) -> dict[str, Any]:
+        with http_client(create_app(settings_holding(*uploads), clock=lambda: at)) as client:
+            first(client)
+            found: dict[str, Any] = answer(client).raise_for_status().json()
+            return found
+
+    return ask
+
+
+def test_a_fit_unit_may_be_used_until_it_is_due(asked: Asking) -> None:
+    found = asked(*FIT)
+    assert (found["usable"], found["verdict"], found["reasons"]) == (True, "pass", [])
+    assert found["until"][:10] == found["next_calibration"] > "2026-02-05"
+    assert found["session"] == session_id(FIT[-1])
+    assert found["correction"] == f"/api/v1/sessions/{session_id(FIT[-1])}/correction"
+    assert found["why"].startswith("Fit by its session of 1 Feb 2026, and not due before ")
+
+
+def test_an_unfit_one_may_not(asked: Asking) -> None:
+    found = asked(*FAILED)
+    assert (found["usable"], found["verdict"]) == (False, "fail")
+    assert "A3 bias moved" in found["why"]
+    assert any("Flag" in reason for reason in found["reasons"])
+
+
+def test_past_due_it_may_not(asked: Asking) -> None:
+    found = asked(*FIT, at=LATE)
+    assert (found["usable"], found["verdict"]) == (False, "pass")
+    assert "Its calibration was due on" in found["why"]
+
+
+def test_a_reference_alone_decides_nothing(asked: Asking) -> None:
+    found = asked(FIT[0])
+    assert (found["usable"], found["session"]) == (False, None)
+    assert "Measure one more" in found["why"]
+    assert found["correction"] == f"/api/v1/sessions/{session_id(FIT[0])}/correction"
+
+
+def test_what_cannot_be_decided_says_what_to_measure(asked: Asking) -> None:
+    tight = {"tolerances": {"scale": None, "bias": 1e-9, "quadratic": None, "axis": None}}
+
+    def uncertain(client: httpx.Client) -> None:
+        name = client.get("/api/v1/unit-types").json()["unit_types"][0]["name"]
+        client.put(f"/api/v1/unit-types/{name}", json=tight).raise_for_status()
+        client.post("/api/v1/sessions", content=FIT[1]).raise_for_status()
+
+    found = asked(FIT[0], first=uncertain)
+    assert (found["usable"], found["verdict"]) == (False, "undecidable")
+    assert "measure more positions" in found["why"]
+
+
+def test_after_a_service_nothing_is_judged_yet(asked: Asking) -> None:
+    repair = {"kind": "repair", "at": "2026-02-03T12:00:00Z"}
+    found = asked(*FIT, first=lambda client: client.post("/api/v1/units/BA-017/services", json=repair))
+    assert (found["usable"], found["correction"]) == (False, None)
+    assert "Nothing was judged since the service of 3 Feb 2026" in found["why"]
+
+
+def test_a_flag_forbids_although_the_next_session_is_fit(asked: Asking) -> None:
+    again = session_bytes(seed=3, month=3)
+
+    def acknowledged(client: httpx.Client) -> None:
+        client.post("/api/v1/sessions", content=again).raise_for_status()
+        for flag in client.get("/api/v1/units/BA-017/flags").json()["flags"]:
+            because = {"by": "K. Ito", "why": "seen"}
+            client.post(f"/api/v1/flags/{flag['id']}/acknowledge", json=because).raise_for_status()
+
+    found = asked(*FAILED, at=datetime(2026, 3, 5, tzinfo=UTC), first=acknowledged)
+    assert (found["usable"], found["verdict"]) == (False, "pass")
+    assert found["why"].startswith("Flag ")
+
+
+def test_a_date_to_come_is_not_believed(asked: Asking) -> None:
+    found = asked(*FIT, at=datetime(2026, 1, 20, tzinfo=UTC))
+    assert not found["usable"]
+    assert "still to come" in found["why"]
+
+
+def test_a_broken_chain_is_a_reservation(asked: Asking) -> None:
+    found = asked(*FIT, first=lambda client: state_all(client, valid_until="2026-01-31"))
+    assert found["usable"]
+    assert "Traceability is interrupted" in found["reservation"]
+    assert [line for line in found["reservations"] if "interrupted" in line]
+
+
+def test_the_same_answer_is_not_sent_twice(holding: Holding) -> None:
+    client = holding(*FIT)
+    first = answer(client)
+    assert (first.headers["cache-control"], first.status_code) == ("no-cache", 200)
+    again = answer(client, **{"If-None-Match": first.headers["etag"]})
+    assert (again.status_code, again.content) == (304, b"")
+    repair = {"kind": "repair", "at": "2026-02-03T12:00:00Z"}
+    client.post("/api/v1/units/BA-017/services", json=repair).raise_for_status()
+    assert answer(client, **{"If-None-Match": first.headers["etag"]}).status_code == 200
+
+
+def test_an_unknown_unit_is_not_found(client: httpx.Client) -> None:
+    assert answer(client).status_code == 404
