@@ -33,10 +33,8 @@ def mount(app: FastAPI) -> None:
     """Adds every route of the API, its error shape and its description to the application."""
     api = APIRouter(prefix=PREFIX)
     for resource in (
-        sessions, records, certificates, diagnoses, events, units, unit_types, models, plans, stands, flags, notes,
-        webhooks, feeds, fleet,
-        sessions, certificates, diagnoses, events, usable, labels, units, unit_types, models, plans, stands, flags,
-        notes, webhooks, feeds, fleet,
+        sessions, records, certificates, diagnoses, events, usable, labels, units, unit_types, models, plans, stands,
+        flags, notes, webhooks, feeds, fleet,
     ):  # fmt: skip
         api.include_router(resource.router)
     app.include_router(api)

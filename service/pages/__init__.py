@@ -6,7 +6,16 @@
 from fastapi import FastAPI
 from starlette.middleware.gzip import GZipMiddleware
 
-from service.pages import assets, diagnosis_routes, event_routes, flag_routes, plan_routes, record_routes, routes
+from service.pages import (
+    assets,
+    diagnosis_routes,
+    event_routes,
+    flag_routes,
+    paper_routes,
+    plan_routes,
+    record_routes,
+    routes,
+)
 from service.pages.headers import SecurityHeaders
 from service.pages.problem import ProblemPages, unexpected_pages
 
@@ -18,6 +27,7 @@ def mount(app: FastAPI) -> None:
     app.include_router(flag_routes.router)
     app.include_router(event_routes.router)
     app.include_router(record_routes.router)
+    app.include_router(paper_routes.router)
     app.include_router(plan_routes.router)
     app.include_router(assets.router)
     unexpected_pages(app)

@@ -23,6 +23,7 @@ from service.views.outlook import own_outlook
 from service.views.session_report import session_report
 from service.views.standouts import fleet_standouts
 from service.views.stands import stand_conditions
+from service.views.traceability import traceability_of
 from service.views.unit_report import unit_report
 
 HISTORY_LIMIT = 10_000
@@ -73,6 +74,7 @@ def show_unit(request: Request, store: Reading, settings: SettingsOf, now: Now, 
             notes=store.notes.of_unit(serial),
             pair=found_and_left(store, report.unit_type, report.sessions, report.services, settings.coverage_factor),
             outlook=own_outlook(store, serial, now),
+            customer=store.units.customer(serial),
         ),
     )
 
@@ -80,7 +82,8 @@ def show_unit(request: Request, store: Reading, settings: SettingsOf, now: Now, 
 @router.get("/sessions/{id}")
 def show_session(request: Request, store: Reading, id: Key) -> HTMLResponse:
     """One session with its parameters and residuals."""
-    page = session_page(session_report(store, id), store.diagnoses.summary(id))
+    report = session_report(store, id)
+    page = session_page(report, store.diagnoses.summary(id), traceability_of(store, report.session))
     return render(request, "session.html", page)
 
 

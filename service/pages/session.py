@@ -27,6 +27,7 @@ from service.pages.parity import ParityView, parity_view
 from service.pages.residual_table import ResidualTable, residual_table
 from service.records.decision import Decision, Verdict, nominal_factor_of
 from service.records.diagnosis import DiagnosisSummary
+from service.records.paper import Traceability
 from service.records.session import ALL_PARAMETERS, SessionReport, StoredSession
 from service.records.state import RecordState
 from service.storage.parity_document import parity_from_dict
@@ -94,9 +95,13 @@ class SessionPage:
     """What became of it, said before everything else; empty where it counts."""
     states: tuple[str, ...]
     """Its life, newest first."""
+    traceability: Traceability | None
+    """What its numbers hang on."""
 
 
-def session_page(report: SessionReport, diagnosis: DiagnosisSummary | None = None) -> SessionPage:
+def session_page(
+    report: SessionReport, diagnosis: DiagnosisSummary | None = None, traceability: Traceability | None = None
+) -> SessionPage:
     """The page of a session."""
     calibration, decisions = report.calibration, report.decisions
     judged = {(d.sensor, d.parameter): d for d in decisions}
@@ -123,6 +128,7 @@ def session_page(report: SessionReport, diagnosis: DiagnosisSummary | None = Non
         motions=motions_in_words(report.motions, coverage),
         state=_state(report),
         states=tuple(state_in_words(line) for line in reversed(report.states)),
+        traceability=traceability,
     )
 
 
