@@ -25,11 +25,13 @@ def certificate(
     session: Session,
     server: Server = DEFAULT_SERVER,
     format: Annotated[Form, typer.Option("--format", help="pdf, to sign, or dcc: XML for programs.")] = Form.PDF,
+    by: Annotated[str, typer.Option("--by", help="Your name, kept with the certificate's number.")] = "",
     out: Out = None,
 ) -> None:
     """Write the certificate of a session."""
+    path = f"/sessions/{quote(session, safe='')}/certificate"
     with connected(server) as client:
-        deliver(client.get(f"/sessions/{quote(session, safe='')}/certificate", format=format.value).content, out)
+        deliver(client.get(path, format=format.value, by=by).content, out)
 
 
 def correction(session: Session, server: Server = DEFAULT_SERVER, out: Out = None) -> None:

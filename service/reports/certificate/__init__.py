@@ -20,5 +20,9 @@ class DrawnCertificate:
 
 def certificate_pdf(found: CertifiedSession, issue: Issue) -> bytes:
     """The certificate as PDF; it carries the date of issue, so that one issue gives the same bytes every time."""
-    drawn = DrawnCertificate(certificate(found, issue), histories_of(found), residuals_of(found))
-    return typeset("certificate.typ", drawn, issue.issued_at)
+    return typeset("certificate.typ", drawn_certificate(found, issue), issue.issued_at)
+
+
+def drawn_certificate(found: CertifiedSession, issue: Issue) -> DrawnCertificate:
+    """All that the typesetter is given."""
+    return DrawnCertificate(certificate(found, issue), histories_of(found), residuals_of(found))

@@ -13,7 +13,10 @@ from playwright.sync_api import Browser
 
 from service.demo.fill import fill
 from service.flows.diagnose import diagnose
-from service.reports.certificate import certificate
+from service.flows.issue_certificate import issue_certificate
+from service.records.paper import Laboratory
+from service.reports.certificate import drawn_certificate
+from service.reports.certificate.content import statement_of
 from service.reports.printable import printable_data
 from service.reports.typeset import TEMPLATES
 from service.settings import Settings
@@ -31,6 +34,7 @@ UNIT = "BA-107"
 STICKING = "BA-110"
 """A4 sticks since the last session, which the diagnosis names."""
 NOW = datetime(2026, 11, 21, tzinfo=UTC)
+LABORATORY = Laboratory("Inertial Laboratory North", "4 Gyro Street, 20095 Hamburg", "DE")
 
 pytestmark = [
     pytest.mark.browser,
@@ -59,7 +63,9 @@ def test_picture_of_the_first_page_of_a_certificate(filled: Settings) -> None:
         with storage.database.reading() as store:
             worst = store.fleet.units(FleetQuery(limit=1))[0].last_session
         assert worst is not None
-        record = printable_data(certificate(certified_session(storage, diagnose(storage, worst, NOW))))
+        found = certified_session(storage, diagnose(storage, worst, NOW), LABORATORY)
+        issue = issue_certificate(storage, statement_of(found), NOW, who="K. Ito")
+        record = printable_data(drawn_certificate(found, issue))
     pages = typst.compile(
         TEMPLATES / "certificate.typ",
         root=TEMPLATES,

@@ -91,4 +91,3 @@ def test_without_a_public_address_it_is_that_of_the_request(settings_holding: Se
 
 def test_an_unknown_unit_has_none(client: httpx.Client) -> None:
     assert label(client, "svg").status_code == 404
-    assert client.get(f"{PATH}.gif").status_code == 422

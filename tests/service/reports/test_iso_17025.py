@@ -8,7 +8,7 @@ import pytest
 
 from tests.conftest import SettingsHolding
 from tests.databases import one_engine
-from tests.service.reports.documents import pages_of
+from tests.service.reports.documents import text_of
 from tests.service.reports.laboratory import named, state_all
 from tests.service.sessions import session_bytes, session_id
 
@@ -18,20 +18,22 @@ CLAUSES = ROW.findall(PAGE.read_text("utf-8"))
 WANTED = [f"7.8.2.1 {item}" for item in "abcdefghijklmnop"] + [f"7.8.4.1 {item}" for item in "abcdef"]
 FOUND = session_bytes(seed=2, month=5, a3_moved=90.0, stage="as-found")
 LEFT = session_bytes(seed=3, month=6, stage="as-left")
+LATER = session_bytes(seed=4, month=7)
 
 
 @pytest.fixture
 def text(settings_holding: SettingsHolding) -> Iterator[str]:
-    """The certificate of a unit as left, all that can be stated being stated, in its second issue."""
-    settings = settings_holding(session_bytes(), FOUND)
-    with named(settings) as client:
+    """The certificates of a unit as left, in its second issue, and of its next session; all that can be is stated."""
+    with named(settings_holding(session_bytes(), FOUND)) as client:
         repair = {"kind": "adjustment", "at": "2026-05-20T12:00:00Z", "by": "K. Ito"}
         client.post("/api/v1/units/BA-017/services", json=repair).raise_for_status()
         client.post("/api/v1/sessions", content=LEFT).raise_for_status()
-        address = f"/api/v1/sessions/{session_id(LEFT)}/certificate"
-        client.get(address).raise_for_status()
+        left, later = (f"/api/v1/sessions/{session_id(content)}/certificate" for content in (LEFT, LATER))
+        client.get(left).raise_for_status()
         state_all(client)
-        yield " ".join(pages_of(client.get(address).raise_for_status().content))
+        client.post("/api/v1/sessions", content=LATER).raise_for_status()
+        papers = (client.get(address).raise_for_status().content for address in (left, later))
+        yield " ".join(text_of(paper) for paper in papers)
 
 
 def test_no_clause_is_left_out() -> None:
