@@ -74,7 +74,6 @@ def show_unit(request: Request, store: Reading, settings: SettingsOf, now: Now, 
             notes=store.notes.of_unit(serial),
             pair=found_and_left(store, report.unit_type, report.sessions, report.services, settings.coverage_factor),
             outlook=own_outlook(store, serial, now),
-            customer=store.units.customer(serial),
         ),
     )
 

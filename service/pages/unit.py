@@ -12,7 +12,6 @@ from service.records.event import Note, Service
 from service.records.flag import Flag
 from service.records.history import HistoryPoint
 from service.records.outlook import ParameterTrend, UnitOutlook
-from service.records.paper import Customer
 from service.records.session import StoredSession
 from service.records.unit import UnitReport
 from service.views.found_and_left import FoundAndLeft
@@ -85,8 +84,6 @@ class UnitPage:
     """What can be done to a unit: identifier and name."""
     next: NextCalibration | None
     """None before a session was judged."""
-    customer: Customer
-    """For whom it is calibrated."""
 
 
 def unit_page(
@@ -97,7 +94,6 @@ def unit_page(
     notes: Sequence[Note] = (),
     pair: FoundAndLeft | None = None,
     outlook: UnitOutlook | None = None,
-    customer: Customer | None = None,
 ) -> UnitPage:
     """The page of a unit with its history, flags and notes, as found and as left, and when it must come back."""
     trends = () if outlook is None else outlook.trends
@@ -116,7 +112,6 @@ def unit_page(
         stages=stage_table(pair),
         kinds=tuple(KINDS.items()),
         next=None if outlook is None else next_calibration(outlook),
-        customer=customer or Customer(),
     )
 
 

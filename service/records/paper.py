@@ -28,6 +28,10 @@ class Customer:
     address: str = ""
 
 
+NOBODY = Customer()
+"""Of a unit for which no customer is stated."""
+
+
 @dataclass(frozen=True)
 class StandCertificate:
     """The certificate of a stand's own calibration."""

@@ -5,6 +5,7 @@ from datetime import datetime
 
 from service.records.decision import Verdict
 from service.records.event import Service
+from service.records.paper import NOBODY, Customer
 from service.records.session import StoredSession
 from service.records.state import StateChange
 
@@ -68,6 +69,8 @@ class UnitSummary:
     """Of the next calibration."""
     lot: str | None = None
     """Of production."""
+    customer: Customer = NOBODY
+    """For whom it is calibrated."""
 
 
 @dataclass(frozen=True)

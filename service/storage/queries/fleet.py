@@ -11,6 +11,7 @@ from sqlalchemy.orm import defer
 from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState
 from service.records.flag import FlagState
+from service.records.paper import Customer
 from service.records.unit import FleetCondition, UnitSummary, UnitType
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
@@ -170,6 +171,7 @@ def _summary(row: Sequence[Any]) -> UnitSummary:
         flags=condition.flags,
         due=row[5],
         lot=unit.lot,
+        customer=Customer(unit.customer, unit.customer_address),
     )
 
 
