@@ -41,8 +41,8 @@ class RemountRotation(CommonCause):
     needs = frozenset({"stand or directions", "history"})
     between = True
     turns_block = True
-    sentence = "The whole block sits turned in its fixture compared with earlier sessions; no sensor moved by itself."
-    advice = "Reseat the block and repeat, or take the rotation into the mounting; the sensors need no attention."
+    sentence = "The whole block sits turned in its fixture compared with earlier sessions."
+    advice = "Reseat the block and repeat, or take the rotation into the mounting; no sensor needs work because of it."
 
     def change(self, setting: Setting) -> Array:
         """(R, m, 3, 3) −dθ×n, m/s² (rad/s) per rad, since e·(n − dθ×n) = (e + dθ×e)·n.

@@ -46,7 +46,7 @@ class GravityEntry(CommonCause):
     kind = ACCELEROMETER
     between = True
     sentence = "All scale factors moved by one factor: latitude, height or gravity is written down wrong."
-    advice = "Check the site's latitude, height and gravity in the record; the sensors need no attention."
+    advice = "Check the site's latitude, height and gravity in the record; no sensor needs work because of it."
 
     def change(self, setting: Setting) -> Array:
         """(R, m, 3, 1) n itself, m/s², per relative change of g."""
@@ -65,7 +65,7 @@ class SensorDrift(SensorCause):
     between = True
     moves_parameters = True
     amplitude_words = ("scale factor", "bias", "axis, first tangent", "axis, second tangent")
-    sentence = "{sensors} itself moved since the earlier sessions; stand and fixture do not explain it."
+    sentence = "{sensors} itself moved since the earlier sessions, beyond what stand and fixture explain."
     advice = "Watch this sensor: repeat the session to confirm, and plan its adjustment or replacement."
 
     moves = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 1), (1, 1, 1, 1))

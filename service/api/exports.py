@@ -10,6 +10,7 @@ from fastapi import Response
 
 from service.records.history import HistoryPoint
 from service.records.unit import UnitSummary
+from service.words.verdict import unit_in_words
 
 TIME = pl.Datetime("us", "UTC")
 """Microseconds, as both databases keep them."""
@@ -26,6 +27,7 @@ FLEET_COLUMNS = {
     "reason": pl.String(),
     "worst_sensor": pl.String(), "worst_parameter": pl.String(), "margin": pl.Float64(),
     "diagnosis": pl.String(), "flags": pl.Int64(), "due": TIME, "lot": pl.String(),
+    "said": pl.String(),
 }  # fmt: skip
 FORMULA = r"^[=+\-@\t\r]"
 """How a cell begins that a spreadsheet would work out instead of showing."""
@@ -41,7 +43,7 @@ def history_table(points: Sequence[HistoryPoint]) -> pl.DataFrame:
 
 def fleet_table(units: Sequence[UnitSummary]) -> pl.DataFrame:
     """One row a unit."""
-    return _table([vars(unit) for unit in units], FLEET_COLUMNS)
+    return _table([vars(unit) | {"said": unit_in_words(unit)} for unit in units], FLEET_COLUMNS)
 
 
 def as_csv(table: pl.DataFrame, filename: str) -> Response:

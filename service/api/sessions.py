@@ -45,7 +45,7 @@ def upload_session(
     url = str(request.url_for("read_session", id=receipt.id))
     response.status_code = 201 if receipt.created else 200
     response.headers["Location"] = url
-    return ReceiptSchema(**vars(receipt), url=url)
+    return ReceiptSchema.model_validate({**vars(receipt), "url": url}, from_attributes=True)
 
 
 @router.get("", responses=errors(422))
@@ -67,13 +67,14 @@ def read_session(id: SessionId, store: Reading) -> SessionReportSchema:
     judged = [DecisionSchema.model_validate(decision) for decision in store.sessions.decisions(id)]
     together = [CommonMotionSchema.model_validate(motion) for motion in store.sessions.motions(id)]
     chain = traceability_of(store, session)
-    return SessionReportSchema(
+    own = {
         **vars(session),
-        decisions=judged,
-        common_motion=together,
-        stand_certificate_expired=chain.has_expired,
-        traceability=TraceabilitySchema.model_validate(chain),
-    )
+        "decisions": judged,
+        "common_motion": together,
+        "stand_certificate_expired": chain.has_expired,
+        "traceability": TraceabilitySchema.model_validate(chain),
+    }
+    return SessionReportSchema.model_validate(own, from_attributes=True)
 
 
 @router.get("/{id}/calibration", responses=errors(404, 422), response_model=CalibrationDocument)

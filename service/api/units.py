@@ -36,9 +36,15 @@ HISTORY_FORMATS = {"text/csv": {"schema": TABLE}, "application/vnd.apache.parque
 
 
 @router.get("", responses=errors(422))
-def list_units(store: Reading, window: WindowOf, verdict: WantedVerdict = None, text: WantedText = None) -> UnitPage:
+def list_units(
+    store: Reading,
+    window: WindowOf,
+    verdict: WantedVerdict = None,
+    text: WantedText = None,
+    reserved: Annotated[bool | None, Query(description="Only those whose verdict has a reservation, or none.")] = None,
+) -> UnitPage:
     """Units, worst first."""
-    found = store.fleet.units(FleetQuery(verdict, text, window.offset, window.limit))
+    found = store.fleet.units(FleetQuery(verdict, text, window.offset, window.limit, reserved))
     listed = [UnitSummarySchema.model_validate(unit) for unit in found]
     return UnitPage(units=listed, page=window.page, limit=window.limit, next_page=window.next_after(len(listed)))
 

@@ -82,7 +82,7 @@ def _structure(structure: Structure) -> str:
 
 
 def _gain(gain: Gain) -> str:
-    lines = [_scores(f"Predicting {gain.held_out} held out of the fit", gain.before, gain.after)]
+    lines = [_scores(f"Predicting {gain.held_out} held out of the estimation", gain.before, gain.after)]
     if gain.session is not None:
         started = gain.session.started_at or "no stated date"
         lines.append(_scores(f"Predicting the session before ({started})", gain.session.before, gain.session.after))

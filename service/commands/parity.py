@@ -15,7 +15,7 @@ from estimator.parity.results import Sight
 from service.commands.console import UNUSABLE, AsJson, print_json, problem_line, say, screen
 from service.ingest import read_upload
 from service.ingest.stream import open_recording
-from service.measures import in_words
+from service.measures import COVERAGE, in_words
 from service.words.in_service import found_in_words
 
 PARAMETERS = ("bias", "scale", "axis")
@@ -87,7 +87,7 @@ def _cells(kind: str, name: str, sight: Sight) -> tuple[str, str]:
     if sight.size is None or sight.sigma is None or sight.detectable is None:
         return "not seen", "—"
     moved = in_words(kind, name, sight.size, signed=name != "axis")
-    return f"{moved} ± {in_words(kind, name, sight.sigma)}", in_words(kind, name, sight.detectable)
+    return f"{moved} ± {in_words(kind, name, COVERAGE * sight.sigma)}", in_words(kind, name, sight.detectable)
 
 
 def _used(result: ParityResult) -> str:

@@ -13,6 +13,7 @@ from service.commands.console import DEFAULT_SERVER, AsJson, Out, Server, delive
 from service.commands.upload import coloured
 from service.measures import number
 from service.records.decision import Verdict
+from service.words.conditions import WITH_RESERVATION
 
 
 class Format(StrEnum):
@@ -75,9 +76,15 @@ def write_label(
 def _summary(condition: dict[str, Any]) -> str:
     """``12 units, 12 of them simulated: 1 Unfit, …``"""
     counts = {Verdict(name): count for name, count in condition["verdicts"].items() if count}
-    found = (f"{counts[verdict]} {coloured(verdict)}" for verdict in reversed(Verdict) if verdict in counts)
+    found = (_counted(verdict, counts[verdict], condition) for verdict in reversed(Verdict) if verdict in counts)
     simulated = f", {condition['simulated']} of them simulated" if condition["simulated"] else ""
     return f"{condition['units']} units{simulated}: {', '.join(found)}\n"
+
+
+def _counted(verdict: Verdict, count: int, condition: dict[str, Any]) -> str:
+    """``5 Fit (2 with reservation)``"""
+    reserved = condition["reserved"][verdict]
+    return f"{count} {coloured(verdict)}{f' ({reserved} {WITH_RESERVATION})' if reserved else ''}"
 
 
 def _table(units: list[dict[str, Any]]) -> Table:
@@ -88,7 +95,7 @@ def _table(units: list[dict[str, Any]]) -> Table:
         table.add_row(
             escape(unit["serial"]) + (" [dim](simulated)[/]" if unit["simulated"] else ""),
             escape(unit["unit_type"]),
-            coloured(unit["verdict"], unit["is_reference"]) if unit["verdict"] else "",
+            coloured(unit["verdict"], unit["is_reference"], unit["said"]) if unit["verdict"] else "",
             number(unit["margin"], 2),
             (unit["last_at"] or "")[:10],
             str(unit["sessions"]),

@@ -1,6 +1,7 @@
-"""A calibration as people read it: tables in µg, ppm, arcsec, °/h, and the quality of the fit in words."""
+"""A calibration as people read it: tables in µg, ppm, arcsec, °/h, and how model and readings agree in words."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from rich.columns import Columns
 from rich.console import Group, RenderableType
@@ -11,28 +12,29 @@ from rich.text import Text
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import CALIBRATIONS, CalibrationSession, Sensor
 from service.measures import COVERAGE, UNKNOWN, deviation_measure, in_measure, measured, number
-from service.words.coverage import coverage_in_words, noise_is_estimated
+from service.words.coverage import coverage_in_words
 from service.words.fit import fit_in_words
 from service.words.names import method_name
 
 UNSEEN = "not observable"
 """Stands for a value that the session does not show."""
 UNLIKELY = 0.001
-"""p-value of a fit below which it is shown as bad."""
+"""p-value of χ² below which it is shown as bad."""
 DOUBTFUL = 0.05
-"""p-value of a fit below which it is shown as doubtful."""
+"""p-value of χ² below which it is shown as doubtful."""
 
 
 def calibration_view(session: CalibrationSession, calibration: Calibration) -> RenderableType:
-    """The whole calibration of one session; uncertainties are one sigma, the stand's errors included."""
+    """The whole calibration of one session; ± is U, the stand's errors included."""
     return Group(_heading(session, calibration), _parameters(session, calibration), *_notes(calibration), Text(""))
 
 
 def _heading(session: CalibrationSession, calibration: Calibration) -> Text:
     place = f" on {session.stand.id}" if session.stand else ""
     when = f", {session.started_at}" if session.started_at else ""
+    coverage = coverage_in_words(calibration, COVERAGE)
     return Text.assemble(
-        (session.unit, "bold"), f"{when}{place}: {method_name(calibration.method)}; ± is one sigma, all sources"
+        (session.unit, "bold"), f"{when}{place}: {method_name(calibration.method)}; ± is U, {coverage}, all sources"
     )
 
 
@@ -65,7 +67,7 @@ def _cell(sensor: SensorCalibration, parameter: str, estimate: Estimate) -> str:
         return ""
     if estimate.value is None:
         return UNSEEN
-    return measured(estimate.value, estimate.sigma, deviation_measure(sensor.kind, parameter, estimate.value))
+    return measured(estimate.value, _expanded(estimate), deviation_measure(sensor.kind, parameter, estimate.value))
 
 
 def _table(*headings: str) -> Table:
@@ -79,7 +81,7 @@ def _numbers(declared: Sensor, sensor: SensorCalibration) -> Iterator[str]:
     off = _off_nominal(sensor.scale, declared.nominal_scale)
     for parameter, estimate in (("scale", off), ("bias", sensor.bias), ("quadratic", sensor.quadratic)):
         unit = deviation_measure(sensor.kind, parameter, estimate.value or 0.0)
-        yield UNSEEN if estimate.value is None else measured(estimate.value, estimate.sigma, unit)
+        yield UNSEEN if estimate.value is None else measured(estimate.value, _expanded(estimate), unit)
 
 
 def _axis(sensor: SensorCalibration) -> tuple[str, str]:
@@ -87,23 +89,27 @@ def _axis(sensor: SensorCalibration) -> tuple[str, str]:
         return UNSEEN, ""
     if sensor.axis_sigma is None:
         return " ".join(number(x, 6) for x in sensor.axis), UNKNOWN
-    unit = deviation_measure(sensor.kind, "axis", sensor.axis_sigma)
-    return " ".join(number(x, 6) for x in sensor.axis), f"{number(in_measure(sensor.axis_sigma, unit), 1)} {unit.label}"
+    expanded = sensor.factor("axis") * sensor.axis_sigma
+    unit = deviation_measure(sensor.kind, "axis", expanded)
+    return " ".join(number(x, 6) for x in sensor.axis), f"{number(in_measure(expanded, unit), 1)} {unit.label}"
+
+
+def _expanded(estimate: Estimate) -> float | None:
+    """U; None where nothing tells the noise."""
+    return None if estimate.sigma is None else estimate.factor() * estimate.sigma
 
 
 def _off_nominal(scale: Estimate, nominal: float) -> Estimate:
     """The scale factor relative to the nominal one."""
     if scale.value is None:
         return scale
-    return Estimate(scale.value / nominal - 1, None if scale.sigma is None else scale.sigma / nominal)
+    return replace(scale, value=scale.value / nominal - 1, sigma=None if scale.sigma is None else scale.sigma / nominal)
 
 
 def _notes(calibration: Calibration) -> Iterator[Text]:
-    """Sentences: how well the model fits, and what this session cannot see."""
+    """Sentences: how model and readings agree, and what this session cannot see."""
     fit = fit_in_words(calibration)
     yield Text(f"{fit.headline} {fit.detail}")
-    if noise_is_estimated(calibration):
-        yield Text(f"For U of about 95 % take {coverage_in_words(calibration, COVERAGE)}.")
     sensors: dict[str, list[str]] = {}
     for sensor in calibration.sensors:
         unseen = ", ".join(name for name, seen in sensor.observable.items() if not seen)

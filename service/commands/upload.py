@@ -28,13 +28,13 @@ def upload_files(files: Files, server: Server = DEFAULT_SERVER, as_json: AsJson 
 
 
 def _print_line(answer: dict[str, Any]) -> None:
-    """``BA-017  Fit  …``"""
-    verdict = coloured(answer["verdict"], answer["is_reference"])
+    """``BA-017  Fit, but the zero of A2 …  …``"""
+    verdict = coloured(answer["verdict"], answer["is_reference"], answer["said"])
     screen().print(f"[bold]{escape(answer['unit'])}[/]  {verdict}  {escape(answer['reason'])}")
 
 
-def coloured(word: str, is_reference: bool = False) -> str:
-    """A verdict as the pages word it, with their colour."""
+def coloured(word: str, is_reference: bool = False, said: str = "") -> str:
+    """A verdict as the pages word it, with their colour; ``said`` where it is told with its reservations."""
     verdict = Verdict(word)
     shown: Condition = condition_of(verdict, is_reference=is_reference)
-    return f"[{COLOURS[verdict]}]{shown.word}[/]"
+    return f"[{COLOURS[verdict]}]{escape(said or shown.word)}[/]"

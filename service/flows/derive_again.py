@@ -17,6 +17,7 @@ from service.flows.flagging.fold import settle_sessions
 from service.flows.flagging.settle import Occasion
 from service.flows.flagging.verdict import no_longer_overdue, tell_verdict, told_by
 from service.flows.refresh_outlook import refresh_outlook
+from service.flows.weigh import weigh_again
 from service.ingest import read_upload
 from service.judging.calibrate import Comparison
 from service.judging.epochs import Place, needs_judging, placed
@@ -88,6 +89,8 @@ def derive_again(store: Store, way: Deriving, serial: str, since: datetime, touc
         _judge(store, way, place, known)
     store.derivations.wait(p.session.id for p in later)
     undiagnosed = store.derivations.forget_diagnoses(unit, since, touched)
+    for place in now:
+        weigh_again(store, way.files, place.session.id)
     _sum_up(store, way, serial, touched)
     return Derived(tuple(p.session.id for p in now), len(later), undiagnosed)
 
@@ -112,6 +115,7 @@ def derive_batch(store: Store, way: Deriving, serial: str, most: int) -> int:
     waiting = tuple(p for p in places if p.session.basis == "")
     for place in waiting[:most]:
         _judge(store, way, place, known)
+        weigh_again(store, way.files, place.session.id)
     left = max(len(waiting) - most, 0)
     if not left:
         _sum_up(store, way, serial, ())

@@ -10,7 +10,6 @@ from dataclasses import dataclass, field, replace
 from datetime import datetime
 from threading import Lock
 
-from estimator.diagnosis import Diagnosis
 from estimator.diagnosis import diagnose as find_causes
 from estimator.errors import SessionError
 from estimator.results import COVERAGE
@@ -19,11 +18,10 @@ from service.errors import NotFoundError
 from service.flows.derive_again import Deriving
 from service.flows.flagging.diagnosis import flag_diagnosis
 from service.flows.question_session import question_diagnosed
+from service.flows.weigh import Weighed, weigh, weighing_of
 from service.ingest import read_upload
-from service.judging.judge import judge
-from service.judging.reference import reference_of
+from service.judging.reservations import UNCHECKED
 from service.log import log
-from service.records.decision import Verdict, nominal_factor_of
 from service.records.diagnosis import DiagnosisState, StoredDiagnosis, state_of
 from service.records.session import StoredSession
 from service.settings import VERSION
@@ -138,10 +136,10 @@ def _made(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
     try:
         return _found(storage, task, now)
     except SessionError as fault:
-        return _nothing_found(task, DiagnosisState.FAILED, cannot_be_diagnosed(fault), now)
+        return _failed(task, cannot_be_diagnosed(fault), now)
     except FAULTS as fault:
         log.error("diagnosis failed", session=task.session.id, estimator_version=VERSION, exc_info=fault)
-        return _nothing_found(task, DiagnosisState.FAILED, fault_of_the_program(task.session.id), now)
+        return _failed(task, fault_of_the_program(task.session.id), now)
 
 
 def _found(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
@@ -149,12 +147,22 @@ def _found(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
     session = _read(storage.files, task.session)
     found = find_causes(session, _comparable(storage.files, task, session))
     document = written(diagnosis_to_dict(found))
+    kept = read_diagnosis(document)
+    with storage.database.reading() as store:
+        by = weighing_of(store, task.session.id, session.block)
+    weighed = Weighed(None, ()) if kept is None else weigh(session, kept, by)
     return replace(
         _nothing_found(task, state_of(found), summary_of(found), now),
-        found=read_diagnosis(document),
+        found=kept,
         document=document,
-        verdict_after=_verdict_after(storage, task, session, found),
+        verdict_after=weighed.verdict_after,
+        reservations=weighed.reservations,
     )
+
+
+def _failed(task: Task, summary: str, now: datetime) -> StoredDiagnosis:
+    """Why there is none: the verdict was not checked."""
+    return replace(_nothing_found(task, DiagnosisState.FAILED, summary, now), reservations=UNCHECKED)
 
 
 def _nothing_found(task: Task, state: DiagnosisState, summary: str, now: datetime) -> StoredDiagnosis:
@@ -191,18 +199,3 @@ def _comparable(files: Files, task: Task, session: CalibrationSession) -> list[C
 
 def _sensors(session: CalibrationSession) -> list[tuple[str, str]]:
     return [(sensor.name, sensor.kind) for sensor in session.sensors]
-
-
-def _verdict_after(storage: Storage, task: Task, session: CalibrationSession, found: Diagnosis) -> Verdict | None:
-    """The verdict with the named causes in the model; None where none was named, or where nothing was judged."""
-    if not found.findings or task.session.is_reference:
-        return None
-    with storage.database.reading() as store:
-        unit = store.units.key(session.unit)
-        reference = reference_of(store, unit, session.block, session.programme, task.session.started_at).session
-        decisions = store.sessions.decisions(task.session.id)
-        if reference is None or not decisions:
-            return None
-        unit_type, known = store.unit_types.of_unit(session.unit), store.calibrations.get(reference)
-    factor = nominal_factor_of(decisions)
-    return judge(found.calibration, known, unit_type, factor).verdict

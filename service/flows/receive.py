@@ -67,10 +67,17 @@ def receive_all(reception: Reception, files: Sequence[SentFile], now: datetime) 
 
 
 def _as_diagnosed(reception: Reception, receipt: Receipt) -> Receipt:
-    """A diagnosis may have questioned the session."""
+    """A diagnosis may have questioned the session, or have something to say with its verdict."""
     with reception.storage.database.reading() as store:
         now = store.sessions.get(receipt.id)
-    return replace(receipt, verdict=now.verdict, reason=now.reason, is_reference=now.is_reference, state=now.state)
+    return replace(
+        receipt,
+        verdict=now.verdict,
+        reason=now.reason,
+        is_reference=now.is_reference,
+        reservations=now.reservations,
+        state=now.state,
+    )
 
 
 def deriving(reception: Reception, now: datetime) -> Deriving:
@@ -208,6 +215,7 @@ def _record(received: Received, new: Calibrated) -> StoredSession:
         simulated=received.simulated,
         revision=new.model.revision,
         stage=session.stage,
+        reservations=None,
     )
 
 
@@ -222,6 +230,7 @@ def _receipt(
         reason=record.reason,
         created=created,
         is_reference=record.is_reference,
+        reservations=record.reservations,
         state=record.state,
         undiagnosed=undiagnosed,
     )

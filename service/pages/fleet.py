@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from urllib.parse import urlencode
 
+from service.records.reservation import Reservations
 from service.records.stand import StandCondition
 from service.records.unit import FleetCondition, UnitSummary
 from service.views.standouts import Standout
@@ -49,6 +50,7 @@ class FleetRow:
     serial: str
     unit_type: str
     condition: Condition
+    reservations: Reservations
     reason: str
     worst: str
     margin: Margin | None
@@ -69,6 +71,8 @@ class Tile:
 
     condition: Condition
     count: int
+    reserved: int
+    """Of how many of them the verdict is said with a reservation."""
     chosen: bool
     url: str
 
@@ -117,7 +121,10 @@ def fleet_page(
     """One page of units, worst first; one unit more than fit on it says that there is a next page."""
     return FleetPage(
         view=view,
-        tiles=tuple(_tile(condition_of(v), n, view) for v, n in reversed(condition.verdicts.items())),
+        tiles=tuple(
+            _tile(condition_of(v), n, condition.reserved.get(v, 0), view)
+            for v, n in reversed(condition.verdicts.items())
+        ),
         rows=tuple(_row(unit, now) for unit in units[:PAGE_SIZE]),
         total=condition.units,
         more=len(units) > PAGE_SIZE,
@@ -129,9 +136,9 @@ def fleet_page(
     )
 
 
-def _tile(condition: Condition, count: int, view: FleetView) -> Tile:
+def _tile(condition: Condition, count: int, reserved: int, view: FleetView) -> Tile:
     chosen = view.condition == condition.key
-    return Tile(condition, count, chosen, view.url(condition="" if chosen else condition.key, page=1))
+    return Tile(condition, count, reserved, chosen, view.url(condition="" if chosen else condition.key, page=1))
 
 
 def flags_in_words(count: int) -> str:
@@ -150,6 +157,7 @@ def _row(unit: UnitSummary, now: datetime) -> FleetRow:
         serial=unit.serial,
         unit_type=unit.unit_type,
         condition=condition,
+        reservations=unit.reservations,
         reason=unit.reason,
         worst=worst_in_words(unit),
         margin=None if condition in (UNDECIDED, REFERENCE) else margin_of(unit.margin),

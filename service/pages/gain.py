@@ -147,19 +147,20 @@ def _moved(before: SensorCalibration, after: SensorCalibration) -> Moved:
 def _relative(before: Estimate, after: Estimate, kind: str) -> str:
     if before.value is None or after.value is None or after.sigma is None:
         return "–"
-    change, sigma = after.value / before.value - 1, after.sigma / abs(after.value)
-    return measured(change, sigma, deviation_measure(kind, "scale", max(abs(change), sigma)))
+    change, expanded = after.value / before.value - 1, after.factor() * after.sigma / abs(after.value)
+    return measured(change, expanded, deviation_measure(kind, "scale", max(abs(change), expanded)))
 
 
 def _change(before: Estimate, after: Estimate, kind: str) -> str:
     if before.value is None or after.value is None or after.sigma is None:
         return "–"
-    change = after.value - before.value
-    return measured(change, after.sigma, deviation_measure(kind, "bias", max(abs(change), after.sigma)))
+    change, expanded = after.value - before.value, after.factor() * after.sigma
+    return measured(change, expanded, deviation_measure(kind, "bias", max(abs(change), expanded)))
 
 
 def _turned(before: SensorCalibration, after: SensorCalibration) -> str:
     if before.axis is None or after.axis is None or after.axis_sigma is None:
         return "–"
     angle = float(np.linalg.norm(np.cross(before.axis, after.axis)))
-    return measured(angle, after.axis_sigma, deviation_measure(after.kind, "axis", max(angle, after.axis_sigma)))
+    expanded = after.factor("axis") * after.axis_sigma
+    return measured(angle, expanded, deviation_measure(after.kind, "axis", max(angle, expanded)))

@@ -10,8 +10,9 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from service.pages.assets import asset_url
-from service.words.conditions import CONDITIONS, REFERENCE
+from service.words.conditions import CONDITIONS, REFERENCE, RESERVED
 from service.words.names import day_of, heading, spaced
+from service.words.verdict import but
 
 TEMPLATES = Path(__file__).parent / "templates"
 
@@ -30,8 +31,10 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.globals.update(asset=asset_url, conditions=CONDITIONS, explained=(*CONDITIONS, REFERENCE))
-    environment.filters.update(day=day_of, heading=heading, spaced=spaced, embed=embed)
+    environment.globals.update(
+        asset=asset_url, conditions=CONDITIONS, explained=(*CONDITIONS, REFERENCE, RESERVED), reserved=RESERVED
+    )
+    environment.filters.update(but=but, day=day_of, heading=heading, spaced=spaced, embed=embed)
     return environment
 
 

@@ -25,6 +25,7 @@ from service.views.standouts import fleet_standouts
 from service.views.stands import stand_conditions
 from service.views.traceability import traceability_of
 from service.views.unit_report import unit_report
+from service.words.conditions import RESERVED
 
 HISTORY_LIMIT = 10_000
 """Points of one unit's history that a page draws, of its newest sessions: 400 of six sensors, 50 of 48."""
@@ -46,8 +47,9 @@ def show_fleet(
 ) -> HTMLResponse:
     """The fleet, worst unit first."""
     verdict = Verdict(condition) if condition in set(Verdict) else None
-    view = FleetView(q.strip(), verdict or "", page)
-    wanted = FleetQuery(verdict, view.text or None, (page - 1) * PAGE_SIZE, PAGE_SIZE + 1)
+    reserved = True if condition == RESERVED.key else None
+    view = FleetView(q.strip(), condition if verdict or reserved else "", page)
+    wanted = FleetQuery(verdict, view.text or None, (page - 1) * PAGE_SIZE, PAGE_SIZE + 1, reserved)
     shown = fleet_page(
         store.fleet.condition(),
         store.fleet.units(wanted),

@@ -1,4 +1,4 @@
-"""The page of one session: the verdict and why, the parameters behind it, and how well the model fits."""
+"""The page of one session: the verdict and why, the parameters behind it, and how model and readings agree."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -28,6 +28,7 @@ from service.pages.residual_table import ResidualTable, residual_table
 from service.records.decision import Decision, Verdict, nominal_factor_of
 from service.records.diagnosis import DiagnosisSummary
 from service.records.paper import Traceability
+from service.records.reservation import Reservations
 from service.records.session import ALL_PARAMETERS, SessionReport, StoredSession
 from service.records.state import RecordState
 from service.storage.parity_document import parity_from_dict
@@ -72,6 +73,7 @@ class SessionPage:
 
     session: StoredSession
     condition: Condition
+    reservations: Reservations
     parameters: tuple[str, ...]
     """Of every row's cells, in their order."""
     sensors: tuple[SensorRow, ...]
@@ -112,6 +114,7 @@ def session_page(
     return SessionPage(
         session=report.session,
         condition=condition_of(report.session.verdict, is_reference=report.session.is_reference),
+        reservations=report.session.reservations,
         parameters=parameters,
         sensors=tuple(_sensor(s, parameters, judged, coverage) for s in calibration.sensors),
         fit=fit_in_words(calibration) if parity is None else agreement_in_words(parity),

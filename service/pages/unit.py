@@ -15,7 +15,7 @@ from service.records.outlook import ParameterTrend, UnitOutlook
 from service.records.session import StoredSession
 from service.records.unit import UnitReport
 from service.views.found_and_left import FoundAndLeft
-from service.words.conditions import NOT_JUDGED, Condition, condition_of
+from service.words.conditions import NOT_JUDGED, Condition, condition_of, said_with
 from service.words.names import day_of, heading
 from service.words.outlook import NextCalibration, next_calibration
 
@@ -104,7 +104,7 @@ def unit_page(
         report=report,
         condition=condition_of(report.summary.verdict, is_reference=report.summary.is_reference),
         sections=tuple(_section(tracks, report.services, valid, trends, several=len(kinds) > 1) for tracks in groups),
-        sessions=tuple(SessionLine(s, condition_of(s.verdict, is_reference=s.is_reference)) for s in report.sessions),
+        sessions=tuple(SessionLine(s, _condition(s)) for s in report.sessions),
         reference=_reference(report),
         drawn=len({point.session for point in history}),
         flags=flag_cards(flags),
@@ -113,6 +113,11 @@ def unit_page(
         kinds=tuple(KINDS.items()),
         next=None if outlook is None else next_calibration(outlook),
     )
+
+
+def _condition(session: StoredSession) -> Condition:
+    plain = condition_of(session.verdict, is_reference=session.is_reference)
+    return said_with(plain, session.reservations)
 
 
 def _reference(report: UnitReport) -> str:

@@ -8,6 +8,7 @@ from service.errors import RefusedError
 from service.pages.diagnosis_line import DiagnosisLine, diagnosis_line
 from service.records.diagnosis import DiagnosisSummary
 from service.records.received import SentFile
+from service.records.reservation import Reservations
 from service.records.session import Receipt
 from service.words.conditions import Condition, condition_of
 
@@ -28,6 +29,11 @@ class Outcome:
         if self.receipt is None:
             return condition_of(None)
         return condition_of(self.receipt.verdict, is_reference=self.receipt.is_reference)
+
+    @property
+    def reservations(self) -> Reservations:
+        """What the verdict is said with."""
+        return () if self.receipt is None else self.receipt.reservations
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from estimator.diagnosis.results import Gain, Limit, NoiseScale, Structure
 from estimator.results import Calibration, Residuals
 from service.records.decision import Verdict
 from service.records.model import ModelRevision
+from service.records.reservation import Reservation
 from service.records.session import StoredSession
 
 
@@ -80,6 +81,8 @@ class StoredDiagnosis:
     """That the session would have with the named causes in the model; None where nothing was judged or named."""
     estimator_version: str
     created_at: datetime
+    reservations: tuple[Reservation, ...] = ()
+    """What the session's verdict is said with."""
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from datetime import datetime
 from estimator.health.common_motion import CommonMotion
 from estimator.results import Calibration
 from service.records.decision import Decision, Verdict
+from service.records.reservation import Reservations
 from service.records.state import RecordState, StateChange
 
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
@@ -41,6 +42,8 @@ class StoredSession:
     """The model revision that the calibration in force was made under; 0 is the baseline."""
     stage: str | None = None
     """``as-found`` before the unit was worked on, ``as-left`` after; None where neither was said."""
+    reservations: Reservations = ()
+    """What the verdict is said with."""
     state: RecordState = RecordState.ACCEPTED
     """Only an accepted session tells of its unit."""
     superseded_by: str | None = None
@@ -74,6 +77,8 @@ class Receipt:
     """False when the same bytes were already stored."""
     is_reference: bool
     """Whether later sessions are judged against this one."""
+    reservations: Reservations = None
+    """What the verdict is said with."""
     state: RecordState = RecordState.ACCEPTED
     undiagnosed: tuple[str, ...] = ()
     """Other sessions whose diagnosis is made again, because it looked at records that have changed."""

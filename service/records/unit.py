@@ -1,11 +1,12 @@
 """Units and their types with tolerances; the condition of one unit and of the fleet."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 
 from service.records.decision import Verdict
 from service.records.event import Service
 from service.records.paper import NOBODY, Customer
+from service.records.reservation import Reservations
 from service.records.session import StoredSession
 from service.records.state import StateChange
 
@@ -69,6 +70,8 @@ class UnitSummary:
     """Of the next calibration."""
     lot: str | None = None
     """Of production."""
+    reservations: Reservations = ()
+    """What the verdict is said with."""
     customer: Customer = NOBODY
     """For whom it is calibrated."""
 
@@ -83,6 +86,8 @@ class FleetCondition:
     simulated: int
     flags: int = 0
     """How many are open on all units together."""
+    reserved: dict[Verdict, int] = field(default_factory=dict)
+    """Of how many units with a verdict it is said with a reservation."""
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from service.charts.fleet import fleet_chart
 from service.measures import COVERAGE, deviation_measure, measured, signed
 from service.records.decision import Verdict
 from service.records.outlook import ParameterTrend, UnitOutlook
-from service.records.unit import UnitSummary
+from service.records.unit import FleetCondition, UnitSummary
 from service.reports.fleet_sections import Line, Section, line_of, sections_of
 from service.reports.pictures import picture
 from service.reports.typeset import typeset
@@ -35,6 +35,8 @@ class Count:
 
     condition: Condition
     count: int
+    reserved: int
+    """Of how many of them the verdict is said with a reservation."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +81,7 @@ def fleet_paper(store: Store, report: FleetReport) -> FleetPaper:
         day=day_of(report.at),
         total=report.condition.units,
         simulated=report.condition.simulated,
-        counts=tuple(Count(condition_of(v), n) for v, n in reversed(report.condition.verdicts.items())),
+        counts=_counts(report.condition),
         chart=picture(chart, chart.panels[0], WIDTH) if judged else "",
         overdue=tuple(Notice(o.serial, _since(o, report)) for o in overdue[:MOST_NOTICES]),
         more_overdue=max(0, len(overdue) - MOST_NOTICES),
@@ -89,6 +91,12 @@ def fleet_paper(store: Store, report: FleetReport) -> FleetPaper:
         not_fit=len(not_fit),
         software=report.software,
     )
+
+
+def _counts(fleet: FleetCondition) -> tuple[Count, ...]:
+    """Worst first."""
+    found = reversed(fleet.verdicts.items())
+    return tuple(Count(condition_of(verdict), count, fleet.reserved.get(verdict, 0)) for verdict, count in found)
 
 
 def _since(outlook: UnitOutlook, report: FleetReport) -> str:

@@ -16,6 +16,7 @@ from service.reports.pictures import picture
 from service.storage.store import Store
 from service.words.conditions import Condition, condition_of
 from service.words.names import day_of
+from service.words.verdict import but
 
 MOST_MOVED = 8
 """Parameters of one unit that are listed."""
@@ -31,6 +32,8 @@ class Line:
     unit: str
     unit_type: str
     condition: Condition
+    but: str
+    """What the verdict is said with; empty where it is plain."""
     worst: str
     used: str
     """Share of the tolerance, uncertainty included."""
@@ -60,6 +63,7 @@ def line_of(unit: UnitSummary) -> Line:
         unit=unit.serial,
         unit_type=unit.unit_type,
         condition=condition_of(unit.verdict, is_reference=unit.is_reference),
+        but=but(unit.reservations),
         worst=f"{unit.worst_sensor or ''} {unit.worst_parameter or ''}".strip(),
         used="" if unit.margin is None else f"{number(100 * (1 - unit.margin), 0)} %",
         last="" if unit.last_at is None else day_of(unit.last_at),

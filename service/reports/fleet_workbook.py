@@ -11,20 +11,21 @@ from service.records.unit import UnitSummary
 from service.reports.sheets import Cell, Column, Kind, Workbook
 from service.storage.store import Store
 from service.views.fleet_report import FleetReport
-from service.words.conditions import condition_of
+from service.words.conditions import condition_of, said_with
+from service.words.verdict import unit_in_words
 
 MOST_HISTORY_ROWS = 30_000
 """Rows of the sheet of histories; the newest sessions of every unit share them alike."""
 
 FLEET = (
-    Column("Unit", width=16), Column("Type", width=22), Column("Condition", width=15),
-    Column("Verdict", Kind.VERDICT, 15), Column("Worst sensor"), Column("Worst parameter"),
+    Column("Unit", width=16), Column("Type", width=22), Column("Condition", Kind.VERDICT, 24),
+    Column("Worst sensor"), Column("Worst parameter"),
     Column("Tolerance used, with U", Kind.SHARE, 12), Column("Margin to tolerance", Kind.SHARE, 12),
     Column("Last session, UTC", Kind.TIME, 17), Column("Next calibration due", Kind.DATE, 13),
     Column("Overdue", width=9),
     Column("Sessions", Kind.NUMBER, 9), Column("Open flags", Kind.NUMBER, 9), Column("Simulated", width=10),
     Column("Why", width=60), Column("Why due then", width=50), Column("What the simulation gets wrong", width=60),
-    Column("Session", width=23),
+    Column("Session", width=23), Column("Verdict in words", width=60),
 )  # fmt: skip
 PARAMETERS = (
     Column("Unit", width=16), Column("Session", width=23), Column("Sensor", width=9), Column("Kind"),
@@ -66,12 +67,14 @@ def _sessions_shown(store: Store) -> int:
 
 def _fleet_row(unit: UnitSummary, outlook: UnitOutlook | None) -> tuple[Cell, ...]:
     condition = condition_of(unit.verdict, is_reference=unit.is_reference)
+    word = said_with(condition, unit.reservations).word
     return (
-        unit.serial, unit.unit_type, condition.word, condition.formal, unit.worst_sensor, unit.worst_parameter,
+        unit.serial, unit.unit_type, word, unit.worst_sensor, unit.worst_parameter,
         None if unit.margin is None else 1 - unit.margin, unit.margin, unit.last_at,
         None if outlook is None else outlook.due, None if outlook is None else outlook.overdue,
         unit.sessions, unit.flags, unit.simulated,
         unit.reason, None if outlook is None else outlook.reason, unit.diagnosis, unit.last_session,
+        unit_in_words(unit),
     )  # fmt: skip
 
 

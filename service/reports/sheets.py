@@ -55,7 +55,7 @@ class Workbook:
         self._head = self._book.add_format({"bold": True, "bottom": 1, "text_wrap": True, "valign": "top"})
         self._formats: dict[Kind, Format] = {kind: self._book.add_format({"num_format": kind.value}) for kind in Kind}
         self._quoted = self._book.add_format({"quote_prefix": True})
-        self._tones = {c.formal: self._tone(c.key) for c in (*CONDITIONS, REFERENCE)}
+        self._tones = {word: self._tone(c.key) for c in (*CONDITIONS, REFERENCE) for word in (c.formal, c.word)}
 
     def _tone(self, key: str) -> Format:
         return self._book.add_format({"font_color": "#ffffff", "bg_color": PALETTE[key]})
@@ -89,11 +89,12 @@ class Workbook:
                 sheet.write_string(row, place, cell[:LONGEST_TEXT], look)
 
     def _colour(self, sheet: Worksheet, columns: Sequence[Column], last: int) -> None:
-        """Verdicts in their colours, as rules of the sheet: they follow when somebody sorts or edits."""
+        """Verdicts in their colours, as rules of the sheet: they follow when somebody sorts or edits. No word of one
+        begins as another's does, and what is added to it, a reservation, changes no colour."""
         for place, column in enumerate(columns):
             if column.kind is Kind.VERDICT and last:
-                for formal, tone in self._tones.items():
-                    rule = {"type": "cell", "criteria": "==", "value": f'"{formal}"', "format": tone}
+                for word, tone in self._tones.items():
+                    rule = {"type": "text", "criteria": "begins with", "value": word, "format": tone}
                     sheet.conditional_format(1, place, last, place, rule)
 
     def close(self) -> None:

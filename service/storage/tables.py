@@ -230,6 +230,8 @@ class DiagnosisRow(Base):
     verdict_after: Mapped[str | None] = mapped_column(String(20))
     estimator_version: Mapped[str] = mapped_column(String(40))
     created_at: Mapped[datetime]
+    reservations: Mapped[list[Any] | None] = mapped_column(JSON(none_as_null=True))
+    """NULL where there are none, so that units with one are found."""
     tells: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
 
 

@@ -7,6 +7,7 @@ from estimator.session import CALIBRATIONS
 from service.records.decision import Verdict
 from service.records.flag import Flag, Matter
 from service.records.session import StoredSession
+from service.records.state import RecordState
 from service.records.unit import UnitReport
 from service.records.usable import Usable
 from service.storage.store import Store
@@ -50,14 +51,19 @@ def _last_service(report: UnitReport, now: datetime) -> datetime | None:
 def _latest_judged(report: UnitReport, now: datetime) -> StoredSession | None:
     """The latest session that was held against a reference, since the last service."""
     since = _last_service(report, now)
-    judged = (s for s in report.sessions if not s.is_reference and (since is None or s.started_at >= since))
-    return next(judged, None)
+    return next((s for s in _accepted(report, since) if not s.is_reference), None)
 
 
 def _correction(report: UnitReport, since: datetime | None) -> str | None:
     """The latest calibration of every sensor since the last service."""
-    own = (s for s in report.sessions if s.programme in CALIBRATIONS and (since is None or s.started_at >= since))
-    return next((session.id for session in own), None)
+    return next((s.id for s in _accepted(report, since) if s.programme in CALIBRATIONS), None)
+
+
+def _accepted(report: UnitReport, since: datetime | None) -> Iterator[StoredSession]:
+    """Sessions that count since a service, the latest first."""
+    for session in report.sessions:
+        if session.state is RecordState.ACCEPTED and (since is None or session.started_at >= since):
+            yield session
 
 
 def _against(
@@ -101,8 +107,9 @@ def _reservations(store: Store, session: StoredSession | None, flags: tuple[Flag
         chain = traceability_of(store, session)
         if chain.has_expired:
             yield chain.text
-        if store.diagnoses.summary(session.id) is None:
+        if session.reservations is None:
             yield words.on(words.NOT_DIAGNOSED, session.started_at)
+        yield from (words.reserved(one) for one in session.reservations or ())
     yield from (words.flagged(flag) for flag in flags if flag.matter not in (*FORBIDDING, Matter.OVERDUE))
 
 

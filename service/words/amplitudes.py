@@ -6,7 +6,7 @@ from math import isfinite
 
 from estimator.causes import find
 from estimator.diagnosis import Finding
-from service.measures import THIN, measured, number
+from service.measures import COVERAGE, THIN, measured, number
 from service.words.amplitude_measures import amplitude_measure
 
 NUMBERED = re.compile(r" \d+$")
@@ -14,16 +14,17 @@ NUMBERED = re.compile(r" \d+$")
 
 
 def amplitudes_of(finding: Finding) -> Iterator[str]:
-    """Every amplitude with its standard uncertainty; named by sensor where several share the cause."""
+    """Every amplitude ± U; named by sensor where several share the cause."""
     each = max(1, len(finding.amplitude) // max(1, len(finding.sensors)))
     stated = zip(finding.amplitude, finding.sigma, finding.units, strict=False)
     for k, (value, sigma, si_unit) in enumerate(stated):
         if not _is_stated(value) and not _is_stated(sigma):
             continue
-        largest = max(abs(x) if isfinite(x) else 0.0 for x in (value, sigma))
+        expanded = COVERAGE * sigma
+        largest = max(abs(x) if isfinite(x) else 0.0 for x in (value, expanded))
         who = f"{finding.sensors[k // each]}: " if len(finding.sensors) > 1 else ""
         which = f"{_part(finding.cause, k % each)} " if each > 1 else ""
-        yield f"{who}{which}{measured(value, sigma, amplitude_measure(finding.cause, si_unit, largest))}"
+        yield f"{who}{which}{measured(value, expanded, amplitude_measure(finding.cause, si_unit, largest))}"
 
 
 def _is_stated(value: float) -> bool:

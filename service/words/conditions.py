@@ -1,8 +1,9 @@
 """A verdict in words, colour and shape: the same three everywhere."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from service.records.decision import Verdict
+from service.records.reservation import Reservations
 
 
 @dataclass(frozen=True)
@@ -17,14 +18,18 @@ class Condition:
     shape: str
     """The mark in charts (Vega's name), the same as the icon's outline."""
     meaning: str
+    reserved: bool = False
+    """Whether the verdict is said with a reservation; the mark beside it says so too."""
 
     @property
     def rank(self) -> int:
         """Place in the order of attention, 0 first; what no rule judged comes last."""
-        return CONDITIONS.index(self) if self in CONDITIONS else len(CONDITIONS)
+        return RANKS.get(self.key, len(CONDITIONS))
 
 
-UNFIT = Condition("fail", "Unfit", "fail", "square", "Out of tolerance, beyond doubt.")
+UNFIT = Condition(
+    "fail", "Unfit", "fail", "square", "Out of tolerance, by more than the uncertainty of the measurement."
+)
 PROBABLY_UNFIT = Condition(
     "conditional-fail", "Probably unfit", "conditional fail", "diamond",
     "Out of tolerance, but by less than the uncertainty of the measurement.",
@@ -37,7 +42,7 @@ PROBABLY_FIT = Condition(
     "conditional-pass", "Probably fit", "conditional pass", "triangle-up",
     "Within tolerance, but closer to it than the uncertainty of the measurement.",
 )  # fmt: skip
-FIT = Condition("pass", "Fit", "pass", "circle", "Within tolerance, beyond doubt.")
+FIT = Condition("pass", "Fit", "pass", "circle", "Within tolerance, by more than the uncertainty of the measurement.")
 REFERENCE = Condition(
     "reference", "Reference set", "reference", "triangle-right",
     "The session that later ones are judged against; there was nothing to judge it by.",
@@ -47,6 +52,14 @@ NOT_JUDGED = Condition("none", "Not judged", "not judged", "circle", "No toleran
 
 CONDITIONS = (UNFIT, PROBABLY_UNFIT, UNDECIDED, PROBABLY_FIT, FIT)
 """Worst first, as they are listed."""
+RANKS = {condition.key: rank for rank, condition in enumerate(CONDITIONS)}
+"""Place by key."""
+WITH_RESERVATION = "with reservation"
+"""What is added to the word of a verdict that something speaks against."""
+RESERVED = Condition(
+    "reserved", "With reservation", WITH_RESERVATION, "stroke",
+    "Something that was found about the session speaks against taking the verdict as it stands; it says what.",
+)  # fmt: skip
 
 _BY_VERDICT = {
     Verdict.FAIL: UNFIT,
@@ -62,3 +75,10 @@ def condition_of(verdict: Verdict | None, *, is_reference: bool = False) -> Cond
     if is_reference and verdict is Verdict.UNDECIDABLE:
         return REFERENCE
     return NOT_MEASURED if verdict is None else _BY_VERDICT[verdict]
+
+
+def said_with(condition: Condition, reservations: Reservations) -> Condition:
+    """The same verdict, marked where it is said with a reservation: ``Fit, with reservation``."""
+    if not reservations:
+        return condition
+    return replace(condition, word=f"{condition.word}, {WITH_RESERVATION}", reserved=True)

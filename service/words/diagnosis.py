@@ -9,7 +9,7 @@ from estimator.errors import SessionError
 from estimator.results import Calibration
 from service.records.diagnosis import DiagnosisState
 from service.words.advice import too_few
-from service.words.causes import ONE_NOT_KNOWN, at_once_with, is_lone, what_is_wrong
+from service.words.causes import ONE_NOT_KNOWN, at_once_with, is_level, is_lone, what_is_wrong
 from service.words.noise_claims import but_wrong_errors, wrong_errors
 from service.words.structures import UNEXPLAINED, headline_of, told, what_to_do_about
 
@@ -35,13 +35,14 @@ RESTATE = (
     "correct the standard errors that it states."
 )
 CHOOSE = "This session cannot distinguish these causes. Take the measurement that can, before you act on one of them."
+RULE_OUT = "This session does not rule the less likely causes out. Take the measurement that would, before you act."
 REPEAT = (
-    f"One known cause fits, and {ONE_NOT_KNOWN} would fit as well. Repeat the session before you act: if the name is "
-    "right, it comes back."
+    f"One known cause explains it, and {ONE_NOT_KNOWN} would as well. Repeat the session before you act: if the "
+    "name is right, it comes back."
 )
 REPEAT_BOTH = (
-    f"Two causes at once on one sensor are rare, and {ONE_NOT_KNOWN} would fit as well. Repeat the session before you "
-    "act: if the names are right, both come back."
+    f"Two causes at once on one sensor are rare, and {ONE_NOT_KNOWN} would explain it as well. Repeat the session "
+    "before you act: if the names are right, both come back."
 )
 
 
@@ -134,4 +135,6 @@ def _about(finding: Finding, findings: Sequence[Finding]) -> str:
         return finding.advice
     if at_once_with(finding, findings):
         return REPEAT_BOTH
-    return REPEAT if is_lone(finding) else CHOOSE
+    if is_lone(finding):
+        return REPEAT
+    return CHOOSE if is_level(finding) else RULE_OUT

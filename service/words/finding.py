@@ -11,7 +11,7 @@ from estimator.diagnosis.results import ParitySplit
 from service.measures import HARD, number
 from service.records.model import ModelRevision
 from service.words.amplitudes import amplitudes_of, shape_of
-from service.words.causes import cause_name, is_lone, what_is_wrong
+from service.words.causes import cause_name, is_level, is_lone, what_is_wrong
 from service.words.rivals import Bar, Choice, choices_of, ranking_of
 
 SURE = 1e-12
@@ -30,8 +30,10 @@ class FindingView:
     statement: str
     """What is wrong, or the choice that cannot be made."""
     sentence: str
-    """What is wrong if it is the first of several equal causes."""
+    """What is wrong if it is the first of several causes."""
     doubtful: bool
+    level: bool
+    """Whether its several causes are about equally likely."""
     lone: bool
     """Whether it is the only known cause that fits, beside one that is not in the catalogue."""
     advice: str
@@ -69,6 +71,7 @@ def finding_view(
         statement=what_is_wrong(finding, findings),
         sentence=finding.sentence,
         doubtful=bool(finding.alternatives),
+        level=is_level(finding),
         lone=is_lone(finding),
         advice=finding.advice,
         amplitudes=tuple(amplitudes_of(finding)),

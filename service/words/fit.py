@@ -1,4 +1,4 @@
-"""How well the model explains the readings, in words."""
+"""How model and readings agree, in words. What fits or does not is a unit, so no other thing is said to."""
 
 from dataclasses import dataclass
 from math import isfinite, sqrt
@@ -10,7 +10,7 @@ from service.words.advice import too_few, what_to_add
 UNLIKELY = 0.001
 """Probability of χ² below which the model does not explain the readings: the calibration's own bound."""
 DOUBTFUL = 0.05
-"""Probability of χ² below which a fit is unusual: one sound session in twenty."""
+"""Probability of χ² below which the agreement is unusual: one sound session in twenty."""
 TOO_GOOD = 0.999
 """Probability of χ² above which the noise must have been overstated."""
 SMALLEST = 1e-4
@@ -19,7 +19,7 @@ SMALLEST = 1e-4
 
 @dataclass(frozen=True)
 class FitWords:
-    """How well the model fits, for people."""
+    """How model and readings agree, for people."""
 
     headline: str
     detail: str
@@ -57,9 +57,9 @@ def _headline(fit: Fit) -> str:
     if fit.p_value < UNLIKELY:
         return "The readings scatter more than the stated noise allows."
     if fit.p_value < DOUBTFUL:
-        return "The model fits, but the residuals are larger than usual."
+        return "The model agrees with the readings, but the residuals are larger than usual."
     if fit.p_value > TOO_GOOD:
-        return "The model fits; the stated noise looks too large."
+        return "The model agrees with the readings; the stated noise looks too large."
     return "The model explains the readings within the stated noise."
 
 
@@ -79,7 +79,7 @@ def _warnings(fit: Fit) -> list[str]:
             "noise cannot explain the residuals. Look for structure in them."
         )
     if not fit.converged:
-        found.append(f"The fit did not settle within {fit.iterations} iterations: do not rely on these numbers.")
+        found.append(f"The estimation did not settle within {fit.iterations} iterations: do not rely on these numbers.")
     return found
 
 

@@ -2,7 +2,7 @@
 
 from estimator.parity import ParityResult
 from estimator.parity.results import SEVERAL, Candidate
-from service.measures import in_words, number
+from service.measures import COVERAGE, in_words, number
 from service.records.decision import Decision, Verdict
 from service.words.names import PARAMETER_NAMES
 from service.words.verdict import NOTHING_JUDGED
@@ -86,7 +86,7 @@ def _moved(candidate: Candidate, kind: str) -> str:
         size = sum(turn**2 for turn in candidate.amplitude) ** 0.5
     moved = in_words(kind, candidate.kind, size, signed=candidate.kind != "axis")
     sigma = max(candidate.sigma)
-    return f"{PARAMETER_NAMES[candidate.kind]} {moved} (U {in_words(kind, candidate.kind, 2 * sigma)})"
+    return f"{PARAMETER_NAMES[candidate.kind]} {moved} (U {in_words(kind, candidate.kind, COVERAGE * sigma)})"
 
 
 def _limit(unseen: list[Decision], result: ParityResult) -> str:

@@ -45,11 +45,11 @@ def _together(motion: CommonMotion, coverage: float, whose: str) -> str:
         size = measured(motion.size, coverage * motion.sigma, deviation_measure(motion.kind, "axis", motion.size))
         return (
             f"The whole block{whose} turned by {size} about {_about(motion)} since the reference: "
-            "mounting or stand, not the sensors."
+            "that is of mounting or stand."
         )
     size = signed(motion.size, coverage * motion.sigma, deviation_measure(motion.kind, "scale", motion.size))
     cause = "gravity or the stand's elevation" if motion.kind == "accelerometer" else "the stand or its clock"
-    return f"All scale factors{whose} changed together by {size} since the reference: {cause}, not the sensors."
+    return f"All scale factors{whose} changed together by {size} since the reference: that is of {cause}."
 
 
 def _about(motion: CommonMotion) -> str:
@@ -68,9 +68,9 @@ def _alone(motion: CommonMotion) -> str:
     what = "input axis" if motion.quantity == AXES else "scale factor"
     *others, last = motion.left_out
     if not others:
-        return f" The {what} of {last} moved on its own."
+        return f" Beside that, the {what} of {last} moved on its own."
     several = "input axes" if motion.quantity == AXES else "scale factors"
-    return f" The {several} of {', '.join(others)} and {last} moved on their own."
+    return f" Beside that, the {several} of {', '.join(others)} and {last} moved on their own."
 
 
 def _undivided(motion: CommonMotion, whose: str) -> str:

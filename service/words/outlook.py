@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from datetime import timedelta
 from math import floor, log10
 
-from service.measures import HARD, THIN, Measure, deviation_measure, in_words, signed
+from service.measures import COVERAGE, HARD, THIN, Measure, deviation_measure, in_words, signed
 from service.records.outlook import ParameterTrend, UnitOutlook
 from service.words.names import PARAMETER_NAMES, day_of
 
@@ -82,7 +82,7 @@ def _is_said(trend: ParameterTrend, judged: int) -> bool:
 
 def _wandered(trend: ParameterTrend) -> str:
     measure = deviation_measure(trend.kind, trend.parameter, abs(trend.level))
-    moved = signed(trend.level, 2 * trend.level_sigma, measure)
+    moved = signed(trend.level, COVERAGE * trend.level_sigma, measure)
     allowed = in_words(trend.kind, trend.parameter, trend.tolerance)
     return f"{_place(trend)} has moved by {moved}, at no steady rate; {allowed} are allowed."
 
@@ -90,7 +90,7 @@ def _wandered(trend: ParameterTrend) -> str:
 def _drift(trend: ParameterTrend) -> str:
     measure = deviation_measure(trend.kind, trend.parameter, abs(trend.rate_per_year))
     a_year = Measure(f"{measure.label} a year", measure.factor)
-    rate = signed(trend.rate_per_year, 2 * trend.rate_sigma, a_year)
+    rate = signed(trend.rate_per_year, COVERAGE * trend.rate_sigma, a_year)
     return f"{_place(trend)} drifts by {rate}; {in_words(trend.kind, trend.parameter, trend.tolerance)} are allowed."
 
 

@@ -1,4 +1,4 @@
-"""What else a finding could be: its equal alternatives, how to distinguish them, and the ranking of all causes."""
+"""What else a finding could be: its alternatives, how to distinguish them, and the ranking of all causes."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -6,12 +6,10 @@ from dataclasses import dataclass
 from estimator.diagnosis import Finding
 from estimator.diagnosis.results import Separation
 from service.measures import HARD, number
-from service.words.causes import UNKNOWN_CAUSE, cause_on
+from service.words.causes import SHOWN_SHARE, UNKNOWN_CAUSE, cause_on, percent, share_of
 
 DISTINGUISHED = 3.0
 """Expected separation, standard errors, below which a measurement would not help: the estimator's own bound."""
-SHOWN_SHARE = 5e-4
-"""Share of probability that is still shown: what rounds to a tenth of a per cent."""
 ALWAYS_SHOWN = 3
 """Lines of the ranking that are shown however small their share."""
 
@@ -44,14 +42,14 @@ class Bar:
 
 
 def choices_of(finding: Finding) -> Iterator[Choice]:
-    """The named cause and its alternatives, as equals."""
+    """The named cause and its alternatives."""
     apart = {separation.cause: separation for separation in finding.separations}
     for name in (finding.cause, *finding.alternatives) if finding.alternatives else ():
         if name == UNKNOWN_CAUSE:
             yield Choice(name, cause_on(name, finding.sensors), "–", "", IF_IT_COMES_BACK)
             continue
-        share = sum(rival.probability for rival in finding.ranking if rival.cause == name)
-        yield Choice(name, cause_on(name, finding.sensors), _percent(share), *_apart(apart.get(name)))
+        share = share_of(name, finding)
+        yield Choice(name, cause_on(name, finding.sensors), share, *_apart(apart.get(name)))
 
 
 def _apart(separation: Separation | None) -> tuple[str, str]:
@@ -73,10 +71,4 @@ def ranking_of(finding: Finding) -> Iterator[Bar]:
     for place, rival in enumerate(finding.ranking):
         if place < ALWAYS_SHOWN or rival.probability > SHOWN_SHARE:
             name = cause_on(rival.cause, rival.sensors)
-            yield Bar(name, _percent(rival.probability), 100 * rival.probability)
-
-
-def _percent(share: float) -> str:
-    if share > 1 - SHOWN_SHARE:
-        return f"over 99.9{HARD}%"
-    return f"{number(100 * share, 1)}{HARD}%" if share > SHOWN_SHARE else f"under 0.1{HARD}%"
+            yield Bar(name, percent(rival.probability), 100 * rival.probability)

@@ -3,6 +3,7 @@
 from datetime import datetime
 
 from service.records.flag import Flag
+from service.records.reservation import Reservation
 from service.words.names import day_of
 
 YES = "Fit by its session of {day}, and not due before {due}."
@@ -27,6 +28,11 @@ NOT_DIAGNOSED = "The session of {day} is not diagnosed yet: ask again in a minut
 def flagged(flag: Flag) -> str:
     """An open flag."""
     return FLAGGED.format(id=flag.id, summary=flag.summary)
+
+
+def reserved(one: Reservation) -> str:
+    """What a verdict is said with, as a sentence of its own."""
+    return f"{one.text[0].upper()}{one.text[1:]}: {one.advice}."
 
 
 def on(sentence: str, at: datetime, **more: str) -> str:

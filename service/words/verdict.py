@@ -1,15 +1,52 @@
 """Why a session's verdict is what it is, in one sentence that a technician understands."""
 
+from collections.abc import Sequence
+
 from estimator.results import Calibration
 from service.measures import in_words
 from service.records.decision import Decision, Verdict, worst_of
+from service.records.reservation import Doubt, Reservation, Reservations
+from service.records.unit import UnitSummary
 from service.words.advice import left_open
+from service.words.conditions import Condition, condition_of
 from service.words.names import PARAMETER_NAMES
 
 FIRST_SESSION = "First session of this unit: it is now the reference that later sessions are judged against."
 NEW_EPOCH = "First session after a service: it is now the reference that later sessions are judged against."
+STILL_LOOKING = "; causes are still being looked for"
+MOST_TOLD = 2
+"""Reservations that a verdict is said with before the rest are counted: more are no longer read in one breath."""
 NOTHING_JUDGED = "Nothing could be judged: no parameter of this session has a tolerance."
-ALL_PASS = "Every parameter is within its tolerance, beyond doubt; closest to it: {closest}."
+ALL_PASS = "Every parameter is within its tolerance by more than U; closest to it: {closest}."
+
+
+def verdict_in_words(condition: Condition, reservations: Reservations) -> str:
+    """A verdict as it is said wherever it stands: ``Fit, but the zero of A2 jumps once: repeat the session``."""
+    return f"{condition.word}{but(reservations)}"
+
+
+def unit_in_words(unit: UnitSummary) -> str:
+    """The verdict of a unit's latest session, as it is said."""
+    return verdict_in_words(condition_of(unit.verdict, is_reference=unit.is_reference), unit.reservations)
+
+
+def but(reservations: Reservations) -> str:
+    """What follows a verdict's word: nothing where it is plain."""
+    if reservations is None:
+        return STILL_LOOKING
+    if not reservations:
+        return ""
+    told, more = reservations[:MOST_TOLD], len(reservations) - MOST_TOLD
+    rest = f"; and {more} more" if more > 0 else ""
+    return f", but {'; and '.join(one.text for one in told)}{rest}: {' and '.join(_advice(told))}"
+
+
+def _advice(told: Sequence[Reservation]) -> tuple[str, ...]:
+    """What to do, once, and not what other advice says already; a wrong file is put right before anything else."""
+    if any(one.kind is Doubt.RECORD for one in told):
+        told = [one for one in told if one.kind is Doubt.RECORD]
+    advice = tuple(dict.fromkeys(one.advice for one in told))
+    return tuple(one for one in advice if not any(one in other for other in advice if other != one))
 
 
 def first_in_words(calibration: Calibration, *, after_service: bool) -> str:

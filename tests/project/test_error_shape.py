@@ -12,7 +12,7 @@ from tests.databases import one_engine
 from tests.serving import http_client
 
 EXAMPLES = {"serial": "BA-017", "id": "3f9a0c5be1d24786aa10", "name": "hex"}
-NUMBERED = ("/api/v1/flags/", "/api/v1/models/", "/api/v1/notes/", "/api/v1/webhooks/")
+NUMBERED = ("/api/v1/flags/", "/api/v1/models/", "/api/v1/notes/", "/api/v1/services/", "/api/v1/webhooks/")
 """Where the id is a number."""
 NEEDS_NO_DATABASE = {"/healthz", "/metrics"}
 QUERIES = {"/api/v1/plan": {"unit_type": "RA-6"}}

@@ -7,6 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from pydantic.config import JsonDict
 
 from service.api.schemas.papers import TraceabilitySchema
+from service.api.schemas.reservations import SaidVerdict
 from service.records.decision import Verdict
 from service.records.state import RecordState
 
@@ -17,12 +18,14 @@ RECEIPT_EXAMPLE: JsonDict = {
     "reason": "A3 bias moved +62 µg (U 8.1 µg) beyond the tolerance of 50 µg.",
     "created": True,
     "is_reference": False,
+    "reservations": [],
+    "said": "Unfit",
     "state": "accepted",
     "url": "http://127.0.0.1:8000/api/v1/sessions/3f9a0c5be1d24786aa10",
 }
 
 
-class ReceiptSchema(BaseModel):
+class ReceiptSchema(SaidVerdict):
     """The answer to an upload."""
 
     model_config = ConfigDict(from_attributes=True, json_schema_extra={"example": RECEIPT_EXAMPLE})
@@ -39,7 +42,7 @@ class ReceiptSchema(BaseModel):
     url: str = Field(description="Where the session can be read.")
 
 
-class SessionSchema(BaseModel):
+class SessionSchema(SaidVerdict):
     """One stored session."""
 
     model_config = ConfigDict(from_attributes=True)

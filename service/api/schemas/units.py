@@ -7,6 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from service.api.schemas.events import ServiceSchema
 from service.api.schemas.fields import Text
+from service.api.schemas.reservations import SaidVerdict
 from service.api.schemas.sessions import SessionSchema
 from service.records.decision import Verdict
 
@@ -71,7 +72,7 @@ class UnitTypePage(BaseModel):
     next_page: int | None = Field(description="The next page; null after the last.")
 
 
-class UnitSummarySchema(BaseModel):
+class UnitSummarySchema(SaidVerdict):
     """One unit in short."""
 
     model_config = ConfigDict(from_attributes=True)
@@ -114,6 +115,7 @@ class FleetSchema(BaseModel):
     verdicts: dict[Verdict, int] = Field(description="How many of them have each verdict.")
     simulated: int = Field(description="How many of them belong to the demonstration fleet.")
     flags: int = Field(description="How many flags are open.")
+    reserved: dict[Verdict, int] = Field(description="Of how many with each verdict it is said with a reservation.")
 
 
 class UnitReportSchema(BaseModel):

@@ -9,7 +9,7 @@ from service.storage.queries.fleet import Refreshed
 from service.storage.store import Store
 from service.words.conditions import condition_of
 from service.words.names import day_of
-from service.words.verdict import reason
+from service.words.verdict import reason, verdict_in_words
 
 FAILS = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
 """Verdicts that raise a flag."""
@@ -24,7 +24,7 @@ def tell_verdict(store: Store, occasion: Occasion, latest: StoredSession, was: R
     if was.before is None or was.before is latest.verdict:
         return
     before = condition_of(was.before, is_reference=was.was_reference).word
-    now = condition_of(latest.verdict, is_reference=latest.is_reference).word
+    now = verdict_in_words(condition_of(latest.verdict, is_reference=latest.is_reference), latest.reservations)
     text = f"{before} → {now}. {latest.reason}"
     store.notices.add(occasion.unit, NoticeKind.VERDICT, occasion.at, SERVICE, text, session=latest.id)
 

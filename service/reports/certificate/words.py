@@ -18,6 +18,7 @@ from service.words.fit import FitWords, fit_in_words
 from service.words.known import combination_in_words
 from service.words.motion import motions_in_words
 from service.words.names import day_of, spaced
+from service.words.verdict import but
 
 
 @dataclass(frozen=True)
@@ -30,6 +31,8 @@ class Certificate:
     day: str
     simulated: bool
     condition: Condition
+    but: str
+    """What the verdict is said with; empty where it is plain."""
     reason: str
     facts: tuple[Fact, ...]
     record: tuple[Fact, ...]
@@ -71,6 +74,7 @@ def certificate(found: CertifiedSession, issue: Issue) -> Certificate:
         day=day_of(session.started_at),
         simulated=session.simulated,
         condition=condition_of(session.verdict, is_reference=session.is_reference),
+        but=but(session.reservations),
         reason=session.reason,
         facts=facts_of(found),
         record=record_of(found),

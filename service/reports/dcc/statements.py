@@ -2,14 +2,17 @@
 
 from collections.abc import Iterator
 
-from service.records.decision import Verdict, nominal_factor_of
+from service.records.decision import nominal_factor_of
 from service.records.paper import Traceability, TraceState
+from service.records.session import StoredSession
 from service.reports.dcc.elements import DCC, conformity, english
 from service.reports.xml import Element
 from service.views.certificate import CertifiedSession
+from service.words.conditions import condition_of
 from service.words.names import day_of
 from service.words.paper import RELATES, WHOLE, draft_in_words, lacks
 from service.words.uncertainty import uncertainty_in_words
+from service.words.verdict import verdict_in_words
 
 NOTHING_JUDGED = "none: nothing was there to judge it by"
 TRACEABLE = {TraceState.TRACEABLE: "true", TraceState.INTERRUPTED: "false"}
@@ -22,7 +25,7 @@ def statements(found: CertifiedSession) -> Iterator[Element]:
     draft = draft_in_words(lacks(found.laboratory, found.customer, dated=found.source.started_at is not None))
     if draft:
         yield _statement("Draft", draft)
-    yield _verdict(session.reason, None if session.is_reference else session.verdict)
+    yield _verdict(session)
     judged = bool(decisions) and not session.is_reference
     rule = f"{decisions[0].rule}; guard band w = U." if judged else NOTHING_JUDGED
     yield _statement("Decision rule", rule)
@@ -45,8 +48,11 @@ def _reference(found: CertifiedSession) -> str:
     return f"session {other.id} of {day_of(other.started_at)}, model revision {other.revision}"
 
 
-def _verdict(reason: str, verdict: Verdict | None) -> Element:
-    return DCC.statement(english("name", "Verdict"), english("declaration", reason), *conformity(verdict))
+def _verdict(session: StoredSession) -> Element:
+    said = verdict_in_words(condition_of(session.verdict, is_reference=session.is_reference), session.reservations)
+    verdict = None if session.is_reference else session.verdict
+    told = english("declaration", f"{said}. {session.reason}")
+    return DCC.statement(english("name", "Verdict"), told, *conformity(verdict))
 
 
 def _chain(name: str, chain: Traceability) -> Element:

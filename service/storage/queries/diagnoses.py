@@ -1,13 +1,16 @@
 """Diagnoses as they were made: the whole imu-diagnosis/1, deflated, and its line."""
 
 import zlib
+from collections.abc import Sequence
 
-from sqlalchemy import delete, select
+from sqlalchemy import delete, select, update
 
 from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState, DiagnosisSummary, StoredDiagnosis
+from service.records.reservation import Reservation
 from service.storage.diagnosis_document import read_diagnosis
 from service.storage.queries.base import Queries
+from service.storage.reservation_document import reservations_from_list, reservations_to_list
 from service.storage.tables import DiagnosisRow
 
 
@@ -32,7 +35,15 @@ class Diagnoses(Queries):
             verdict_after=found.verdict_after,
             estimator_version=found.estimator_version,
             created_at=found.created_at,
+            reservations=reservations_to_list(found.reservations),
         )
+
+    def put_reservations(self, session: str, reservations: Sequence[Reservation]) -> None:
+        """Says anew what a verdict is said with, because the verdict or its model changed."""
+        own = DiagnosisRow.session_id == session
+        written = reservations_to_list(reservations)
+        self._session.execute(update(DiagnosisRow).where(own).values(reservations=written))
+        self._session.expire_all()
 
     def get(self, session: str) -> StoredDiagnosis | None:
         """The diagnosis of a session; None while it is still to be made."""
@@ -50,6 +61,7 @@ class Diagnoses(Queries):
             verdict_after=None if row.verdict_after is None else Verdict(row.verdict_after),
             estimator_version=row.estimator_version,
             created_at=row.created_at,
+            reservations=reservations_from_list(row.session_id, row.reservations) or (),
         )
 
     def summary(self, session: str) -> DiagnosisSummary | None:

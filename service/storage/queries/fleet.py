@@ -12,10 +12,12 @@ from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState
 from service.records.flag import FlagState
 from service.records.paper import Customer
+from service.records.reservation import Reservations
 from service.records.unit import FleetCondition, UnitSummary, UnitType
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
 from service.storage.queries.unit_types import unit_type_of
+from service.storage.reservation_document import reservations_from_list
 from service.storage.tables import (
     ConditionRow,
     DiagnosisRow,
@@ -39,6 +41,8 @@ class FleetQuery:
     """Part of the serial number or of the type's name, small and capital letters alike."""
     offset: int = 0
     limit: int = 100
+    reserved: bool | None = None
+    """Whether the verdict is said with a reservation; None where either will do."""
 
 
 @dataclass(frozen=True)
@@ -114,16 +118,22 @@ class Fleet(Queries):
     def condition(self) -> FleetCondition:
         """How many units are in which condition."""
         rows = self._session.execute(
-            select(ConditionRow.severity, UnitRow.simulated, func.count(), func.sum(ConditionRow.flags))
+            select(
+                ConditionRow.severity, UnitRow.simulated, func.count(), func.sum(ConditionRow.flags),
+                func.count(DiagnosisRow.reservations),
+            )
             .join(UnitRow, UnitRow.id == ConditionRow.unit_id)
+            .outerjoin(DiagnosisRow, DiagnosisRow.session_id == ConditionRow.last_session)
             .group_by(ConditionRow.severity, UnitRow.simulated)
-        ).all()
-        verdicts = {
-            verdict: sum(count for severity, _, count, _ in rows if severity == verdict.severity) for verdict in Verdict
-        }
-        simulated = sum(count for _, is_simulated, count, _ in rows if is_simulated)
-        flags = sum(row[3] for row in rows)
-        return FleetCondition(units=sum(verdicts.values()), verdicts=verdicts, simulated=simulated, flags=flags)
+        ).all()  # fmt: skip
+        counts = {verdict: [row for row in rows if row[0] == verdict.severity] for verdict in Verdict}
+        return FleetCondition(
+            units=sum(row[2] for row in rows),
+            verdicts={verdict: sum(row[2] for row in own) for verdict, own in counts.items()},
+            simulated=sum(row[2] for row in rows if row[1]),
+            flags=sum(row[3] for row in rows),
+            reserved={verdict: sum(row[4] for row in own) for verdict, own in counts.items()},
+        )
 
 
 def _summaries(*, measured: bool = True) -> Summaries:
@@ -142,6 +152,9 @@ def _summaries(*, measured: bool = True) -> Summaries:
 def _matching(query: Summaries, wanted: FleetQuery) -> Summaries:
     if wanted.verdict is not None:
         query = query.where(ConditionRow.severity == wanted.verdict.severity)
+    if wanted.reserved is not None:
+        said_with = DiagnosisRow.reservations
+        query = query.where(said_with.is_not(None) if wanted.reserved else said_with.is_(None))
     if wanted.text:
         query = query.where(
             UnitRow.serial.icontains(wanted.text, autoescape=True)
@@ -171,6 +184,7 @@ def _summary(row: Sequence[Any]) -> UnitSummary:
         flags=condition.flags,
         due=row[5],
         lot=unit.lot,
+        reservations=_reservations(row[4]),
         customer=Customer(unit.customer, unit.customer_address),
     )
 
@@ -192,6 +206,11 @@ def _unmeasured(unit: UnitRow, type_name: str) -> UnitSummary:
         margin=None,
         lot=unit.lot,
     )
+
+
+def _reservations(row: DiagnosisRow | None) -> Reservations:
+    """What the verdict is said with; None while causes are still being looked for."""
+    return None if row is None else reservations_from_list(row.session_id, row.reservations)
 
 
 def _diagnosis(row: DiagnosisRow | None) -> str:

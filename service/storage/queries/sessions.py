@@ -15,12 +15,13 @@ from service.records.session import StoredSession
 from service.records.state import RecordState
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
+from service.storage.reservation_document import reservations_from_list
 from service.storage.tables import CommonMotionRow, DecisionRow, DiagnosisRow, SessionRow, StandRow, UnitRow
 
 NOT_JUDGED = ""
 """What the verdict rests on of a session that is still to be judged, or judged again."""
-TURNED = ("unit", "stand", "verdict", "state")
-"""Fields of a session that its row holds otherwise."""
+ELSEWHERE = ("unit", "stand", "verdict", "state", "reservations")
+"""Fields of a session that are no plain column of its row."""
 
 
 class Sessions(Queries):
@@ -75,7 +76,7 @@ class Sessions(Queries):
     def add(self, record: StoredSession, unit: int, stand: int | None, block: str, digest: str) -> None:
         """Stores a session that is still to be judged; its hash is unique."""
         values = asdict(record)
-        del values["unit"], values["stand"]
+        del values["unit"], values["stand"], values["reservations"]
         self._session.add(
             SessionRow(unit_id=unit, stand_id=stand, block=block, content_digest=digest, basis=NOT_JUDGED, **values)
         )
@@ -114,7 +115,7 @@ class Sessions(Queries):
             SessionRow.id != session.id,
             IS_ACCEPTED,
         )
-        return tuple(row.id for row, _, _ in self._session.execute(query.order_by(SessionRow.id)))
+        return tuple(row.id for row, *_ in self._session.execute(query.order_by(SessionRow.id)))
 
     def without_diagnosis(self, after: str, limit: int, version: str) -> tuple[str, ...]:
         """Ids of sessions, from an id on, that were never diagnosed, or on which another version failed."""
@@ -174,18 +175,22 @@ def worst_columns(worst: Decision | None) -> dict[str, str | float | None]:
     return {"worst_sensor": worst.sensor, "worst_parameter": worst.parameter, "margin": worst.margin}
 
 
-def _sessions() -> Select[SessionRow, str, str]:
+def _sessions() -> Select[SessionRow, str, str, str | None, list[Any] | None]:
     return (
-        select(SessionRow, UnitRow.serial, StandRow.name)
+        select(SessionRow, UnitRow.serial, StandRow.name, DiagnosisRow.session_id, DiagnosisRow.reservations)
         .join(UnitRow, UnitRow.id == SessionRow.unit_id)
         .outerjoin(StandRow, StandRow.id == SessionRow.stand_id)
+        .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
     )
 
 
-def _session_record(row: SessionRow, unit: str, stand: str | None) -> StoredSession:
-    own = {f.name: getattr(row, f.name) for f in fields(StoredSession) if f.name not in TURNED}
+def _session_record(
+    row: SessionRow, unit: str, stand: str | None, diagnosed: str | None, reservations: list[Any] | None
+) -> StoredSession:
+    own = {f.name: getattr(row, f.name) for f in fields(StoredSession) if f.name not in ELSEWHERE}
     verdict, state = Verdict(row.verdict), RecordState(row.state)
-    return StoredSession(unit=unit, stand=stand, verdict=verdict, state=state, **own)
+    said_with = reservations_from_list(diagnosed, reservations)
+    return StoredSession(unit=unit, stand=stand, verdict=verdict, state=state, reservations=said_with, **own)
 
 
 def decision_record(row: DecisionRow) -> Decision:

@@ -1,7 +1,7 @@
 """The label of a unit."""
 
 import io
-from dataclasses import replace
+from dataclasses import fields, replace
 from datetime import UTC, datetime
 from urllib.parse import quote
 
@@ -34,8 +34,9 @@ def label(client: httpx.Client, form: str, **query: str) -> httpx.Response:
 def unit_of(client: httpx.Client) -> UnitSummary:
     """The unit in short."""
     [found] = client.get("/api/v1/units").json()["units"]
-    verdict = Verdict(found["verdict"])
-    return UnitSummary(**found | {"due": datetime.fromisoformat(found["due"]), "verdict": verdict})
+    own = {field.name: found[field.name] for field in fields(UnitSummary) if field.name in found}
+    due, verdict = datetime.fromisoformat(found["due"]), Verdict(found["verdict"])
+    return UnitSummary(**own | {"due": due, "verdict": verdict, "reservations": ()})
 
 
 def test_it_says_serial_and_due_date(holding: Holding) -> None:

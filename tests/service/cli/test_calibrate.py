@@ -91,8 +91,10 @@ def test_what_is_not_observable_is_said_in_words(run: Run, tmp_path: Path) -> No
     assert "this session does not observe" in ran.out
 
 
-def test_the_quality_of_the_fit_is_said_in_words(run: Run, good_file: Path, tmp_path: Path) -> None:
-    assert "The model fits; the stated noise looks too large. χ² =" in run("calibrate", good_file).out
+def test_how_model_and_readings_agree_is_said_in_words(run: Run, good_file: Path, tmp_path: Path) -> None:
+    assert (
+        "The model agrees with the readings; the stated noise looks too large. χ² =" in run("calibrate", good_file).out
+    )
     unstated = write(tmp_path, "unstated.json", arbitrary_orientations(se=None))
     assert "states no standard errors" in run("calibrate", unstated).out
 

@@ -44,7 +44,7 @@ def test_a_programme_in_which_no_causes_are_looked_for_is_no_fault(run: Run, tmp
 
 def test_a_choice_is_shown_with_what_would_decide_it(run: Run, tmp_path: Path) -> None:
     shown = run("diagnose", write(tmp_path, "a.json", drawn(ALIASES).session)).out
-    assert "Cannot tell which" in shown
+    assert "less likely odd quadratic" in shown
     assert "apart)" in shown
 
 
@@ -86,5 +86,5 @@ def test_recalibrate_works_on_the_database(run: Run, sqlite: Databases, tmp_path
 def test_people_read_how_the_size_fits_the_session_before(run: Run, tmp_path: Path) -> None:
     before = write(tmp_path, "before.json", warm(1, "2026-01-05T08:00:00Z"))
     shown = run("diagnose", write(tmp_path, "now.json", warm(2, "2026-03-05T08:00:00Z")), "--history", before).out
-    assert "Predicting positions held out of the fit" in shown
+    assert "Predicting positions held out of the estimation" in shown
     assert "Predicting the session before (2026-01-05" in shown

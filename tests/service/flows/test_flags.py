@@ -152,4 +152,4 @@ def test_another_verdict_is_told(flagged: Storage) -> None:
     measured(flagged, 3)
     with flagged.database.reading() as store:
         told = [n.text for n in store.notices.latest(10) if n.kind is NoticeKind.VERDICT]
-    assert [text.split(". ")[0] for text in told] == ["Unfit → Fit", "Reference set → Unfit"]
+    assert [text.split(";")[0] for text in told] == ["Unfit → Fit", "Reference set → Unfit"]

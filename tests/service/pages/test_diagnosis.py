@@ -19,7 +19,7 @@ from tests.stock import stores
 ACCEPT = {"cause": "bias-temperature", "scope": "unit", "by": "K. Ito", "note": "seen twice"}
 FIRST = {
     "named": (TEMPERATURE, "The zero of A5 follows the temperature."),
-    "a choice": (ALIASES, "Cannot tell which: cubic nonlinearity"),
+    "a choice": (ALIASES, "Likely cubic nonlinearity (A2), 9"),
     "unexplained": (UNEXPLAINED, "Something is there that no known cause explains"),
 }
 

@@ -6,7 +6,18 @@ import pytest
 
 from service.pages.assets import STATIC
 
-TONES = ("ink", "muted", "accent", "pass", "conditional-pass", "conditional-fail", "fail", "undecidable", "reference")
+TONES = (
+    "ink",
+    "muted",
+    "accent",
+    "pass",
+    "conditional-pass",
+    "conditional-fail",
+    "fail",
+    "undecidable",
+    "reference",
+    "reserved",
+)
 
 
 def palettes() -> dict[str, dict[str, str]]:

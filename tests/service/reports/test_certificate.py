@@ -100,7 +100,7 @@ def test_named_causes_stand_with_their_amplitude(holding: Holding) -> None:
     text = text_of(certificate(client, id))
     assert finding["sentence"] in text
     assert f"{finding['strength']:.1f} standard errors" in text
-    assert "Amplitude (± one standard uncertainty): " in text
+    assert "Amplitude (± U, k = 2): " in text
 
 
 def test_an_accepted_cause_is_named_as_the_model(holding: Holding) -> None:

@@ -55,7 +55,7 @@ def test_a_turned_stand_is_shown_and_its_units_pass(client: httpx.Client, storag
     latest = client.get("/api/v1/units/BA-1").json()["sessions"][0]["id"]
     page = client.get(f"/sessions/{latest}", headers={"Accept": "text/html"}).text
     assert "The whole block turned by 15" in page
-    assert "mounting or stand, not the sensors" in page
+    assert "that is of mounting or stand" in page
 
 
 def test_a_shifted_stand_raises_one_flag_on_the_units_that_it_measured_last(storage: Storage) -> None:

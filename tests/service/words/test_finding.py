@@ -6,6 +6,7 @@ from math import nan
 import pytest
 
 from estimator.diagnosis.explanation.findings import nonlinear
+from estimator.diagnosis.results import Rival
 from service.measures import THIN
 from service.words.amplitudes import amplitudes_of, shape_of
 from service.words.causes import cause_name, cause_on, what_is_wrong
@@ -32,8 +33,22 @@ def test_equal_causes_are_listed() -> None:
     assert what_is_wrong(JUMP) == "Cannot tell which: bias jump or warm up (A1, A2)."
 
 
+def test_a_cause_that_is_far_less_likely_is_no_equal() -> None:
+    ranking = (Rival("bias-jump", ("A1", "A2"), 0.98, 8.0), Rival("warm-up", ("A1", "A2"), 0.01, 5.0))
+    likely = replace(JUMP, ranking=ranking)
+    assert what_is_wrong(likely) == "Likely bias jump (A1, A2), 98.0\u00a0%; less likely warm up, 1.0\u00a0%."
+    assert (finding_view(likely).level, finding_view(JUMP).level) == (False, True)
+
+
+def test_of_two_equal_causes_and_a_lesser_one_the_lesser_is_told_apart() -> None:
+    ranking = (*JUMP.ranking, Rival("hysteresis", ("A1", "A2"), 0.02, 4.0))
+    three = replace(JUMP, alternatives=("hysteresis", "warm-up"), ranking=ranking)
+    said = "Cannot tell which: bias jump or warm up (A1, A2); less likely hysteresis, 2.0\u00a0%."
+    assert what_is_wrong(three) == said
+
+
 def test_of_many_equal_causes_three_are_listed_and_the_rest_is_counted() -> None:
-    many = replace(JUMP, alternatives=("warm-up", "bias-ramp", "hysteresis", "saturation"), sensors=())
+    many = replace(JUMP, alternatives=("warm-up", "bias-ramp", "hysteresis", "saturation"), sensors=(), ranking=())
     assert what_is_wrong(many) == "Cannot tell which: bias jump, warm up, bias ramp or 2 more."
 
 
@@ -45,7 +60,7 @@ def test_a_cause_that_this_version_does_not_know_is_called_by_its_identifier() -
 
 def test_that_no_known_cause_may_act_is_said() -> None:
     assert what_is_wrong(LONE) == "Cannot tell which: bias jump or one that is not in the catalogue (A1, A2)."
-    many = replace(JUMP, alternatives=("warm-up", "bias-ramp", "hysteresis", "unexplained"), sensors=())
+    many = replace(JUMP, alternatives=("warm-up", "bias-ramp", "hysteresis", "unexplained"), sensors=(), ranking=())
     listed = "bias jump, warm up, bias ramp, 1 more or one that is not in the catalogue"
     assert what_is_wrong(many) == f"Cannot tell which: {listed}."
 
@@ -79,8 +94,8 @@ def test_every_sensor_s_own_shape_is_said() -> None:
     assert shape_of(replace(JUMP, nonlinear_each=({"row": 14.0},) * 2)) == "from row 14"
 
 
-def test_every_sensor_s_own_size_is_said() -> None:
-    assert list(amplitudes_of(JUMP)) == ["A1: 30.6\u00a0±\u00a01.0\u202fµg", "A2: 20.4\u00a0±\u00a01.0\u202fµg"]
+def test_every_sensor_s_own_size_is_said_with_its_expanded_uncertainty() -> None:
+    assert list(amplitudes_of(JUMP)) == ["A1: 30.6\u00a0±\u00a02.0\u202fµg", "A2: 20.4\u00a0±\u00a02.0\u202fµg"]
 
 
 def test_a_size_that_is_not_known_is_left_out() -> None:

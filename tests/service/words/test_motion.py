@@ -20,7 +20,7 @@ def said(motion: CommonMotion) -> list[str]:
 def test_a_turn_names_size_axis_and_cause() -> None:
     assert said(TURNED) == [
         "The whole block turned by 12.0\u00a0±\u00a01.0\u202farcsec about −Y since the reference: "
-        "mounting or stand, not the sensors."
+        "that is of mounting or stand."
     ]
 
 
@@ -32,14 +32,14 @@ def test_a_turn_that_noise_explains_is_not_mentioned() -> None:
 
 def test_sensors_that_did_not_turn_with_the_block_are_named() -> None:
     text = said(CommonMotion(**{**vars(TURNED), "left_out": ("A2", "A5")}))[0]
-    assert text.endswith("The input axes of A2 and A5 moved on their own.")
+    assert text.endswith("Beside that, the input axes of A2 and A5 moved on their own.")
 
 
 def test_a_common_factor_is_gravity_or_stand() -> None:
     scaled = CommonMotion("accelerometer", "scales", "separated", (35e-6,), ((4e-12,),), 1e-9, NAMES, ("A3",))
     assert said(scaled) == [
         "All scale factors changed together by +35.0\u00a0±\u00a04.0\u202fppm since the reference: "
-        "gravity or the stand's elevation, not the sensors. The scale factor of A3 moved on its own."
+        "that is of gravity or the stand's elevation. Beside that, the scale factor of A3 moved on its own."
     ]
 
 

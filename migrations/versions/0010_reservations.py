@@ -1,0 +1,26 @@
+"""What a verdict is said with stands beside the diagnosis that it comes from.
+
+Revision: 0010, after 0009
+"""
+
+import sqlalchemy as sa
+from alembic import op
+
+revision = "0010"
+down_revision = "0009"
+branch_labels = None
+depends_on = None
+
+
+def upgrade() -> None:
+    """Diagnoses that are stored already bring no reservation. Reasons no longer claim more than a rule decides."""
+    for table in ("sessions", "calibrations"):
+        op.execute(
+            f"UPDATE {table} SET reason = REPLACE(reason, 'tolerance, beyond doubt;', 'tolerance by more than U;')"
+        )
+    op.add_column("diagnoses", sa.Column("reservations", sa.JSON(), nullable=True))
+
+
+def downgrade() -> None:
+    """Without it."""
+    op.drop_column("diagnoses", "reservations")

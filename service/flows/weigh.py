@@ -1,0 +1,89 @@
+"""Step: what a diagnosis means for its session's verdict: the verdict with the named causes, and the reservations."""
+
+from dataclasses import dataclass
+
+from estimator.session import CalibrationSession
+from service.ingest import read_upload
+from service.judging.cause_sizes import Yardstick
+from service.judging.model_in_force import in_force
+from service.judging.reference import reference_of
+from service.judging.reservations import Doubted, reservations_of
+from service.judging.standing import Basis, Otherwise, verdicts_under_alternatives
+from service.judging.tolerances import tolerances_of
+from service.records.decision import Verdict, nominal_factor_of
+from service.records.diagnosis import Diagnosed
+from service.records.reservation import Reservation
+from service.storage import Files
+from service.storage.store import Store
+
+
+@dataclass(frozen=True, eq=False)
+class Weighing:
+    """What is stored that a diagnosis is weighed by."""
+
+    verdict: Verdict | None
+    """In force; None of a reference, or where nothing was judged."""
+    basis: Basis | None
+    """None where there is nothing to judge by."""
+    tolerances: dict[tuple[str, str], float]
+    known: frozenset[tuple[str, str]]
+    """Causes in the model in force, with the sensor or an empty name."""
+
+
+@dataclass(frozen=True)
+class Weighed:
+    """What a diagnosis means for the verdict."""
+
+    verdict_after: Verdict | None
+    """With the named causes in the model; None where none was named, or where nothing was judged."""
+    reservations: tuple[Reservation, ...]
+
+
+def weighing_of(store: Store, id: str, block: str) -> Weighing:
+    """What a session of a block was judged by."""
+    stored, decisions = store.sessions.get(id), store.sessions.decisions(id)
+    unit_type = store.unit_types.of_unit(stored.unit)
+    unit = store.units.key(stored.unit)
+    found = reference_of(store, unit, block, stored.programme, stored.started_at).session
+    is_judged = bool(decisions) and found is not None and not stored.is_reference
+    basis = None
+    if is_judged and found is not None:
+        basis = Basis(store.calibrations.get(found), unit_type, nominal_factor_of(decisions))
+    accepted = in_force([r for r in store.models.of_session(id) if r.id <= stored.revision])
+    return Weighing(
+        verdict=stored.verdict if is_judged else None,
+        basis=basis,
+        tolerances=tolerances_of(unit_type),
+        known=frozenset((r.cause, sensor) for r in accepted for sensor in r.sensors or ("",)),
+    )
+
+
+def weigh(session: CalibrationSession, found: Diagnosed, by: Weighing) -> Weighed:
+    """The numerical part, with no store at hand."""
+    after = by.basis.verdict_of(found.calibration) if by.basis is not None and found.findings else None
+    others: tuple[Otherwise, ...] = ()
+    if by.basis is not None:
+        others = tuple(verdicts_under_alternatives(session, found.findings, by.basis))
+    if after is not None:
+        first = found.findings[0]
+        causes = tuple(finding.cause for finding in found.findings)
+        others = (Otherwise(causes, first.sensors, after, named=True), *others)
+    doubted = Doubted(
+        verdict=by.verdict,
+        findings=found.findings,
+        structures=found.structures,
+        noise=found.noise,
+        by=Yardstick(found.calibration, found.residuals_before, by.tolerances),
+        otherwise=others,
+        known=by.known,
+    )
+    return Weighed(after, reservations_of(doubted))
+
+
+def weigh_again(store: Store, files: Files, id: str) -> None:
+    """After another calibration or verdict of a session came into force: what it is said with."""
+    session, made = store.sessions.get(id), store.diagnoses.get(id)
+    if made is not None and made.found is not None:
+        source = read_upload(files.read(session.sha256), session.filename)
+        weighed = weigh(source, made.found, weighing_of(store, id, source.block))
+        store.diagnoses.put_reservations(id, weighed.reservations)

@@ -1,0 +1,181 @@
+"""How large a named cause is in the unit of a tolerance: what it does to a zero, a scale factor or a direction.
+
+A cause that acts at the input counts as what it adds to a reading, a coefficient times what the session gave it to act
+on: the span of time or temperature from end to end, or the input itself. One that scales the input counts as a relative
+change, one that turns something as an angle.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import hypot, isfinite, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from estimator.applied_vector import EARTH_RATE, STANDARD_GRAVITY
+from estimator.causes import find
+from estimator.diagnosis import Finding
+from estimator.diagnosis.results import Structure
+from estimator.results import Calibration, Residuals
+from estimator.session import ACCELEROMETER, GYROSCOPE
+from service.measures import leading_kind
+
+INPUTS = {ACCELEROMETER: STANDARD_GRAVITY, GYROSCOPE: EARTH_RATE}
+"""What a sensor on a stand or at rest feels at most, m/s² (rad/s)."""
+ACTS_ON = {
+    "1": ("scale", "nothing"),
+    "1/K": ("scale", "temperature"),
+    "1/s": ("scale", "time"),
+    "input": ("bias", "nothing"),
+    "input/K": ("bias", "temperature"),
+    "input/s": ("bias", "time"),
+    "input/(K/s)": ("bias", "warming"),
+    "(input)⁻¹": ("bias", "input²"),
+    "(input)⁻²": ("bias", "input³"),
+    "(input)/(m/s²)": ("bias", "gravity"),
+    "rad": ("axis", "nothing"),
+}
+"""By the SI unit of an amplitude: the parameter whose tolerance it is held against, and what the session multiplies it
+by. ``input`` is m/s² or rad/s."""
+
+
+@dataclass(frozen=True)
+class Size:
+    """How large something is beside a tolerance."""
+
+    sensors: tuple[str, ...]
+    """The one where it is largest; empty for what acts on all."""
+    kind: str
+    """Of the sensor."""
+    parameter: str
+    value: float
+    """SI; relative for a scale factor."""
+    sigma: float | None
+    """None where it is not known."""
+    tolerance: float
+
+    @property
+    def share(self) -> float:
+        """Of the tolerance."""
+        return self.value / self.tolerance
+
+
+@dataclass(frozen=True)
+class Yardstick:
+    """What sizes are worked out and held against."""
+
+    calibration: Calibration
+    residuals: Residuals
+    """Under the baseline."""
+    tolerances: Mapping[tuple[str, str], float]
+    """By kind of sensor and parameter."""
+
+
+def size_of_cause(finding: Finding, by: Yardstick) -> Size | None:
+    """Where and how much a named cause weighs most; None where no tolerance is set for what it changes."""
+    return max(_sizes(finding, by), key=lambda size: size.share, default=None)
+
+
+def size_of_structure(structure: Structure, by: Yardstick) -> Size | None:
+    """The root mean square of unexplained structure at the input, as a zero; None where nothing says it."""
+    if structure.course is not None and structure.course.components:
+        kind = _leading(by)
+        angles = np.array(structure.course.values)
+        return _beside(by, (), kind, "bias", (INPUTS[kind] * float(np.sqrt(np.mean(np.sum(angles**2, axis=1)))), None))
+    return _by_strength(structure.sensors, structure.strength, by)
+
+
+def _sizes(finding: Finding, by: Yardstick) -> Iterator[Size]:
+    """Of every sensor that the cause acts on, or of all together."""
+    count = max(1, len(finding.sensors))
+    each = len(finding.amplitude) // count
+    known = find(finding.cause)
+    if not each or known is None or known.clips or "vibration" in known.needs:
+        size = _by_strength(finding.sensors, finding.strength, by)
+        yield from () if size is None else (size,)
+        return
+    for k in range(count):
+        sensors, own = finding.sensors[k : k + 1], slice(k * each, (k + 1) * each)
+        kind = by.calibration.sensor(sensors[0]).kind if sensors else _leading(by)
+        found = _of_sensor(finding, own, kind, by)
+        size = None if found is None else _beside(by, sensors, kind, *found)
+        yield from () if size is None else (size,)
+
+
+def _of_sensor(finding: Finding, own: slice, kind: str, by: Yardstick) -> tuple[str, tuple[float, float | None]] | None:
+    """The parameter, and the length of a sensor's amplitudes with its sigma; None where it is nothing."""
+    parameter, times = _effect(finding.cause, finding.units[own][0], kind, by.residuals)
+    value = hypot(*(x for x in finding.amplitude[own] if isfinite(x)))
+    if parameter is None or value == 0:
+        return None
+    spread = hypot(*(a * s / value for a, s in zip(finding.amplitude[own], finding.sigma[own], strict=True)))
+    return parameter, (value * times, spread * times if isfinite(spread) else None)
+
+
+def _effect(cause: str, unit: str, kind: str, residuals: Residuals) -> tuple[str | None, float]:
+    """The parameter that an amplitude is held against, and what it is multiplied by."""
+    known = find(cause)
+    if known is not None and known.grows_an_angle:
+        return "axis", _span(residuals.time)
+    if known is not None and known.scope == "stand" and unit == "1":
+        return "axis", _span(residuals.beta)
+    parameter, by = ACTS_ON.get(by_input(unit), (None, "nothing"))
+    return parameter, _times(by, kind, residuals)
+
+
+def by_input(unit: str) -> str:
+    """``input/K`` of ``m/s²/K``; what is per unit of specific force stays so."""
+    head = unit.removesuffix("/(m/s²)")
+    return f"{head.replace('m/s²', 'input').replace('rad/s', 'input')}{unit[len(head) :]}"
+
+
+def _times(by: str, kind: str, residuals: Residuals) -> float:
+    match by:
+        case "temperature":
+            return _span(residuals.temperature)
+        case "time":
+            return _span(residuals.time)
+        case "warming":
+            return _span(_slope(residuals))
+        case "input²":
+            return INPUTS[kind] ** 2
+        case "input³":
+            return INPUTS[kind] ** 3
+        case "gravity":
+            return STANDARD_GRAVITY
+        case _:
+            return 1.0
+
+
+def _slope(residuals: Residuals) -> NDArray[np.float64] | None:
+    """(R,) dT/dt, °C/s."""
+    if residuals.temperature is None or residuals.time is None:
+        return None
+    return np.asarray(np.gradient(residuals.temperature, residuals.time))
+
+
+def _span(column: NDArray[np.float64] | None) -> float:
+    """From end to end; zero of what was not recorded."""
+    return 0.0 if column is None else float(np.ptp(column))
+
+
+def _by_strength(sensors: tuple[str, ...], strength: float, by: Yardstick) -> Size | None:
+    """The root mean square at the input of an effect of so many standard errors, over the rows of its sensors."""
+    names = [sensor.name for sensor in by.calibration.sensors]
+    places = [names.index(name) for name in sensors if name in names] or list(range(len(names)))
+    errors = by.residuals.sigma[:, places]
+    kind = by.calibration.sensors[places[0]].kind if sensors else _leading(by)
+    rms = strength * float(np.sqrt(np.mean(errors**2))) / sqrt(errors.size)
+    return _beside(by, sensors, kind, "bias", (rms, None)) if isfinite(rms) else None
+
+
+def _leading(by: Yardstick) -> str:
+    return leading_kind({sensor.kind for sensor in by.calibration.sensors})
+
+
+def _beside(
+    by: Yardstick, sensors: tuple[str, ...], kind: str, parameter: str, size: tuple[float, float | None]
+) -> Size | None:
+    """A size, with its standard uncertainty, beside the tolerance; None where there is none."""
+    tolerance = by.tolerances.get((kind, parameter))
+    return None if tolerance is None else Size(sensors, kind, parameter, *size, tolerance)

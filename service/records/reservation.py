@@ -1,0 +1,52 @@
+"""What speaks against taking a verdict as it stands, said in the same breath as the verdict."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from service.records.decision import Verdict
+
+
+class Doubt(StrEnum):
+    """Why a verdict carries a reservation, in the order in which reservations are told."""
+
+    RECORD = "record"
+    """The file says something else than what was done."""
+    NOT_CHECKED = "not-checked"
+    """No causes could be looked for."""
+    CAUSE = "cause"
+    """A named cause is large beside the tolerance."""
+    OTHER_MODEL = "other-model"
+    """The verdict is another under a model that the readings leave standing."""
+    UNEXPLAINED = "unexplained"
+    """Structure that no known cause explains is large beside the tolerance."""
+    STATED_ERRORS = "stated-errors"
+    """The readings contradict the standard errors that the file states."""
+
+
+@dataclass(frozen=True)
+class Reservation:
+    """One thing that speaks against a verdict."""
+
+    kind: Doubt
+    text: str
+    """What is the matter, as a clause that stands after ``but``."""
+    advice: str
+    """What to do about it, as a clause."""
+    sensors: tuple[str, ...] = ()
+    """That it concerns; empty where it concerns all, or none in particular."""
+    cause: str | None = None
+    """Identifier of the named cause."""
+    parameter: str | None = None
+    """Whose tolerance the size is held against."""
+    size: float | None = None
+    """In the tolerance's SI unit (relative for a scale factor); None where there is none to state."""
+    uncertainty: float | None = None
+    """Standard uncertainty of the size."""
+    share: float | None = None
+    """Size by tolerance."""
+    verdict: Verdict | None = None
+    """That the session would have under the other model."""
+
+
+Reservations = tuple[Reservation, ...] | None
+"""Of a verdict; None while causes are still being looked for."""

@@ -1,0 +1,84 @@
+"""A verdict and what speaks against it, in one breath."""
+
+from dataclasses import replace
+
+import pytest
+
+from estimator.diagnosis.results import Course, Rival, Structure
+from service.records.decision import Verdict
+from service.records.reservation import Doubt, Reservation, Reservations
+from service.words.conditions import FIT, REFERENCE, UNDECIDED, said_with
+from service.words.reservation import named, otherwise, size_in_words, unexplained
+from service.words.verdict import verdict_in_words
+from tests.service.findings import JUMP
+
+JUMPED = Reservation(Doubt.CAUSE, "the zero of A2 jumps once and stays", "repeat the session", share=1.0)
+UNFIT = Reservation(Doubt.OTHER_MODEL, "it would be unfit with warm up (A2) in the model", "repeat the session")
+WRONG = Reservation(Doubt.RECORD, "the channels of A1 and A2 are exchanged", "correct the file and upload it again")
+
+
+@pytest.mark.parametrize(
+    ("reservations", "said"),
+    [
+        ((), "Fit"),
+        (None, "Fit; causes are still being looked for"),
+        ((JUMPED,), "Fit, but the zero of A2 jumps once and stays: repeat the session"),
+        ((JUMPED, UNFIT), f"Fit, but {JUMPED.text}; and {UNFIT.text}: repeat the session"),
+        ((JUMPED, UNFIT, UNFIT), f"Fit, but {JUMPED.text}; and {UNFIT.text}; and 1 more: repeat the session"),
+        ((WRONG, JUMPED), f"Fit, but {WRONG.text}; and {JUMPED.text}: correct the file and upload it again"),
+    ],
+)
+def test_a_verdict_is_said_with_its_reservations(reservations: Reservations, said: str) -> None:
+    assert verdict_in_words(FIT, reservations) == said
+
+
+def test_the_same_is_not_advised_twice() -> None:
+    stand = replace(JUMPED, advice="put the stand right and repeat the session")
+    assert verdict_in_words(FIT, (stand, UNFIT)).endswith(": put the stand right and repeat the session")
+
+
+def test_a_reference_is_said_with_them_too() -> None:
+    assert verdict_in_words(REFERENCE, (JUMPED,)).startswith("Reference set, but the zero of A2")
+
+
+def test_a_verdict_with_a_reservation_is_marked_in_words_and_keeps_its_rank() -> None:
+    marked = said_with(FIT, (JUMPED,))
+    assert (marked.word, marked.reserved, marked.rank) == ("Fit, with reservation", True, FIT.rank)
+    assert said_with(UNDECIDED, ()) is UNDECIDED
+    assert said_with(UNDECIDED, None) is UNDECIDED
+
+
+def test_a_cause_is_a_clause_with_its_size() -> None:
+    plain = replace(JUMP, alternatives=(), sentence="A2 is clipped: its reading stops at a limit.")
+    assert named(plain, "") == "A2 is clipped: its reading stops at a limit"
+    assert named(replace(plain, sentence="The stand was not level."), "9") == "the stand was not level (9)"
+
+
+def test_of_several_causes_the_less_likely_stand_in_brackets() -> None:
+    assert named(JUMP, "") == "bias jump or warm up acts on A1 and A2"
+    rivals = (Rival("bias-jump", ("A1",), 0.98, 8.0), Rival("warm-up", ("A1",), 0.01, 5.0))
+    assert named(replace(JUMP, ranking=rivals), "") == "bias jump (less likely warm up) acts on A1 and A2"
+
+
+def test_a_size_stands_beside_its_tolerance_in_one_measure_with_its_expanded_uncertainty() -> None:
+    micro_g = 9.80665e-6
+    size = size_in_words("accelerometer", "bias", (51 * micro_g, 2 * micro_g), 50 * micro_g)
+    assert size == "51.0\u00a0±\u00a04.0\u202fµg, tolerance 50\u202fµg"
+    rough = size_in_words("accelerometer", "bias", (41.81 * micro_g, None), 50 * micro_g)
+    assert rough == "about 42\u202fµg, tolerance 50\u202fµg"
+
+
+def test_another_verdict_names_the_model_that_gives_it() -> None:
+    assert otherwise(Verdict.FAIL, ("warm-up", "bias-ramp"), ("A2",)) == (
+        "it would be unfit with warm up (A2) and bias ramp in the model"
+    )
+    assert otherwise(Verdict.PASS, ("warm-up",), (), named=True) == "it would be fit with what was found in the model"
+    assert otherwise(Verdict.PASS, (), ()) == "it would be fit if what acts were none of the known causes"
+
+
+def test_structure_says_where_it_is() -> None:
+    own = Structure("harmonic 5 of β", ("A5",), 1e-9, 9.0)
+    assert unexplained((own,), "42 µg") == "something is there in A5 that no known cause explains (42 µg)"
+    common = replace(own, sensors=(), course=Course("β", ("α",), ((1e-5,),)))
+    assert unexplained((common,), "9 µg") == "something is there in all sensors that no known cause explains (9 µg)"
+    assert unexplained((replace(own, of_record=True),), "") == "the record cannot be right"
