@@ -1,24 +1,28 @@
-"""Histories: what truly happens to a parameter, in tolerances, and the sessions that see it at irregular dates."""
+"""Histories: what truly happens to a parameter, in tolerances, and the sessions that see it at uneven dates.
+
+Nothing here is shared with the estimator, and sizes and shapes are not those that it assumes: sizes are uniform where
+it takes them for normal, aging is exponential where it takes it for logarithmic, swings follow the season.
+"""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.health.trend import Series
 from estimator.session import Array
 
 STEP = 0.02
 """Years between points of a truth."""
-YEARS = 16.0
-MEASURED = 4.0
-"""Years in which sessions are held."""
-KINDS = ("stable", "walk", "ramp", "step", "temperature")
+YEARS = 20.0
+"""Of a truth: the longest history and what comes after."""
+KINDS = ("stable", "step", "ramp", "late ramp", "aging", "walk", "seasonal")
 DESCRIBED = {
     "stable": "nothing moves",
-    "walk": "random walk, 0.05 to 0.5 T a root year (log-uniform)",
-    "ramp": "0.1 to 0.8 T a year, either way, and a walk of 0.03",
-    "step": "0.4 to 1.2 T once within the measured time, either way, and a walk of 0.03",
-    "temperature": "a yearly swing of 0.05 to 0.3 T, and a walk of 0.03",
+    "step": "0.4 to 1.2 T, once, between two sessions or at a service that nobody recorded",
+    "ramp": "0.2 to 0.8 T a year from the start",
+    "late ramp": "0.2 to 0.8 T a year, from some day on",
+    "aging": "0.5 to 1.2 T in the end, exponential with 0.3 to 1.5 years",
+    "walk": "random walk, 0.1 to 0.4 T a root year",
+    "seasonal": "0.02 to 0.06 T per °C, with a laboratory that is 3 to 6 °C warmer in summer than in winter",
 }
 
 
@@ -28,58 +32,77 @@ class History:
 
     kind: str
     truth: Array
-    """Every STEP years from 0, counted from the reference session."""
+    """(points,) every STEP years, deviation from the value that the reference session recorded; T."""
     onset: float
     """Years; when a ramp or a step begins."""
-    series: Series
-    """All its sessions, the reference first."""
+    time: Array
+    """(n,) years of the sessions, the reference first."""
+    value: Array
+    """(n,) deviations as measured, T."""
+    sigma: Array
+    """(n,) standard uncertainties, T."""
+    temperature: Array
+    """(n,) °C."""
 
-    def first(self, sessions: int) -> Series:
-        """What is known after so many sessions."""
-        s = self.series
-        return Series(s.time[:sessions], s.value[:sessions], s.sigma[:sessions], 1.0)
+    @property
+    def passed(self) -> float:
+        """Years from the last session until the truth is out of tolerance; infinite if never."""
+        beyond = np.abs(self.truth[round(float(self.time[-1]) / STEP) :]) >= 1
+        return float(STEP * np.argmax(beyond)) if beyond.any() else float("inf")
 
 
-def histories(
-    kind: str, count: int, rng: np.random.Generator, *, late: bool = False, sigma: float | None = None
-) -> list[History]:
-    """So many histories of a kind; with ``late`` a ramp begins after a while, as a drift that is to be detected."""
-    return [_history(kind, rng, late, sigma) for _ in range(count)]
+@dataclass(frozen=True)
+class Plan:
+    """When a unit is measured, and how well."""
+
+    sessions: tuple[int, int] = (6, 16)
+    """Fewest and most."""
+    sigma: tuple[float, float] = (0.03, 0.15)
+    """T, least and largest of a unit; its sessions differ by a third either way."""
+    since: int = 0
+    """Sessions, at least, from the onset of a change on; 0 where it may come any time."""
 
 
-def _history(kind: str, rng: np.random.Generator, late: bool, sigma: float | None) -> History:
-    time = STEP * np.arange(round(YEARS / STEP))
-    onset = float(rng.uniform(0.5, 2.0)) if late or kind == "step" else 0.0
-    truth = _walk(len(time), _strength(kind, rng), rng) + _course(kind, time, onset, rng)
-    sessions = int(rng.integers(8, 17))
-    dates = np.unique(np.concatenate([[0], rng.integers(1, round(MEASURED / STEP), sessions - 1)]))
-    own = sigma or float(np.exp(rng.uniform(np.log(0.03), np.log(0.2))))
-    error = own * rng.standard_normal(len(dates))
+def dates(plan: Plan, rng: np.random.Generator) -> Array:
+    """(n,) years: intervals of one to eight months, as workshops keep them."""
+    sessions = int(rng.integers(plan.sessions[0], plan.sessions[1] + 1))
+    gaps = np.maximum(np.round(rng.uniform(1 / 12, 8 / 12, sessions - 1) / STEP), 1) * STEP
+    time = np.concatenate([[0.0], np.cumsum(gaps)])
+    return time * min(1.0, (YEARS - 6) / max(time[-1], STEP))
+
+
+def history(kind: str, time: Array, plan: Plan, rng: np.random.Generator) -> History:
+    """One parameter of a unit that is measured at (n,) years ``time``."""
+    days = STEP * np.arange(round(YEARS / STEP))
+    at = np.round(time / STEP).astype(int)
+    onset = _onset(kind, time, plan, rng)
+    warmth = rng.uniform(3, 6) * np.sin(2 * np.pi * (days + rng.uniform()))
+    truth = _course(kind, days, (onset, warmth), rng)
+    unit = np.exp(rng.uniform(*np.log(plan.sigma)))
+    sigma = unit * rng.uniform(0.75, 1.33, len(time))
+    error = sigma * rng.standard_normal(len(time))
     recorded = truth[0] + error[0]
-    return History(
-        kind, truth - recorded, onset,
-        Series(time[dates], truth[dates] + error - recorded, np.full(len(dates), own), 1.0),
-    )  # fmt: skip
+    temperature = 21 + warmth[at] + 0.5 * rng.standard_normal(len(time))
+    return History(kind, truth - recorded, onset, STEP * at, truth[at] + error - recorded, sigma, temperature)
 
 
-def _strength(kind: str, rng: np.random.Generator) -> float:
-    if kind == "walk":
-        return float(np.exp(rng.uniform(np.log(0.05), np.log(0.5))))
-    return 0.0 if kind == "stable" else 0.03
+def _onset(kind: str, time: Array, plan: Plan, rng: np.random.Generator) -> float:
+    if kind not in ("step", "late ramp"):
+        return 0.0
+    if plan.since:
+        return float(rng.uniform(time[0], time[-1 - plan.since]))
+    return float(rng.uniform(0, YEARS / 2))
 
 
-def _walk(points: int, strength: float, rng: np.random.Generator) -> Array:
-    steps = strength * np.sqrt(STEP) * rng.standard_normal(points)
-    steps[0] = 0.0
-    return np.cumsum(steps)
-
-
-def _course(kind: str, time: Array, onset: float, rng: np.random.Generator) -> Array:
-    sign = rng.choice([-1.0, 1.0])
-    if kind == "ramp":
-        return sign * rng.uniform(0.1, 0.8) * np.maximum(time - onset, 0.0)
+def _course(kind: str, days: Array, of: tuple[float, Array], rng: np.random.Generator) -> Array:
+    """(points,) T; ``of`` is the onset, years, and the warmth of every day, °C."""
+    (onset, warmth), sign = of, rng.choice([-1.0, 1.0])
     if kind == "step":
-        return sign * rng.uniform(0.4, 1.2) * (time >= onset)
-    if kind == "temperature":
-        return rng.uniform(0.05, 0.3) * np.sin(2 * np.pi * (time + rng.uniform()))
-    return np.zeros_like(time)
+        return sign * rng.uniform(0.4, 1.2) * (days >= onset)
+    if kind in ("ramp", "late ramp"):
+        return sign * rng.uniform(0.2, 0.8) * np.maximum(days - onset, 0.0)
+    if kind == "aging":
+        return -sign * rng.uniform(0.5, 1.2) * np.expm1(-days / rng.uniform(0.3, 1.5))
+    if kind == "walk":
+        return rng.uniform(0.1, 0.4) * np.sqrt(STEP) * np.cumsum(rng.standard_normal(len(days)))
+    return sign * rng.uniform(0.02, 0.06) * warmth if kind == "seasonal" else np.zeros_like(days)

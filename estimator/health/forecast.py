@@ -1,77 +1,102 @@
 """When a parameter reaches its tolerance, and the risk of waiting. Time in years from the last session.
 
-The level of `trend` goes on from what the sessions left of it: l + r·t + √q·B(t), (l, r) normal at every node of q.
-It reaches the tolerance when |level| first is T. Given l, the rate is still normal, N(μ, κ²), and with it in the drift
-the first passage of a distance a has a closed form (Whitmore 1986, from the inverse Gaussian):
+Every draw of `posterior` goes on: l(h) = l + r·h + a·(aging) + q·B(h), and is out of tolerance once |l(h)| ≥ T; of an
+axis |l| is the length, the tolerance a disc. Between two dates at which a draw is followed, a walk from x to y that is
+within at both has passed the tolerance with the chance exp(−2(1 − |x|)(1 − |y|)/(q²Δt)) of a Brownian bridge (Siegmund
+1986; of a disc, of its tangent). What has not happened yet may: jumps come with the rate λ_s of the type and pass the
+tolerance from |l| with the chance g_s(|l|), drifts begin with a rate of theirs, so that within tolerance at h are
 
-    P(t) = Φ((μt − a)/√(qt + κ²t²)) + exp(2μa/q + 2κ²a²/q²)·Φ(−(a + μt + 2κ²at/q)/√(qt + κ²t²))
+    exp(−∫ Σ_s λ_s g_s(|l(u)|) du − Σ_r λ_r ∫ P(|l(h) + r·v| ≥ 1) dv)
 
-taken for both sides and summed (a walk that passes both is counted twice: the chance is never stated too low), averaged
-over l by Gauss–Hermite quadrature and over the nodes of q. Parameters of a unit move on their own, so the chance that
-none of them is out is the product.
+of a draw. Where temperature moves the parameter, the tolerance holds for the whole span of temperatures that was seen.
+Given the type, parameters move on their own: the unit's chance is that of them together.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
-from scipy.optimize.elementwise import find_root
-from scipy.special import log_ndtr, ndtr
+from scipy.special import ndtr
+from scipy.stats import ncx2
 
-from estimator.health.state_space import WALKS
-from estimator.health.trend import Trends
+from estimator.health.fits import PART_KINDS, PART_SIZES
+from estimator.health.pooled import Prior
+from estimator.health.posterior import Draws
+from estimator.health.shapes import Kind, course
 from estimator.session import Array
 
 AHEAD = np.concatenate([[0.0], np.geomspace(0.02, 12.0, 30)])
 """(31,) years at which the chance is worked out; between them it is interpolated. Twelve years outlast any interval."""
-NODES, WEIGHTS = np.polynomial.hermite_e.hermegauss(7)
-"""(7,) of the level, in sigmas, and their weights, dimensionless: exact for polynomials of degree 13."""
 MEDIAN, EARLY = 0.5, 0.1
 """Chances whose dates are stated: as likely as not, and the 90 % bound."""
 RISK_LEVEL = 0.05
 """Chance of a unit being out of tolerance that its next calibration must come before."""
+DISTANCES = np.linspace(0.0, 1.0, 41)
+"""(41,) T, at which chances of passing are tabulated; linear between them is right to 1e-3."""
+FRACTIONS = (np.arange(8) + 0.5) / 8
+"""(8,) of the time ahead, at which a drift may have begun: the middle of eighths."""
 
 
-def passage(found: Trends, ahead: Array = AHEAD) -> Array:
-    """Probability that each series has reached its tolerance.
-
-    Parameters
-    ----------
-    found : B trends.
-    ahead : (h,) years after the last session, increasing.
-
-    Returns
-    -------
-    chance : (B, h) probability, never falling.
-    """
-    p00, p01, p11 = (found.covariance[..., i, None] for i in range(3))
-    level = found.mean[..., :1] + np.sqrt(np.maximum(p00, 0.0)) * NODES
-    slope = np.divide(p01, p00, out=np.zeros_like(p01), where=p00 > 0)
-    rate = found.mean[..., 1:] + slope * (level - found.mean[..., :1])
-    free = np.maximum(p11 - slope * p01, 0.0)
-    q = WALKS[:, None, None] ** 2
-    t = np.maximum(ahead, 1e-9)
-    sides = [_first_passage(1 - side * level[..., None], side * rate[..., None], free[..., None], q, t)
-             for side in (1.0, -1.0)]  # fmt: skip
-    given = np.minimum(sides[0] + sides[1], 1.0)
-    chance = np.einsum("bqlh,l,bq->bh", given, WEIGHTS / WEIGHTS.sum(), found.weight)
-    return np.maximum.accumulate(np.clip(chance, 0.0, 1.0), axis=1)
+def followed(draws: Draws, ahead: Array, rng: np.random.Generator) -> Array:
+    """(N, k, h) levels of every draw at increasing years ahead (h,), new jumps and drifts apart; T."""
+    n, k = draws.level.shape
+    steps = np.diff(ahead, prepend=0.0)
+    walked = np.cumsum(rng.standard_normal((n, k, len(ahead))) * np.sqrt(steps), axis=2) * draws.walk[:, None, None]
+    aged = course(draws.age + ahead, draws.constant[:, None]) - course(np.full(1, draws.age), draws.constant[:, None])
+    drifted = draws.rate[..., None] * ahead + draws.aging[..., None] * aged[:, None, :]
+    return np.asarray(draws.level[..., None] + drifted + walked)
 
 
-def _first_passage(distance: Array, rate: Array, free: Array, q: Array, t: Array) -> Array:
-    """(B, Q, l, h) probability of the closed form; 1 where the tolerance is reached already.
+def passage(draws: Draws, prior: Prior, swing: float, rng: np.random.Generator) -> Array:
+    """(h,) probability, never falling, that the tolerance has been reached by `AHEAD`.
 
     Parameters
     ----------
-    distance : (B, Q, l, 1) a, tolerances.
-    rate, free : (B, Q, l, 1) μ, tolerances a year, and (B, Q, 1, 1) κ², tolerances squared a year squared.
-    q, t : (Q, 1, 1) tolerances squared a year, and (h,) years.
+    swing : T, that temperature takes off the tolerance on either side.
     """
-    spread = np.sqrt(q * t + free * t**2)
-    ahead = np.maximum(distance, 0.0)
-    beyond = ndtr((rate * t - ahead) / spread)
-    exponent = 2 * rate * ahead / q + 2 * free * ahead**2 / q**2
-    back = exponent + log_ndtr(-(ahead + rate * t + 2 * free * ahead * t / q) / spread)
-    return np.where(distance <= 0, 1.0, np.minimum(beyond + np.exp(np.minimum(back, 0.0)), 1.0))
+    length = np.linalg.norm(followed(draws, AHEAD, rng), axis=1) + swing
+    inside = np.maximum(1 - length, 0.0)
+    spread = draws.walk[:, None] ** 2 * np.diff(AHEAD) + 1e-12
+    stays = -np.expm1(-2 * inside[:, :-1] * inside[:, 1:] / spread)
+    within = np.cumprod(np.concatenate([(inside[:, :1] > 0).astype(float), stays], axis=1), axis=1)
+    chance = 1 - draws.mean(within * np.exp(-_hazard(np.minimum(length, 1.0), prior, draws.level.shape[1])))
+    return np.maximum.accumulate(np.clip(chance, 0.0, 1.0))
+
+
+def _hazard(length: Array, prior: Prior, k: int) -> Array:
+    """(N, h) expected number of new events that take a draw at (N, h) lengths, T, beyond its tolerance by `AHEAD`."""
+    jumps, drifts = PART_KINDS == Kind.JUMP, PART_KINDS == Kind.LATE
+    now = np.interp(length, DISTANCES, prior.rate[jumps] @ _beyond_jump(k))
+    steps = np.diff(AHEAD)
+    jumped = np.concatenate([np.zeros((len(length), 1)), np.cumsum((now[:, :-1] + now[:, 1:]) / 2 * steps, axis=1)], 1)
+    table = np.einsum("s,shd->hd", prior.rate[drifts], _beyond_drift(k))
+    drifted = np.stack([np.interp(length[:, h], DISTANCES, table[h]) for h in range(len(AHEAD))], axis=1)
+    return np.asarray(jumped + drifted)
+
+
+@lru_cache(maxsize=2)
+def _beyond_jump(k: int) -> Array:
+    """(s, 41) chance that a jump from each distance passes the tolerance, of each size."""
+    sizes = PART_SIZES[PART_KINDS == Kind.JUMP]
+    return np.array([_beyond(DISTANCES, np.array(size), k) for size in sizes])
+
+
+@lru_cache(maxsize=2)
+def _beyond_drift(k: int) -> Array:
+    """(s, h, 41) integral over its beginning, years, of the chance that a new drift passes the tolerance by `AHEAD`."""
+    rates = PART_SIZES[PART_KINDS == Kind.LATE]
+    since = AHEAD[:, None] * FRACTIONS
+    reached = [_beyond(DISTANCES, rate * since[..., None], k).mean(axis=1) * AHEAD[:, None] for rate in rates]
+    return np.array(reached)
+
+
+def _beyond(distance: Array, sigma: Array, k: int) -> Array:
+    """P(|x| ≥ 1) of x ~ N(distance, sigma² I) in k dimensions, T; broadcast."""
+    sigma = np.maximum(sigma, 1e-6)
+    if k == 1:
+        return np.asarray(ndtr((distance - 1) / sigma) + ndtr(-(distance + 1) / sigma))
+    near = np.maximum(sigma, 1e-2)  # narrower ones pass only from the edge, and the series of ncx2 grows long
+    return np.asarray(ncx2.sf(near**-2.0, k, (distance / near) ** 2))
 
 
 def reach(chance: Array, level: float, ahead: Array = AHEAD) -> Array:
@@ -96,52 +121,35 @@ def together(chance: Array) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class Band:
-    """Quantiles of the level at times ahead, in tolerances."""
+class Future:
+    """Levels at some dates, new events among them, as weighted draws."""
 
-    ahead: Array
-    """(B, h) years."""
-    quantiles: Array
-    """(B, k, h) tolerances."""
+    weight: Array
+    """(N,) summing to one."""
+    level: Array
+    """(N, k, h) T."""
 
+    def quantiles(self, levels: tuple[float, ...], way: Array) -> Array:
+        """(len(levels), h) of the level along a direction ``way`` (k,), T."""
+        found = []
+        for column in np.einsum("nkh,k->hn", self.level, way):
+            order = np.argsort(column)
+            below = np.cumsum(self.weight[order]) - self.weight[order] / 2
+            found.append(np.interp(levels, below, column[order]))
+        return np.array(found).T
 
-def band(found: Trends, ahead: Array, levels: tuple[float, ...]) -> Band:
-    """Quantiles of the mixture.
-
-    Parameters
-    ----------
-    found : B trends, relative to their tolerances.
-    ahead : (B, h) years after the last session.
-    levels : k probabilities, such as 0.05, 0.25, 0.5, 0.75, 0.95.
-    """
-    mean, variance = found.at(ahead)
-    sigma = np.sqrt(variance + 1e-18)
-    series, level, date = np.ogrid[: len(mean), : len(levels), : mean.shape[2]]
-
-    def excess(x: Array, i: Array, p: Array, h: Array) -> Array:
-        """Share of the mixture below levels x (n,), tolerances, less the probability p (n,); i, h (n,) places."""
-        below = ndtr((x[..., None] - mean[i, :, h]) / sigma[i, :, h])
-        return np.asarray((below * found.weight[i]).sum(axis=-1) - p)
-
-    wanted = np.array(levels)[level]
-    edges = ((mean - 12 * sigma).min(axis=1), (mean + 12 * sigma).max(axis=1))
-    roots = find_root(excess, tuple(edge[:, None] for edge in edges), args=(series, wanted, date))
-    return Band(ahead, np.asarray(roots.x))
+    def below(self, value: Array, sigma: Array) -> Array:
+        """(h,) probability of a reading of the first component below ``value`` (h,) with its own ``sigma`` (h,), T."""
+        return np.asarray(np.einsum("n,nh->h", self.weight, ndtr((value - self.level[:, 0, :]) / sigma)))
 
 
-def predictive(found: Trends, ahead: Array, value: Array, sigma: Array) -> Array:
-    """Probability of a later reading below a value.
-
-    Parameters
-    ----------
-    found : B trends.
-    ahead : (B, h) years after the last session.
-    value, sigma : (B, h) tolerances; each value with its own standard uncertainty.
-
-    Returns
-    -------
-    (B, h) probability.
-    """
-    mean, variance = found.at(ahead)
-    spread = np.sqrt(variance + sigma[:, None] ** 2)
-    return np.asarray(np.einsum("bqh,bq->bh", ndtr((value[:, None] - mean) / spread), found.weight))
+def future(draws: Draws, prior: Prior, ahead: Array, rng: np.random.Generator) -> Future:
+    """Levels at increasing years ahead (h,), with jumps and drifts that the type lets expect."""
+    level = followed(draws, ahead, rng)
+    n, k, _ = level.shape
+    for part in np.flatnonzero(prior.rate):
+        come = rng.exponential(1 / prior.rate[part], n)
+        size = PART_SIZES[part] * rng.standard_normal((n, k, 1))
+        since = np.maximum(ahead - come[:, None], 0.0)[:, None, :]
+        level = level + size * (since if PART_KINDS[part] == Kind.LATE else since > 0)
+    return Future(draws.weight, level)

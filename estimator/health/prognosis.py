@@ -1,25 +1,28 @@
-"""A unit's outlook: every parameter's trend and forecast, and the risk that any of them is out of tolerance.
+"""A unit's outlook: what changed in every parameter, where each goes, and the risk that any is out of tolerance.
 
-An axis deviates in two directions. Its series are the components along and across its latest measured deviation: the
-first carries the angle's drift and its steps, the second only adds to the risk. Because that direction was chosen by
-looking, a p-value of the first counts as that of the largest of all directions: exp(−t²/2) in place of 2Φ(−t).
+An axis deviates in two directions; both are one history with one time of change, its tolerance is a disc.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import ndtri
 
-from estimator.health.forecast import AHEAD, EARLY, MEDIAN, passage, reach, together
-from estimator.health.trend import STEP_LEVEL, Series, Trends, trends
+from estimator.health.detection import LEVEL, Change, Detected, Warmth, detect, warmed
+from estimator.health.fits import Readings, fit, fits
+from estimator.health.forecast import AHEAD, EARLY, MEDIAN, Future, future, passage, reach, together
+from estimator.health.pooled import Evidence, Prior
+from estimator.health.posterior import Draws, draw
+from estimator.health.shapes import DRIFTS, Kind, shapes
 from estimator.session import Array
 
 RECENT = 60
-"""Sessions, the newest, that a trend is made of; older ones hardly tell of a level that walks."""
+"""Sessions, the newest, that a history is made of; older ones hardly tell of what goes on now."""
 KNOWN = 0.5
 """A level is known well enough for a forecast while its sigma is below this part of the tolerance: U = 2·u below T, as
 the decision rule asks."""
+STEEPEST = 1.0
+"""One sigma of a rate before it is measured, T a year: nothing in use is steeper for long."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +38,10 @@ class Track:
     """(n, k) standard uncertainty that each session brings, unit of the change; of the reference session its own."""
     tolerance: float
     """Unit of the change."""
+    dof: Array | None = None
+    """(n,) degrees of freedom of each uncertainty; None, or infinite, where the noise is known."""
+    temperature: Array | None = None
+    """(n,) °C; NaN of a session without one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,12 +49,16 @@ class Outlook:
     """What one track says; SI a year, years."""
 
     level: float
+    """Along `direction`."""
     level_sigma: float
     rate: float
+    """Of the drift in force; where none was found, of the straight line through what came after the last jump."""
     rate_sigma: float
     p_value: float
-    steps: tuple[int, ...]
-    """Places in the track's sessions at which the value was first seen after a sudden change."""
+    """Of any change at all: the chance of one as evident, at any time and of any kind, where nothing happens."""
+    changes: tuple[Change, ...]
+    """Found; sizes in tolerances, gaps counted in the track's sessions."""
+    warmth: Warmth | None
     chance: Array
     """(h,) probability of having reached the tolerance by `AHEAD` after the track's last session."""
     reach_50: float
@@ -56,8 +67,20 @@ class Outlook:
     """Before it the tolerance is reached with 10 % probability."""
     is_known: bool
     """Whether the level is known well enough for the forecast to mean anything."""
-    series: int
-    """Place of its main series in the trends."""
+    direction: Array
+    """(k,) unit vector that level and rate are along."""
+    fan: Future
+    """At the dates that were asked for."""
+
+    @property
+    def steps(self) -> tuple[int, ...]:
+        """Places in the track's sessions at which the value was first seen after a sudden change."""
+        return tuple(sorted(change.gap for change in self.changes if change.kind is Kind.JUMP))
+
+    @property
+    def drift(self) -> Change | None:
+        """The drift or the aging that was found."""
+        return next((change for change in self.changes if change.kind in DRIFTS), None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,68 +88,121 @@ class Prognosis:
     """All tracks of a unit."""
 
     outlooks: tuple[Outlook, ...]
-    trends: Trends
-    """Of every track's main series, then of the axes' second ones; in tolerances."""
     risk: Array
     """(h,) probability that any known parameter has reached its tolerance by `AHEAD` after the latest session."""
 
 
-def prognosis(tracks: Sequence[Track]) -> Prognosis:
-    """The outlook of every track, and of the unit as a whole; at least one track, each with two sessions or more."""
-    main, across = [], list[tuple[int, Series]]()
-    for i, track in enumerate(tracks):
-        own = _series(track)
-        main.append(own[0])
-        across += [(i, other) for other in own[1:]]
-    level = -np.expm1(np.log1p(-STEP_LEVEL) / len(tracks))
-    found = trends([*main, *(series for _, series in across)], step_level=level)
-    chance = passage(found)
-    for place, (i, _) in enumerate(across):
-        chance[i] = np.minimum(chance[i] + chance[len(tracks) + place], 1.0)
-    outlooks = tuple(_outlook(track, found, i, chance[i]) for i, track in enumerate(tracks))
-    return Prognosis(outlooks, found, _risk(tracks, outlooks))
+def evidence(track: Track) -> Evidence:
+    """What a track tells of its type, whatever else is known of the type."""
+    readings = warmed(_readings(track), 0.0, *_conditions(track), LEVEL).readings
+    found = fits(readings, shapes(readings.time))
+    return Evidence(found.span, found.log_evidence())
 
 
-def _series(track: Track) -> list[Series]:
-    """Of a number its deviations, of an axis those along and across the direction it points in."""
-    time, change, sigma = track.time[-RECENT:], track.change[-RECENT:], track.sigma[-RECENT:]
-    if change.shape[1] == 1:
-        return [Series(time, change[:, 0], sigma[:, 0], track.tolerance)]
-    along = direction(track)
-    across = np.array([-along[1], along[0]])
-    return [Series(time, change @ u, np.sqrt(sigma**2 @ u**2), track.tolerance) for u in (along, across)]
+def prognosis(tracks: Sequence[Track], priors: Sequence[Prior], ahead: Array) -> Prognosis:
+    """The outlook of every track, and of the unit as a whole.
+
+    Parameters
+    ----------
+    tracks : at least one, each with two sessions or more.
+    priors : of every track's parameter in its type.
+    ahead : years after the last session, increasing, at which fans are wanted.
+    """
+    level = -np.expm1(np.log1p(-LEVEL) / len(tracks))
+    outlooks = tuple(_outlook(t, p, ahead, (i, level)) for i, (t, p) in enumerate(zip(tracks, priors, strict=True)))
+    return Prognosis(outlooks, _risk(tracks, outlooks))
+
+
+def _readings(track: Track) -> Readings:
+    time, unit = track.time[-RECENT:], track.tolerance
+    n = len(time)
+    return Readings(
+        time - time[0], track.change[-RECENT:] / unit, track.sigma[-RECENT:] / unit, np.ones((n, 1)), np.ones(1)
+    )
+
+
+def _conditions(track: Track) -> tuple[Array, Array]:
+    """(n,) degrees of freedom, and (n,) °C, of the sessions that are looked at."""
+    n = len(track.time)
+    dof = np.full(n, np.inf) if track.dof is None else track.dof
+    warm = np.full(n, np.nan) if track.temperature is None else track.temperature
+    return dof[-RECENT:], warm[-RECENT:]
 
 
 def direction(track: Track) -> Array:
-    """(2,) unit vector, dimensionless: where the axis points from its reference, the mean of the last three sessions by
-    their precision."""
+    """(k,) unit vector, dimensionless: of an axis where it points from its reference, the mean of the last three
+    sessions by their precision; 1 of a number."""
+    if track.change.shape[1] == 1:
+        return np.ones(1)
     weight = track.sigma[-3:].max(axis=1, keepdims=True) ** -2.0
     mean = (weight * track.change[-3:]).sum(axis=0)
     length = float(np.hypot(*mean))
     return mean / length if length > 0 else np.array([1.0, 0.0])
 
 
-def _outlook(track: Track, found: Trends, i: int, chance: Array) -> Outlook:
-    """Of a track whose main series is the i-th; chance (h,) is the probability of having reached the tolerance."""
-    unit = track.tolerance
-    last = int(found.there[i].sum()) - 1
+def _outlook(track: Track, prior: Prior, ahead: Array, of: tuple[int, float]) -> Outlook:
+    """Of the track with a number, at a level of detection ``of`` it."""
+    number, level = of
+    rng = np.random.default_rng(number)
+    detected = detect(_readings(track), prior.usual_walk, *_conditions(track), level)
+    family = shapes(detected.readings.time)
+    draws = draw(detected.readings, family, prior, rng)
+    chance = passage(draws, prior, _swing(detected.warmth, track), rng)
+    way = direction(track)
+    middle, sigma = _moments(draws, way)
+    rate, rate_sigma = _rate(detected, draws, prior, way)
     skipped = max(len(track.time) - RECENT, 0)
-    p = float(found.p_value[i])
-    if track.change.shape[1] == 2:
-        p = float(np.exp(-(ndtri(max(p, 1e-300) / 2) ** 2) / 2))
     return Outlook(
-        level=float(found.level[i, last]) * unit,
-        level_sigma=float(found.level_sigma[i, last]) * unit,
-        rate=float(found.rate[i]) * unit,
-        rate_sigma=float(found.rate_sigma[i]) * unit,
-        p_value=p,
-        steps=tuple(int(k) + skipped for k in np.flatnonzero(found.steps[i])),
+        level=middle * track.tolerance,
+        level_sigma=sigma * track.tolerance,
+        rate=rate * track.tolerance,
+        rate_sigma=rate_sigma * track.tolerance,
+        p_value=detected.p_value,
+        changes=tuple(_placed(change, skipped) for change in detected.changes),
+        warmth=detected.warmth,
         chance=chance,
         reach_50=float(reach(chance[None], MEDIAN)[0]),
         reach_90=float(reach(chance[None], EARLY)[0]),
-        is_known=bool(found.level_sigma[i, last] < KNOWN),
-        series=i,
+        is_known=sigma < KNOWN,
+        direction=way,
+        fan=future(draws, prior, ahead, rng),
     )
+
+
+def _moments(draws: Draws, way: Array) -> tuple[float, float]:
+    """Mean and one sigma of the level along a direction, T."""
+    along = draws.level @ way
+    middle = float(draws.mean(along))
+    return middle, float(np.sqrt(draws.mean((along - middle) ** 2)))
+
+
+def _rate(detected: Detected, draws: Draws, prior: Prior, way: Array) -> tuple[float, float]:
+    """Drift in force along a direction with one sigma, T a year; where one was found, whenever it may have begun."""
+    if any(change.kind in DRIFTS for change in detected.changes):
+        slowed = 1 / ((draws.age + draws.constant) * np.log1p(1 / draws.constant))
+        rates = (draws.rate + draws.aging * slowed[:, None]) @ way
+        middle = float(draws.mean(rates))
+        return middle, float(np.sqrt(draws.mean((rates - middle) ** 2)))
+    readings = detected.readings
+    parts = [fit(readings, j, prior.usual_walk, shapes(readings.time)) for j in range(len(way))]
+    start = int(np.flatnonzero(shapes(readings.time).kind == Kind.START)[0])
+    variance = np.array([1 / (part.information[start] + STEEPEST**-2) for part in parts])
+    score = np.array([part.score[start] for part in parts])
+    return float((variance * score) @ way), float(np.sqrt(variance @ way**2))
+
+
+def _swing(warmth: Warmth | None, track: Track) -> float:
+    """What the span of temperatures takes off the tolerance on either side, T."""
+    if warmth is None or not warmth.is_found or track.temperature is None:
+        return 0.0
+    seen = track.temperature[-RECENT:]
+    away = np.abs(seen[np.isfinite(seen)] - seen[np.isfinite(seen)].mean())
+    return float(np.linalg.norm(warmth.coefficient) * away.max())
+
+
+def _placed(change: Change, skipped: int) -> Change:
+    """Counted in all sessions of the track."""
+    return replace(change, gap=change.gap + skipped)
 
 
 def _risk(tracks: Sequence[Track], outlooks: Sequence[Outlook]) -> Array:

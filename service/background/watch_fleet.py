@@ -1,4 +1,4 @@
-"""Work beside the requests: every due date and every stand, looked at now and then."""
+"""Work beside the requests: every outlook, every due date and every stand, looked at now and then."""
 
 from collections.abc import Callable
 from datetime import datetime
@@ -7,6 +7,7 @@ from threading import Event
 from service.background.flag_overdue import flag_overdue
 from service.background.flag_shifted_stands import flag_shifted_stands
 from service.errors import ServiceError
+from service.flows.relearn import relearn
 from service.log import log
 from service.storage import Storage
 
@@ -15,11 +16,12 @@ FIRST_LOOK, LOOK_EVERY = 20.0, 3600.0
 
 
 def watch_fleet(storage: Storage, clock: Callable[[], datetime], stop: Event) -> None:
-    """Looks at every due date and every stand now and then until ``stop`` is set."""
+    """Looks at every outlook, due date and stand now and then until ``stop`` is set."""
     pause = FIRST_LOOK
     while not stop.wait(pause):
         pause = LOOK_EVERY
         try:
+            relearn(storage, clock())
             flag_overdue(storage, clock())
             flag_shifted_stands(storage, clock())
         except ServiceError as fault:

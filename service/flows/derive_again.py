@@ -13,6 +13,7 @@ from estimator.parity import parity_check
 from estimator.parity.as_calibration import parity_calibration
 from estimator.results import Calibration
 from estimator.session import CALIBRATIONS, IN_SERVICE
+from service.flows.flagging.drift import flag_drift
 from service.flows.flagging.fold import settle_sessions
 from service.flows.flagging.settle import Occasion
 from service.flows.flagging.verdict import no_longer_overdue, tell_verdict, told_by
@@ -165,10 +166,12 @@ def _sum_up(store: Store, way: Deriving, serial: str, touched: Sequence[str]) ->
     if was.last_session is None:
         store.outlooks.drop(unit)
         settle_sessions(store, occasion)
+        flag_drift(store, occasion, None)
         return
     refresh_outlook(store, serial)
     latest = store.sessions.get(was.last_session)
     tell_verdict(store, occasion, latest, was)
     settle_sessions(store, occasion)
+    flag_drift(store, occasion, store.outlooks.of_unit(serial))
     if latest.id in touched and latest.programme in CALIBRATIONS:
         no_longer_overdue(store, occasion, latest)

@@ -216,6 +216,7 @@ def _record(received: Received, new: Calibrated) -> StoredSession:
         revision=new.model.revision,
         stage=session.stage,
         reservations=None,
+        temperature=None if session.temperature is None else float(session.temperature.mean()),
     )
 
 

@@ -1,121 +1,71 @@
-"""Step: judged changes since the last break → trends, the date of the next calibration and why then."""
+"""Step: histories and what their type lets expect → trends, what the unit needs next and why."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 
 import numpy as np
-from numpy.typing import NDArray
 
-from estimator.health.forecast import AHEAD, RISK_LEVEL, band, reach
-from estimator.health.prognosis import Outlook, Prognosis, Track, prognosis
-from estimator.session import comparable
-from service.records.outlook import FanPoint, ParameterTrend, RiskPoint, UnitOutlook
-from service.storage.queries.outlooks import ChangeRow, ReferenceRow
-from service.words.due import why_due, why_measure
+from estimator.health.detection import Change, Warmth
+from estimator.health.forecast import AHEAD, RISK_LEVEL, reach
+from estimator.health.pooled import Prior
+from estimator.health.prognosis import Outlook, Prognosis, prognosis
+from estimator.health.shapes import Kind
+from service.judging.histories import Histories
+from service.records.decision import Verdict
+from service.records.outlook import (
+    Action,
+    FanPoint,
+    FoundChange,
+    ParameterTrend,
+    RiskPoint,
+    TemperatureCoefficient,
+    UnitOutlook,
+)
+from service.records.session import StoredSession
+from service.words.due import UNFIT, why_due, why_measure, why_now
 from service.words.names import YEAR
 
 FAN_AHEAD = np.linspace(0.0, 1.0, 6)
 """Years after the last session for which a trend's bounds are drawn."""
 FAN_LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 """Median, and the bounds that hold half and nine tenths, as `FanPoint` has them."""
+CALLED = {Kind.JUMP: "jump", Kind.LATE: "drift", Kind.START: "drift", Kind.AGING: "aging", Kind.WALK: "walk"}
+"""Kinds of change as `FoundChange` has them."""
 
 
 @dataclass(frozen=True)
 class Past:
-    """What is stored of a unit that its outlook rests on."""
+    """What is stored of a unit that its outlook rests on, its histories apart."""
 
     serial: str
     since: datetime | None
     """Its last break; None where there was none."""
-    changes: Sequence[ChangeRow]
-    """Judged since the break."""
-    references: Sequence[ReferenceRow]
-    """Of the same time."""
-    last: datetime | None
+    latest: StoredSession | None
     """Its latest calibration; None before the first."""
     longest_days: float
     """From one calibration to the next, as the type allows."""
 
 
-@dataclass(frozen=True)
-class TrackKey:
-    """Which parameter of which sensor."""
-
-    sensor: str
-    kind: str
-    parameter: str
-
-
-@dataclass(frozen=True, eq=False)
-class Forecast:
-    """What is stored of a unit, and what its page draws."""
-
-    outlook: UnitOutlook
-    keys: tuple[TrackKey, ...]
-    tracks: tuple[Track, ...]
-    dates: tuple[tuple[datetime, ...], ...]
-    """Of every track's sessions, the reference included."""
-    found: Prognosis | None
-    """None without a track."""
+def forecast(past: Past, known: Histories, priors: Mapping[tuple[str, str], Prior]) -> UnitOutlook:
+    """The outlook of a unit; priors by kind of sensor and parameter."""
+    last, since = past.latest, past.since
+    if last is None or (since is not None and last.started_at < since):
+        waiting = UnitOutlook(past.serial, since, False, why_measure(since), None, None, None, None, None, ())
+        return replace(waiting, action=Action.MEASURE)
+    if not known.tracks:
+        return _decided(past, last, (), None)
+    found = prognosis(known.tracks, [priors[(key.kind, key.parameter)] for key in known.keys], FAN_AHEAD)
+    trends = tuple(_trend(known, i, outlook) for i, outlook in enumerate(found.outlooks))
+    learned = min(prior.histories for prior in priors.values())
+    return replace(_decided(past, last, trends, _risk(known, found)), learned_from=learned)
 
 
-def forecast(past: Past) -> Forecast:
-    """The outlook of a unit."""
-    groups = _groups(past.changes, past.references)
-    dated = [_track(rows, reference) for rows, reference in groups.values()]
-    tracks, dates = tuple(track for track, _ in dated), tuple(at for _, at in dated)
-    found = prognosis(tracks) if tracks else None
-    told = () if found is None else _trends(tuple(groups), tracks, dates, found)
-    outlook = _unit(past, told, found, max((at[-1] for at in dates), default=None))
-    return Forecast(outlook, tuple(groups), tracks, dates, found)
-
-
-Group = tuple[list[ChangeRow], ReferenceRow]
-
-
-def _groups(changes: Sequence[ChangeRow], references: Sequence[ReferenceRow]) -> dict[TrackKey, Group]:
-    """The changes of each parameter from one reference; of a sensor with several references the latest programme's."""
-    first: dict[tuple[str, tuple[str, ...]], ReferenceRow] = {}
-    for reference in references:
-        first.setdefault((reference.block, comparable(reference.programme)), reference)
-    groups: dict[TrackKey, Group] = {}
-    for row in changes:
-        own = first.get((row.block, comparable(row.programme)))
-        if own is not None:
-            key = TrackKey(row.sensor, row.kind, row.parameter)
-            rows, known = groups.get(key, ([], own))
-            groups[key] = ([*rows, row], known) if known is own else ([row], own)
-    return groups
-
-
-def _track(rows: Sequence[ChangeRow], reference: ReferenceRow) -> tuple[Track, tuple[datetime, ...]]:
-    """The sessions of a parameter with its reference among them, in order of time."""
-    origin = (reference.at, [0.0] * len(rows[-1].change), rows[-1].origin)
-    points = sorted([origin, *((row.at, row.change, row.own) for row in rows)], key=lambda point: point[0])
-    start = points[0][0]
-    track = Track(
-        time=np.array([(at - start) / YEAR for at, _, _ in points]),
-        change=np.array([change for _, change, _ in points]),
-        sigma=np.array([sigma for _, _, sigma in points]),
-        tolerance=rows[-1].tolerance,
-    )
-    return track, tuple(at for at, _, _ in points)
-
-
-def _trends(
-    keys: Sequence[TrackKey], tracks: Sequence[Track], dates: Sequence[tuple[datetime, ...]], found: Prognosis
-) -> tuple[ParameterTrend, ...]:
-    ahead = np.tile(FAN_AHEAD, (len(found.trends.rate), 1))
-    fans = band(found.trends, ahead, FAN_LEVELS).quantiles
-    parts = zip(keys, tracks, dates, found.outlooks, fans, strict=False)  # the axes' second series have no fan
-    return tuple(_trend(*part) for part in parts)
-
-
-def _trend(
-    key: TrackKey, track: Track, dates: Sequence[datetime], found: Outlook, fan: NDArray[np.float64]
-) -> ParameterTrend:
-    points = zip(FAN_AHEAD, fan.T * track.tolerance, strict=True)
+def _trend(known: Histories, i: int, found: Outlook) -> ParameterTrend:
+    key, track, dates = known.keys[i], known.tracks[i], known.dates[i]
+    fan = found.fan.quantiles(FAN_LEVELS, found.direction) * track.tolerance
+    points = zip(FAN_AHEAD, fan.T, strict=True)
+    changes = tuple(_change(change, track.tolerance, dates) for change in found.changes)
     return ParameterTrend(
         sensor=key.sensor,
         parameter=key.parameter,
@@ -130,40 +80,81 @@ def _trend(
         population_z=None,
         kind=key.kind,
         tolerance=track.tolerance,
-        since=dates[found.steps[-1]] if found.steps else dates[0],
+        since=_since(found, dates),
         fan=tuple(FanPoint(dates[-1] + float(h) * YEAR, *(float(f"{q:.5g}") for q in at)) for h, at in points),
+        changes=changes,
+        temperature=None if found.warmth is None else _coefficient(found.warmth, track.tolerance),
     )
+
+
+def _since(found: Outlook, dates: tuple[datetime, ...]) -> datetime:
+    """The first session that the rate in force goes through."""
+    drift = found.drift
+    return dates[max([*found.steps, 0 if drift is None else max(drift.gap - 1, 0)])]
+
+
+def _change(change: Change, tolerance: float, dates: tuple[datetime, ...]) -> FoundChange:
+    """Of an axis its length."""
+    size, sigma = change.size, change.sigma
+    length = float(size[0]) if len(size) == 1 else float(np.hypot(*size))
+    spread = float(sigma[0]) if len(size) == 1 else float(np.hypot(*(sigma * size)) / max(length, 1e-300))
+    after, before = (dates[change.gap - 1], dates[change.gap]) if change.gap else (dates[0], dates[1])
+    return FoundChange(CALLED[change.kind], after, before, length * tolerance, spread * tolerance, change.p_value)
+
+
+def _coefficient(warmth: Warmth, tolerance: float) -> TemperatureCoefficient:
+    value, sigma = warmth.coefficient, warmth.sigma
+    length = float(value[0]) if len(value) == 1 else float(np.hypot(*value))
+    return TemperatureCoefficient(length * tolerance, float(sigma.max()) * tolerance, warmth.p_value, warmth.is_found)
 
 
 def _after(start: datetime, years: float) -> datetime | None:
     return start + years * YEAR if np.isfinite(years) else None
 
 
-def _unit(
-    past: Past, trends: tuple[ParameterTrend, ...], found: Prognosis | None, latest: datetime | None
+def _risk(known: Histories, found: Prognosis) -> tuple[RiskPoint, ...]:
+    latest = max(at[-1] for at in known.dates)
+    return tuple(RiskPoint(latest + float(a) * YEAR, float(r)) for a, r in zip(AHEAD, found.risk, strict=True))
+
+
+def _decided(
+    past: Past, last: StoredSession, trends: tuple[ParameterTrend, ...], risk: tuple[RiskPoint, ...] | None
 ) -> UnitOutlook:
-    """The unit as a whole: it comes back before its risk passes the level, and never after the longest interval."""
-    last, since = past.last, past.since
-    if last is None or (since is not None and last < since):
-        return UnitOutlook(past.serial, since, False, why_measure(since), None, None, None, None, None, ())
-    longest = last + timedelta(days=past.longest_days)
+    """The unit as a whole: it comes back before its risk passes the level, and never after the longest interval.
+
+    Found unfit it needs a hand and no date; undecided, or perhaps out of tolerance already, another session.
+    """
+    longest = last.started_at + timedelta(days=past.longest_days)
     first = min((t for t in trends if t.reach_90), key=lambda t: (t.reach_90, t.reach_50 or longest), default=None)
-    risk, risky = tuple[RiskPoint, ...](), None
-    if found is not None and latest is not None:
-        risk = tuple(RiskPoint(latest + float(a) * YEAR, float(r)) for a, r in zip(AHEAD, found.risk, strict=True))
-        risky = _after(latest, float(reach(found.risk[None], RISK_LEVEL)[0]))
-    due = longest if risky is None else min(longest, max(risky, last))
+    risky = None if risk is None else _passes(risk)
+    action, due = _action(last, risky), longest if risky is None else min(longest, risky)
+    reason = why_due(trends, first, last.started_at, past.longest_days, is_longest=due == longest)
     unit = UnitOutlook(
         serial=past.serial,
-        due=due,
+        due=None if action is Action.NOW or due <= last.started_at else due,
         overdue=False,
-        reason=why_due(trends, first, last, past.longest_days, is_longest=due == longest),
+        reason=reason if action is Action.CALIBRATE else why_now(action, last, reason),
         sensor=None if first is None else first.sensor,
         parameter=None if first is None else first.parameter,
         reach_50=None if first is None else first.reach_50,
         reach_90=None if first is None else first.reach_90,
         risk_at_due=None,
         trends=trends,
-        risk=risk,
+        risk=risk or (),
+        action=action,
     )
-    return replace(unit, risk_at_due=unit.risk_by(due))
+    return unit if unit.due is None else replace(unit, risk_at_due=unit.risk_by(unit.due))
+
+
+def _passes(risk: tuple[RiskPoint, ...]) -> datetime | None:
+    """When the risk passes the level."""
+    years = float(reach(np.array([[point.risk for point in risk]]), RISK_LEVEL)[0])
+    return _after(risk[0].at, years)
+
+
+def _action(last: StoredSession, risky: datetime | None) -> Action:
+    if last.verdict in UNFIT:
+        return Action.NOW
+    if last.verdict is Verdict.UNDECIDABLE and not last.is_reference:
+        return Action.REPEAT
+    return Action.REPEAT if risky is not None and risky <= last.started_at else Action.CALIBRATE

@@ -12,6 +12,8 @@ MATTERS = {
     Matter.UNEXPLAINED: "Unexplained",
     Matter.STAND: "Stand at fault",
     Matter.SHIFTED: "Stand has shifted",
+    Matter.JUMP: "Has jumped",
+    Matter.DRIFT: "Drifting",
     Matter.OVERDUE: "Calibration overdue",
 }
 STATES = {FlagState.RAISED: "open", FlagState.ACKNOWLEDGED: "acknowledged", FlagState.RESOLVED: "resolved"}

@@ -10,6 +10,7 @@ from service.records.stand import StandCondition
 from service.records.unit import FleetCondition, UnitSummary
 from service.views.standouts import Standout
 from service.words.conditions import REFERENCE, UNDECIDED, Condition, condition_of
+from service.words.due import needed_now
 
 PAGE_SIZE = 50
 """Units on a page: two screens."""
@@ -62,6 +63,8 @@ class FleetRow:
     """``2 flags``; empty where none is open."""
     due: datetime | None
     """Of the next calibration."""
+    next: str
+    """What is needed where no date is set: ``act now``."""
     overdue: bool
 
 
@@ -167,6 +170,7 @@ def _row(unit: UnitSummary, now: datetime) -> FleetRow:
         simulated=unit.simulated,
         flags=flags_in_words(unit.flags),
         due=unit.due,
+        next=needed_now(unit.verdict, known=unit.last_session is not None),
         overdue=unit.due is not None and unit.due < now,
     )
 

@@ -72,6 +72,7 @@ def show_unit(request: Request, store: Reading, settings: SettingsOf, now: Now, 
         unit_page(
             report,
             recent_history(store, serial, HISTORY_LIMIT),
+            now=now,
             flags=store.flags.page(FlagQuery(serial, limit=FLAG_LIMIT)),
             notes=store.notes.of_unit(serial),
             pair=found_and_left(store, report.unit_type, report.sessions, report.services, settings.coverage_factor),

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import datetime
 
 from service.charts import ChartSet
 from service.charts.history import history_charts
@@ -90,6 +91,7 @@ def unit_page(
     report: UnitReport,
     history: Sequence[HistoryPoint],
     *,
+    now: datetime,
     flags: Sequence[Flag] = (),
     notes: Sequence[Note] = (),
     pair: FoundAndLeft | None = None,
@@ -111,7 +113,7 @@ def unit_page(
         events=events_of((*report.services, *report.withdrawn_services), notes, report.withdrawals),
         stages=stage_table(pair),
         kinds=tuple(KINDS.items()),
-        next=None if outlook is None else next_calibration(outlook),
+        next=None if outlook is None else next_calibration(outlook, now),
     )
 
 

@@ -19,6 +19,10 @@ class Matter(StrEnum):
     """A diagnosis finds the stand or the fixture at fault."""
     SHIFTED = "stand-shifted"
     """The units measured on a stand show that it has shifted."""
+    JUMP = "jump"
+    """A parameter has jumped between two sessions, whether it is out of tolerance or not."""
+    DRIFT = "drift"
+    """A parameter drifts, ages or moves at no steady rate, whether it is out of tolerance or not."""
     OVERDUE = "overdue"
     """The unit's calibration is overdue."""
 

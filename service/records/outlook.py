@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from datetime import datetime
+from enum import StrEnum
 
 
 @dataclass(frozen=True)
@@ -30,6 +31,48 @@ class FanPoint:
     high_90: float
 
 
+class Action(StrEnum):
+    """What a unit needs next."""
+
+    CALIBRATE = "calibrate"
+    """At its due date."""
+    NOW = "act-now"
+    """It was found out of tolerance: adjust, repair or withdraw it; no date makes that better."""
+    REPEAT = "repeat"
+    """Its latest session could not decide, or hardly knows; measure again."""
+    MEASURE = "measure"
+    """No session has shown it yet, or none since its service."""
+
+
+@dataclass(frozen=True)
+class FoundChange:
+    """A change of one parameter that chance does not explain."""
+
+    kind: str
+    """``jump``, ``drift``, ``aging``, or ``walk``: at no steady rate."""
+    after: datetime
+    """The last session before it; of a drift from the start, and of a walk, the first session."""
+    before: datetime
+    """The first session that shows it."""
+    size: float
+    """SI or relative, for the axis its length; of a drift a year, of an aging the change of its first year."""
+    sigma: float
+    p_value: float
+    """Over all kinds, sizes and times of change that were tried on the parameter."""
+
+
+@dataclass(frozen=True)
+class TemperatureCoefficient:
+    """How a parameter follows the temperature of its sessions."""
+
+    value: float
+    """SI or relative per °C; for the axis its length."""
+    sigma: float
+    p_value: float
+    is_found: bool
+    """Whether the trend goes on without it."""
+
+
 @dataclass(frozen=True)
 class ParameterTrend:
     """One parameter of one sensor since the last break."""
@@ -40,7 +83,7 @@ class ParameterTrend:
     """SI a year; relative for scale; for the axis along the direction in which it has moved."""
     rate_sigma: float
     significance: float
-    """p-value: the chance of a rate at least this far from zero when there is none."""
+    """p-value: the chance of changes as evident as these, of any kind and at any time, where nothing happens."""
     step_dates: tuple[datetime, ...]
     """Sessions that first showed a sudden change."""
     level: float
@@ -58,6 +101,10 @@ class ParameterTrend:
     """Of the first session that the trend goes through: the reference, or the first after a sudden change."""
     fan: tuple[FanPoint, ...] = ()
     """From the last session on, a year ahead."""
+    changes: tuple[FoundChange, ...] = ()
+    """What was found at the level over all parameters of the unit, the most evident first."""
+    temperature: TemperatureCoefficient | None = None
+    """None where the sessions do not span temperature."""
 
 
 @dataclass(frozen=True)
@@ -92,6 +139,11 @@ class UnitOutlook:
     """The risk of waiting, date by date from the latest session on."""
     together: tuple[str, ...] = ()
     """What all sensors did together at the latest calibration, in sentences."""
+    action: Action = Action.CALIBRATE
+    learned_from: int = 0
+    """Histories of its type that the forecast rests on; 0 where it rests on units in general."""
+    rests_on: str = ""
+    """Hash of those histories: another one means that the type has more to tell."""
 
     def risk_by(self, at: datetime) -> float | None:
         """Chance that any parameter is out of tolerance by a date; None where there is no trend."""

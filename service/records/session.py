@@ -48,6 +48,8 @@ class StoredSession:
     """Only an accepted session tells of its unit."""
     superseded_by: str | None = None
     """The session that stands for a superseded one."""
+    temperature: float | None = None
+    """°C, the mean over the session; None where it was not recorded."""
 
 
 @dataclass(frozen=True)

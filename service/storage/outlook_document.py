@@ -4,7 +4,15 @@ from dataclasses import is_dataclass
 from datetime import datetime
 from typing import Any
 
-from service.records.outlook import FanPoint, ParameterTrend, RiskPoint, UnitOutlook
+from service.records.outlook import (
+    Action,
+    FanPoint,
+    FoundChange,
+    ParameterTrend,
+    RiskPoint,
+    TemperatureCoefficient,
+    UnitOutlook,
+)
 
 TIMES = ("due", "reach_50", "reach_90")
 """Fields of an outlook that are times."""
@@ -31,7 +39,7 @@ def outlook_from_dicts(document: dict[str, Any], drawn: dict[str, Any] | None = 
     own = {**document, **{name: _time(document[name]) for name in TIMES}}
     own["trends"] = tuple(_trend(entry, fan) for entry, fan in zip(document["trends"], fans, strict=True))
     own["risk"] = tuple(RiskPoint(_at(point), point["risk"]) for point in (drawn or {}).get("risk", ()))
-    own["together"] = tuple(document["together"])
+    own |= {"together": tuple(document["together"]), "action": Action(document["action"])}
     return UnitOutlook(**own)
 
 
@@ -39,7 +47,15 @@ def _trend(entry: dict[str, Any], fan: list[dict[str, Any]]) -> ParameterTrend:
     times = {name: _time(entry[name]) for name in ("reach_50", "reach_90", "since")}
     steps = tuple(datetime.fromisoformat(at) for at in entry["step_dates"])
     points = tuple(FanPoint(**{**point, "at": _at(point)}) for point in fan)
-    return ParameterTrend(**{**entry, **times, "step_dates": steps, "fan": points})
+    warm = entry["temperature"]
+    parts = {
+        "step_dates": steps,
+        "fan": points,
+        "changes": tuple(FoundChange(**{**c, "after": _time(c["after"]), "before": _time(c["before"])})
+                         for c in entry["changes"]),
+        "temperature": None if warm is None else TemperatureCoefficient(**warm),
+    }  # fmt: skip
+    return ParameterTrend(**{**entry, **times, **parts})
 
 
 def _at(point: dict[str, Any]) -> datetime:

@@ -8,7 +8,7 @@ unit_types ──< tolerance_revisions          stands ──< stand_certificate
            ├──< flags ──┐                     │
            ├──< notices ┴──< deliveries >── webhooks
            ├──1 conditions                    │
-           ├──1 outlooks                      │
+           ├──1 outlooks, ──< histories       │
            └──< sessions >────────────────────┘
                    ├──< calibrations          refusals   what was turned away
                    ├──< parameters            audit      who did what when, append-only
@@ -133,6 +133,7 @@ class SessionRow(Base):
     content_digest: Mapped[str | None] = mapped_column(String(64), index=True)
     basis: Mapped[str | None] = mapped_column(String(160), index=True)
     tells: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
+    temperature: Mapped[float | None]
 
 
 class CalibrationRow(Base):

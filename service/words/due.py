@@ -1,15 +1,32 @@
-"""Why a unit must come back when it must, in one sentence that a technician understands."""
+"""What a unit needs next and why, in one sentence that a technician understands."""
 
 from collections.abc import Sequence
 from datetime import datetime
 
-from service.records.outlook import ParameterTrend
+from service.records.decision import Verdict
+from service.records.outlook import Action, ParameterTrend
+from service.records.session import StoredSession
 from service.words.names import PARAMETER_NAMES, day_of, month_of
+
+UNFIT = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
+"""Verdicts after which no date helps."""
 
 
 def why_measure(since: datetime | None) -> str:
     """Of a unit that no session has shown: ever, or since its service."""
     return "No calibration yet." if since is None else f"Serviced on {day_of(since)}: measure it again."
+
+
+def why_now(action: Action, last: StoredSession, reason: str) -> str:
+    """Of a unit that waits for no date: found unfit, or not decided; ``reason`` is that of the forecast."""
+    day = day_of(last.started_at)
+    if action is Action.NOW:
+        return (
+            f"Found out of tolerance on {day}: adjust, repair or withdraw it, record the service and measure it again."
+        )
+    if last.verdict is Verdict.UNDECIDABLE:
+        return f"The session of {day} did not decide. {last.reason}"
+    return f"{reason} Measure it again."
 
 
 def why_due(
@@ -32,3 +49,10 @@ def why_due(
     later = f" and as likely as not by {month_of(first.reach_50)}" if first.reach_50 else ""
     forecast = f"{name} reaches its tolerance with 10 % probability before {month_of(first.reach_90)}{later}"
     return f"{forecast}; {interval}." if is_longest else f"{forecast}."
+
+
+def needed_now(verdict: Verdict | None, *, known: bool) -> str:
+    """In a table, of a unit that waits for no date."""
+    if verdict in UNFIT:
+        return "act now"
+    return "repeat" if known else "not known"

@@ -1,8 +1,37 @@
 """When a unit must come back and why."""
 
 from datetime import datetime
+from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
+
+from service.records.outlook import Action
+
+
+class FoundChangeSchema(BaseModel):
+    """A change of one parameter that chance does not explain."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    kind: Literal["jump", "drift", "aging", "walk"] = Field(description="`walk`: it moved at no steady rate.")
+    after: datetime = Field(description="The last session before it, or the first of all.")
+    before: datetime = Field(description="The first session that shows it.")
+    size: float = Field(
+        description="SI or relative, of an axis its length; of a drift a year, of aging the first year's."
+    )
+    sigma: float = Field(description="Standard uncertainty of it.")
+    p_value: float = Field(description="Over all kinds, sizes and times of change that were tried on the parameter.")
+
+
+class TemperatureCoefficientSchema(BaseModel):
+    """How a parameter follows the temperature of its sessions."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    value: float = Field(description="SI or relative per °C; of an axis its length.")
+    sigma: float = Field(description="Standard uncertainty of it.")
+    p_value: float = Field(description="Chance of one this far from zero when there is none.")
+    is_found: bool = Field(description="Whether the trend goes on without it.")
 
 
 class ParameterTrendSchema(BaseModel):
@@ -18,10 +47,16 @@ class ParameterTrendSchema(BaseModel):
     level_sigma: float = Field(description="Standard uncertainty of it.")
     rate_per_year: float = Field(description="Drift a year.")
     rate_sigma: float = Field(description="Standard uncertainty of it, that of the random walk included.")
-    significance: float = Field(description="p-value: chance of a rate this far from zero when there is none.")
+    significance: float = Field(
+        description="p-value: chance of changes as evident, of any kind and at any time, where nothing happens."
+    )
     step_dates: list[datetime] = Field(description="Sessions that first showed a sudden change.")
     reach_50: datetime | None = Field(description="By then the tolerance is reached with 50 % probability.")
     reach_90: datetime | None = Field(description="Before it the tolerance is reached with 10 % probability only.")
+    changes: list[FoundChangeSchema] = Field(description="Changes that chance does not explain, most evident first.")
+    temperature: TemperatureCoefficientSchema | None = Field(
+        description="How it follows the sessions' temperature; null where they do not span any."
+    )
     population_z: float | None = Field(description="The rate among those of the type's units, in their robust spread.")
 
 
@@ -43,8 +78,9 @@ class OutlookSchema(BaseModel):
     unit_type: str = Field(description="Name of its type.")
     lot: str | None = Field(description="Production lot, where it is recorded.")
     due: datetime | None = Field(
-        description="Next calibration: before the risk passes 5 %, never after the type's longest interval."
+        description="Next calibration: before the risk passes 5 %, never after the longest interval; null: at once."
     )
+    action: Action = Field(description="What the unit needs next.")
     overdue: bool = Field(description="Whether that has passed.")
     reason: str = Field(description="Why then, in one sentence.")
     sensor: str | None = Field(description="The sensor that reaches its tolerance first.")
@@ -54,4 +90,7 @@ class OutlookSchema(BaseModel):
     risk_at_due: float | None = Field(description="Chance that any parameter is out of tolerance by the due date.")
     until: RiskPointSchema | None = Field(description="The risk of waiting until the date that was asked for.")
     risk: list[RiskPointSchema] = Field(description="The risk of waiting, from the latest session on.")
+    learned_from: int = Field(
+        description="Histories of the type that the forecast rests on; 0 where it rests on units in general."
+    )
     trends: list[ParameterTrendSchema] = Field(description="One a sensor and parameter.")

@@ -1,6 +1,6 @@
 """Outlooks, one a unit, and the changes through time that they are made of."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Any
@@ -8,12 +8,18 @@ from typing import Any
 from sqlalchemy import ColumnElement, Row, Select, delete, func, select
 from sqlalchemy.orm import defer
 
+from estimator.health.pooled import Evidence
 from estimator.session import IN_SERVICE
 from service.records.outlook import Rate, UnitOutlook
+from service.storage.histories_table import HistoryRow
+from service.storage.history_document import packed
 from service.storage.outlook_document import outlook_from_dicts, outlook_to_dicts
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
 from service.storage.tables import DecisionRow, OutlookRow, SessionRow, UnitRow, UnitTypeRow
+
+MOST_UNITS = 60
+"""Whose histories a type is learned from: hundreds of parameters, which no further unit changes much."""
 
 
 @dataclass(frozen=True)
@@ -30,6 +36,10 @@ class ChangeRow:
     change: list[float]
     own: list[float]
     origin: list[float]
+    dof: float | None
+    """Degrees of freedom of the uncertainty; None where all noise is known."""
+    temperature: float | None
+    """°C"""
 
 
 @dataclass(frozen=True)
@@ -39,6 +49,8 @@ class ReferenceRow:
     at: datetime
     block: str
     programme: str
+    temperature: float | None
+    """°C"""
 
 
 class Outlooks(Queries):
@@ -50,7 +62,7 @@ class Outlooks(Queries):
             select(
                 SessionRow.started_at, SessionRow.block, SessionRow.programme, DecisionRow.sensor, DecisionRow.kind,
                 DecisionRow.parameter, DecisionRow.tolerance, DecisionRow.change, DecisionRow.change_own,
-                DecisionRow.change_origin,
+                DecisionRow.change_origin, DecisionRow.dof, SessionRow.temperature,
             )
             .join(DecisionRow, DecisionRow.session_id == SessionRow.id)
             .where(DecisionRow.revision == SessionRow.revision, DecisionRow.change.is_not(None))
@@ -61,7 +73,8 @@ class Outlooks(Queries):
 
     def references(self, unit: int, since: datetime | None) -> tuple[ReferenceRow, ...]:
         """The sessions since a time that others are judged against, oldest first."""
-        query = select(SessionRow.started_at, SessionRow.block, SessionRow.programme).where(SessionRow.is_reference)
+        columns = (SessionRow.started_at, SessionRow.block, SessionRow.programme, SessionRow.temperature)
+        query = select(*columns).where(SessionRow.is_reference)
         order = (SessionRow.started_at, SessionRow.id)
         found = self._session.execute(query.where(*_within(unit, since)).order_by(*order))
         return tuple(ReferenceRow(*row) for row in found)
@@ -85,6 +98,36 @@ class Outlooks(Queries):
     def drop(self, unit: int) -> None:
         """Of a unit without an accepted session there is no outlook."""
         self._session.execute(delete(OutlookRow).where(OutlookRow.unit_id == unit))
+        self._session.execute(delete(HistoryRow).where(HistoryRow.unit_id == unit))
+
+    def put_histories(self, unit: int, told: Mapping[tuple[str, str], Sequence[Evidence]]) -> None:
+        """Rewrites what a unit's histories tell of its type, by kind of sensor and parameter."""
+        self._session.execute(delete(HistoryRow).where(HistoryRow.unit_id == unit))
+        self._session.add_all(
+            HistoryRow(unit_id=unit, kind=kind, parameter=parameter, evidence=packed(histories))
+            for (kind, parameter), histories in told.items()
+        )
+        self._session.flush()
+
+    def histories(self, unit: int, kind: str, parameter: str) -> tuple[bytes, ...]:
+        """Of one parameter, of the units of a unit's type, by serial number; of so many units at most."""
+        type_id = select(UnitRow.unit_type_id).where(UnitRow.id == unit).scalar_subquery()
+        query = (
+            select(HistoryRow.evidence)
+            .join(UnitRow, UnitRow.id == HistoryRow.unit_id)
+            .where(UnitRow.unit_type_id == type_id, HistoryRow.kind == kind, HistoryRow.parameter == parameter)
+        )
+        return tuple(self._session.scalars(query.order_by(UnitRow.serial).limit(MOST_UNITS)))
+
+    def places(self, unit: int) -> tuple[tuple[str, str], ...]:
+        """Kinds of sensor and parameters that a unit has histories of."""
+        query = select(HistoryRow.kind, HistoryRow.parameter).where(HistoryRow.unit_id == unit)
+        return tuple((kind, parameter) for kind, parameter in self._session.execute(query))
+
+    def rests_on(self, unit: int) -> str:
+        """What a unit's outlook was made from of its type; empty where there is none."""
+        row = self._session.get(OutlookRow, unit)
+        return "" if row is None else str(row.document["rests_on"])
 
     def of_unit(self, serial: str) -> UnitOutlook | None:
         """The outlook of one unit; None before its first session is judged."""

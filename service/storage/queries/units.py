@@ -42,6 +42,10 @@ class Units(Queries):
         query = select(UnitRow.serial).join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
         return tuple(self._session.scalars(query.where(UnitTypeRow.name == name).order_by(UnitRow.serial)))
 
+    def every(self) -> tuple[str, ...]:
+        """Serial numbers of all units, in order."""
+        return tuple(self._session.scalars(select(UnitRow.serial).order_by(UnitRow.serial)))
+
     def add_once(self, serial: str, unit_type: str, simulated: bool) -> None:
         """Stores a new unit; one of that serial number that is there already stays as it is."""
         type_id = select(UnitTypeRow.id).where(UnitTypeRow.name == unit_type).scalar_subquery()

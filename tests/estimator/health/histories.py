@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from estimator.health.trend import Series
+from estimator.health.fits import Readings
+from estimator.health.prognosis import Track
 from estimator.session import Array
 
 SIGMA = 0.1
@@ -19,7 +20,14 @@ def walk(rng: np.random.Generator, time: Array, strength: float) -> Array:
     return strength * np.concatenate([[0.0], np.cumsum(steps)])
 
 
-def measured(rng: np.random.Generator, time: Array, truth: Array, sigma: float = SIGMA) -> Series:
-    """Sessions of a true deviation; the first is the reference, recorded as 0."""
-    value = truth - truth[0] + sigma * rng.standard_normal(len(time))
-    return Series(time, value - value[0], np.full(len(time), sigma), 1.0)
+def measured(rng: np.random.Generator, time: Array, truth: Array, sigma: float = SIGMA) -> Track:
+    """Sessions of a true deviation (n,) or (n, 2); the first is the reference, recorded as 0."""
+    truth = truth.reshape(len(time), -1)
+    value = truth - truth[0] + sigma * rng.standard_normal(truth.shape)
+    return Track(time, value - value[0], np.full(truth.shape, sigma), 1.0)
+
+
+def readings(track: Track) -> Readings:
+    """With nothing in the base but the level."""
+    n = len(track.time)
+    return Readings(track.time, track.change, track.sigma, np.ones((n, 1)), np.ones(1))

@@ -3,11 +3,22 @@
 from dataclasses import replace
 from datetime import timedelta
 
+import pytest
+
 from service.charts.history import history_charts
 from service.charts.tracks import tracks_of
 from service.pages.fleet import FleetView, fleet_page
 from service.records.decision import Verdict
-from service.records.outlook import FanPoint, ParameterTrend, Rate, RiskPoint, UnitOutlook
+from service.records.outlook import (
+    Action,
+    FanPoint,
+    FoundChange,
+    ParameterTrend,
+    Rate,
+    RiskPoint,
+    TemperatureCoefficient,
+    UnitOutlook,
+)
 from service.records.unit import FleetCondition
 from service.views.standouts import standouts
 from service.words.outlook import next_calibration
@@ -19,9 +30,10 @@ DRIFT = ParameterTrend(
     sensor="A1", parameter="bias", rate_per_year=12 * MICRO_G, rate_sigma=1.5 * MICRO_G, significance=1e-6,
     step_dates=(), level=30 * MICRO_G, level_sigma=2 * MICRO_G, reach_50=NOON + 2 * YEAR, reach_90=NOON + YEAR,
     population_z=None, kind="accelerometer", tolerance=50 * MICRO_G, since=NOON,
+    changes=(FoundChange("drift", NOON, NOON + YEAR / 4, 12 * MICRO_G, 1.5 * MICRO_G, 1e-6),),
     fan=tuple(FanPoint(NOON + k * YEAR, *(MICRO_G * (30 + 12 * k + d) for d in (-9, -4, 0, 4, 9))) for k in range(2)),
 )  # fmt: skip
-STILL = replace(DRIFT, sensor="A2", rate_per_year=0.0, significance=0.6, level=2 * MICRO_G)
+STILL = replace(DRIFT, sensor="A2", rate_per_year=0.0, significance=0.6, level=2 * MICRO_G, changes=())
 OUTLOOK = UnitOutlook(
     serial="BA-017", due=NOON + YEAR, overdue=False, reason="A1 bias reaches its tolerance.", sensor="A1",
     parameter="bias", reach_50=NOON + 2 * YEAR, reach_90=NOON + YEAR, risk_at_due=0.05, trends=(DRIFT, STILL),
@@ -30,37 +42,53 @@ OUTLOOK = UnitOutlook(
 
 
 def test_the_headline_names_the_day_or_says_that_it_has_passed() -> None:
-    assert next_calibration(OUTLOOK).headline == "Next calibration: 1 Mar 2027"
-    assert next_calibration(replace(OUTLOOK, overdue=True)).headline == "Calibration overdue since 1 Mar 2027"
+    assert next_calibration(OUTLOOK, NOON).headline == "Next calibration: 1 Mar 2027"
+    assert next_calibration(replace(OUTLOOK, overdue=True), NOON).headline == "Calibration overdue since 1 Mar 2027"
 
 
-def test_what_drifts_is_said_and_what_does_not_is_not() -> None:
-    assert next_calibration(OUTLOOK).moving == (
-        "A1 bias drifts by +12.0\u00a0±\u00a03.0\u202fµg a year; 50 µg are allowed.",
+@pytest.mark.parametrize(("action", "headline"), [("act-now", "Act now"), ("repeat", "Repeat the calibration")])
+def test_what_no_date_helps_is_not_called_overdue(action: str, headline: str) -> None:
+    found = next_calibration(replace(OUTLOOK, due=None, action=Action(action)), NOON)
+    assert found.headline == headline
+    assert found.tone != "reference"
+
+
+def test_what_drifts_is_said_with_its_date_and_what_does_not_is_not() -> None:
+    assert next_calibration(OUTLOOK, NOON).moving == (
+        "A1 bias has been drifting since 1 Mar 2026 by +12.0\u00a0±\u00a03.0\u202fµg a year; 50 µg are allowed.",
     )
-    quiet = next_calibration(replace(OUTLOOK, trends=(STILL,))).moving
-    assert quiet == ("No parameter drifts beyond what chance explains.",)
+    quiet = next_calibration(replace(OUTLOOK, trends=(STILL,)), NOON).moving
+    assert quiet == ("No parameter has changed beyond what chance explains.",)
 
 
 def test_what_has_moved_far_without_a_steady_rate_is_not_called_still() -> None:
     wandered = replace(STILL, level=-152 * MICRO_G)
-    assert next_calibration(replace(OUTLOOK, trends=(wandered, STILL))).moving == (
+    assert next_calibration(replace(OUTLOOK, trends=(wandered, STILL)), NOON).moving == (
         "A2 bias has moved by −152.0\u00a0±\u00a04.0\u202fµg, at no steady rate; 50 µg are allowed.",
     )
 
 
-def test_a_sudden_change_is_dated() -> None:
-    jumped = replace(STILL, step_dates=(NOON,))
-    assert next_calibration(replace(OUTLOOK, trends=(jumped,))).moving == (
-        "A2 bias changed suddenly: first seen on 1 Mar 2026.",
+def test_a_jump_lies_between_two_dates_and_has_a_size() -> None:
+    jump = FoundChange("jump", NOON, NOON + timedelta(days=60), 20 * MICRO_G, 1.5 * MICRO_G, 1e-9)
+    jumped = replace(STILL, changes=(jump,))
+    assert next_calibration(replace(OUTLOOK, trends=(jumped,)), NOON).moving == (
+        "A2 bias has jumped between 1 Mar 2026 and 30 Apr 2026 by +20.0\u00a0±\u00a03.0\u202fµg; 50 µg are allowed.",
     )
 
 
-def test_the_risk_of_waiting_grows_with_the_date() -> None:
-    waits = next_calibration(OUTLOOK).waits
-    assert [wait.day for wait in waits] == ["1 Mar 2027", "31 May 2027", "30 Aug 2027", "29 Feb 2028"]
-    assert waits[0].risk == "20\u202f%"
-    assert next_calibration(replace(OUTLOOK, risk=())).waits == ()
+def test_a_parameter_that_follows_the_temperature_is_said_to() -> None:
+    warm = replace(STILL, temperature=TemperatureCoefficient(1.2 * MICRO_G, 0.1 * MICRO_G, 1e-9, is_found=True))
+    assert next_calibration(replace(OUTLOOK, trends=(warm,)), NOON).moving == (
+        "A2 bias follows the temperature of the session, by +1.20\u00a0±\u00a00.20\u202fµg per °C; "
+        "its trend goes on without that.",
+    )
+
+
+def test_the_risk_of_waiting_starts_today_and_grows_with_the_date() -> None:
+    waits = next_calibration(OUTLOOK, NOON + 0.5 * YEAR).waits
+    assert [wait.day for wait in waits] == ["31 Aug 2026", "30 Nov 2026", "1 Mar 2027", "1 Mar 2027", "31 Aug 2027"]
+    assert [waits[0].risk, waits[3].risk] == ["10\u202f%", "20\u202f%"]
+    assert next_calibration(replace(OUTLOOK, risk=()), NOON).waits == ()
 
 
 def test_a_chart_draws_the_trend_and_its_fan_in_people_s_units() -> None:

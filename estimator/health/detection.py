@@ -1,0 +1,272 @@
+"""What has changed in a parameter: the odds of one change, corrected for all that was tried.
+
+Null: noise of the stated covariance and the walk that half of the type's parameters do not exceed (`pooled`). Its rival
+is one change of any kind, time and size (`odds`); the p-value is the chance of odds so high where nothing happens. The
+kind is the likeliest, its time and size are those of the largest likelihood. Where noise is estimated, readings shrink
+to what the best t statistic would be with known noise, with the degrees of freedom of its own weights (Welch &
+Satterthwaite). A change that is found is taken into the base, and the next is looked for.
+
+Temperature is a regressor where sessions span it: b·(T − T̄). It is looked for first, at the walk that makes it and the
+readings together most likely, and taken in where its own p-value is small and it explains more than any change.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.special import ndtr, ndtri
+from scipy.stats import t as student
+
+from estimator.health.fits import WALKS, Fit, Readings, fit
+from estimator.health.odds import Odds, mixture, odds
+from estimator.health.shapes import DRIFTS, Kind, Shapes, shapes
+from estimator.session import Array
+
+MOST = 3
+"""Changes that are looked for in one history; what changes more often walks."""
+LEVEL = 0.01
+"""Chance of a change being found in a unit that has none."""
+WARMED = 1.5
+"""°C, standard deviation of the sessions' temperatures from which on a coefficient is looked for: below it the
+laboratory was kept at its set point."""
+FAINT = 1e-10
+"""Part of the information of free readings below which a shape leaves no trace beside the base."""
+ENOUGH = 5
+"""Sessions with a temperature, at least: level, coefficient and two numbers that speak against it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Change:
+    """One change that was found, or the most likely one."""
+
+    kind: Kind
+    gap: int
+    """Number of the session before which it came; 0 where it runs from the first."""
+    constant: float
+    """τ of an aging, years."""
+    size: Array
+    """(k,) T, or T a year for a drift; of an aging the change of its first year."""
+    sigma: Array
+    """(k,) one sigma of it."""
+    p_value: float
+    """Over all hypotheses, of this one parameter."""
+    column: Array
+    """(n,) its shape, per unit of size."""
+    wanders: bool = False
+    """Whether a walk is likelier than any one change."""
+
+
+@dataclass(frozen=True, eq=False)
+class Warmth:
+    """How a parameter follows the temperature of the session."""
+
+    coefficient: Array
+    """(k,) T per °C."""
+    sigma: Array
+    """(k,)"""
+    p_value: float
+    is_found: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Detected:
+    """What one history shows."""
+
+    p_value: float
+    """Of any change at all."""
+    changes: tuple[Change, ...]
+    """Found, the most evident first."""
+    warmth: Warmth | None
+    """None where the sessions do not span temperature."""
+    readings: Readings
+    """With what was found to act whatever else does: temperature, then jumps but for the change that is found last in
+    time, which may be the beginning of a drift."""
+
+
+@dataclass(frozen=True, eq=False)
+class Warmed:
+    """A history with temperature taken into account where it acts."""
+
+    readings: Readings
+    warmth: Warmth | None
+    likely: Change | None
+    """The most likely change besides; None where the sessions could not show any."""
+
+
+def detect(readings: Readings, walk: float, dof: Array, temperature: Array, level: float) -> Detected:
+    """The changes of one history whose chance is below a level.
+
+    Parameters
+    ----------
+    readings : of the parameter; the base is the level alone.
+    walk : T a root year, that counts as nothing.
+    dof : (n,) degrees of freedom of each session's noise; infinite where it is known.
+    temperature : (n,) °C of each session; NaN where it is not known.
+    level : of this one parameter.
+    """
+    start = warmed(readings, walk, dof, temperature, level)
+    if start.likely is None or start.likely.p_value >= level:
+        return Detected(1.0 if start.likely is None else start.likely.p_value, (), start.warmth, start.readings)
+    explained, found = start.readings, list[Change]()
+    left: Change | None = start.likely
+    while left is not None and left.p_value < level and len(found) < MOST:
+        found.append(left)
+        explained = _with(explained, left.column)
+        left = most_likely(explained, walk, dof)
+    p = start.likely.p_value
+    is_left = left is not None and left.p_value < level
+    if start.likely.wanders and (is_left or _walks(start.readings, explained, walk)):
+        return Detected(p, (_wandering(start.readings, p),), start.warmth, start.readings)
+    return Detected(p, tuple(found), start.warmth, _with_jumps(start.readings, found))
+
+
+def _walks(readings: Readings, explained: Readings, walk: float) -> bool:
+    """Whether a walk explains the readings better than the changes that were taken into the base: by the largest
+    likelihoods, each number that was fitted costing half the logarithm of the sessions (Schwarz 1978)."""
+    n, k = readings.value.shape
+    price, changes = np.log(n) / 2, explained.base.shape[1] - readings.base.shape[1]
+    wandered = max(_likelihood(readings, float(q)) for q in WALKS) - price
+    return wandered > _likelihood(explained, walk) - changes * (k + 1) * price
+
+
+def _likelihood(readings: Readings, walk: float) -> float:
+    """Log of the largest, of all components, without unit."""
+    none = Shapes(np.zeros((len(readings.time), 0)), *(np.zeros(0, dtype=int) for _ in range(4)))
+    parts = [fit(readings, j, walk, none) for j in range(readings.value.shape[1])]
+    return -sum(float(np.log(np.diag(part.root)).sum() + part.z @ part.z / 2) for part in parts)
+
+
+def warmed(readings: Readings, walk: float, dof: Array, temperature: Array, level: float) -> Warmed:
+    """The parameters are those of `detect`."""
+    likely = most_likely(readings, walk, dof)
+    warmth = _warmth(readings, temperature, likely, level)
+    if warmth is None or not warmth.is_found:
+        return Warmed(readings, warmth, likely)
+    readings = with_temperature(readings, temperature)
+    return Warmed(readings, warmth, most_likely(readings, walk, dof))
+
+
+def most_likely(readings: Readings, walk: float, dof: Array) -> Change | None:
+    """The most likely change beyond the base; None where these sessions could not show any."""
+    family, (n, k) = shapes(readings.time), readings.value.shape
+    if n <= readings.base.shape[1]:
+        return None
+    parts = [fit(readings, j, walk, family) for j in range(k)]
+    information = np.array([part.information for part in parts])
+    raw = np.einsum("nh,nh->h", family.columns, family.columns) / (readings.sigma.min() ** 2)
+    tells = (information > FAINT * np.maximum(raw, 1e-300)).all(axis=0)
+    if not tells.any():
+        return None
+    information = np.where(tells, information, np.inf)
+    score = np.array([part.score for part in parts])
+    squared = (score**2 / information).sum(axis=0)
+    best = int(np.argmax(squared >= squared.max() * (1 - 1e-9)))
+    shrunk = _shrunk(float(squared[best]), k, float(_freedom(parts, readings, dof)[best]))
+    z = np.stack([part.z for part in parts]) * shrunk
+    found = odds(mixture(parts, family, readings.time, tells), z)
+    kind = _kind(found)
+    squared = np.where(tells & _alike(family.kind, kind), squared, -1.0)
+    best = int(np.argmax(squared >= squared.max() * (1 - 1e-9)))
+    return Change(
+        kind=Kind(int(family.kind[best])),
+        gap=int(family.gap[best]),
+        constant=float(family.constant[best]),
+        size=score[:, best] / information[:, best],
+        sigma=information[:, best] ** -0.5,
+        p_value=found.p_value,
+        column=family.columns[:, best],
+        wanders=kind is Kind.WALK,
+    )
+
+
+def _kind(found: Odds) -> Kind:
+    """The likeliest of a jump, a drift (of any sort) and a walk."""
+    drifts = np.logaddexp.reduce([found.of_kind[kind] for kind in DRIFTS])
+    chances = {Kind.JUMP: found.of_kind[Kind.JUMP], Kind.START: drifts, Kind.WALK: found.of_kind[Kind.WALK]}
+    return max(chances, key=lambda kind: chances[kind])
+
+
+def _alike(kinds: Array, kind: Kind) -> Array:
+    """(H,) bool: jumps, or drifts of any sort; all of a walk."""
+    return np.asarray((kinds == Kind.JUMP) == (kind is Kind.JUMP)) | (kind is Kind.WALK)
+
+
+def _wandering(readings: Readings, p_value: float) -> Change:
+    """No shape, and no size but what is left of it at the end."""
+    moved = readings.value[-1] - readings.value[0]
+    sigma = np.hypot(readings.sigma[-1], readings.sigma[0])
+    return Change(Kind.WALK, 0, 1.0, moved, sigma, p_value, np.zeros(len(readings.time)), wanders=True)
+
+
+def _shrunk(squared: float, k: int, dof: float) -> float:
+    """What readings are multiplied by so that a statistic of k squares is as rare as with known noise."""
+    if not np.isfinite(dof) or squared <= 0:
+        return 1.0
+    if k == 2:  # P(F > s/2) = (1 + s/dof)^(−dof/2), P(χ² > s) = exp(−s/2)
+        return float(np.sqrt(dof * np.log1p(squared / dof) / squared))
+    single = max(float(student.sf(np.sqrt(squared), dof)), 1e-300)
+    return float(-ndtri(single) / np.sqrt(squared))
+
+
+def _freedom(parts: list[Fit], readings: Readings, dof: Array) -> Array:
+    """(H,) degrees of freedom of the noise in each statistic."""
+    size = parts[0].shapes.shape[1]
+    if not np.isfinite(dof).any():
+        return np.full(size, np.inf)
+    spoilt = np.zeros(size)
+    for j, part in enumerate(parts):
+        weight = np.linalg.solve(part.root.T, part.shapes)
+        share = (weight * readings.sigma[:, [j]]) ** 2 / np.maximum(part.information, 1e-300)
+        spoilt = np.maximum(spoilt, (share**2 / dof[:, None]).sum(axis=0))
+    return np.asarray(1 / np.maximum(spoilt, 1e-12))
+
+
+def _with(readings: Readings, column: Array) -> Readings:
+    """With one more column that acts; the level that is forecast is the one after the last session."""
+    base = np.concatenate([readings.base, column[:, None]], axis=1)
+    return replace(readings, base=base, now=np.append(readings.now, column[-1]))
+
+
+def _with_jumps(readings: Readings, found: list[Change]) -> Readings:
+    """With the jumps that are over: all but the one change that stays open to be something else."""
+    jumps = sorted((change for change in found if change.kind is Kind.JUMP), key=lambda change: change.gap)
+    over = jumps if len(jumps) < len(found) else jumps[:-1]
+    for change in over:
+        readings = _with(readings, change.column)
+    return readings
+
+
+def with_temperature(readings: Readings, temperature: Array) -> Readings:
+    """With the regressor; the level that is forecast is that at the mean temperature."""
+    base = np.concatenate([readings.base, _centred(temperature)[:, None]], axis=1)
+    return replace(readings, base=base, now=np.append(readings.now, 0.0))
+
+
+def _centred(temperature: Array) -> Array:
+    """(n,) °C about their mean; a session without one has the mean, as the likeliest."""
+    known = np.isfinite(temperature)
+    return np.where(known, temperature - temperature[known].mean(), 0.0)
+
+
+def _warmth(readings: Readings, temperature: Array, rival: Change | None, level: float) -> Warmth | None:
+    """The coefficient of temperature, where these sessions can tell of one."""
+    known = np.isfinite(temperature)
+    if known.sum() < ENOUGH or temperature[known].std() < WARMED:
+        return None
+    column = _centred(temperature)
+    family = Shapes(column[:, None], np.zeros(1, int), np.zeros(1, int), np.ones(1), np.ones(1))
+    fits = [[fit(readings, j, float(q), family) for j in range(readings.value.shape[1])] for q in WALKS]
+    likely = [sum(f.log_likelihood + f.score[0] ** 2 / f.information[0] / 2 for f in row) for row in fits]
+    best = fits[int(np.argmax(likely))]
+    information = np.array([f.information[0] for f in best])
+    size = np.array([f.score[0] for f in best]) / information
+    squared = float((size**2 * information).sum())
+    p = float(np.exp(-squared / 2)) if len(best) == 2 else 2 * float(ndtr(-np.sqrt(squared)))
+    explains = rival is None or _explained(readings, column) >= _explained(readings, rival.column)
+    return Warmth(size, information**-0.5, p, p < level and explains)
+
+
+def _explained(readings: Readings, column: Array) -> float:
+    """Twice the log likelihood ratio of a column against noise alone."""
+    family = Shapes(column[:, None], np.zeros(1, int), np.zeros(1, int), np.ones(1), np.ones(1))
+    parts = [fit(readings, j, 0.0, family) for j in range(readings.value.shape[1])]
+    return sum(float(f.score[0] ** 2 / max(f.information[0], 1e-300)) for f in parts)

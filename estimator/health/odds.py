@@ -1,0 +1,144 @@
+"""The odds of any change against none, and how rarely they are as high by chance.
+
+Bayes factor of a fixed mixture of changes against the null, whose whitened readings z̃, freed of the base, are N(0, P):
+
+    B(z̃) = Σ_h w_h·exp(s_h²x_h²/(2(1 + s_h²S_h)))/√(1 + s_h²S_h) + Σ_q w_q·N(z̃; 0, P + q²W̃)/N(z̃; 0, P)
+
+over jumps, drifts and aging at every place and size, and over walks; W̃ = P L⁻¹WL⁻ᵀP. Of all rules with as many false
+alarms this finds most of the mixture (Neyman & Pearson). Its chance of reaching b where nothing happens is, by drawing
+half of R histories from the null and half from the mixture (defensive importance sampling, Hesterberg 1995),
+
+    p = 1/R·Σ 1[B_r ≥ b]/(½ + ½B_r),
+
+whose terms are at most 2/b: the relative error is small however small the chance is. It corrects for all kinds, sizes
+and times that were tried, and never exceeds 1/b (Markov). The draws are fixed.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimator.health.fits import PART_KINDS, PART_SIZES, Fit
+from estimator.health.shapes import Kind, Shapes
+from estimator.session import Array
+
+DRAWS = 1000
+"""The chance is right to a few percent of itself."""
+SEED = 1995
+"""Of the draws, so that the same history has the same p-value always."""
+WANDERS = np.array([0.06, 0.12, 0.25, 0.5])
+"""(4,) T a root year, beyond what the type does anyway."""
+SHARES = {Kind.JUMP: 0.2, Kind.LATE: 0.2, Kind.START: 0.2, Kind.AGING: 0.2, Kind.WALK: 0.2}
+"""Of the mixture: alike, for it is not the rarest change that matters least."""
+
+
+@dataclass(frozen=True, eq=False)
+class Odds:
+    """What speaks for any change."""
+
+    total: float
+    """log B"""
+    of_kind: dict[Kind, float]
+    """log of each kind's part of B."""
+    p_value: float
+
+
+@dataclass(frozen=True, eq=False)
+class Mixture:
+    """Everything of B that the schedule alone tells; k components, G hypotheses that have a shape."""
+
+    unit: Array
+    """(k, n, H) whitened shapes of length one; 0 where a shape leaves no trace."""
+    shape: Array
+    """(G,) place of the shape."""
+    kind: Array
+    """(G,) `Kind`."""
+    share: Array
+    """(G,) w_h"""
+    strength: Array
+    """(k, G) s_h²S_h, dimensionless."""
+    modes: Array
+    """(k, n, n) eigenvectors of W̃, its own space only."""
+    walked: Array
+    """(k, n) eigenvalues of W̃, per T²."""
+
+    def log_parts(self, z: Array) -> tuple[Array, Array]:
+        """(R, G) and (R, 4) logs of the terms of B, of R whitened histories (R, k, n)."""
+        score = np.einsum("rkn,knh->rkh", z, self.unit)[..., self.shape]
+        gain = self.strength / (1 + self.strength)
+        shaped = 0.5 * np.einsum("rkg,kg->rg", score**2, gain) - 0.5 * np.log1p(self.strength).sum(axis=0)
+        ratio = WANDERS[:, None, None] ** 2 * self.walked
+        turned = np.einsum("rkn,knm->rkm", z, self.modes) ** 2
+        wandered = 0.5 * np.einsum("rkm,qkm->rq", turned, ratio / (1 + ratio)) - 0.5 * np.log1p(ratio).sum(axis=(1, 2))
+        return shaped + np.log(self.share), wandered + np.log(SHARES[Kind.WALK] / len(WANDERS))
+
+    def log_odds(self, z: Array) -> Array:
+        """(R,) log B."""
+        return np.asarray(np.logaddexp.reduce(np.concatenate(self.log_parts(z), axis=1), axis=1))
+
+    def drawn(self, rng: np.random.Generator, runs: int) -> Array:
+        """(runs, k, n) histories of the mixture; beyond z̃'s own space they hold noise that nothing looks at."""
+        z = rng.standard_normal((runs, *self.unit.shape[:2]))
+        chances = np.concatenate([self.share, np.full(len(WANDERS), SHARES[Kind.WALK] / len(WANDERS))])
+        picked = rng.choice(len(chances), runs, p=chances / chances.sum())
+        rows = np.flatnonzero(picked < len(self.share))
+        size = np.sqrt(self.strength[:, picked[rows]].T) * rng.standard_normal((len(rows), len(self.unit)))
+        z[rows] += size[:, :, None] * self.unit[:, :, self.shape[picked[rows]]].transpose(2, 0, 1)
+        rows = np.flatnonzero(picked >= len(self.share))
+        wide = WANDERS[picked[rows] - len(self.share)][:, None, None] * np.sqrt(self.walked)
+        z[rows] += np.einsum("rkm,knm->rkn", wide * rng.standard_normal(wide.shape), self.modes)
+        return z
+
+
+def mixture(fits: list[Fit], family: Shapes, time: Array, tells: Array) -> Mixture:
+    """Of the fits of all components under the null; ``tells`` (H,) bool: shapes that leave a trace."""
+    shape, kind, share, size2 = [], [], [], []
+    for place in np.flatnonzero(PART_KINDS != Kind.NONE):
+        own_kind = PART_KINDS[place] == PART_KINDS
+        own = np.flatnonzero((family.kind == PART_KINDS[place]) & tells)
+        sizes = int(np.count_nonzero(own_kind))
+        shape.append(own)
+        kind.append(np.full(len(own), PART_KINDS[place]))
+        share.append(SHARES[Kind(int(PART_KINDS[place]))] * family.share[own] / sizes)
+        size2.append(np.full(len(own), PART_SIZES[place] ** 2))
+    places = np.concatenate(shape)
+    information = np.array([fit.information for fit in fits])
+    length = np.sqrt(np.where(tells, information, np.inf))
+    modes = [_modes(fit, time) for fit in fits]
+    return Mixture(
+        unit=np.stack([fit.shapes for fit in fits]) / length[:, None, :],
+        shape=places,
+        kind=np.concatenate(kind),
+        share=np.concatenate(share),
+        strength=information[:, places] * np.concatenate(size2),
+        modes=np.stack([vectors for _, vectors in modes]),
+        walked=np.stack([values for values, _ in modes]),
+    )
+
+
+def _modes(fit: Fit, time: Array) -> tuple[Array, Array]:
+    """(n,) eigenvalues, per T², and (n, n) eigenvectors of W̃."""
+    half = np.linalg.solve(fit.root, np.minimum.outer(time, time))
+    whole = np.linalg.solve(fit.root, half.T)
+    free = np.eye(len(time)) - fit.frame @ fit.frame.T
+    values, vectors = np.linalg.eigh(free @ whole @ free)
+    return np.maximum(values, 0.0), vectors
+
+
+def odds(mixed: Mixture, z: Array) -> Odds:
+    """Of one whitened history (k, n), freed of the base."""
+    shaped, wandered = (part[0] for part in mixed.log_parts(z[None]))
+    b = float(np.logaddexp(np.logaddexp.reduce(shaped), np.logaddexp.reduce(wandered)))
+    rng = np.random.default_rng(SEED)
+    nothing = rng.standard_normal((DRAWS // 2, *z.shape))
+    reached = mixed.log_odds(np.concatenate([nothing, mixed.drawn(rng, DRAWS // 2)]))
+    beyond = reached[reached >= b - 1e-9]
+    p = float(np.sum(2 / (1 + np.exp(np.minimum(beyond, 700.0))))) / DRAWS
+    bound = float(np.exp(-max(b, 0.0)))
+    kinds: dict[Kind, float] = {kind: _sum(shaped[mixed.kind == kind]) for kind in SHARES}
+    kinds[Kind.WALK] = _sum(wandered)
+    return Odds(b, kinds, min(p, bound) if beyond.size else bound)
+
+
+def _sum(logs: Array) -> float:
+    return float(np.logaddexp.reduce(logs)) if logs.size else -np.inf

@@ -1,0 +1,129 @@
+"""Where a parameter may be now and how it may go on: draws from what its history and its type leave open.
+
+Every kind of change, its time, its size's scale and every strength of the walk is one hypothesis; its weight is prior
+(`pooled`) times likelihood (`fits`). Given one of them all is normal: first the size a, then the level at the last
+session. Hypotheses are drawn by the square root of their weight and carry the rest as a weight, so that rare ones, from
+which most of the risk comes, are there.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimator.health.fits import PART_KINDS, PART_SIZES, PARTS, WALKS, Fits, Readings, fits
+from estimator.health.pooled import Prior
+from estimator.health.shapes import Kind, Shapes
+from estimator.session import Array
+
+DRAWS = 1600
+"""A chance of 5 % is right to about half a percent, and the same history gives the same answer always."""
+
+
+@dataclass(frozen=True, eq=False)
+class Draws:
+    """N equally valid presents and laws of motion; tolerances and years from the last session."""
+
+    weight: Array
+    """(N,) summing to one."""
+    level: Array
+    """(N, k) T."""
+    rate: Array
+    """(N, k) T a year, of a drift that goes on."""
+    aging: Array
+    """(N, k) T in the first year after the first session."""
+    constant: Array
+    """(N,) τ of the aging, years."""
+    walk: Array
+    """(N,) T a root year."""
+    age: float
+    """Years from the first session to the last."""
+
+    def mean(self, values: Array) -> Array:
+        """Weighted mean of (N, ...)."""
+        return np.tensordot(self.weight, values, axes=1)
+
+
+@dataclass(frozen=True, eq=False)
+class Hypotheses:
+    """G hypotheses with their weights."""
+
+    weight: Array
+    """(G,) summing to one."""
+    walk: Array
+    """(G,) place of the walk's strength."""
+    part: Array
+    """(G,) place of the part."""
+    shape: Array
+    """(G,) place of the shape; 0 without a change."""
+
+
+def weighed(found: Fits, prior: Prior) -> Hypotheses:
+    """All hypotheses, by prior times likelihood."""
+    expected = np.log(np.maximum(prior.parts(found.span), 1e-300))
+    logs, walks, parts, places = [], [], [], []
+    for q, by_component in enumerate(found.by_walk):
+        none = sum(fit.log_likelihood for fit in by_component) + np.log(prior.walk[q])
+        for p in range(len(PARTS)):
+            shape = np.flatnonzero(found.family.kind == PART_KINDS[p]) if p else np.zeros(1, dtype=int)
+            if not shape.size:
+                continue
+            gain = found.log_ratios(by_component, p) + np.log(found.family.share[shape]) if p else np.zeros(1)
+            logs.append(none + expected[p] + gain)
+            walks.append(np.full(len(shape), q))
+            parts.append(np.full(len(shape), p))
+            places.append(shape)
+    log = np.concatenate(logs)
+    weight = np.exp(log - log.max())
+    return Hypotheses(weight / weight.sum(), np.concatenate(walks), np.concatenate(parts), np.concatenate(places))
+
+
+def draw(readings: Readings, family: Shapes, prior: Prior, rng: np.random.Generator) -> Draws:
+    """Draws of what the readings leave open.
+
+    Parameters
+    ----------
+    family : shapes at the readings' dates.
+    prior : of the type.
+    """
+    found, value, last = fits(readings, family), readings.value, family.columns[-1]
+    all_of = weighed(found, prior)
+    picked = _picked(all_of.weight, rng)
+    weight = np.sqrt(all_of.weight[picked])
+    q, part, shape = all_of.walk[picked], all_of.part[picked], all_of.shape[picked]
+    size, level = _sizes_and_levels(found, value, last, (q, part, shape), rng)
+    kind = PART_KINDS[part][:, None]
+    return Draws(
+        weight=weight / weight.sum(),
+        level=level,
+        rate=np.where((kind == Kind.LATE) | (kind == Kind.START), size, 0.0),
+        aging=np.where(kind == Kind.AGING, size, 0.0),
+        constant=family.constant[shape],
+        walk=WALKS[q],
+        age=found.span,
+    )
+
+
+def _picked(weight: Array, rng: np.random.Generator) -> Array:
+    """(N,) places, drawn systematically by the square root of their weight."""
+    rough = np.cumsum(np.sqrt(weight))
+    places = np.searchsorted(rough, rough[-1] * (np.arange(DRAWS) + rng.uniform()) / DRAWS)
+    return np.minimum(places, len(weight) - 1)
+
+
+def _sizes_and_levels(
+    found: Fits, value: Array, last: Array, of: tuple[Array, Array, Array], rng: np.random.Generator
+) -> tuple[Array, Array]:
+    """(N, k) sizes and (N, k) levels of the drawn hypotheses ``of``: walk, part and shape, each (N,)."""
+    q, part, shape = of
+    k = value.shape[1]
+    table = {name: np.array([[getattr(f, name) for f in row] for row in found.by_walk])
+             for name in ("information", "score", "variance")}  # fmt: skip
+    known = np.array([[f.gain @ value[:, j] for j, f in enumerate(row)] for row in found.by_walk])
+    moved = np.array([[last - f.gain @ found.family.columns for f in row] for row in found.by_walk])
+    has = (part > 0)[:, None]
+    s2 = np.where(has, PART_SIZES[part][:, None] ** 2, 0.0)
+    information, score = table["information"][q, :, shape], table["score"][q, :, shape]
+    spread = s2 / (1 + s2 * information)
+    size = spread * score + np.sqrt(spread) * rng.standard_normal((len(q), k))
+    level = known[q] + size * moved[q, :, shape]
+    return size, level + np.sqrt(table["variance"][q]) * rng.standard_normal((len(q), k))

@@ -1,0 +1,83 @@
+"""What one change can look like through time: every hypothesis that a deviation is held against.
+
+Times t_0 < … < t_{n−1} of the sessions in years since the first, one column a hypothesis, per unit of its size:
+
+    jump at the gap before session k       1[t ≥ t_k]                        k = 1 … n−1
+    drift from the start                   t
+    drift that began in the gap before k   max(t − (t_{k−1} + t_k)/2, 0)     k = 1 … n−1
+    aging                                  ln(1 + t/τ)/ln(1 + 1/τ)           τ of `AGES`
+
+A drift may begin anywhere within its gap; the middle is wrong by half a gap at most. Aging is fast at first and slows
+down as stresses relax and volatiles leave (logarithmic, as of quartz and electronics; Primak 1955); its unit is the
+change of the first year.
+"""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+
+from estimator.session import Array
+
+AGES = (0.03, 0.3, 1.0)
+"""τ, years: from days, as after an assembly, to a year."""
+BARELY = 1e-9
+"""Years; sessions nearer than that are of one date, and nothing begins between them."""
+
+
+class Kind(IntEnum):
+    """How a parameter changes."""
+
+    NONE = 0
+    JUMP = 1
+    LATE = 2
+    """A drift that began between two sessions."""
+    START = 3
+    """A drift since the first session."""
+    AGING = 4
+    WALK = 5
+    """At no steady rate, away and back again."""
+
+
+DRIFTS = (Kind.LATE, Kind.START, Kind.AGING)
+"""What goes on."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shapes:
+    """H hypotheses about n sessions."""
+
+    columns: Array
+    """(n, H) deviation per unit of size: dimensionless for jumps and aging, years for drifts."""
+    kind: Array
+    """(H,) `Kind`."""
+    gap: Array
+    """(H,) number of the session before which the change came; 0 where it runs from the first."""
+    share: Array
+    """(H,) chance of this one among those of its kind, dimensionless: of a gap in proportion to its length."""
+    constant: Array
+    """(H,) τ of an aging, years; 1 elsewhere."""
+
+
+def shapes(time: Array) -> Shapes:
+    """Of sessions at (n,) years since the first, increasing; at least two."""
+    gap = np.diff(time)
+    places = 1 + np.flatnonzero(gap > BARELY)
+    among = gap[places - 1] / max(gap[places - 1].sum(), BARELY)
+    middle = (time[places - 1] + time[places]) / 2
+    jumps = (time[:, None] >= time[places]).astype(float)
+    late = np.maximum(time[:, None] - middle, 0.0)
+    aging = np.stack([course(time, age) for age in AGES], axis=1)
+    m, a = len(places), len(AGES)
+    return Shapes(
+        columns=np.concatenate([jumps, late, time[:, None], aging], axis=1),
+        kind=np.repeat([Kind.JUMP, Kind.LATE, Kind.START, Kind.AGING], [m, m, 1, a]),
+        gap=np.concatenate([places, places, np.zeros(1 + a, dtype=int)]),
+        share=np.concatenate([among, among, [1.0], np.full(a, 1 / a)]),
+        constant=np.concatenate([np.ones(2 * m + 1), AGES]),
+    )
+
+
+def course(time: Array, age: Array | float) -> Array:
+    """Aging at times since the first session, years, with a constant τ = ``age``, years; dimensionless."""
+    return np.asarray(np.log1p(time / age) / np.log1p(1 / np.asarray(age)))

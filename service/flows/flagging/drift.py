@@ -1,0 +1,56 @@
+"""Step: what a unit's outlook means for its flags: a parameter that drifts or has jumped."""
+
+from collections.abc import Iterator
+
+from service.flows.flagging.settle import SERVICE, Occasion, raise_flag, resolve_as_done, see_again
+from service.records.flag import Concern, Flag, Matter
+from service.records.outlook import FoundChange, ParameterTrend, UnitOutlook
+from service.storage.store import Store
+from service.words.changes import change_in_words
+
+MATTERS = {"jump": Matter.JUMP, "drift": Matter.DRIFT, "aging": Matter.DRIFT, "walk": Matter.DRIFT}
+"""By kind of change; what moves at no steady rate moves on."""
+GONE = "The history of the unit's accepted sessions does not show it any more."
+TOLD = "The sensor is flagged out of tolerance."
+
+
+def flag_drift(store: Store, occasion: Occasion, outlook: UnitOutlook | None) -> None:
+    """Brings the flags of changes through time in line with the outlook; what a person resolved stays resolved until a
+    later session. A sensor whose flag says that it is out of tolerance has no second one for how it came there."""
+    every = store.flags.open_of(occasion.unit)
+    out = {flag.place for flag in every if flag.matter is Matter.TOLERANCE}
+    opened = {flag.key: flag for flag in every if flag.matter in MATTERS.values()}
+    concerns = () if outlook is None else tuple(_concerns(outlook))
+    wanted = {concern.key: concern for concern in concerns if concern.place not in out}
+    for key in sorted(opened.keys() - wanted.keys()):
+        resolve_as_done(store, occasion, opened[key], TOLD if key[1] in out else GONE)
+    for key, concern in wanted.items():
+        if key in opened:
+            _show_again(store, occasion, opened[key], concern)
+        elif not _is_settled(store, occasion, concern):
+            raise_flag(store, occasion, concern)
+
+
+def _show_again(store: Store, occasion: Occasion, known: Flag, concern: Concern) -> None:
+    if (known.summary, known.session) != (concern.summary, occasion.session):
+        see_again(store, occasion, known, concern)
+
+
+def _is_settled(store: Store, occasion: Occasion, concern: Concern) -> bool:
+    """Whether a person resolved it when the latest session was there already."""
+    settled = store.derivations.settled(occasion.unit, SERVICE).get(concern.key)
+    if settled is None or occasion.session is None:
+        return False
+    latest = store.sessions.get(occasion.session)
+    return settled >= (latest.started_at, latest.id)
+
+
+def _concerns(outlook: UnitOutlook) -> Iterator[Concern]:
+    """At most one a matter and sensor: its parameters' changes, the most evident first."""
+    found: dict[tuple[Matter, str], list[tuple[ParameterTrend, FoundChange]]] = {}
+    for trend in outlook.trends:
+        for change in trend.changes:
+            found.setdefault((MATTERS[change.kind], trend.sensor), []).append((trend, change))
+    for (matter, sensor), changes in found.items():
+        ordered = sorted(changes, key=lambda pair: pair[1].p_value)
+        yield Concern(matter, sensor, 1, " ".join(change_in_words(trend, change) for trend, change in ordered))

@@ -1,0 +1,56 @@
+"""The likelihoods of a history, against the joint normal distribution written down without whitening."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from estimator.health.fits import PARTS, WALKS, Readings, fit, fits
+from estimator.health.shapes import Kind, shapes
+from estimator.session import Array
+from tests.estimator.health.histories import dates, measured, readings, walk
+
+DIFFUSE = 30.0
+"""One sigma of the level, T, that stands for flat."""
+
+
+def one_history() -> Readings:
+    rng = np.random.default_rng(1)
+    t = dates(rng, 7)
+    return readings(measured(rng, t, walk(rng, t, 0.3) + 0.2 * t))
+
+
+def joint(of: Readings, q: float, column: Array, size: float) -> Array:
+    """(n, n) covariance of the readings."""
+    walked = q**2 * np.minimum.outer(of.time, of.time)
+    return walked + np.diag(of.sigma[:, 0] ** 2) + DIFFUSE**2 + size**2 * np.outer(column, column)
+
+
+def test_ratios_are_those_of_the_joint_distribution() -> None:
+    of = one_history()
+    family = shapes(of.time)
+    found = fits(of, family)
+    part = next(p for p, (kind, size) in enumerate(PARTS) if kind is Kind.JUMP and size == 0.6)
+    for q, parts in zip(WALKS, found.by_walk, strict=True):
+        ratios = found.log_ratios(parts, part)
+        for place, ratio in zip(np.flatnonzero(family.kind == Kind.JUMP), ratios, strict=True):
+            column = family.columns[:, place]
+            exact = [stats.multivariate_normal(np.zeros(7), joint(of, q, column, s)).logpdf(of.value[:, 0])
+                     for s in (0.6, 0.0)]  # fmt: skip
+            assert ratio == pytest.approx(exact[0] - exact[1], abs=1e-3)
+
+
+def test_strengths_of_the_walk_compare_as_in_the_joint_distribution() -> None:
+    of = one_history()
+    found = [parts[0].log_likelihood for parts in fits(of, shapes(of.time)).by_walk]
+    exact = [stats.multivariate_normal(np.zeros(7), joint(of, q, of.time, 0)).logpdf(of.value[:, 0]) for q in WALKS]
+    assert np.diff(found) == pytest.approx(np.diff(exact), abs=1e-3)
+
+
+@pytest.mark.parametrize("q", [0.0, 0.3])
+def test_the_last_level_is_that_of_the_joint_distribution(q: float) -> None:
+    of = one_history()
+    found = fit(of, 0, q, shapes(of.time))
+    prior = joint(of, q, of.time, 0) - np.diag(of.sigma[:, 0] ** 2)
+    gain = prior @ np.linalg.inv(prior + np.diag(of.sigma[:, 0] ** 2))
+    assert found.gain @ of.value[:, 0] == pytest.approx((gain @ of.value[:, 0])[-1], abs=1e-4)
+    assert found.variance == pytest.approx((prior - gain @ prior)[-1, -1], rel=1e-3)

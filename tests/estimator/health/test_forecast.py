@@ -1,0 +1,129 @@
+"""How histories go on: first passages, discs, new events, bounds that hold."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from estimator.health.forecast import AHEAD, future, passage, reach, together
+from estimator.health.pooled import Prior, general_prior, learn
+from estimator.health.posterior import Draws
+from estimator.health.prognosis import Track, evidence, prognosis
+from estimator.session import Array
+from tests.estimator.health.histories import dates, measured, walk
+
+NEVER = replace(general_prior(), rate=np.zeros_like(general_prior().rate))
+"""A type in which nothing new happens."""
+YEAR = np.array([1.0])
+
+
+def draws(count: int, level: Array, rate: float = 0.0, strength: float = 0.0) -> Draws:
+    """All alike; level (k,) T, rate T a year along the first component, strength T a root year."""
+    k = len(level)
+    moving = np.zeros((count, k))
+    moving[:, 0] = rate
+    flat = np.ones(count)
+    return Draws(flat / count, np.tile(level, (count, 1)), moving, 0 * moving, flat, strength * flat, 1.0)
+
+
+def chance_in(years: float, of: Draws, prior: Prior = NEVER, swing: float = 0.0) -> float:
+    return float(np.interp(years, AHEAD, passage(of, prior, swing, np.random.default_rng(1))))
+
+
+def test_the_first_passage_of_a_drifting_walk_is_the_closed_form() -> None:
+    """Whitmore (1986) without spread of the rate; the other side is far."""
+    a, mu, q, t = 0.5, 0.2, 0.3, float(AHEAD[20])
+    exact = stats.norm.cdf((mu * t - a) / (q * t**0.5)) + np.exp(2 * mu * a / q**2) * stats.norm.cdf(
+        -(a + mu * t) / (q * t**0.5)
+    )
+    found = chance_in(t, draws(20_000, np.array([1 - a]), mu, q))
+    assert found == pytest.approx(exact, abs=4 * np.sqrt(exact * (1 - exact) / 20_000) + 0.005)
+
+
+def test_an_axis_is_out_when_it_leaves_the_disc_not_a_square() -> None:
+    """0.8 of the tolerance along both directions is 1.13 of it."""
+    assert chance_in(0.0, draws(10, np.array([0.8, 0.8]))) == 1.0
+    assert chance_in(5.0, draws(10, np.array([0.6, 0.6]))) == 0.0
+
+
+@pytest.mark.parametrize("components", [1, 2])
+def test_new_events_pass_the_tolerance_as_often_as_when_they_are_drawn(components: int) -> None:
+    prior = replace(general_prior(), rate=20 * general_prior().rate)
+    of = draws(40_000, np.full(components, 0.2))
+    drawn = future(of, prior, np.linspace(0, 2, 81), np.random.default_rng(2)).level
+    out = (np.linalg.norm(drawn, axis=1) >= 1).any(axis=1).mean()
+    assert chance_in(2.0, of, prior) == pytest.approx(out, abs=0.02)
+
+
+def test_a_swing_with_the_temperature_takes_room_from_the_tolerance() -> None:
+    assert chance_in(1.0, draws(10, np.array([0.8])), swing=0.15) == 0.0
+    assert chance_in(1.0, draws(10, np.array([0.8])), swing=0.25) == 1.0
+
+
+def test_chances_of_parameters_of_one_type_multiply() -> None:
+    assert together(np.array([[0.1, 0.5], [0.2, 0.5]])) == pytest.approx([0.28, 0.75])
+
+
+def test_a_tolerance_that_is_passed_already_is_reached_at_once() -> None:
+    rng = np.random.default_rng(6)
+    t = dates(rng, 8)
+    found = prognosis([measured(rng, t, 1.5 * t / t[-1], sigma=0.01)], [general_prior()], YEAR)
+    assert found.outlooks[0].reach_90 == 0.0
+
+
+def test_a_drift_that_was_found_goes_on_in_the_forecast() -> None:
+    t = np.linspace(0, 2, 9)
+    one = measured(np.random.default_rng(7), t, 0.3 * t, sigma=0.02)
+    found = prognosis([one], [general_prior()], YEAR).outlooks[0]
+    assert found.drift is not None
+    assert found.reach_50 == pytest.approx((1 - 0.6) / 0.3, rel=0.2)
+    assert found.fan.quantiles((0.5,), found.direction)[0, 0] == pytest.approx(0.9, abs=0.05)
+
+
+def test_bounds_hold_a_later_session_as_often_as_they_claim_in_a_type_that_is_known() -> None:
+    """A third of the parameters drift, a third walk; the year after the last session."""
+    rng = np.random.default_rng(8)
+    tracks, later = [], []
+    for i in range(240):
+        t = np.append(dates(rng, 8, 2.5), 3.5)
+        truth = (0.5 * t, walk(rng, t, 0.25), 0 * t)[i % 3]
+        whole = measured(rng, t, truth, sigma=0.06)
+        tracks.append(Track(t[:-1], whole.change[:-1], whole.sigma[:-1], 1.0))
+        later.append((whole.change[-1], t[-1] - t[-2]))
+    prior = learn([evidence(track) for track in tracks])
+    below = [
+        prognosis([track], [prior], np.array([ahead])).outlooks[0].fan.below(value, np.array([0.06]))[0]
+        for track, (value, ahead) in zip(tracks, later, strict=True)
+    ]
+    held = np.sum((np.array(below) > 0.05) & (np.array(below) < 0.95))
+    assert stats.binom.ppf(1e-3, 240, 0.9) <= held
+
+
+def test_a_stable_unit_of_a_type_that_is_known_may_wait_the_whole_year() -> None:
+    rng = np.random.default_rng(9)
+    tracks = [measured(rng, dates(rng, 4, 1.5), np.zeros(4), sigma=0.1) for _ in range(120)]
+    prior = learn([evidence(track) for track in tracks])
+    risk = prognosis(tracks[:18], [prior] * 18, YEAR).risk
+    assert reach(risk[None], 0.05)[0] > 0.9
+
+
+def test_the_same_history_has_the_same_outlook_to_the_last_digit() -> None:
+    one = measured(np.random.default_rng(10), np.linspace(0, 2, 6), np.zeros(6))
+    first, again = (prognosis([one], [general_prior()], YEAR) for _ in range(2))
+    assert (first.risk == again.risk).all()
+
+
+def test_a_level_that_is_hardly_known_forecasts_nothing() -> None:
+    found = prognosis([Track(np.array([0.0, 1.0]), np.zeros((2, 1)), np.full((2, 1), 3.0), 1.0)], [NEVER], YEAR)
+    assert not found.outlooks[0].is_known
+    assert found.risk.max() == 0
+
+
+def test_an_axis_drifts_along_its_direction() -> None:
+    rng = np.random.default_rng(11)
+    t = dates(rng, 10)
+    drift = 0.4 * t[:, None] * [0.6, 0.8]
+    found = prognosis([measured(rng, t, drift, sigma=0.05)], [general_prior()], YEAR).outlooks[0]
+    assert found.rate == pytest.approx(0.4, abs=3 * found.rate_sigma)
+    assert found.direction == pytest.approx([0.6, 0.8], abs=0.15)
