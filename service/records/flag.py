@@ -20,9 +20,9 @@ class Matter(StrEnum):
     SHIFTED = "stand-shifted"
     """The units measured on a stand show that it has shifted."""
     JUMP = "jump"
-    """A parameter has jumped between two sessions, whether it is out of tolerance or not."""
+    """A parameter of a sensor within tolerance has jumped between two sessions."""
     DRIFT = "drift"
-    """A parameter drifts, ages or moves at no steady rate, whether it is out of tolerance or not."""
+    """A parameter of a sensor within tolerance drifts, ages or moves at no steady rate."""
     OVERDUE = "overdue"
     """The unit's calibration is overdue."""
 
