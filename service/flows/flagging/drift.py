@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from service.flows.flagging.settle import SERVICE, Occasion, raise_flag, resolve_as_done, see_again
+from service.records.decision import Verdict
 from service.records.flag import Concern, Flag, Matter
 from service.records.outlook import FoundChange, ParameterTrend, UnitOutlook
 from service.storage.store import Store
@@ -11,14 +12,16 @@ from service.words.changes import change_in_words
 MATTERS = {"jump": Matter.JUMP, "drift": Matter.DRIFT, "aging": Matter.DRIFT, "walk": Matter.DRIFT}
 """By kind of change; what moves at no steady rate moves on."""
 GONE = "The history of the unit's accepted sessions does not show it any more."
-TOLD = "The sensor is flagged out of tolerance."
+TOLD = "The sensor is out of tolerance."
+FAILS = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
+"""Verdicts that have a flag of their own."""
 
 
 def flag_drift(store: Store, occasion: Occasion, outlook: UnitOutlook | None) -> None:
     """Brings the flags of changes through time in line with the outlook; what a person resolved stays resolved until a
-    later session. A sensor whose flag says that it is out of tolerance has no second one for how it came there."""
+    later session. A sensor that is, or is flagged, out of tolerance has no second one for how it came there."""
     every = store.flags.open_of(occasion.unit)
-    out = {flag.place for flag in every if flag.matter is Matter.TOLERANCE}
+    out = {flag.place for flag in every if flag.matter is Matter.TOLERANCE} | _failed(store, occasion)
     opened = {flag.key: flag for flag in every if flag.matter in MATTERS.values()}
     concerns = () if outlook is None else tuple(_concerns(outlook))
     wanted = {concern.key: concern for concern in concerns if concern.place not in out}
@@ -29,6 +32,12 @@ def flag_drift(store: Store, occasion: Occasion, outlook: UnitOutlook | None) ->
             _show_again(store, occasion, opened[key], concern)
         elif not _is_settled(store, occasion, concern):
             raise_flag(store, occasion, concern)
+
+
+def _failed(store: Store, occasion: Occasion) -> set[str]:
+    """Sensors that the latest session found out of tolerance."""
+    decisions = () if occasion.session is None else store.sessions.decisions(occasion.session)
+    return {decision.sensor for decision in decisions if decision.verdict in FAILS}
 
 
 def _show_again(store: Store, occasion: Occasion, known: Flag, concern: Concern) -> None:
