@@ -267,16 +267,6 @@ class ConditionRow(Base):
     flags: Mapped[int]
 
 
-class OutlookRow(Base):
-    """When a unit must come back and why, rewritten when its history changes: drift, forecast, risk."""
-
-    __tablename__ = "outlooks"
-    unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), primary_key=True, autoincrement=False)
-    due: Mapped[datetime | None]
-    document: Mapped[dict[str, Any]]
-    drawn: Mapped[dict[str, Any]]
-
-
 class ServiceRow(Base):
     """A known break in a unit's history."""
 

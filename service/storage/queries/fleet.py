@@ -14,6 +14,7 @@ from service.records.flag import FlagState
 from service.records.paper import Customer
 from service.records.reservation import Reservations
 from service.records.unit import FleetCondition, UnitSummary, UnitType
+from service.storage.outlook_tables import OutlookRow
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
 from service.storage.queries.unit_types import unit_type_of
@@ -22,7 +23,6 @@ from service.storage.tables import (
     ConditionRow,
     DiagnosisRow,
     FlagRow,
-    OutlookRow,
     SessionRow,
     ToleranceRow,
     UnitRow,

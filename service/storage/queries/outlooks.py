@@ -11,12 +11,12 @@ from sqlalchemy.orm import defer
 from estimator.health.pooled import Evidence
 from estimator.session import IN_SERVICE
 from service.records.outlook import Rate, UnitOutlook
-from service.storage.histories_table import HistoryRow
 from service.storage.history_document import packed
 from service.storage.outlook_document import outlook_from_dicts, outlook_to_dicts
+from service.storage.outlook_tables import HistoryRow, OutlookRow
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
-from service.storage.tables import DecisionRow, OutlookRow, SessionRow, UnitRow, UnitTypeRow
+from service.storage.tables import DecisionRow, SessionRow, UnitRow, UnitTypeRow
 
 MOST_UNITS = 60
 """Whose histories a type is learned from: hundreds of parameters, which no further unit changes much."""
