@@ -73,8 +73,9 @@ def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncConte
 def _work(application: Application) -> Iterator[tuple[str, Callable[..., None], tuple[object, ...]]]:
     """What is done beside the requests: its name, what does it, and what that needs."""
     storage, clock, hosts = application.storage, application.clock, application.settings.webhook_hosts
-    yield "pending diagnoses", diagnose_pending, (storage, clock, application.diagnosing)
-    yield "pending derivations", derive_pending, (storage, application.settings.coverage_factor, clock)
-    yield "fleet", watch_fleet, (storage, clock)
+    metrics, k = application.metrics, application.settings.coverage_factor
+    yield "pending diagnoses", diagnose_pending, (storage, clock, metrics, application.diagnosing)
+    yield "pending derivations", derive_pending, (storage, k, clock, metrics)
+    yield "fleet", watch_fleet, (storage, clock, metrics)
     if hosts:
-        yield "outbox", deliver_until, (storage, hosts, clock)
+        yield "outbox", deliver_until, (storage, hosts, clock, metrics)

@@ -1,4 +1,5 @@
-"""Figures for Prometheus: requests by operation and status with their time, uploads by what became of them."""
+"""Figures for Prometheus: requests by operation and status with their time, uploads by what became of them,
+work beside the requests that failed."""
 
 from prometheus_client import CollectorRegistry, Counter, Histogram, generate_latest
 
@@ -24,6 +25,13 @@ class Metrics:
             "imu_health_uploads", "Uploads by what became of them.", ("result",), registry=self._registry
         )
 
+        self._faults = Counter(
+            "imu_health_background_faults",
+            "Work beside the requests that failed, by what was done and what went wrong.",
+            ("work", "fault"),
+            registry=self._registry,
+        )
+
     def count_upload(self, receipt: Receipt) -> None:
         """A session that was stored, or was stored before."""
         self._uploads.labels(receipt.verdict.value if receipt.created else "stored-before").inc()
@@ -32,6 +40,10 @@ class Metrics:
         """One answer; requests that no route took are counted together."""
         named = (method, operation) if operation else ("any", "none")
         self._requests.labels(*named, str(status)).observe(seconds)
+
+    def count_fault(self, work: str, fault: str) -> None:
+        """A piece of work beside the requests that failed."""
+        self._faults.labels(work, fault).inc()
 
     def text(self) -> bytes:
         """All figures in Prometheus' form."""

@@ -13,9 +13,9 @@ from threading import Event
 
 import httpx
 
-from service.errors import ServiceError
+from service.background.guard import Guard
 from service.flows.register_webhook import fault_of
-from service.log import log
+from service.metrics import Metrics
 from service.records.webhook import DeliveryState, Outgoing
 from service.storage import Storage
 
@@ -31,19 +31,24 @@ MOST_ATTEMPTS = 30
 """Over about 21 hours."""
 LOOK_EVERY = 1.0
 """Seconds between two looks into the outbox."""
+LONGEST_WAIT = 60.0
+"""Seconds between two looks while they fail, as when the database is away: after a minute at most it goes on."""
 SIGNATURE, KEY = "X-Imu-Health-Signature", "Idempotency-Key"
 """Header of the HMAC; header of the message's key (IETF draft idempotency-key-header)."""
 
 
-def deliver_until(storage: Storage, hosts: tuple[str, ...], clock: Callable[[], datetime], stop: Event) -> None:
-    """Empties the outbox until ``stop`` is set."""
+def deliver_until(
+    storage: Storage, hosts: tuple[str, ...], clock: Callable[[], datetime], metrics: Metrics, stop: Event
+) -> None:
+    """Empties the outbox until ``stop`` is set, with longer pauses while that fails."""
+    pause, guard = LOOK_EVERY, Guard(metrics)
     with httpx.Client(timeout=TIMEOUT, follow_redirects=False, trust_env=False) as http:
-        while not stop.wait(LOOK_EVERY):
-            try:
+        while not stop.wait(pause):
+            failed = guard.failed
+            with guard.alone("outbox", ""):
                 while deliver_due(storage, hosts, clock, http) == AT_A_TIME and not stop.is_set():
                     pass
-            except ServiceError as fault:
-                log.warning("outbox waits", reason=str(fault))
+            pause = LOOK_EVERY if guard.failed == failed else min(2 * pause, LONGEST_WAIT)
 
 
 def deliver_due(storage: Storage, hosts: tuple[str, ...], clock: Callable[[], datetime], http: httpx.Client) -> int:

@@ -4,33 +4,48 @@ from collections.abc import Callable
 from datetime import datetime
 from threading import Event
 
-from service.errors import ServiceError
+from service.background.guard import Alone, Guard, plainly
 from service.flows.derive_again import Deriving, derive_batch
-from service.log import log
+from service.metrics import Metrics
 from service.storage import Storage
 
 LOOK_EVERY = 2.0
 """Seconds between two looks: a person who changed a record waits for it."""
+RETRY = 60.0
+"""Seconds after a look in which something failed: what fails for good is told once a minute."""
 BATCH = 10
 """Sessions of one transaction, some tenths of a second: an upload of the same unit waits no longer."""
 
 
-def derive_pending(storage: Storage, coverage_factor: float, clock: Callable[[], datetime], stop: Event) -> None:
-    """Judges what waits until ``stop`` is set; what a crash interrupts still waits at the next start."""
-    while not stop.wait(LOOK_EVERY):
-        try:
-            derive_waiting(storage, coverage_factor, clock, stop)
-        except ServiceError as fault:
-            log.warning("sessions wait to be judged again", reason=str(fault))
+def derive_pending(
+    storage: Storage, coverage_factor: float, clock: Callable[[], datetime], metrics: Metrics, stop: Event
+) -> None:
+    """Judges what waits until ``stop`` is set; what a crash interrupts still waits at the next start, and a unit on
+    which something fails waits for the next look."""
+    pause = LOOK_EVERY
+    while not stop.wait(pause):
+        guard = Guard(metrics)
+        with guard.alone("derivations", ""):
+            derive_waiting(storage, coverage_factor, clock, stop, guard.alone)
+        pause = RETRY if guard.failed else LOOK_EVERY
 
 
-def derive_waiting(storage: Storage, coverage_factor: float, clock: Callable[[], datetime], stop: Event) -> None:
+def derive_waiting(
+    storage: Storage, coverage_factor: float, clock: Callable[[], datetime], stop: Event, alone: Alone = plainly
+) -> None:
     """Judges everything that waits now, unit after unit."""
     with storage.database.reading() as store:
         serials = store.derivations.waiting()
     for serial in serials:
-        left = 1
-        while left and not stop.is_set():
-            way = Deriving(storage.files, coverage_factor, clock())
-            with storage.database.writing() as store:
-                left = derive_batch(store, way, serial, BATCH)
+        with alone("derivations", serial):
+            _derive_unit(storage, coverage_factor, clock, stop, serial)
+
+
+def _derive_unit(
+    storage: Storage, coverage_factor: float, clock: Callable[[], datetime], stop: Event, serial: str
+) -> None:
+    left = 1
+    while left and not stop.is_set():
+        way = Deriving(storage.files, coverage_factor, clock())
+        with storage.database.writing() as store:
+            left = derive_batch(store, way, serial, BATCH)

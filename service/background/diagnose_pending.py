@@ -4,9 +4,11 @@ from collections.abc import Callable
 from datetime import datetime
 from threading import Event
 
+from service.background.guard import Guard
 from service.errors import ServiceError
 from service.flows.diagnose import InProgress, diagnose
 from service.log import log
+from service.metrics import Metrics
 from service.settings import VERSION
 from service.storage import Storage
 
@@ -16,9 +18,11 @@ PAUSE = 0.05
 """Seconds between two diagnoses, so that requests are not kept waiting."""
 
 
-def diagnose_pending(storage: Storage, clock: Callable[[], datetime], progress: InProgress, stop: Event) -> None:
+def diagnose_pending(
+    storage: Storage, clock: Callable[[], datetime], metrics: Metrics, progress: InProgress, stop: Event
+) -> None:
     """Diagnoses every session that has none, until ``stop`` is set; what fails is left to its first reader."""
-    last = ""
+    last, guard = "", Guard(metrics)
     while not stop.is_set():
         try:
             with storage.database.reading() as store:
@@ -31,7 +35,8 @@ def diagnose_pending(storage: Storage, clock: Callable[[], datetime], progress: 
         for id in waiting:
             if stop.wait(PAUSE):
                 return
-            diagnose_quietly(storage, id, clock(), progress)
+            with guard.alone("pending diagnoses", id):
+                diagnose_quietly(storage, id, clock(), progress)
         last = waiting[-1]
 
 

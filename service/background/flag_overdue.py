@@ -2,28 +2,30 @@
 
 from datetime import datetime
 
+from service.background.guard import Alone, plainly
 from service.flows.flagging.settle import Occasion, raise_flag, resolve_as_done
 from service.records.flag import Concern, Matter
-from service.records.outlook import UnitOutlook
 from service.storage import Storage
-from service.views.outlook import fleet_outlook
+from service.views.outlook import own_outlook
 from service.words.names import day_of
 
 
-def flag_overdue(storage: Storage, now: datetime) -> None:
+def flag_overdue(storage: Storage, now: datetime, alone: Alone = plainly) -> None:
     """Raises a flag on every unit that is overdue and has none; resolves those of units that no longer are."""
-    overdue = {outlook.serial: outlook for outlook in fleet_outlook(storage, now) if outlook.overdue}
     with storage.database.reading() as store:
-        opened = {flag.unit for flag in store.flags.open_about(Matter.OVERDUE)}
-    for serial in overdue.keys() ^ opened:
-        _settle(storage, serial, overdue.get(serial), now)
+        late = store.outlooks.overdue_units(now)
+        opened = [flag.unit for flag in store.flags.open_about(Matter.OVERDUE)]
+    for serial in sorted({*late, *opened}):
+        with alone("due dates", serial):
+            _settle(storage, serial, now)
 
 
-def _settle(storage: Storage, serial: str, outlook: UnitOutlook | None, now: datetime) -> None:
+def _settle(storage: Storage, serial: str, now: datetime) -> None:
     with storage.database.writing() as store:
         occasion = Occasion(store.units.hold(serial), None, now)
+        outlook = own_outlook(store, serial, now)
         opened = tuple(flag for flag in store.flags.open_of(occasion.unit) if flag.matter is Matter.OVERDUE)
-        if outlook is None:
+        if outlook is None or not outlook.overdue:
             for flag in opened:
                 resolve_as_done(store, occasion, flag, "Nothing is due any more.")
         elif not opened and outlook.due is not None:

@@ -1,9 +1,12 @@
 """Flow: a stand that has shifted, as the units measured on it show, is flagged on those that it measured last."""
 
+from collections.abc import Iterable
 from datetime import datetime
 
-from service.flows.flagging.settle import Occasion, raise_flag
-from service.records.flag import Concern, Matter
+from service.background.guard import Alone, plainly
+from service.errors import ServiceError
+from service.flows.flagging.settle import Occasion, propose, raise_flag, see_again
+from service.records.flag import Concern, Flag, FlagState, Matter
 from service.records.stand import StandCondition
 from service.storage import Storage
 from service.storage.queries.flags import FlagQuery
@@ -11,27 +14,68 @@ from service.views.stands import stand_conditions
 
 EVERY = 10_000
 """Flags of one unit: more than any unit has."""
+GONE = "The units measured on {stand} no longer show that it has shifted."
 
 
-def flag_shifted_stands(storage: Storage, now: datetime) -> None:
-    """One flag a unit and shift; a shift whose flag was resolved is known and raises no other."""
+def flag_shifted_stands(storage: Storage, now: datetime, alone: Alone = plainly) -> None:
+    """One flag a unit and stand; a shift whose flag was resolved after it began is known and raises no other."""
     with storage.database.reading() as store:
-        shifted = [(one, _since(one)) for one in stand_conditions(store) if one.has_shifted]
-        concerned = [
-            (serial, one, since) for one, since in shifted for serial in store.stands.last_measured(one.stand, since)
-        ]
-    for serial, one, since in concerned:
-        _flag(storage, serial, one, since, now)
+        conditions = stand_conditions(store)
+        opened = store.flags.open_about(Matter.SHIFTED)
+    shifted = [one for one in conditions if one.has_shifted]
+    for one in shifted:
+        with alone("stands", one.stand):
+            _flag_all(storage, one, now, alone)
+    for one in conditions:
+        with alone("stands", one.stand):
+            _require_whole(one)
+    named = {one.stand for one in shifted}
+    for flag in opened:
+        if flag.place not in named:
+            with alone("stands", flag.unit):
+                _propose(storage, flag, now)
 
 
-def _since(condition: StandCondition) -> datetime:
-    return min(evidence.since for evidence in condition.evidence if evidence.has_shifted)
+def _flag_all(storage: Storage, one: StandCondition, now: datetime, alone: Alone) -> None:
+    """On every unit that the stand measured last."""
+    since = min(evidence.since for evidence in one.evidence if evidence.has_shifted)
+    with storage.database.reading() as store:
+        concerned = store.stands.last_measured(one.stand, since)
+    for serial in concerned:
+        with alone("stands", serial):
+            _flag(storage, serial, one, since, now)
 
 
-def _flag(storage: Storage, serial: str, condition: StandCondition, since: datetime, now: datetime) -> None:
-    concern = Concern(Matter.SHIFTED, condition.stand, 1, condition.reason)
+def _flag(storage: Storage, serial: str, one: StandCondition, since: datetime, now: datetime) -> None:
+    """An open flag says what is known now, also where the shift is dated anew."""
+    concern = Concern(Matter.SHIFTED, one.stand, 1, one.reason)
     with storage.database.writing() as store:
         unit = store.units.hold(serial)
-        known = store.flags.page(FlagQuery(unit=serial, limit=EVERY))
-        if not any(flag.key == concern.key and flag.raised_at >= since for flag in known):
-            raise_flag(store, Occasion(unit, None, now), concern)
+        known = [flag for flag in store.flags.page(FlagQuery(unit=serial, limit=EVERY)) if flag.key == concern.key]
+        opened = [flag for flag in known if flag.state is not FlagState.RESOLVED]
+        occasion = Occasion(unit, None, now)
+        for flag in opened:
+            if (flag.summary, flag.proposal) != (concern.summary, ""):
+                see_again(store, occasion, flag, concern)
+        if not opened and not _is_known(known, since):
+            raise_flag(store, occasion, concern)
+
+
+def _is_known(resolved: Iterable[Flag], since: datetime) -> bool:
+    """Whether somebody settled the matter after the shift began."""
+    return any(flag.changed_at >= since for flag in resolved)
+
+
+def _propose(storage: Storage, flag: Flag, now: datetime) -> None:
+    """Proposes to resolve a flag that no unit speaks for any more."""
+    with storage.database.writing() as store:
+        unit = store.units.hold(flag.unit)
+        for own in store.flags.open_of(unit):
+            if own.id == flag.id and not own.proposal:
+                propose(store, Occasion(unit, None, now), own, GONE.format(stand=flag.place))
+
+
+def _require_whole(one: StandCondition) -> None:
+    """Tells of sessions whose common motion cannot be used; without them the stand is still judged."""
+    if one.unreadable:
+        raise ServiceError(f"What is stored of these sessions cannot be used: {', '.join(one.unreadable)}.")

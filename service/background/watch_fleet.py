@@ -1,28 +1,53 @@
-"""Work beside the requests: every outlook, every due date and every stand, looked at now and then."""
+"""Work beside the requests: every outlook, due date and stand, looked at now and then, whatever fails on one of them."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from datetime import datetime
 from threading import Event
 
 from service.background.flag_overdue import flag_overdue
 from service.background.flag_shifted_stands import flag_shifted_stands
-from service.errors import ServiceError
+from service.background.guard import Guard
 from service.flows.relearn import relearn
-from service.log import log
+from service.metrics import Metrics
 from service.storage import Storage
 
-FIRST_LOOK, LOOK_EVERY = 20.0, 3600.0
-"""Seconds after the start, which has other work, and between two looks: dates fall due by the day."""
+
+@dataclass(frozen=True)
+class Pace:
+    """How often the fleet is looked at, s."""
+
+    first: float = 20.0
+    """After the start, which has other work."""
+    every: float = 3600.0
+    """Between two looks: dates fall due by the day."""
+    retry: float = 60.0
+    """After a look in which something failed; twice as long after each further one, up to `every`. A database that
+    restarts is back within a minute, and what fails for good is not told more often than it is looked at."""
+
+    def after(self, failures: int) -> float:
+        """The pause after so many looks in a row in which something failed."""
+        return self.every if not failures else min(self.every, self.retry * 2 ** min(failures - 1, 20))
 
 
-def watch_fleet(storage: Storage, clock: Callable[[], datetime], stop: Event) -> None:
+def watch_fleet(
+    storage: Storage, clock: Callable[[], datetime], metrics: Metrics, stop: Event, pace: Pace | None = None
+) -> None:
     """Looks at every outlook, due date and stand now and then until ``stop`` is set."""
-    pause = FIRST_LOOK
+    pace = pace or Pace()
+    pause, failures = pace.first, 0
     while not stop.wait(pause):
-        pause = LOOK_EVERY
-        try:
-            relearn(storage, clock())
-            flag_overdue(storage, clock())
-            flag_shifted_stands(storage, clock())
-        except ServiceError as fault:
-            log.warning("due dates and stands looked at later", reason=str(fault))
+        failures = 0 if look(storage, clock, metrics) else failures + 1
+        pause = pace.after(failures)
+
+
+def look(storage: Storage, clock: Callable[[], datetime], metrics: Metrics) -> bool:
+    """One look at the whole fleet; whether all of it could be looked at."""
+    guard = Guard(metrics)
+    with guard.alone("outlooks", ""):
+        relearn(storage, clock())
+    with guard.alone("due dates", ""):
+        flag_overdue(storage, clock(), guard.alone)
+    with guard.alone("stands", ""):
+        flag_shifted_stands(storage, clock(), guard.alone)
+    return not guard.failed

@@ -2,6 +2,19 @@
 
 from dataclasses import dataclass
 from datetime import datetime
+from math import isfinite
+
+from estimator.health.common_motion import AXES, SCALES
+
+STILL: dict[str, tuple[tuple[float, ...], tuple[tuple[float, ...], ...]]] = {
+    AXES: ((0.0,) * 3, ((0.0,) * 3,) * 3),
+    SCALES: ((0.0,), ((0.0,),)),
+}
+"""Value and covariance of a reference's motion, zero by definition: of all axes (rad) and of all scales (relative)."""
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and isfinite(value)
 
 
 @dataclass(frozen=True)
@@ -18,6 +31,14 @@ class MotionOnStand:
     """``axes`` or ``scales``."""
     value: tuple[float, ...]
     covariance: tuple[tuple[float, ...], ...]
+    session: str
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether its numbers are there, finite, and as many as its quantity has."""
+        count = len(STILL[self.quantity][0]) if self.quantity in STILL else -1
+        rows = (self.value, *self.covariance)
+        return len(self.covariance) == count and all(len(row) == count and all(map(_is_number, row)) for row in rows)
 
 
 @dataclass(frozen=True)
@@ -50,3 +71,5 @@ class StandCondition:
     reason: str
     evidence: tuple[StandEvidence, ...]
     """Of every quantity that three or more units tell of."""
+    unreadable: tuple[str, ...] = ()
+    """Sessions that are left out, because what is stored of their common motion cannot be used."""

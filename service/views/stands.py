@@ -1,6 +1,7 @@
 """The stands' own health, from what the units measured on them did together."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from datetime import datetime
 
 import numpy as np
@@ -15,15 +16,22 @@ from service.words.stands import STEADY, TOO_FEW, why_shifted
 
 def stand_conditions(store: Store) -> tuple[StandCondition, ...]:
     """Every stand with its condition and the evidence, by name."""
-    motions = store.stands.motions()
-    evidence: dict[str, list[StandEvidence]] = {motion.stand: [] for motion in sorted(motions, key=lambda m: m.stand)}
+    every = store.stands.motions()
+    motions = [motion for motion in every if motion.is_whole]
+    lost = {
+        motion.stand: tuple(m.session for m in every if m.stand == motion.stand and not m.is_whole) for motion in every
+    }
+    evidence: dict[str, list[StandEvidence]] = {motion.stand: [] for motion in sorted(every, key=lambda m: m.stand)}
     for kind, quantity in dict.fromkeys((motion.kind, motion.quantity) for motion in motions):
         own = [motion for motion in motions if (motion.kind, motion.quantity) == (kind, quantity)]
         for shift in _shifts(own):
             if shift.p_value is not None:
                 evidence[shift.stand].append(_evidence(shift, kind, quantity, own[0].at))
     sessions = {stand: {(m.unit, m.at) for m in motions if m.stand == stand} for stand in evidence}
-    return tuple(_condition(stand, len(sessions[stand]), found) for stand, found in evidence.items())
+    return tuple(
+        replace(_condition(stand, len(sessions[stand]), found), unreadable=lost[stand])
+        for stand, found in evidence.items()
+    )
 
 
 def _shifts(own: Sequence[MotionOnStand]) -> tuple[StandShift, ...]:

@@ -18,6 +18,7 @@ from service.app import create_app
 from service.background.diagnose_pending import diagnose_pending
 from service.flows.diagnose import InProgress, diagnose
 from service.flows.receive import upload
+from service.metrics import Metrics
 from service.records.diagnosis import DiagnosisState
 from service.settings import Settings
 from service.storage import Storage
@@ -84,7 +85,7 @@ def test_this_version_fails_once(written: io.StringIO, spoilt: Storage) -> None:
 
 
 def test_one_failure_does_not_keep_the_next_from_its_diagnosis(spoilt: Storage) -> None:
-    diagnose_pending(spoilt, lambda: NOW, InProgress(), Event())
+    diagnose_pending(spoilt, lambda: NOW, Metrics(), InProgress(), Event())
     with spoilt.database.reading() as store:
         states = [store.diagnoses.summary(session_id(content)) for content in (REFERENCE, LATER)]
     assert [state and state.state for state in states] == [DiagnosisState.NAMED, DiagnosisState.FAILED]

@@ -32,6 +32,7 @@ class StandSchema(BaseModel):
     has_shifted: bool = Field(description="Whether it shifts every unit that is measured on it.")
     reason: str = Field(description="In one sentence.")
     evidence: list[StandEvidenceSchema] = Field(description="Of every quantity that three or more units tell of.")
+    unreadable: list[str] = Field(description="Sessions left out: what is stored of them cannot be used.")
 
 
 class StandList(BaseModel):

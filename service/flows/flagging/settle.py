@@ -43,6 +43,12 @@ def see_again(store: Store, occasion: Occasion, known: Flag, concern: Concern) -
     tell(store, occasion, kind, concern.summary, known.id)
 
 
+def propose(store: Store, occasion: Occasion, flag: Flag, why: str) -> None:
+    """Says that a flag could be resolved, and leaves it to a person."""
+    store.flags.put(flag.id, occasion.at, proposal=why)
+    tell(store, occasion, NoticeKind.CLEAR, why, flag.id)
+
+
 def resolve_as_done(store: Store, occasion: Occasion, flag: Flag, why: str) -> None:
     """Resolves a flag by the service itself."""
     store.flags.put(flag.id, occasion.at, state=FlagState.RESOLVED, proposal="")

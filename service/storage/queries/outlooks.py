@@ -144,6 +144,11 @@ class Outlooks(Queries):
         """How many units should have been calibrated by now."""
         return self._session.scalar(select(func.count()).select_from(OutlookRow).where(OutlookRow.due < now)) or 0
 
+    def overdue_units(self, now: datetime) -> tuple[str, ...]:
+        """Serial numbers of the units that should have been calibrated by now."""
+        query = select(UnitRow.serial).join(OutlookRow, OutlookRow.unit_id == UnitRow.id).where(OutlookRow.due < now)
+        return tuple(self._session.scalars(query.order_by(UnitRow.serial)))
+
     def every(self) -> tuple[UnitOutlook, ...]:
         """Of the whole fleet, by serial number, in one query; without what only a unit's page draws."""
         return tuple(_outlook(row) for row in self._session.execute(_undrawn().order_by(UnitRow.serial)))

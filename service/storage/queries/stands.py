@@ -1,19 +1,18 @@
 """Common motions by stand."""
 
 from datetime import datetime
+from typing import Any
 
 from sqlalchemy import Integer, cast, func, select
 
-from estimator.health.common_motion import AXES, SCALES, SEPARATED
-from service.records.stand import MotionOnStand
+from estimator.health.common_motion import SEPARATED
+from service.records.stand import STILL, MotionOnStand
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
 from service.storage.tables import CommonMotionRow, ConditionRow, SessionRow, StandRow, UnitRow
 
 MOST = 4000
 """Rows, the newest, that stands are judged by."""
-STILL = {AXES: ((0.0,) * 3, ((0.0,) * 3,) * 3), SCALES: ((0.0,), ((0.0,),))}
-"""Value and covariance of a reference's motion, zero by definition: of all axes (rad) and of all scales (relative)."""
 
 
 class Stands(Queries):
@@ -63,11 +62,15 @@ def _motions(
 ) -> list[MotionOnStand]:
     """One; of a reference one of each quantity, zero by definition."""
     if motion is not None:
-        covariance = tuple(tuple(row) for row in motion.covariance)
-        value = tuple(motion.value)
-        kind, quantity = motion.kind, motion.quantity
-        return [MotionOnStand(stand, unit, epoch, session.started_at, kind, quantity, value, covariance)]
+        covariance = tuple(map(_tuple, _tuple(motion.covariance)))
+        made = (motion.kind, motion.quantity, _tuple(motion.value), covariance)
+        return [MotionOnStand(stand, unit, epoch, session.started_at, *made, session.id)]
     return [
-        MotionOnStand(stand, unit, epoch, session.started_at, session.block, quantity, *still)
+        MotionOnStand(stand, unit, epoch, session.started_at, session.block, quantity, *still, session.id)
         for quantity, still in STILL.items()
     ]
+
+
+def _tuple(stored: Any) -> tuple[Any, ...]:
+    """A stored list; empty where something else is stored, which `MotionOnStand.is_whole` tells."""
+    return tuple(stored) if isinstance(stored, list) else ()

@@ -16,6 +16,7 @@ from service.flows.diagnose import QUICK_BYTES, InProgress, diagnose, diagnose_n
 from service.flows.recalibrate import recalibrate
 from service.flows.receive import upload
 from service.flows.withdraw_model import withdraw_model
+from service.metrics import Metrics
 from service.records.diagnosis import DiagnosisState
 from service.records.model import ModelRevision, NewModel, Scope
 from service.storage import Storage
@@ -83,7 +84,7 @@ def test_a_session_that_does_not_exist_is_not_found(storage: Storage) -> None:
 
 def test_what_a_crash_interrupted_is_diagnosed_at_the_next_start(storage: Storage) -> None:
     ids = [stored(storage, notes=str(k)) for k in range(2)]
-    diagnose_pending(storage, lambda: NOW, InProgress(), Event())
+    diagnose_pending(storage, lambda: NOW, Metrics(), InProgress(), Event())
     with storage.database.reading() as store:
         assert all(store.diagnoses.exists(id) for id in ids)
         assert store.sessions.without_diagnosis("", 10, "") == ()

@@ -75,3 +75,14 @@ def test_a_shifted_stand_raises_one_flag_on_the_units_that_it_measured_last(stor
     flag_shifted_stands(storage, NOW)
     assert flagged()[0] == ("BA-0", "S2", "resolved")
     assert len(flagged()) == 3
+
+
+def test_an_open_flag_whose_shift_is_dated_anew_stays_one_flag(storage: Storage) -> None:
+    """Raised when the shift was dated to before June; by what was measured since it is dated to July."""
+    for number in range(4):
+        measure(storage, number)
+    for day in (datetime(2026, 6, 15, tzinfo=UTC), NOW, NOW):
+        flag_shifted_stands(storage, day)
+    with storage.database.reading() as store:
+        found = [flag for flag in store.flags.page(FlagQuery("BA-0")) if flag.matter is Matter.SHIFTED]
+    assert [flag.state.value for flag in found] == ["raised"]
