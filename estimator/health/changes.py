@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from estimator.coverage import combined
 from estimator.health.deviation import Deviation, axis_offset, deviation
 from estimator.results import Calibration, SensorCalibration
 from estimator.session import Array
@@ -41,17 +42,19 @@ class Changes:
         """(m r, m r) of both sessions, and what sensors do on their own, rad² or relative²."""
         return self.own + self.origin + self.scatter**2 * np.eye(len(self.y))
 
+    @property
+    def dof(self) -> float | None:
+        """Effective degrees of freedom that the least known sensor's noise is known to; None when all is known."""
+        own, origin = np.diagonal(self.own), np.diagonal(self.origin)
+        found = []
+        for i, (now, then) in enumerate(self.dofs):
+            at, known = self.where([i]), (self.rows * self.scatter**2, None)
+            found.append(combined((float(own[at].sum()), now), (float(origin[at].sum()), then), known))
+        return min((dof for dof in found if dof is not None), default=None)
+
     def where(self, sensors: list[int]) -> Array:
         """(n r,) places of the rows of n sensors, a number without unit."""
         return (np.array(sensors, dtype=int)[:, None] * self.rows + np.arange(self.rows)).ravel()
-
-    def residuals(self, gain: Array) -> dict[str, Deviation]:
-        """What the common part x = gain·y, gain (k, m r) dimensionless, leaves of each sensor."""
-        rest = np.eye(len(self.y)) - self.design @ gain
-        y, own, origin = rest @ self.y, rest @ self.own @ rest.T, rest @ self.origin @ rest.T
-        at = {name: self.where([i]) for i, name in enumerate(self.names)}
-        dofs = dict(zip(self.names, self.dofs, strict=False))
-        return {n: Deviation(y[w], own[np.ix_(w, w)], origin[np.ix_(w, w)], *dofs.get(n, ())) for n, w in at.items()}
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,14 +13,14 @@ axes     the block turned by a rotation R, exactly, however far. y (2 m) is the 
 scales   y (m) relative changes, x the common factor (1): A is a column of ones.
 s        what single sensors did: zero but for those that are left out.
 
-x is the generalised least squares estimate from the sensors that agree; the residual of a sensor is y − A·x, with the
-covariance M·C·Mᵀ, M = I − A·(AᵀVA)⁻¹AᵀV, V the inverse of C over the sensors that agree and zero elsewhere. A sensor
-that is left out has no part in x: its drift does not smear into the others, nor the common part into it.
+x is the generalised least squares estimate from the sensors that agree. A sensor that is left out has no part in x: its
+drift does not smear into the others, nor the common part into it. What each sensor did by itself is its change beside
+an x that it has no part in, averaged over who else may have moved (`who_moved`).
 
 Sensors of a healthy block wander a little, each on its own, often by more than a good stand's uncertainty. Who moved is
 asked with C + τ²·1, τ the smallest part of the tolerance, up to a fifth, with which a majority agrees: a drift is left
-out while it is small. x is then taken with τ a tenth of the tolerance at least, and is as uncertain as that makes it;
-residuals have the covariance that C gives them.
+out while it is small. x is then taken with τ a tenth of the tolerance at least, and is as uncertain as that makes it.
+Where the noise is known to ν degrees of freedom only, χ² over its rows is Fisher's F.
 
 Left out is, one after another, the sensor whose own change raises the likelihood most, while twice the gain of the log
 likelihood, (Eᵀ·W·y)ᵀ(EᵀWE)⁻¹(EᵀWy) with W = V − VA(AᵀVA)⁻¹AᵀV (chi-square with as many degrees of freedom as the
@@ -37,9 +37,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import stats
 
+from estimator.coverage import LEAST
 from estimator.health.changes import AxisPairs, Changes, axis_pairs, scale_changes
 from estimator.health.deviation import Deviation
 from estimator.health.moved import fit, moved
+from estimator.health.who_moved import Sets, residuals
 from estimator.results import NOMINAL_AXES, Calibration
 from estimator.rotations import common_turn, left_jacobian, turn_of, vector_of
 from estimator.session import Array
@@ -130,7 +132,7 @@ def common_motion(
     for kind in dict.fromkeys(sensor.kind for sensor in current.sensors):
         axes, scales = axis_pairs(current, reference, kind), scale_changes(current, reference, kind)
         if axes is not None:
-            found.append(_split_axes(kind, axes, allowed.get((kind, "axis"), 0.0), is_seen=is_framed))
+            found.append(split_axes(kind, axes, allowed.get((kind, "axis"), 0.0), is_seen=is_framed))
         if scales is not None:
             found.append(_split_scales(kind, scales, allowed.get((kind, "scale"), 0.0)))
     return tuple(found)
@@ -145,6 +147,8 @@ class _Agreed:
     """Sensors that take no part."""
     gain: Array
     """(k, m r) x = gain·y, dimensionless."""
+    sets: Sets
+    """Of sensors that may have moved, that each one's own change is averaged over."""
 
     @property
     def value(self) -> Array:
@@ -157,7 +161,7 @@ class _Agreed:
         return self.gain @ self.changes.covariance @ self.gain.T
 
 
-def _split_axes(kind: str, pairs: AxisPairs, tolerance: float, *, is_seen: bool) -> Split:
+def split_axes(kind: str, pairs: AxisPairs, tolerance: float, *, is_seen: bool) -> Split:
     """The common turn and the rest; ``is_seen`` says whether a common turn shows at all."""
     if not _tells(AXES, pairs.about(np.eye(3))):
         return Split(_nothing(kind, AXES, TOO_FEW, pairs.names), {})
@@ -198,7 +202,8 @@ def _agreed(changes: Changes, tolerance: float) -> _Agreed | None:
     if found is None:
         return None
     own, out = replace(changes, scatter=max(found[0].scatter, NOTHING * tolerance)), found[1]
-    return _Agreed(own, out, fit(own, [i for i in range(len(own.names)) if i not in out]).gain)
+    gain = fit(own, [i for i in range(len(own.names)) if i not in out]).gain
+    return _Agreed(own, out, gain, Sets(found[0], own, tolerance))
 
 
 def _separated(of: tuple[str, str], agreed: _Agreed, value: Array, covariance: Array, *, is_seen: bool) -> Split:
@@ -211,11 +216,16 @@ def _separated(of: tuple[str, str], agreed: _Agreed, value: Array, covariance: A
         state=SEPARATED,
         value=tuple(map(float, value)),
         covariance=tuple(tuple(map(float, row)) for row in covariance),
-        p_value=float(stats.chi2.sf(chi2, len(value))) if is_seen else None,
+        p_value=_chance(chi2, len(value), agreed.changes.dof) if is_seen else None,
         sensors=tuple(name for i, name in enumerate(names) if i not in agreed.out),
         left_out=tuple(names[i] for i in agreed.out),
     )
-    return Split(motion, agreed.changes.residuals(agreed.gain))
+    return Split(motion, residuals(agreed.sets, agreed.out))
+
+
+def _chance(chi2: float, size: int, dof: float | None) -> float:
+    """Probability of as large a χ² of so many numbers, by Fisher's F where the noise is known to a few degrees."""
+    return float(stats.chi2.sf(chi2, size) if dof is None else stats.f.sf(chi2 / size, size, max(dof, LEAST)))
 
 
 def _nothing(kind: str, quantity: str, state: str, names: tuple[str, ...]) -> CommonMotion:

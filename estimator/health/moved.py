@@ -1,10 +1,14 @@
-"""Which sensors moved on their own: generalised least squares, likelihood ratios and rivals (see `common_motion`)."""
+"""Which sensors moved on their own: generalised least squares, likelihood ratios and rivals (see `common_motion`).
+
+Where the noise was estimated from ν degrees of freedom, χ²/r is Fisher's F of r and ν; limits are widened by as much.
+"""
 
 from dataclasses import dataclass
 
 import numpy as np
 from scipy import stats
 
+from estimator.coverage import LEAST
 from estimator.health.changes import Changes
 from estimator.session import Array
 
@@ -47,19 +51,32 @@ def fit(changes: Changes, inside: list[int]) -> Fit:
 def moved(changes: Changes) -> list[int] | None:
     """The sensors that moved on their own; None when that cannot be told."""
     m, out = len(changes.names), list[int]()
-    limit = stats.chi2.isf(-np.expm1(np.log1p(-LEVEL) / m), changes.rows)
-    while _is_majority(changes, out):
+    limit = _limit(changes)
+    while is_majority(changes, out):
         inside = [i for i in range(m) if i not in out]
         found = fit(changes, inside)
         evidence = [_evidence(changes, found, i) for i in inside]
         if max(evidence) <= limit:
             suspects = out + _rivals(changes, out, found.chi2)
-            return suspects if _is_majority(changes, suspects) else None
+            return suspects if is_majority(changes, suspects) else None
         out = [*out, inside[int(np.argmax(evidence))]]
     return None
 
 
-def _is_majority(changes: Changes, out: list[int]) -> bool:
+def _limit(changes: Changes) -> float:
+    """χ² that the largest of all sensors' exceeds by chance with probability `LEVEL`."""
+    single = -np.expm1(np.log1p(-LEVEL) / len(changes.names))
+    return chi2_limit(float(single), changes.rows, changes.dof)
+
+
+def chi2_limit(level: float, rows: int, dof: float | None) -> float:
+    """χ² of so many rows that noise known to ``dof`` degrees of freedom exceeds with a probability."""
+    if dof is None:
+        return float(stats.chi2.isf(level, rows))
+    return rows * float(stats.f.isf(level, rows, max(dof, LEAST)))
+
+
+def is_majority(changes: Changes, out: list[int]) -> bool:
     """Whether the sensors that remain say what the block did: more than half, and enough to agree on it."""
     m = len(changes.names)
     return 2 * (m - len(out)) > m and m - len(out) >= FEWEST_AGREEING[changes.rows]
@@ -75,9 +92,10 @@ def _evidence(changes: Changes, found: Fit, sensor: int) -> float:
 def _rivals(changes: Changes, out: list[int], chi2: float) -> list[int]:
     """The sensors that could be left out instead of one of these and fit nearly as well."""
     inside = [i for i in range(len(changes.names)) if i not in out]
+    near = RIVAL * chi2_limit(LEVEL, changes.rows, changes.dof) / chi2_limit(LEVEL, changes.rows, None)
 
     def fits(kept: int, gone: int) -> bool:
         swapped = sorted([*(i for i in inside if i != kept), gone])
-        return fit(changes, swapped).chi2 - chi2 < RIVAL
+        return fit(changes, swapped).chi2 - chi2 < near
 
     return [kept for kept in inside if any(fits(kept, gone) for gone in out)]
