@@ -58,6 +58,22 @@ def _share(chord: Array, weight: Array, center: float, sigma: float) -> float:
     return min(max(float(np.sum(weight * inside)), 0.0), 1.0)
 
 
+def beyond_discs(centers: Array, sigmas: Array, radius: float) -> Array:
+    """P(|x| > radius) for each of n normal vectors: the risk of an axis whose tolerance is a disc.
+
+    Parameters
+    ----------
+    centers, sigmas : (n, 2) means and standard deviations along the same axes, unit of the radius; all positive.
+    radius : radius of the disc around the origin.
+
+    Returns
+    -------
+    (n,) probability.
+    """
+    inside = [disc_probability(c[s.argsort()], np.sort(s), radius) for c, s in zip(centers, sigmas, strict=True)]
+    return 1.0 - np.array(inside)
+
+
 @dataclass(frozen=True)
 class Length:
     """What a measured vector says of the length of the true one."""
@@ -99,7 +115,7 @@ def judge_length(
     value = _length_with(0.5, measured, sigma)
     expanded = max(factor * float(sigma[1]), upper - value, value - lower)
     wider = _wider((limit - measured) / float(sigma[1]), dof)
-    beyond = 1 - disc_probability(axes.T @ vector, sigma * wider, limit)
+    beyond = float(beyond_discs((axes.T @ vector)[None], (sigma * wider)[None], limit)[0])
     return Length(value, expanded, min(1.0, max(0.0, beyond)))
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from estimator.health.disc import disc_probability, judge_length
+from estimator.health.disc import beyond_discs, disc_probability, judge_length
 
 
 @pytest.mark.parametrize("sigma", [0.05, 0.5, 1.0, 3.0])
@@ -49,3 +49,19 @@ def test_the_length_is_freed_of_the_upward_pull_of_noise() -> None:
 def test_what_noise_explains_has_no_length() -> None:
     assert judge_length(np.array([0.5, 0.5]), np.eye(2), 5.0, 2.0).value == 0
     assert judge_length(np.zeros(2), np.eye(2), 5.0, 2.0).expanded == pytest.approx(2.0)
+
+
+def test_the_risk_of_a_disc_is_that_of_the_decision_and_more_than_that_of_a_square() -> None:
+    """Two axes at 0.8 of the tolerance, along one component and along both."""
+    centers = np.array([[0.8, 0.0], [0.8 / np.sqrt(2), 0.8 / np.sqrt(2)]])
+    risk = beyond_discs(centers, np.full((2, 2), 0.2), 1.0)
+    assert risk[0] == pytest.approx(risk[1])
+    assert risk[1] == pytest.approx(judge_length(centers[1], 0.04 * np.eye(2), 1.0, 2.0).probability_beyond)
+    square = 1 - np.prod(stats.norm.cdf(1.0, centers[1], 0.2) - stats.norm.cdf(-1.0, centers[1], 0.2))
+    assert risk[1] > 3 * square
+
+
+def test_the_order_of_the_components_does_not_matter() -> None:
+    one = beyond_discs(np.array([[0.2, 0.9]]), np.array([[0.05, 0.5]]), 1.0)
+    other = beyond_discs(np.array([[0.9, 0.2]]), np.array([[0.5, 0.05]]), 1.0)
+    assert one == pytest.approx(other, abs=1e-12)
