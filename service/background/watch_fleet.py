@@ -1,4 +1,4 @@
-"""Work beside the requests: every outlook, due date and stand, looked at now and then, whatever fails on one of them."""
+"""Work beside the requests: outlooks, due dates and stands, looked at now and then, whatever fails on one of them."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

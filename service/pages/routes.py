@@ -63,16 +63,19 @@ def show_fleet(
 
 
 @router.get("/units/{serial:path}")
-def show_unit(request: Request, store: Reading, settings: SettingsOf, now: Now, serial: Key) -> HTMLResponse:
-    """One unit with the history of its parameters."""
+def show_unit(
+    request: Request, store: Reading, settings: SettingsOf, now: Now, serial: Key, raw: bool = False
+) -> HTMLResponse:
+    """One unit with the history of its parameters; ``raw``: what the whole block did is left in."""
     report = unit_report(store, serial, now)
     return render(
         request,
         "unit.html",
         unit_page(
             report,
-            recent_history(store, serial, HISTORY_LIMIT),
+            recent_history(store, serial, HISTORY_LIMIT, raw=raw),
             now=now,
+            raw=raw,
             flags=store.flags.page(FlagQuery(serial, limit=FLAG_LIMIT)),
             notes=store.notes.of_unit(serial),
             pair=found_and_left(store, report.unit_type, report.sessions, report.services, settings.coverage_factor),

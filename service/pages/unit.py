@@ -28,6 +28,8 @@ MEANINGS = {
     "misalignment": "Change of the input axis' turn toward a turntable's axis from the reference of its time.",
 }
 """What the charts of a parameter show."""
+TOGETHER = {"axis": "turn", "scale": "change"}
+"""What a whole block does to a parameter."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +49,8 @@ class ParameterSection:
     anchor: str
     heading: str
     meaning: str
+    together: str
+    """What of the whole block is taken off, in a word; empty where nothing ever is."""
     unit: str
     tolerance: str
     worst: Condition
@@ -85,6 +89,8 @@ class UnitPage:
     """What can be done to a unit: identifier and name."""
     next: NextCalibration | None
     """None before a session was judged."""
+    raw: bool
+    """Whether what the whole block did is left in."""
 
 
 def unit_page(
@@ -92,13 +98,14 @@ def unit_page(
     history: Sequence[HistoryPoint],
     *,
     now: datetime,
+    raw: bool = False,
     flags: Sequence[Flag] = (),
     notes: Sequence[Note] = (),
     pair: FoundAndLeft | None = None,
     outlook: UnitOutlook | None = None,
 ) -> UnitPage:
     """The page of a unit with its history, flags and notes, as found and as left, and when it must come back."""
-    trends = () if outlook is None else outlook.trends
+    trends = () if outlook is None or raw else outlook.trends
     valid = tuple(note for note in notes if note.withdrawal is None)
     groups = tracks_of(history, report.services)
     kinds = {point.kind for point in history}
@@ -114,6 +121,7 @@ def unit_page(
         stages=stage_table(pair),
         kinds=tuple(KINDS.items()),
         next=None if outlook is None else next_calibration(outlook, now),
+        raw=raw,
     )
 
 
@@ -145,6 +153,7 @@ def _section(
         anchor=tracks[0].name,
         heading=f"{heading(parameter)}, {kind}s" if several else heading(parameter),
         meaning=MEANINGS[parameter],
+        together=TOGETHER.get(parameter, ""),
         unit=tracks[0].unit.label,
         tolerance=tolerance_text(tracks[0]),
         worst=min(judged, key=lambda c: c.rank, default=NOT_JUDGED),

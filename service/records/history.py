@@ -16,7 +16,7 @@ class HistoryPoint:
     kind: str
     parameter: str
     value: float | None
-    """SI; for the axis the angle from the reference axis, rad."""
+    """SI; for the axis the angle from the reference axis, rad, what the whole block did taken off unless asked for."""
     u: float | None
     """Standard uncertainty of value."""
     lower: float | None

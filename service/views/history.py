@@ -7,10 +7,15 @@ from service.storage.queries.history import HistoryQuery
 from service.storage.store import Store
 
 
-def recent_history(store: Store, serial: str, most: int, *, until: datetime | None = None) -> tuple[HistoryPoint, ...]:
-    """The newest sessions of a unit's history before a time, whole, with at most so many points; oldest first."""
+def recent_history(
+    store: Store, serial: str, most: int, *, until: datetime | None = None, raw: bool = False
+) -> tuple[HistoryPoint, ...]:
+    """The newest sessions of a unit's history before a time, whole, with at most so many points; oldest first.
+
+    ``raw``: what the whole block did is left in.
+    """
     unit = store.units.key(serial)
-    found = store.history.points(unit, HistoryQuery(until=until, limit=most + 1, newest=True))
+    found = store.history.points(unit, HistoryQuery(until=until, limit=most + 1, newest=True, raw=raw))
     if len(found) <= most:
         return found
     return tuple(point for point in found if point.session != found[0].session)

@@ -23,6 +23,7 @@ class HistoryAsked(BaseModel):
     revision: Annotated[int, Field(ge=0, le=2_000_000_000)] | None = Field(
         None, description="Under this model revision instead of the one in force; 0: baseline."
     )
+    raw: bool = Field(False, description="Leave in what the whole block did: turn of all axes, factor of all scales.")
     page: int = Field(1, ge=1, le=1_000_000, description="Which page, from 1.")
     limit: int = Field(10_000, ge=1, le=50_000, description="How many points on a page.")
 
@@ -42,6 +43,7 @@ class HistoryAsked(BaseModel):
             offset=self.window.offset,
             limit=self.limit,
             revision=self.revision,
+            raw=self.raw,
         )
 
 
@@ -55,7 +57,7 @@ class HistoryPointSchema(BaseModel):
     sensor: str = Field(description="Name of the sensor.")
     kind: str = Field(description="`accelerometer` or `gyroscope`.")
     parameter: str = Field(description="`scale`, `bias`, `quadratic`, `axis` or `misalignment`.")
-    value: float | None = Field(description="SI; for the axis the angle from the reference axis, rad.")
+    value: float | None = Field(description="SI; for the axis the angle from the reference axis as judged, rad.")
     u: float | None = Field(description="Standard uncertainty of the value.")
     lower: float | None = Field(description="Value minus expanded uncertainty.")
     upper: float | None = Field(description="Value plus expanded uncertainty.")

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
+from math import hypot
 
 from sqlalchemy import ColumnElement, delete, func, select
 
@@ -36,6 +37,8 @@ class HistoryQuery:
     """As computed under this model revision or the last one before it; None for what is in force."""
     newest: bool = False
     """Whether offset and limit count from the newest point back."""
+    raw: bool = False
+    """Whether what the whole block did is left in."""
 
 
 class History(Queries):
@@ -86,7 +89,10 @@ class History(Queries):
             query = query.where(ParameterRow.at < wanted.until)
         order = (ParameterRow.at, ParameterRow.session_id, ParameterRow.sensor_index, ParameterRow.parameter)
         query = query.order_by(*(column.desc() if wanted.newest else column for column in order))
-        found = [point_record(*row) for row in self._session.execute(query.offset(wanted.offset).limit(wanted.limit))]
+        found = [
+            point_record(*row, raw=wanted.raw)
+            for row in self._session.execute(query.offset(wanted.offset).limit(wanted.limit))
+        ]
         return tuple(reversed(found)) if wanted.newest else tuple(found)
 
 
@@ -101,11 +107,12 @@ def _revision(wanted: int | None) -> ColumnElement[int]:
     )
 
 
-def point_record(parameter: ParameterRow, decision: DecisionRow | None, is_reference: bool) -> HistoryPoint:
-    """A stored parameter with what was decided of it."""
-    is_axis = parameter.parameter == "axis"
-    value = decision.value if is_axis and decision else parameter.value
-    u = decision.uncertainty if is_axis and decision and decision.uncertainty is not None else parameter.u
+def point_record(
+    parameter: ParameterRow, decision: DecisionRow | None, is_reference: bool, *, raw: bool = False
+) -> HistoryPoint:
+    """A stored parameter with what was decided of it, or, ``raw``, with what the whole block did left in."""
+    seen = _Seen(parameter, decision, raw)
+    value, u = seen.value, seen.u
     expanded = None if u is None or decision is None else decision.coverage_factor * u
     return HistoryPoint(
         session=parameter.session_id,
@@ -118,14 +125,61 @@ def point_record(parameter: ParameterRow, decision: DecisionRow | None, is_refer
         lower=None if value is None or expanded is None else value - expanded,
         upper=None if value is None or expanded is None else value + expanded,
         reference=None if decision is None else decision.reference,
-        deviation=None if decision is None else decision.deviation,
-        expanded=None if decision is None else decision.expanded,
+        deviation=seen.deviation,
+        expanded=seen.expanded,
         tolerance=None if decision is None else _tolerance(decision),
         verdict=Verdict.UNDECIDABLE if decision is None else Verdict(decision.verdict),
         is_reference=is_reference,
         axis=_axis(parameter),
         revision=parameter.revision,
     )
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """A parameter as it was judged, or as it was measured."""
+
+    parameter: ParameterRow
+    decision: DecisionRow | None
+    raw: bool
+
+    @property
+    def value(self) -> float | None:
+        """For the axis the angle from the reference, without the turn of the whole block unless it is to stay."""
+        if self.parameter.parameter != "axis" or self.decision is None:
+            return self.parameter.value
+        judged = self.decision.deviation
+        return self.decision.value if self.raw or judged is None else judged
+
+    @property
+    def u(self) -> float | None:
+        """One sigma of the value."""
+        if self.parameter.parameter != "axis" or self.decision is None or self.decision.uncertainty is None:
+            return self.parameter.u
+        return hypot(self.decision.uncertainty, self._together)
+
+    @property
+    def deviation(self) -> float | None:
+        """From the reference."""
+        own = self.decision
+        if own is None or own.common is None or not self.raw:
+            return None if own is None else own.deviation
+        if self.parameter.parameter == "axis":
+            return own.value
+        return None if not own.reference or own.value is None else own.value / own.reference - 1
+
+    @property
+    def expanded(self) -> float | None:
+        """U of the deviation."""
+        own = self.decision
+        if own is None or own.expanded is None:
+            return None
+        return hypot(own.expanded, own.coverage_factor * self._together)
+
+    @property
+    def _together(self) -> float:
+        """One sigma of what the whole block did, where that is left in."""
+        return (self.decision.common_sigma or 0.0) if self.raw and self.decision is not None else 0.0
 
 
 def _tolerance(decision: DecisionRow) -> float | None:
