@@ -1,38 +1,39 @@
 """A stand's own health, followed over the units that are measured on it.
 
 A stand that turns, or a fixture that was re-seated, turns every block that is measured on it from then on, and no block
-that is measured elsewhere. For a stand and a date the contrast of a unit is
+that is measured elsewhere. How blocks are seated anyway is estimated for every stand and unit (`seating`); what may
+have happened is compared by χ² (`stand_events`): nothing, a shift of a stand at any of its dates, one that was taken
+back, several, or a unit that moved by itself. The most evident is taken into the model, the variances are made anew,
+and so on until nothing is evident; what others explain better is then taken out again. The level 1 % is shared by all
+dates and stands that were looked at (Bonferroni).
 
-    c_u = mean of its common motions on this stand from that date on − mean of all its others,
-
-the reference session itself counting as a motion of zero; in the difference the unit's own reference drops out. Over
-the units c_u = δ + a_u + e_u: δ the stand's shift, e_u with the covariance of the sessions, a_u with the scatter τ²
-that units have anyway (how a block is seated, what its sensors do on their own), the typical one over all stands and
-dates. δ is the generalised least squares mean. What the units scatter about it, their χ² per degree of freedom, widens
-its covariance V where it is more than one (Birge's ratio): how blocks are seated counts for more where a unit has few
-sessions. δᵀV⁻¹δ/k is then Fisher's F with k and k(u − 1) degrees of freedom when the stand has not moved, u the units.
-The level 1 % is shared by all dates and stands that were looked at (Bonferroni), and a stand is flagged only
-when at least three units show the shift and four in five of them in its direction: a single unit that was dropped is no
-fault of the stand. Values are in rad (turns) or relative (scales), covariances in rad² or relative².
+A shift is the stand's only when at least three units tell of it, when it is evident without any one of them, and when
+four in five of the units that tell for themselves (their own sigma at most a fifth of it) show it: a single unit that
+was dropped is no fault of the stand. Values are in rad (turns) or relative (scales), covariances in rad² or relative².
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy import stats
 
-from estimator.health.population import spread
+from estimator.health.seating import Seating, Units, seated
+from estimator.health.stand_events import FEWEST_UNITS, Event, Weighed, columns, of_stands, of_units, weighed
 from estimator.session import Array
 
 LEVEL = 0.01
 """Chance that any stand of a fleet is flagged although none moved."""
-FEWEST_UNITS = 3
-"""Two that differ cannot say which of them changed."""
-MOST_DATES = 48
-"""Of one stand that are looked at, evenly among its sessions: work and Bonferroni's price grow with them."""
 AGREEING = 0.8
 """Share of the units that must show the shift; one in five may differ."""
+TELLS = 5.0
+"""Sigmas of its own that a shift must have for a unit to have a vote: half of them is then far from either answer."""
+TRIED = 12
+"""Stands, the most evident, whose best candidate is given a fit of its own."""
+MOST_EVENTS = 24
+"""Of a fleet that are told apart; more are no single events."""
+BUCKETS = 2.0
+"""Units whose numbers of sessions are within this factor are worked on together."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,165 +52,234 @@ class Motion:
 
 @dataclass(frozen=True)
 class StandShift:
+    """One shift of a stand."""
+
+    since: float
+    """Date of the first session that shows it, years."""
+    until: float | None
+    """Date of the first session that shows it no more; None while it lasts."""
+    value: tuple[float, ...]
+    """(k,) δ, rad or relative."""
+    covariance: tuple[tuple[float, ...], ...]
+    """(k, k) of δ, rad² or relative²."""
+    units: int
+    """That have sessions with it and without."""
+    agreeing: int
+    """Of them, that show its direction."""
+    chi2: float
+    p_value: float
+    """Everything considered that was looked at."""
+
+
+@dataclass(frozen=True)
+class StandState:
     """What the units say of one stand."""
 
     stand: str
-    units: int
-    """That were measured on it from the date on and elsewhere or before too."""
-    agreeing: int
-    """Of them, that show the shift's direction."""
-    since: float | None
-    """Date of the first session that shows the shift, years; None where too few units tell."""
-    value: tuple[float, ...]
-    """(k,) δ, rad or relative; empty where too few units tell."""
-    covariance: tuple[tuple[float, ...], ...]
-    """(k, k) of δ, rad² or relative²."""
-    p_value: float | None
-    """Corrected for the dates and stands that were looked at."""
-    has_shifted: bool
+    seating: float
+    """τ, one sigma of how a block is seated, per component, rad or relative."""
+    shifts: tuple[StandShift, ...]
+    """In order of time."""
+    suspected: StandShift | None
+    """Of a stand without a shift the most evident one; None where too few units tell."""
+
+    @property
+    def has_shifted(self) -> bool:
+        """Whether it is now elsewhere than it was."""
+        return any(shift.until is None for shift in self.shifts)
+
+    @property
+    def worst(self) -> StandShift | None:
+        """The most evident shift, one that lasts before one that does not."""
+        return max(self.shifts, key=lambda shift: (shift.until is None, shift.chi2), default=self.suspected)
 
 
-def stand_shifts(motions: Sequence[Motion]) -> tuple[StandShift, ...]:
-    """Every stand's most evident shift, by name; motions of one quantity.
-
-    The stand that has shifted most evidently is named first, and what was measured on it since is left out when the
-    others are looked at: their units were measured there too.
-    """
-    known: dict[str, StandShift] = {}
-    left = list(motions)
-    while True:
-        found = [shift for shift in _looked_at(left) if shift.stand not in known]
-        shifted = [shift for shift in found if shift.has_shifted]
-        if not shifted:
-            every = known | {shift.stand: shift for shift in found}
-            return tuple(every[stand] for stand in sorted(every))
-        worst = min(shifted, key=lambda shift: (shift.p_value or 0.0, -float(np.linalg.norm(shift.value))))
-        known[worst.stand] = worst
-        left = [m for m in left if not (m.stand == worst.stand and m.time >= (worst.since or 0.0))]
-
-
-def _looked_at(motions: Sequence[Motion]) -> list[StandShift]:
-    """Every stand by itself."""
+def stand_states(motions: Sequence[Motion]) -> tuple[StandState, ...]:
+    """Every stand, by name; motions of one quantity."""
+    if not motions:
+        return ()
     stands = sorted({motion.stand for motion in motions})
-    contrasts = {stand: _contrasts(stand, motions) for stand in stands}
-    every = [contrast for found in contrasts.values() for contrast in found]
-    scatter = float(np.median([_scatter(contrast) for contrast in every])) if every else 0.0
-    cases = {stand: [_case(contrast, scatter) for contrast in found] for stand, found in contrasts.items()}
-    return [_worst(stand, cases[stand], max(len(every), 1)) for stand in stands]
+    groups, stand_of = _grouped(motions, stands)
+    found = _explained(groups, stand_of)
+    return tuple(_state(i, name, found) for i, name in enumerate(stands))
+
+
+@dataclass(frozen=True)
+class _Taken:
+    """An event in the model, and how many of its class were looked at."""
+
+    event: Event
+    looked: int
 
 
 @dataclass(frozen=True, eq=False)
-class _Contrast:
-    """One stand and one date, unit by unit."""
+class _Explained:
+    """What happened, and what might have."""
 
-    since: float
-    value: Array
-    """(u, k) rad or relative."""
-    covariance: Array
-    """(u, k, k) of the sessions, rad² or relative²."""
+    seating: Seating
+    taken: tuple[_Taken, ...]
+    tried: tuple[tuple[_Taken, Seating], ...]
+    """Candidates that were not evident, each the last event of a model of its own."""
 
 
-def _scatter(contrast: _Contrast) -> float:
-    """τ² per component: what the sessions' own uncertainties leave of the spread between units."""
-    own = np.sqrt(np.diagonal(contrast.covariance, axis1=1, axis2=2))
-    return float(np.mean([spread(v, s)[1] ** 2 for v, s in zip(contrast.value.T, own.T, strict=True)]))
+def _explained(groups: Sequence[Units], stand_of: Array) -> _Explained:
+    """Events one after another, while one is evident; then without those that others explain."""
+    taken = list[_Taken]()
+    found = seated(groups, columns(groups, ()), stand_of)
+    while True:
+        tried = [(one, _with(found, groups, [*taken, one])) for one in _candidates(found)]
+        evident = [(one, new) for one, new in tried if _is_evident(new, len(taken), one)]
+        if not evident or len(taken) == MOST_EVENTS:
+            break
+        one, _ = max(evident, key=lambda pair: weighed(pair[1], len(taken), pair[0].looked).evidence)
+        taken.append(one)
+        found = seated(groups, columns(groups, [each.event for each in taken]), stand_of)
+    return _Explained(*_pruned(found, groups, taken), tuple(tried))
+
+
+def _candidates(found: Seating) -> list[_Taken]:
+    """What is worth a fit of its own."""
+    stands = sorted(of_stands(found), key=lambda one: -one.gain)[:TRIED]
+    unit = of_units(found)
+    return [_Taken(one.event, one.looked) for one in (*stands, *([] if unit is None else [unit]))]
+
+
+def _with(found: Seating, groups: Sequence[Units], taken: Sequence[_Taken]) -> Seating:
+    """The model with these events, its variances made anew."""
+    return seated(groups, columns(groups, [one.event for one in taken]), found.stand_of, found.scatter)
+
+
+def _pruned(found: Seating, groups: Sequence[Units], taken: list[_Taken]) -> tuple[Seating, tuple[_Taken, ...]]:
+    """Without events that are no longer evident, the least evident first."""
+    while taken:
+        failing = [i for i, one in enumerate(taken) if not _is_evident(found, i, one)]
+        if not failing:
+            break
+        least = min(failing, key=lambda i: weighed(found, i, taken[i].looked).evidence)
+        taken = [one for i, one in enumerate(taken) if i != least]
+        found = _with(found, groups, taken)
+    return found, tuple(taken)
+
+
+def _is_evident(found: Seating, e: int, one: _Taken) -> bool:
+    """Whether the e-th event of the model is beyond chance and, of a stand, the units' common testimony."""
+    own = weighed(found, e, one.looked)
+    return own.exceeds(LEVEL) and (one.event.stand < 0 or _witnesses(found, e).bear(own))
 
 
 @dataclass(frozen=True, eq=False)
-class _Case:
-    """One stand and one date, over all units."""
+class _Witnesses:
+    """What each unit says of one event; of those that say anything."""
 
-    since: float
-    units: int
-    agreeing: int
     value: Array
     """(k,) δ, rad or relative."""
-    covariance: Array
-    """(k, k) of δ, rad² or relative²."""
-    p: float
-    """Of δ by chance, before the correction for all stands and dates."""
+    information: Array
+    """(u, k, k) 1/rad² or 1/relative²."""
+    pull: Array
+    """(u, k) 1/rad or 1/relative."""
+
+    @property
+    def agreeing(self) -> Array:
+        """(u,) bool; at least half of δ, as the unit sees it."""
+        return np.asarray(self.pull @ self.value > self._own / 2)
+
+    @property
+    def _own(self) -> Array:
+        """(u,) δᵀJδ, the square of δ in the unit's own sigmas."""
+        return np.asarray(np.einsum("a,uab,b->u", self.value, self.information, self.value))
+
+    def bear(self, own: Weighed) -> bool:
+        """Whether they are enough, of one mind, and none is the only one."""
+        if len(self.pull) < FEWEST_UNITS:
+            return False
+        votes = self.agreeing[self._own > TELLS**2]
+        return bool(votes.sum() >= AGREEING * len(votes)) and self._without_one() > own.size * float(
+            stats.f.isf(LEVEL, own.size, own.freedom)
+        )
+
+    def _without_one(self) -> float:
+        """χ² without the unit that it rests on most."""
+        pull, whole = self.pull.sum(axis=0) - self.pull, self.information.sum(axis=0) - self.information
+        return float(np.einsum("uk,ukl,ul->u", pull, np.linalg.pinv(whole, hermitian=True), pull).min())
 
 
-@dataclass(frozen=True, eq=False)
-class _Table:
-    """Motions as arrays: n sessions of units numbered from 0."""
-
-    unit: Array
-    """(n,) number of each unit."""
-    time: Array
-    """(n,) years."""
-    there: Array
-    """(n,) bool; whether on the stand that is looked at."""
-    value: Array
-    """(n, k) rad or relative."""
-    covariance: Array
-    """(n, k, k) rad² or relative²."""
+def _witnesses(found: Seating, e: int) -> _Witnesses:
+    """The units that have sessions with the e-th event and without."""
+    information, pull = [], []
+    for part in found.parts:
+        column = part.column[:, :, e]
+        own = np.einsum("ui,uiab->uab", column, part.seen[:, :, :, e])
+        some = (column.sum(axis=1) > 0) & (column.sum(axis=1) < part.units.there.sum(axis=1))
+        information.append(own[some])
+        pull.append((np.einsum("ui,uia->ua", column, part.rest) + own @ found.value[e])[some])
+    return _Witnesses(found.value[e], np.concatenate(information), np.concatenate(pull))
 
 
-def _contrasts(stand: str, motions: Sequence[Motion]) -> list[_Contrast]:
-    """For every date on the stand that three units tell of; of very many dates as many as are worth looking at."""
-    _, unit = np.unique([m.unit for m in motions], return_inverse=True)
-    table = _Table(
-        unit=unit,
-        time=np.array([m.time for m in motions]),
-        there=np.array([m.stand == stand for m in motions]),
-        value=np.stack([m.value for m in motions]),
-        covariance=np.stack([m.covariance for m in motions]),
-    )
-    dates = np.unique(table.time[table.there])
-    chosen = dates[np.unique(np.linspace(0, len(dates) - 1, MOST_DATES).round().astype(int))]
-    found = (_contrast(float(date), table) for date in chosen)
-    return [contrast for contrast in found if len(contrast.value) >= FEWEST_UNITS]
+def _state(number: int, name: str, found: _Explained) -> StandState:
+    """One stand."""
+    shifts = [_shift(found.seating, e, one) for e, one in enumerate(found.taken) if one.event.stand == number]
+    others = [_shift(new, len(new.value) - 1, one) for one, new in found.tried if one.event.stand == number]
+    seating = float(np.sqrt(found.seating.scatter.cell[found.seating.stand_of == number].mean()))
+    in_time = tuple(sorted(shifts, key=lambda shift: shift.since))
+    return StandState(name, seating, in_time, None if shifts or not others else others[0])
 
 
-def _contrast(since: float, table: _Table) -> _Contrast:
-    """Of every unit that was measured there since the date, and also elsewhere or before."""
-    after = table.there & (table.time >= since)
-    (late, p, some), (early, q, others) = (_means(table, part) for part in (after, ~after))
-    both = (some > 0) & (others > 0)
-    return _Contrast(since, (late - early)[both], (p + q)[both])
-
-
-def _case(contrast: _Contrast, scatter: float) -> _Case:
-    """The units' mean contrast; ``scatter`` is τ², rad² or relative²."""
-    k = contrast.value.shape[1]
-    weight = np.linalg.inv(contrast.covariance + (scatter + 1e-24) * np.eye(k))
-    covariance = np.linalg.inv(weight.sum(axis=0))
-    value = covariance @ np.einsum("uij,uj->i", weight, contrast.value)
-    rest, freedom = contrast.value - value, k * (len(contrast.value) - 1)
-    dispersion = max(float(np.einsum("ui,uij,uj->", rest, weight, rest)) / freedom, 1.0)
-    covariance = dispersion * covariance
-    ratio = float(value @ np.linalg.solve(covariance, value)) / k
-    agreeing = int((contrast.value @ value > 0.5 * float(value @ value)).sum())
-    return _Case(contrast.since, len(contrast.value), agreeing, value, covariance, float(stats.f.sf(ratio, k, freedom)))
-
-
-def _means(table: _Table, part: Array) -> tuple[Array, Array, Array]:
-    """Mean (units, k) of every unit over a part of the sessions, rad or relative, its covariance (units, k, k), and how
-    many there are (units,); ``part`` (n,) bool."""
-    units, k = int(table.unit.max()) + 1, table.value.shape[1]
-    count = np.bincount(table.unit[part], minlength=units)
-    value, covariance = np.zeros((units, k)), np.zeros((units, k, k))
-    np.add.at(value, table.unit[part], table.value[part])
-    np.add.at(covariance, table.unit[part], table.covariance[part])
-    n = np.maximum(count, 1)[:, None]
-    return value / n, covariance / n[..., None] ** 2, count
-
-
-def _worst(stand: str, cases: Sequence[_Case], looked: int) -> StandShift:
-    """A stand's most evident date, among all ``looked`` at."""
-    if not cases:
-        return StandShift(stand, 0, 0, None, (), (), None, False)
-    case = min(cases, key=lambda c: (c.p, c.since))
-    p = min(case.p * looked, 1.0)
-    shifted = p < LEVEL and case.agreeing >= max(FEWEST_UNITS, AGREEING * case.units)
+def _shift(found: Seating, e: int, one: _Taken) -> StandShift:
+    own, units = weighed(found, e, one.looked), _witnesses(found, e)
     return StandShift(
-        stand=stand,
-        units=case.units,
-        agreeing=case.agreeing,
-        since=case.since,
-        value=tuple(map(float, case.value)),
-        covariance=tuple(tuple(map(float, row)) for row in case.covariance),
-        p_value=p,
-        has_shifted=shifted,
+        since=one.event.start,
+        until=None if np.isinf(one.event.end) else one.event.end,
+        value=tuple(map(float, found.value[e])),
+        covariance=tuple(tuple(map(float, row)) for row in found.covariance[e, :, e]),
+        units=len(units.pull),
+        agreeing=int(units.agreeing.sum()),
+        chi2=own.chi2,
+        p_value=own.p_value,
     )
+
+
+def _grouped(motions: Sequence[Motion], stands: Sequence[str]) -> tuple[list[Units], Array]:
+    """Units of like length together, and the stand of every pair of unit and stand."""
+    by_unit: dict[str, list[Motion]] = {}
+    for motion in sorted(motions, key=lambda m: m.time):
+        by_unit.setdefault(motion.unit, []).append(motion)
+    cells = {pair: i for i, pair in enumerate(sorted({(m.unit, m.stand) for m in motions}))}
+    place = {stand: i for i, stand in enumerate(stands)}
+    buckets: dict[int, list[tuple[int, list[Motion]]]] = {}
+    for number, own in enumerate(by_unit.values()):
+        buckets.setdefault(int(np.ceil(np.log(len(own)) / np.log(BUCKETS))), []).append((number, own))
+    groups = [_units(own, cells, place) for _, own in sorted(buckets.items())]
+    return groups, np.array([place[stand] for _, stand in cells])
+
+
+def _units(
+    own: Sequence[tuple[int, list[Motion]]], cells: Mapping[tuple[str, str], int], place: Mapping[str, int]
+) -> Units:
+    """Arrays of units, filled up to the longest."""
+    u, n, k = len(own), max(len(motions) for _, motions in own), len(own[0][1][0].value)
+    value, noise, time = np.zeros((u, n, k)), np.tile(np.eye(k), (u, n, 1, 1)), np.zeros((u, n))
+    stand, cell = np.full((u, n), -1), np.full((u, n), -1)
+    for row, (_, motions) in enumerate(own):
+        m = len(motions)
+        value[row, :m] = [motion.value for motion in motions]
+        noise[row, :m] = _alone(np.stack([motion.covariance for motion in motions]))
+        time[row, :m] = [motion.time for motion in motions]
+        stand[row, :m] = [place[motion.stand] for motion in motions]
+        cell[row, :m] = [cells[motion.unit, motion.stand] for motion in motions]
+    return Units(value, noise, time, np.array([number for number, _ in own]), stand, cell)
+
+
+def _alone(covariance: Array) -> Array:
+    """(n, k, k) what each session is uncertain of by itself, from totals that hold the reference too.
+
+    The reference is taken to be as uncertain as the best of the others, half of its total. Without another session
+    there is nothing to compare, and any value will do.
+    """
+    traces = np.einsum("nkk->n", covariance)
+    others = traces > 0
+    if not others.any():
+        return covariance + 1e-24 * np.eye(covariance.shape[1])
+    best = int(np.argmin(np.where(others, traces, np.inf)))
+    share = 1 - 0.5 * traces[best] / np.where(others, traces, traces[best])
+    own = np.where(others[:, None, None], covariance * share[:, None, None], covariance[best] / 2)
+    return np.asarray(own)

@@ -38,7 +38,7 @@ def flag_shifted_stands(storage: Storage, now: datetime, alone: Alone = plainly)
 
 def _flag_all(storage: Storage, one: StandCondition, now: datetime, alone: Alone) -> None:
     """On every unit that the stand measured last."""
-    since = min(evidence.since for evidence in one.evidence if evidence.has_shifted)
+    since = min(shift.since for shift in one.shifts if shift.until is None)
     with storage.database.reading() as store:
         concerned = store.stands.last_measured(one.stand, since)
     for serial in concerned:

@@ -94,7 +94,7 @@ class FleetPage:
     flags: str
     """How many are open on all units together, in words; empty where none is."""
     stands: tuple[StandCondition, ...]
-    """That shift every unit measured on them."""
+    """That shift every unit measured on them, or did."""
     standouts: tuple[Standout, ...]
     """Units and lots that drift unlike the others."""
     overdue: str
@@ -133,7 +133,7 @@ def fleet_page(
         more=len(units) > PAGE_SIZE,
         simulated=condition.simulated,
         flags=flags_in_words(condition.flags),
-        stands=tuple(stand for stand in stands if stand.has_shifted),
+        stands=tuple(stand for stand in stands if stand.shifts),
         standouts=tuple(unlike[:MOST_STANDOUTS]),
         overdue=f"{overdue} unit{'' if overdue == 1 else 's'} overdue for calibration." if overdue else "",
     )

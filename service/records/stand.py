@@ -43,21 +43,36 @@ class MotionOnStand:
 
 @dataclass(frozen=True)
 class StandEvidence:
-    """What the units say of one quantity on one stand."""
+    """What the units say of one quantity on one stand: a shift, or the most evident one that chance may explain."""
 
     kind: str
     quantity: str
     since: datetime
-    """Of the first session that shows the most evident shift."""
+    """Of the first session that shows it."""
+    until: datetime | None
+    """Of the first session that shows it no more; None while it lasts."""
     value: tuple[float, ...]
     """Turn in block axes, rad, or relative change of all scales."""
     size: float
     sigma: float
+    chi2: float
+    """Of no shift less that of this one."""
     p_value: float
     """Corrected for the dates and stands that were looked at."""
     units: int
     agreeing: int
     has_shifted: bool
+    """Whether it counts as a shift of the stand."""
+
+
+@dataclass(frozen=True)
+class StandSeating:
+    """How blocks are seated on a stand, from one mounting to the next."""
+
+    kind: str
+    quantity: str
+    tau: float
+    """One sigma per component: of a turn rad, of scales relative."""
 
 
 @dataclass(frozen=True)
@@ -68,8 +83,13 @@ class StandCondition:
     sessions: int
     """That it is judged by."""
     has_shifted: bool
+    """Whether it is elsewhere now than it was."""
     reason: str
     evidence: tuple[StandEvidence, ...]
-    """Of every quantity that three or more units tell of."""
-    unreadable: tuple[str, ...] = ()
+    """The most evident of every quantity that three or more units tell of."""
+    shifts: tuple[StandEvidence, ...]
+    """Every shift of the stand, those that were taken back too, oldest first."""
+    seating: tuple[StandSeating, ...]
+    """Of every quantity."""
+    unreadable: tuple[str, ...]
     """Sessions that are left out, because what is stored of their common motion cannot be used."""

@@ -51,6 +51,10 @@ def test_a_turned_stand_is_shown_and_its_units_pass(client: httpx.Client, storag
     axes = next(e for e in found["S2"]["evidence"] if e["quantity"] == "axes")
     assert axes["since"] == "2026-07-01T09:00:00Z"
     assert abs(axes["size"] / ARCSEC - 15.26) < 4 * axes["sigma"] / ARCSEC
+    assert [(s["since"], s["until"]) for s in found["S2"]["shifts"]] == [("2026-07-01T09:00:00Z", None)]
+    assert found["S1"]["shifts"] == []
+    tau = {own["quantity"]: own["tau"] for own in found["S1"]["seating"]}
+    assert tau["axes"] / ARCSEC < 1
     assert {u["verdict"] for u in client.get("/api/v1/units").json()["units"]} == {"pass"}
     latest = client.get("/api/v1/units/BA-1").json()["sessions"][0]["id"]
     page = client.get(f"/sessions/{latest}", headers={"Accept": "text/html"}).text

@@ -1,0 +1,1 @@
+"""Stands that shift, blocks that are seated badly, axes that drift: how often each is told as what it is."""

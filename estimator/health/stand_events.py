@@ -1,0 +1,249 @@
+"""What may have happened to a stand or a unit, each hypothesis weighed by χ²: which of them, and when.
+
+Nothing; a stand turned at a date; a stand turned and was turned back (a fixture seated badly for a month); a unit moved
+by itself at a date, whatever it was measured on. An event adds a column D to the model of `seating`, and its δ lowers
+the restricted χ² by
+
+    χ² = bᵀJ⁻¹b,    b = DᵀPz,  J = DᵀPD, both freed of the events that are in the model already
+
+The candidate with the largest χ²/2 − ln N of its class, N how many of it were looked at, is fitted with the variances
+made anew, because an event that is not in the model passes for scatter. Its variance V = tr J⁻¹ holds parts that were
+estimated: v_c by the variance θ_c, known to d_c degrees of freedom (twice its information), hence V to V²/Σ v_c²/d_c of
+them (Satterthwaite). χ²/k is Fisher's F of k and so many; the log likelihood that decides between hypotheses is
+Student's, (ν + k)/2·ln(1 + χ²/ν) − ln N, which never underflows. Units as in `seating`.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from estimator.health.seating import STAND_PRIOR, Seating, Units, Weighted, freedoms
+from estimator.session import Array
+
+FEWEST_UNITS = 3
+"""Two that differ cannot say which of them changed."""
+MOST_DATES = 120
+"""Of one stand that are looked at, evenly among its sessions: work and the price of looking grow with them."""
+SEEN = 1e-3
+"""Least part of its information that an event keeps beside those in the model; with less it is one of them."""
+
+
+@dataclass(frozen=True)
+class Event:
+    """A change of a stand, or of a unit, between two times."""
+
+    stand: int
+    """−1: of a unit."""
+    unit: int
+    """−1: of a stand."""
+    start: float
+    """years; the first session that shows it."""
+    end: float
+    """years; the first session that shows it no more; infinite while it lasts."""
+
+    def column(self, g: Units) -> Array:
+        """(u, n) 1 where it acts."""
+        where = g.stand == self.stand if self.stand >= 0 else (g.unit == self.unit)[:, None] & g.there
+        return (where & (g.time >= self.start) & (g.time < self.end)).astype(float)
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An event, and how many of its class were looked at."""
+
+    event: Event
+    chi2: float
+    looked: int
+
+    @property
+    def gain(self) -> float:
+        """χ²/2 − ln N."""
+        return self.chi2 / 2 - float(np.log(self.looked))
+
+
+@dataclass(frozen=True)
+class Weighed:
+    """An event in the model."""
+
+    chi2: float
+    freedom: float
+    """Degrees of freedom that its variance is known to."""
+    size: int
+    """k."""
+    looked: int
+
+    def exceeds(self, level: float) -> bool:
+        """Whether chance alone reaches as much with less than a probability, everything looked at."""
+        return self.chi2 / self.size > float(stats.f.isf(level / self.looked, self.size, self.freedom))
+
+    @property
+    def p_value(self) -> float:
+        """Everything looked at."""
+        return min(1.0, self.looked * float(stats.f.sf(self.chi2 / self.size, self.size, self.freedom)))
+
+    @property
+    def evidence(self) -> float:
+        """Gain of the log likelihood, less what looking costs."""
+        gain = (self.freedom + self.size) / 2 * np.log1p(self.chi2 / self.freedom)
+        return float(gain - np.log(self.looked))
+
+
+def columns(groups: Sequence[Units], events: Sequence[Event]) -> list[Array]:
+    """D (u, n, e) of every group."""
+    nothing = [np.zeros((*g.stand.shape, 0)) for g in groups]
+    return [np.stack([e.column(g) for e in events], axis=2) if events else none
+            for g, none in zip(groups, nothing, strict=True)]  # fmt: skip
+
+
+def of_stands(found: Seating) -> list[Candidate]:
+    """Each stand's most evident change, steps and excursions; of stands that three units tell of."""
+    searched = {s: _searched(found, s) for s in range(len(found.scatter.stand))}
+    looked = {lasting: sum(int(one.valid[one.lasting == lasting].sum()) for one in searched.values())
+              for lasting in (True, False)}  # fmt: skip
+    best = (_best(one, stand, looked) for stand, one in searched.items())
+    return [candidate for candidate in best if candidate is not None]
+
+
+@dataclass(frozen=True, eq=False)
+class _Searched:
+    """Every pair of dates between which a stand may have been turned."""
+
+    start: Array
+    """(p,) years."""
+    end: Array
+    """(p,) years; infinite where it lasts."""
+    chi2: Array
+    """(p,)"""
+    valid: Array
+    """(p,) bool; whether enough units tell of it."""
+
+    @property
+    def lasting(self) -> Array:
+        """(p,) bool."""
+        return np.isinf(self.end)
+
+
+def _best(one: _Searched, stand: int, looked: dict[bool, int]) -> Candidate | None:
+    """The pair with the largest gain; half of the level belongs to steps and half to excursions."""
+    if not one.valid.any():
+        return None
+    price = np.array([2 * looked[bool(lasting)] for lasting in one.lasting])
+    gain = np.where(one.valid, one.chi2 / 2 - np.log(np.maximum(price, 1)), -np.inf)
+    i = int(np.argmax(gain))
+    return Candidate(Event(stand, -1, float(one.start[i]), float(one.end[i])), float(one.chi2[i]), int(price[i]))
+
+
+def _searched(found: Seating, stand: int) -> _Searched:
+    """χ² of every pair of dates of a stand, the last date being never."""
+    dates = _dates(found, stand)
+    c, (k, e) = len(dates), (found.value.shape[1], found.value.shape[0])
+    whole, pull, shared = np.zeros((c + 1, k, c + 1, k)), np.zeros((c + 1, k)), np.zeros((c + 1, k, e, k))
+    telling = np.zeros((c + 1, c + 1), dtype=int)
+    for part in found.parts:
+        some = (part.units.stand == stand).any(axis=1)
+        if not some.any():
+            continue
+        where, time = part.units.stand[some] == stand, part.units.time[some]
+        d = (where[:, :, None] & (time[:, :, None] >= np.append(dates, np.inf))).astype(float)
+        moved = np.einsum("uiajb,ujd->uiadb", part.precision[some], d, optimize=True)
+        whole += np.einsum("uic,uiadb->cadb", d, moved, optimize=True)
+        pull += np.einsum("uic,uia->ca", d, part.rest[some], optimize=True)
+        shared += np.einsum("uic,uiaeb->caeb", d, part.seen[some], optimize=True)
+        telling += _telling(d.sum(axis=1), part.units.there[some].sum(axis=1))
+    free = whole - np.einsum("caex,exfy,dbfy->cadb", shared, found.covariance, shared, optimize=True)
+    i, j = np.triu_indices(c + 1, 1)
+    chi2, seen = _chi2(pull[i] - pull[j], _between(free, i, j), _between(whole, i, j))
+    return _Searched(dates[i], np.append(dates, np.inf)[j], chi2, seen & (telling[i, j] >= FEWEST_UNITS))
+
+
+def _dates(found: Seating, stand: int) -> Array:
+    """(c,) dates of a stand's sessions, years, as many as are worth looking at."""
+    every = np.unique(np.concatenate([p.units.time[p.units.stand == stand] for p in found.parts]))
+    return every[np.unique(np.linspace(0, len(every) - 1, MOST_DATES).round().astype(int))] if len(every) else every
+
+
+def _telling(after: Array, sessions: Array) -> Array:
+    """(c, c) how many units have sessions between two dates, and others; ``after`` (u, c) from each date on."""
+    between = after[:, :, None] - after[:, None, :]
+    return np.asarray(((between > 0) & (between < sessions[:, None, None])).sum(axis=0))
+
+
+def _between(whole: Array, i: Array, j: Array) -> Array:
+    """(p, k, k) information on a change between two dates, from that of all pairs (c, k, c, k)."""
+    return np.asarray(whole[i, :, i] + whole[j, :, j] - whole[i, :, j] - whole[j, :, i])
+
+
+def _chi2(pull: Array, free: Array, whole: Array) -> tuple[Array, Array]:
+    """(p,) χ² and (p,) bool whether it shows beside the model; pull (p, k), both informations (p, k, k)."""
+    traces = np.einsum("pkk->p", free), np.einsum("pkk->p", whole)
+    seen = traces[0] > SEEN * np.maximum(traces[1], 1e-300)
+    one = np.eye(pull.shape[1])
+    safe = np.where(seen[:, None, None], free + 1e-9 * traces[1][:, None, None] * one, one)
+    return np.where(seen, np.einsum("pk,pk->p", pull, np.linalg.solve(safe, pull[..., None])[..., 0]), 0.0), seen
+
+
+def of_units(found: Seating) -> Candidate | None:
+    """The most evident move of a single unit."""
+    best: tuple[float, Event] | None = None
+    looked = 0
+    for part in found.parts:
+        back = np.flip(np.flip(part.precision, (1, 3)).cumsum(axis=1).cumsum(axis=3), (1, 3))
+        whole = np.einsum("uiaib->uiab", back)
+        pull = np.flip(np.flip(part.rest, 1).cumsum(axis=1), 1)
+        valid = part.units.there & (np.arange(part.units.there.shape[1]) > 0)
+        u, i = np.nonzero(valid)
+        looked += len(u)
+        chi2, _ = _chi2(pull[u, i], whole[u, i], whole[u, i])
+        if len(u) and (best is None or chi2.max() > best[0]):
+            at = int(chi2.argmax())
+            unit, time = int(part.units.unit[u[at]]), float(part.units.time[u[at], i[at]])
+            best = float(chi2[at]), Event(-1, unit, time, np.inf)
+    return None if best is None else Candidate(best[1], best[0], looked)
+
+
+def weighed(found: Seating, e: int, looked: int) -> Weighed:
+    """The e-th event of the model."""
+    value, covariance = found.value[e], found.covariance[e, :, e]
+    chi2 = float(value @ np.linalg.pinv(covariance, hermitian=True) @ value)
+    return Weighed(chi2, _freedom(found, e), len(value), looked)
+
+
+def _freedom(found: Seating, e: int) -> float:
+    """Satterthwaite's degrees of freedom of the e-th event's variance."""
+    cells, stands = len(found.stand_of), len(found.scatter.fixed)
+    own, fixed = np.zeros(cells), np.zeros((2, stands))
+    for part in found.parts:
+        there, same = part.units.there, part.units.same
+        weight = np.einsum("uiaeb,ebc->uiac", part.seen, found.covariance[:, :, e], optimize=True)
+        gathered = np.einsum("uij,ujac->uiac", same, weight)
+        parts = (weight**2).sum(axis=(2, 3)), (weight * gathered).sum(axis=(2, 3))
+        own += np.bincount(part.units.cell[there], parts[0][there], cells)
+        fixed[0] += np.bincount(part.units.stand[there], parts[1][there], stands)
+        fixed[1] += np.bincount(part.units.stand[there], _known(part)[there], stands)
+    doubt = _of_cells(found, found.scatter.cell * own) + _of_fixed(found, fixed)
+    return float(np.trace(found.covariance[e, :, e]) ** 2 / max(doubt, 1e-300))
+
+
+def _of_cells(found: Seating, v: Array) -> float:
+    """Half the variance that the τ² give a variance: of each unit by itself, and of what is typical of its stand, which
+    all of its units share; v (c,) what each adds."""
+    nu, stand = found.scatter.alike, found.stand_of
+    d = freedoms(found)
+    typical = np.bincount(stand, d * nu / (d + nu)) + STAND_PRIOR
+    shared = np.bincount(stand, v * nu / (d + nu))
+    return float((v**2 / (d + nu)).sum() + (shared**2 / typical).sum())
+
+
+def _of_fixed(found: Seating, sums: Array) -> float:
+    """The same of the ω²; sums (2, s) what each adds and is known by, per variance and per variance squared."""
+    theta = found.scatter.fixed
+    return float(((theta * sums[0]) ** 2 / (theta**2 * sums[1] + STAND_PRIOR)).sum())
+
+
+def _known(part: Weighted) -> Array:
+    """(u, n) the information on ω² of each unit and stand, shared out among its sessions, one over variance squared."""
+    same = part.units.same
+    gathered = np.einsum("uij,uiajb,uli->ulab", same, part.precision, same, optimize=True)
+    return np.asarray((gathered**2).sum(axis=(2, 3)) / np.maximum(same.sum(axis=2), 1))
