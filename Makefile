@@ -6,7 +6,7 @@ STAMP := .venv/.complete
 # Sessions are small matrices: several threads of BLAS only get in each other's way.
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: setup run test lint format bench papers study backtest pictures browser lock clean
+.PHONY: setup run test lint format bench papers study backtest stands pictures browser lock clean
 
 setup: $(STAMP)
 
@@ -48,6 +48,9 @@ study: setup
 
 backtest: setup
 	$(BIN)/python -m benchmarks.backtest
+
+stands: setup
+	$(BIN)/python -m benchmarks.stands
 
 pictures: setup browser
 	IMU_HEALTH_PICTURES=1 $(BIN)/pytest tests/end_to_end/browser/test_pictures.py

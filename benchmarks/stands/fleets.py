@@ -1,4 +1,4 @@
-"""Fleets whose truth is known: whole rotations and mountings with heavy tails, nothing of the estimator's model.
+"""Fleets whose truth is known: whole rotations, and mountings with heavier tails than the estimator takes them to have.
 
 A block's pose at a session is the turn of the stand, times how this block was seated, times an error of measurement.
 Seatings are Student's with five degrees of freedom: now and then one is bad. What is handed on is the rotation vector
