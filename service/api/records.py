@@ -1,17 +1,18 @@
 """Sessions and services are withdrawn, accepted, superseded; references are chosen. Nothing is erased."""
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Request
 
 from service.api.schemas.events import ServiceSchema
 from service.api.schemas.fields import Number, Serial, SessionId
 from service.api.schemas.flags import Handling
 from service.api.schemas.problem import errors
-from service.api.schemas.records import DerivationSchema, NewReference, StateList, StateSchema, Superseding
-from service.api.schemas.sessions import SessionSchema
+from service.api.schemas.records import Correcting, DerivationSchema, NewReference, StateList, StateSchema, Superseding
+from service.api.schemas.sessions import ReceiptSchema, SessionSchema
 from service.dependencies import Now, Reading, ReceptionOf
 from service.errors import ConflictError
 from service.flows.accept_session import accept_session
 from service.flows.choose_reference import choose_reference
+from service.flows.correct_session import correct_session
 from service.flows.receive import ask_again, deriving
 from service.flows.supersede_session import successor_of, supersede_session
 from service.flows.withdraw_service import withdraw_service
@@ -48,6 +49,14 @@ def accept(id: SessionId, handling: Handling, reception: ReceptionOf, now: Now) 
     session, derived = accept_session(reception.storage, deriving(reception, now), id, step)
     ask_again(reception, derived.undiagnosed)
     return SessionSchema.model_validate(session)
+
+
+@router.post("/sessions/{id}/correct", responses=REFUSALS, tags=["sessions"])
+def correct(id: SessionId, given: Correcting, request: Request, reception: ReceptionOf, now: Now) -> ReceiptSchema:
+    """Make a corrected file of a questioned session's, with what would put it right, and let it stand for it."""
+    receipt = correct_session(reception, id, given.by, now)
+    url = str(request.url_for("read_session", id=receipt.id))
+    return ReceiptSchema.model_validate({**vars(receipt), "url": url}, from_attributes=True)
 
 
 @router.post("/sessions/{id}/supersede", responses=REFUSALS, tags=["sessions"])

@@ -7,6 +7,7 @@ from urllib.parse import urlencode
 
 from service.records.reservation import Reservations
 from service.records.stand import StandCondition
+from service.records.state import Questioned
 from service.records.unit import FleetCondition, UnitSummary
 from service.views.standouts import Standout
 from service.words.conditions import REFERENCE, UNDECIDED, Condition, condition_of
@@ -97,6 +98,8 @@ class FleetPage:
     """That shift every unit measured on them, or did."""
     standouts: tuple[Standout, ...]
     """Units and lots that drift unlike the others."""
+    questioned: tuple[Questioned, ...]
+    """Sessions that wait for an engineer, the latest first."""
     overdue: str
     """How many units are overdue, in words; empty where none is."""
 
@@ -120,6 +123,7 @@ def fleet_page(
     overdue: int = 0,
     unlike: Sequence[Standout] = (),
     stands: Sequence[StandCondition] = (),
+    questioned: Sequence[Questioned] = (),
 ) -> FleetPage:
     """One page of units, worst first; one unit more than fit on it says that there is a next page."""
     return FleetPage(
@@ -135,6 +139,7 @@ def fleet_page(
         flags=flags_in_words(condition.flags),
         stands=tuple(stand for stand in stands if stand.shifts),
         standouts=tuple(unlike[:MOST_STANDOUTS]),
+        questioned=tuple(questioned),
         overdue=f"{overdue} unit{'' if overdue == 1 else 's'} overdue for calibration." if overdue else "",
     )
 

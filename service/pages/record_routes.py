@@ -8,6 +8,7 @@ from fastapi.responses import RedirectResponse
 from service.dependencies import Now, ReceptionOf
 from service.flows.accept_session import accept_session
 from service.flows.choose_reference import choose_reference
+from service.flows.correct_session import correct_session
 from service.flows.receive import ask_again, deriving
 from service.flows.withdraw_service import withdraw_service
 from service.flows.withdraw_session import withdraw_session
@@ -31,6 +32,12 @@ def accept(id: Key, by: By, why: Why, reception: ReceptionOf, now: Now) -> Redir
     _, derived = accept_session(reception.storage, deriving(reception, now), id, Step(by, now, why))
     ask_again(reception, derived.undiagnosed)
     return RedirectResponse(f"/sessions/{id}", SEE_OTHER)
+
+
+@router.post("/sessions/{id}/correct")
+def correct(id: Key, by: By, reception: ReceptionOf, now: Now) -> RedirectResponse:
+    """A corrected file is made of a questioned session's and stands for it."""
+    return RedirectResponse(f"/sessions/{correct_session(reception, id, by, now).id}", SEE_OTHER)
 
 
 @router.post("/sessions/{id}/reference")

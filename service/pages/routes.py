@@ -5,7 +5,8 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import HTMLResponse
 
-from service.dependencies import Now, Reading, ReceptionOf, SettingsOf
+from service.dependencies import Now, Reading, ReceptionOf, SettingsOf, StorageOf
+from service.flows.correct_session import correction_of
 from service.flows.receive import receive_all
 from service.pages.fleet import PAGE_SIZE, FleetView, fleet_page
 from service.pages.forms import Key
@@ -15,6 +16,7 @@ from service.pages.session import session_page
 from service.pages.unit import unit_page
 from service.pages.upload import outcomes_of, upload_page
 from service.records.decision import Verdict
+from service.records.state import RecordState
 from service.storage.queries.flags import FlagQuery
 from service.storage.queries.fleet import FleetQuery
 from service.views.found_and_left import found_and_left
@@ -27,6 +29,8 @@ from service.views.traceability import traceability_of
 from service.views.unit_report import unit_report
 from service.words.conditions import RESERVED
 
+MOST_QUESTIONED = 20
+"""Sessions that the fleet page names; the latest."""
 HISTORY_LIMIT = 10_000
 """Points of one unit's history that a page draws, of its newest sessions: 400 of six sensors, 50 of 48."""
 FLAG_LIMIT = 50
@@ -58,6 +62,7 @@ def show_fleet(
         overdue=store.outlooks.overdue(now),
         unlike=fleet_standouts(store),
         stands=stand_conditions(store),
+        questioned=store.states.questioned(MOST_QUESTIONED),
     )
     return render(request, "fleet.html", shown)
 
@@ -85,10 +90,16 @@ def show_unit(
 
 
 @router.get("/sessions/{id}")
-def show_session(request: Request, store: Reading, id: Key) -> HTMLResponse:
+def show_session(request: Request, store: Reading, storage: StorageOf, id: Key) -> HTMLResponse:
     """One session with its parameters and residuals."""
     report = session_report(store, id)
-    page = session_page(report, store.diagnoses.summary(id), traceability_of(store, report.session))
+    questioned = report.session.state is RecordState.QUESTIONED
+    page = session_page(
+        report,
+        store.diagnoses.summary(id),
+        traceability_of(store, report.session),
+        correction=correction_of(storage, id) if questioned else "",
+    )
     return render(request, "session.html", page)
 
 

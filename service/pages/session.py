@@ -97,12 +97,18 @@ class SessionPage:
     """What became of it, said before everything else; empty where it counts."""
     states: tuple[str, ...]
     """Its life, newest first."""
+    correction: str
+    """What a corrected file would hold otherwise; empty where it is not questioned, or nothing is known."""
     traceability: Traceability | None
     """What its numbers hang on."""
 
 
 def session_page(
-    report: SessionReport, diagnosis: DiagnosisSummary | None = None, traceability: Traceability | None = None
+    report: SessionReport,
+    diagnosis: DiagnosisSummary | None = None,
+    traceability: Traceability | None = None,
+    *,
+    correction: str = "",
 ) -> SessionPage:
     """The page of a session."""
     calibration, decisions = report.calibration, report.decisions
@@ -131,6 +137,7 @@ def session_page(
         motions=motions_in_words(report.motions, coverage),
         state=_state(report),
         states=tuple(state_in_words(line) for line in reversed(report.states)),
+        correction=correction,
         traceability=traceability,
     )
 

@@ -55,3 +55,12 @@ class ReferenceChoice:
     who: str
     at: datetime
     why: str
+
+
+@dataclass(frozen=True)
+class Questioned:
+    """A session that waits for an engineer."""
+
+    id: str
+    unit: str
+    started_at: datetime

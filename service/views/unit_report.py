@@ -20,8 +20,9 @@ def unit_report(store: Store, serial: str, now: datetime) -> UnitReport:
         raise NotFoundError(f"There is no unit {serial!r}.")
     summary, unit_type = found
     unit = store.units.key(serial)
-    services = store.services.of_unit(serial)
-    withdrawn = store.services.of_unit(serial, RecordState.WITHDRAWN)
+    recorded = store.services.recorded(serial)
+    services = tuple(s for s in recorded if s.state is RecordState.ACCEPTED)
+    withdrawn = tuple(s for s in recorded if s.state is RecordState.WITHDRAWN)
     since, until = epoch(tuple(service.at for service in services), now)
     return UnitReport(
         summary=summary,

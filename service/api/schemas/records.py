@@ -28,6 +28,14 @@ class StateList(BaseModel):
     states: list[StateSchema] = Field(description="Oldest first; empty where it was accepted and remained so.")
 
 
+class Correcting(BaseModel):
+    """Who has a questioned session's file put right."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"example": {"by": "K. Ito"}})
+
+    by: Name = Field(description="Who says so.")
+
+
 class Superseding(BaseModel):
     """Which session stands for another one, who says so and why."""
 

@@ -41,11 +41,14 @@ class Services(Queries):
         self._session.execute(update(ServiceRow).where(ServiceRow.id == number).values(state=state))
         self._session.expire_all()
 
-    def of_unit(self, serial: str, state: RecordState = RecordState.ACCEPTED) -> tuple[Service, ...]:
-        """The breaks of a unit, or those that were withdrawn, oldest first."""
-        own = (UnitRow.serial == serial, ServiceRow.state == state)
-        found = self._session.execute(_services().where(*own).order_by(ServiceRow.at, ServiceRow.id))
-        return tuple(service_record(row, owner) for row, owner in found)
+    def of_unit(self, serial: str) -> tuple[Service, ...]:
+        """The breaks of a unit, oldest first."""
+        return tuple(s for s in self.recorded(serial) if s.state is RecordState.ACCEPTED)
+
+    def recorded(self, serial: str) -> tuple[Service, ...]:
+        """All services of a unit, those that were withdrawn too, oldest first."""
+        query = _services().where(UnitRow.serial == serial).order_by(ServiceRow.at, ServiceRow.id)
+        return tuple(service_record(row, owner) for row, owner in self._session.execute(query))
 
     def breaks(self, unit: int) -> tuple[datetime, ...]:
         """When the epochs of a unit begin, its first one apart, in order."""

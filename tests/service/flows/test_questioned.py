@@ -6,10 +6,13 @@ from typing import Any
 
 import pytest
 
+from service.errors import ConflictError
 from service.flows.accept_session import accept_session
+from service.flows.correct_session import correct_session
 from service.flows.diagnose import diagnose
 from service.flows.question_session import OTHERWISE_WRITTEN
-from service.flows.receive import upload
+from service.flows.receive import Reception, upload
+from service.metrics import Metrics
 from service.records.decision import Verdict
 from service.records.session import Receipt
 from service.records.state import RecordKind, RecordState
@@ -17,6 +20,13 @@ from service.storage import Storage
 from tests.builders import accelerometer_block, true_sensors
 from tests.service.records import NOW, state_of, step, way
 from tests.service.sessions import session_bytes
+
+
+@pytest.fixture
+def reception(storage: Storage) -> Reception:
+    """Diagnoses are left for later."""
+    return Reception(storage, 2.0, Metrics(), lambda id: None)
+
 
 Slip = Callable[[dict[str, Any]], None]
 A1, A2 = "A1", "A2"
@@ -124,3 +134,28 @@ def test_a_unit_that_is_merely_out_of_tolerance_is_judged(storage: Storage) -> N
     upload(storage, session_bytes(), "a.json", NOW)
     receipt = upload(storage, session_bytes(seed=2, month=5, a3_moved=5000.0), "b.json", NOW)
     assert (receipt.state, receipt.verdict) == (RecordState.ACCEPTED, Verdict.FAIL)
+
+
+@pytest.mark.parametrize("slip", ["mV for V", "one channel in mV", "per g", "sign", "exchange"])
+def test_a_corrected_file_is_made_and_stands_for_the_questioned_one(reception: Reception, slip: str) -> None:
+    right = upload(reception.storage, session_bytes(unit="RIGHT"), "right.json", NOW)
+    asked = upload(reception.storage, slipped(SLIPS[slip][0]), "slip.json", NOW)
+    made = correct_session(reception, asked.id, "K. Ito", NOW)
+    assert (made.state, made.is_reference) == (RecordState.ACCEPTED, True)
+    with reception.storage.database.reading() as store:
+        assert store.sessions.get(asked.id).superseded_by == made.id
+        assert "Corrected: " in store.sessions.get(made.id).notes
+        scales = [[s.scale.value for s in store.calibrations.get(id).sensors] for id in (made.id, right.id)]
+    assert scales[0] == pytest.approx(scales[1], rel=1e-9)
+
+
+def test_what_is_not_questioned_is_not_corrected(reception: Reception) -> None:
+    with pytest.raises(ConflictError, match="not questioned"):
+        correct_session(reception, upload(reception.storage, session_bytes(), "right.json", NOW).id, "K. Ito", NOW)
+
+
+def test_where_no_correction_is_known_that_is_said(reception: Reception) -> None:
+    document = json.loads(session_bytes()) | {"started_at": "1970-01-01T00:00:00Z"}
+    asked = upload(reception.storage, json.dumps(document).encode(), "old.json", NOW)
+    with pytest.raises(ConflictError, match="Nothing is known"):
+        correct_session(reception, asked.id, "K. Ito", NOW)

@@ -1,0 +1,70 @@
+"""Flow: a corrected file is made of a questioned session's, with what would put it right, and stands for it.
+
+Only the slip is corrected: names, dates and everything else of the file stay, and its notes say what was done.
+"""
+
+import json
+from collections.abc import Iterable
+from dataclasses import replace
+from datetime import datetime
+
+import numpy as np
+
+from estimator.session import CalibrationSession
+from estimator.writing import session_document
+from service.errors import ConflictError
+from service.flows.receive import Reception, receive
+from service.ingest import read_upload
+from service.ingest.checked import as_checked
+from service.judging.plausible import doubts
+from service.records.doubt import Correction, Remedy
+from service.records.received import Replaced, SentFile
+from service.records.session import Receipt
+from service.records.state import RecordState
+from service.storage import Storage
+
+UNKNOWN = "Nothing is known that would put session {id} right: upload a corrected file that names it, or accept it."
+
+
+def correct_session(reception: Reception, id: str, by: str, now: datetime) -> Receipt:
+    """Stores the corrected file; ConflictError where the session is not questioned, or where no correction is known."""
+    source, corrections = _corrections(reception.storage, id)
+    if not corrections:
+        raise ConflictError(UNKNOWN.format(id=id))
+    done = ", ".join(correction.text for correction in corrections)
+    content = json.dumps(session_document(corrected(source, corrections, f"Corrected: {done}."))).encode()
+    return receive(reception, SentFile(f"{id}-corrected.json", content, Replaced(id, by, f"corrected: {done}")), now)
+
+
+def correction_of(storage: Storage, id: str) -> str:
+    """What the corrected file of a questioned session would hold otherwise; empty where nothing is known."""
+    return ", ".join(correction.text for correction in _corrections(storage, id)[1])
+
+
+def _corrections(storage: Storage, id: str) -> tuple[CalibrationSession, tuple[Correction, ...]]:
+    """The session as its file has it, and what would put it right."""
+    with storage.database.reading() as store:
+        stored, calibration = store.sessions.get(id), store.calibrations.get(id)
+        if stored.state is not RecordState.QUESTIONED:
+            raise ConflictError(f"Session {id} is not questioned, so there is nothing to correct.")
+        source = read_upload(storage.files.read(stored.sha256), stored.filename)
+        found = doubts(store, as_checked(source, stored.started_at), calibration)
+    return source, tuple(doubt.correction for doubt in found if doubt.correction is not None)
+
+
+def corrected(session: CalibrationSession, corrections: Iterable[Correction], note: str) -> CalibrationSession:
+    """The session with readings, their standard errors and nominal scale factors put right; the note says so."""
+    readings, errors, sensors = session.readings.copy(), session.standard_errors.copy(), list(session.sensors)
+    names = [sensor.name for sensor in sensors]
+    for correction in corrections:
+        own = [names.index(name) for name in correction.sensors]
+        if correction.remedy is Remedy.EXCHANGE:
+            readings[:, own], errors[:, own] = readings[:, own[::-1]], errors[:, own[::-1]]
+        elif correction.remedy is Remedy.READINGS:
+            readings[:, own] *= correction.factor
+            errors[:, own] *= np.abs(correction.factor)
+        else:
+            for i in own:
+                sensors[i] = replace(sensors[i], nominal_scale=sensors[i].nominal_scale * correction.factor)
+    notes = f"{session.notes} {note}".strip()
+    return replace(session, readings=readings, standard_errors=errors, sensors=tuple(sensors), notes=notes)

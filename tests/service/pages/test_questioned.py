@@ -1,0 +1,41 @@
+"""A questioned session is seen by those who can put it right, and put right by one button."""
+
+import json
+
+import httpx
+
+from tests.service.sessions import session_bytes
+
+
+def in_mv() -> bytes:
+    """A session whose readings are in mV, declared V."""
+    document = json.loads(session_bytes(unit="BA-031"))
+    for sensor in document["sensors"]:
+        for column in (sensor["name"], f"{sensor['name']}_se"):
+            document["table"][column] = [1000 * value for value in document["table"][column]]
+    return json.dumps(document).encode()
+
+
+def test_a_questioned_session_waits_on_the_fleet_page_and_says_what_it_is(client: httpx.Client) -> None:
+    id = client.post("/api/v1/sessions", content=in_mv()).json()["id"]
+    assert f'<a href="/sessions/{id}">BA-031' in client.get("/").text
+    page = client.get(f"/sessions/{id}").text
+    assert "Questioned</h1>" in page
+    assert "readings of A1–A6 × 0.001" in page
+    assert "Undecided</h1>" not in page
+
+
+def test_one_button_stores_the_corrected_file_in_its_place(client: httpx.Client) -> None:
+    id = client.post("/api/v1/sessions", content=in_mv()).json()["id"]
+    answer = client.post(f"/sessions/{id}/correct", data={"by": "K. Ito"}, follow_redirects=True)
+    assert "Reference set" in answer.text
+    assert "Corrected: readings of A1–A6 × 0.001." in answer.text
+    assert "Questioned, waiting" not in client.get("/").text
+    assert "Superseded</h1>" in client.get(f"/sessions/{id}").text
+
+
+def test_programs_have_it_corrected_too(client: httpx.Client) -> None:
+    id = client.post("/api/v1/sessions", content=in_mv()).json()["id"]
+    receipt = client.post(f"/api/v1/sessions/{id}/correct", json={"by": "K. Ito"}).json()
+    assert (receipt["state"], receipt["is_reference"], receipt["unit"]) == ("accepted", True, "BA-031")
+    assert client.post(f"/api/v1/sessions/{id}/correct", json={"by": "K. Ito"}).status_code == 409
