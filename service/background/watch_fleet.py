@@ -45,7 +45,7 @@ def look(storage: Storage, clock: Callable[[], datetime], metrics: Metrics) -> b
     """One look at the whole fleet; whether all of it could be looked at."""
     guard = Guard(metrics)
     with guard.alone("outlooks", ""):
-        relearn(storage, clock())
+        relearn(storage, clock(), guard.alone)
     with guard.alone("due dates", ""):
         flag_overdue(storage, clock(), guard.alone)
     with guard.alone("stands", ""):

@@ -1,5 +1,7 @@
-"""Flow: outlooks are made again where the other units of their type have told more since."""
+"""Flow: outlooks are made again where the other units of their type have told more since, or where there is none."""
 
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from datetime import datetime
 
 from service.flows.flagging.drift import flag_drift
@@ -8,25 +10,43 @@ from service.flows.refresh_outlook import digest, of_type, refresh_outlook
 from service.storage import Storage
 from service.storage.store import Store
 
+Alone = Callable[[str, str], AbstractContextManager[None]]
+"""How the work on one unit is done, so that what fails there ends there."""
 
-def relearn(storage: Storage, now: datetime) -> int:
+
+def relearn(storage: Storage, now: datetime, alone: Alone) -> int:
     """Brings every outlook up to what its type tells by now, and returns how many that were.
 
     What a unit tells of its type does not depend on the type, so one round is enough, and the outlooks of a fleet do
-    not depend on the order in which its sessions came.
+    not depend on the order in which its sessions came; where no unit has told yet, after the store was brought up to
+    date, it takes two.
     """
     with storage.database.reading() as store:
-        stale = [serial for serial in store.units.every() if _is_stale(store, serial)]
-    for serial in stale:
-        with storage.database.writing() as store:
-            unit = store.units.hold(serial)
-            refresh_outlook(store, serial)
-            summary = store.fleet.unit(serial)
-            session = None if summary is None else summary.last_session
-            flag_drift(store, Occasion(unit, session, now), store.outlooks.of_unit(serial))
-    return len(stale)
+        serials = store.units.every()
+    done = 0
+    for serial in serials:
+        with alone("outlooks", serial):
+            done += _relearned(storage, serial, now)
+    return done
+
+
+def _relearned(storage: Storage, serial: str, now: datetime) -> bool:
+    with storage.database.reading() as store:
+        if not _is_stale(store, serial):
+            return False
+    with storage.database.writing() as store:
+        unit = store.units.hold(serial)
+        refresh_outlook(store, serial)
+        summary = store.fleet.unit(serial)
+        session = None if summary is None else summary.last_session
+        flag_drift(store, Occasion(unit, session, now), store.outlooks.of_unit(serial))
+    return True
 
 
 def _is_stale(store: Store, serial: str) -> bool:
+    """A unit of which no session is accepted has no outlook."""
+    summary = store.fleet.unit(serial)
+    if summary is None or summary.last_session is None:
+        return False
     unit = store.units.key(serial)
-    return store.outlooks.rests_on(unit) not in ("", digest(of_type(store, unit)))
+    return store.outlooks.rests_on(unit) != digest(of_type(store, unit))

@@ -13,7 +13,7 @@ from service.api.atom import atom_feed
 from service.api.calendar import DueDay, calendar
 from service.records.flag import Notice, NoticeKind
 from tests.conftest import Holding
-from tests.service.sessions import FAILED
+from tests.service.sessions import FAILED, session_bytes
 
 ATOM = {"a": "http://www.w3.org/2005/Atom"}
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
@@ -58,8 +58,14 @@ def test_any_text_makes_a_feed_that_can_be_read(unit: str, text: str) -> None:
     assert len(feed.findall("a:entry", ATOM)) == 1
 
 
-def test_due_dates_come_as_a_calendar(holding: Holding) -> None:
+def test_a_unit_that_is_found_unfit_waits_for_no_date(holding: Holding) -> None:
     client = holding(*FAILED)
+    assert client.get("/api/v1/units/BA-017/outlook").json()["action"] == "act-now"
+    assert list(Calendar.from_ical(client.get("/api/v1/feeds/due.ics").content).events) == []
+
+
+def test_due_dates_come_as_a_calendar(holding: Holding) -> None:
+    client = holding(session_bytes(month=1, seed=1), session_bytes(month=2, seed=2))
     answer = client.get("/api/v1/feeds/due.ics")
     assert answer.headers["content-type"] == "text/calendar; charset=utf-8"
     [event] = Calendar.from_ical(answer.content).events
