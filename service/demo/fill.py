@@ -46,11 +46,15 @@ def _upload_member(storage: Storage, member: Member, coverage_factor: float, adv
     """One unit's life: sessions in order, and what people did in between."""
     waiting: list[Done] = [*member.services, *member.handled, *member.remarks]
     waiting.sort(key=lambda done: done.at)
-    for file in files_of(member):
+    files = list(files_of(member))
+    for file in files:
         while waiting and waiting[0].at <= file.at:
             _do(storage, member.serial, waiting.pop(0))
         at = file.at + UPLOADED_AFTER
-        latest = upload(storage, file.content, file.name, at, coverage_factor=coverage_factor, simulated=True, who=WHO)
+        latest = upload(
+            storage, file.content, file.name, at,
+            coverage_factor=coverage_factor, simulated=True, who=WHO, outlook=file is files[-1],
+        )  # fmt: skip
         advance()
     # The service diagnoses the earlier ones beside its first requests.
     diagnose(storage, latest.id, at)

@@ -48,6 +48,8 @@ class Deriving:
     at: datetime
     at_once: int | None = AT_ONCE
     """None where all are judged now."""
+    outlook: bool = True
+    """Whether the outlook is made too: of many files in a row the last one brings it."""
 
 
 @dataclass(frozen=True)
@@ -168,10 +170,11 @@ def _sum_up(store: Store, way: Deriving, serial: str, touched: Sequence[str]) ->
         settle_sessions(store, occasion)
         flag_drift(store, occasion, None)
         return
-    refresh_outlook(store, serial)
     latest = store.sessions.get(was.last_session)
     tell_verdict(store, occasion, latest, was)
     settle_sessions(store, occasion)
-    flag_drift(store, occasion, store.outlooks.of_unit(serial))
+    if way.outlook:
+        refresh_outlook(store, serial)
+        flag_drift(store, occasion, store.outlooks.of_unit(serial))
     if latest.id in touched and latest.programme in CALIBRATIONS:
         no_longer_overdue(store, occasion, latest)

@@ -117,14 +117,16 @@ def upload(
     simulated: bool = False,
     who: str = "crew",
     replaces: Replaced | None = None,
+    outlook: bool = True,
 ) -> Receipt:
     """Stores a session file with its calibration and verdict; the same content again gives the same receipt.
 
     A corrected file names the session that it replaces, whatever unit or date that one is of. Raises RefusedError with
-    every problem when the file cannot be used; then only the refusal is recorded.
+    every problem when the file cannot be used; then only the refusal is recorded. Without ``outlook`` the unit's dates
+    stay as they were: another file of it follows.
     """
     received = Received(content, content_hash(content), plain_filename(filename), now, who, simulated)
-    way = Deriving(storage.files, coverage_factor, now)
+    way = Deriving(storage.files, coverage_factor, now, outlook=outlook)
     with storage.database.reading() as store:
         if replaces is not None:
             store.sessions.get(replaces.session)
