@@ -15,7 +15,7 @@ from benchmarks.study.report import table
 PAGE = Path(__file__).parents[2] / "docs" / "health" / "backtest.md"
 HISTORIES, TYPES = 500, 6
 """Of every kind; of every number of sessions."""
-SMALL_HISTORIES, SMALL_TYPES = 20, 1
+SMALL_HISTORIES, SMALL_TYPES = 10, 1
 
 
 def main() -> None:

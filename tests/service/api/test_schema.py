@@ -15,7 +15,7 @@ from tests.databases import ENGINES
 from tests.service.sessions import session_bytes
 from tests.serving import serving
 
-EXAMPLES = {GenerationMode.POSITIVE: 12, GenerationMode.NEGATIVE: 6}
+EXAMPLES = {GenerationMode.POSITIVE: 6, GenerationMode.NEGATIVE: 3}
 FEWER = {"/api/v1/plan": 3}
 """A plan takes a second or more."""
 
