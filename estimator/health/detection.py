@@ -247,10 +247,15 @@ def _centred(temperature: Array) -> Array:
     return np.where(known, temperature - temperature[known].mean(), 0.0)
 
 
+def tells_of_temperature(temperature: Array) -> bool:
+    """Whether sessions at so many °C (n,), NaN where it is not known, can tell of a coefficient."""
+    known = np.isfinite(temperature)
+    return bool(known.sum() >= ENOUGH and temperature[known].std() >= WARMED)
+
+
 def _warmth(readings: Readings, temperature: Array, rival: Change | None, level: float) -> Warmth | None:
     """The coefficient of temperature, where these sessions can tell of one."""
-    known = np.isfinite(temperature)
-    if known.sum() < ENOUGH or temperature[known].std() < WARMED:
+    if not tells_of_temperature(temperature):
         return None
     column = _centred(temperature)
     family = Shapes(column[:, None], np.zeros(1, int), np.zeros(1, int), np.ones(1), np.ones(1))

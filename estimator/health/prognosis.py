@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from estimator.health.detection import LEVEL, Change, Detected, Warmth, detect, warmed
+from estimator.health.detection import LEVEL, Change, Detected, Warmth, detect, tells_of_temperature, warmed
 from estimator.health.fits import Readings, fit, fits
 from estimator.health.forecast import AHEAD, EARLY, MEDIAN, Future, future, passage, reach, together
 from estimator.health.pooled import Evidence, Prior
@@ -94,7 +94,9 @@ class Prognosis:
 
 def evidence(track: Track) -> Evidence:
     """What a track tells of its type, whatever else is known of the type."""
-    readings = warmed(_readings(track), 0.0, *_conditions(track), LEVEL).readings
+    readings, (dof, temperature) = _readings(track), _conditions(track)
+    if tells_of_temperature(temperature):
+        readings = warmed(readings, 0.0, dof, temperature, LEVEL).readings
     found = fits(readings, shapes(readings.time))
     return Evidence(found.span, found.log_evidence())
 

@@ -11,6 +11,7 @@ import pytest
 
 from service.ingest.convert import convert
 from service.settings import Settings
+from tests.databases import one_engine
 from tests.serving import serving
 
 PROJECT = Path(__file__).parents[2]
@@ -40,7 +41,7 @@ def accelerometers(document: dict[str, Any]) -> dict[str, Any]:
 
 @pytest.fixture
 def answers(settings: Settings, sessions: list[tuple[str, bytes]]) -> Any:
-    """What the service says after the three uploads, on each engine in turn."""
+    """What the service says after the three uploads."""
     with serving(settings) as address, httpx.Client(base_url=f"{address}/api/v1", timeout=120) as http:
         receipts = [http.post("/sessions", files={"file": session}) for session in sessions]
         assert [receipt.status_code for receipt in receipts] == [201, 201, 201], [r.text for r in receipts]
@@ -54,6 +55,7 @@ def answers(settings: Settings, sessions: list[tuple[str, bytes]]) -> Any:
         }
 
 
+@one_engine
 def test_three_real_sessions_become_a_history(answers: Any, sessions: list[tuple[str, bytes]]) -> None:
     """One test for it all, because the uploads take their time."""
     points = [point for point in answers["scales"] if point["kind"] == "accelerometer"]

@@ -23,6 +23,7 @@ BODIES: dict[str, Any] = {
     "/api/v1/units/{serial}/services": {"kind": "repair"},
     "/api/v1/sessions/{id}/withdraw": {"by": "K. Ito", "why": "wrong unit"},
     "/api/v1/sessions/{id}/accept": {"by": "K. Ito", "why": "right after all"},
+    "/api/v1/sessions/{id}/correct": {"by": "K. Ito"},
     "/api/v1/sessions/{id}/supersede": {"by": "K. Ito", "why": "typing error", "superseded_by": "3f9a0c5be1d24786aa10"},
     "/api/v1/units/{serial}/reference": {"session": "3f9a0c5be1d24786aa10", "by": "K. Ito", "why": "warm"},
     "/api/v1/services/{id}/withdraw": {"by": "K. Ito", "why": "wrong unit"},

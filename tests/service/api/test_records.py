@@ -82,7 +82,7 @@ def test_a_service_is_withdrawn_and_stays_on_record(http: httpx.Client) -> None:
 def test_the_pages_say_first_what_became_of_a_session(http: httpx.Client) -> None:
     post(http, f"/sessions/{SECOND}/withdraw")
     page = http.get(f"/sessions/{SECOND}").text
-    assert page.index("by K. Ito: wrong cable") < page.index('<section class="verdict')
+    assert page.index("Withdrawn</h1>") < page.index("by K. Ito: wrong cable") < page.index("Its verdict was: ")
     assert 'action="/sessions/' + SECOND + '/accept"' in page
     assert '<tr class="withdrawn">' in http.get("/units/BA-017").text
 

@@ -14,6 +14,7 @@ from service.records.flag import Matter
 from service.storage import Storage
 from service.storage.queries.flags import FlagQuery
 from tests.builders import ARCSEC, TrueSensor, accelerometer_block, true_sensors
+from tests.databases import one_engine
 
 NOW = datetime(2026, 10, 1, tzinfo=UTC)
 TURN = Rotation.from_rotvec(np.array([5.0, -8.0, 12.0]) * ARCSEC)
@@ -43,6 +44,7 @@ def measure(storage: Storage, number: int, last: str = "S2") -> None:
         upload(storage, measured_on(stand, f"BA-{number}", month, seed=10 * number + month), "a.json", NOW)
 
 
+@one_engine
 def test_a_turned_stand_is_shown_and_its_units_pass(client: httpx.Client, storage: Storage) -> None:
     for number in range(4):
         measure(storage, number)
@@ -62,6 +64,7 @@ def test_a_turned_stand_is_shown_and_its_units_pass(client: httpx.Client, storag
     assert "that is of mounting or stand" in page
 
 
+@one_engine
 def test_a_shifted_stand_raises_one_flag_on_the_units_that_it_measured_last(storage: Storage) -> None:
     for number in range(4):
         measure(storage, number, "S1" if number == 3 else "S2")
