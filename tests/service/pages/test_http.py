@@ -147,6 +147,14 @@ def counted(app: FastAPI) -> Iterator[list[str]]:
     event.remove(engine, "before_cursor_execute", note)
 
 
+def asked(client: httpx.Client, path: str, statements: list[str]) -> Iterator[int]:
+    """How many questions each of three looks at a page asks; the work beside the requests asks now and then too."""
+    for _ in range(3):
+        statements.clear()
+        assert client.get(path, headers=HTML).status_code == 200
+        yield len(statements)
+
+
 def test_pages_ask_the_database_a_fixed_few_questions(settings: Settings) -> None:
     app = create_app(settings)
     with http_client(app) as client, counted(app) as statements:
@@ -154,9 +162,7 @@ def test_pages_ask_the_database_a_fixed_few_questions(settings: Settings) -> Non
         for month in (1, 2, 3):
             id = client.post("/api/v1/sessions", content=session_bytes(month=month, seed=month)).json()["id"]
             for path in ("/", "/units/BA-017", f"/sessions/{id}"):
-                statements.clear()
-                assert client.get(path, headers=HTML).status_code == 200
-                found.setdefault(path.split("/")[1], set()).add(len(statements))
+                found.setdefault(path.split("/")[1], set()).add(min(asked(client, path, statements)))
     assert all(len(counts) == 1 for counts in found.values()), found
     assert max(max(counts) for counts in found.values()) <= MOST_QUERIES, found
 
