@@ -16,7 +16,7 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 from scipy.stats import t as student
 
-from estimator.health.fits import WALKS, Fit, Readings, fit
+from estimator.health.fits import WALKS, Fits, Readings, fits
 from estimator.health.odds import Odds, mixture, odds
 from estimator.health.shapes import DRIFTS, Kind, Shapes, shapes
 from estimator.session import Array
@@ -124,15 +124,16 @@ def _walks(readings: Readings, explained: Readings, walk: float) -> bool:
     likelihoods, each number that was fitted costing half the logarithm of the sessions (Schwarz 1978)."""
     n, k = readings.value.shape
     price, changes = np.log(n) / 2, explained.base.shape[1] - readings.base.shape[1]
-    wandered = max(_likelihood(readings, float(q)) for q in WALKS) - price
-    return wandered > _likelihood(explained, walk) - changes * (k + 1) * price
+    wandered = _likelihood(readings, WALKS) - price
+    return wandered > _likelihood(explained, np.array([walk])) - changes * (k + 1) * price
 
 
-def _likelihood(readings: Readings, walk: float) -> float:
-    """Log of the largest, of all components, without unit."""
+def _likelihood(readings: Readings, walks: Array) -> float:
+    """Log of the largest, of all components, at the likeliest of ``walks`` (Q,) T a root year; without unit."""
     none = Shapes(np.zeros((len(readings.time), 0)), *(np.zeros(0, dtype=int) for _ in range(4)))
-    parts = [fit(readings, j, walk, none) for j in range(readings.value.shape[1])]
-    return -sum(float(np.log(np.diag(part.root)).sum() + part.z @ part.z / 2) for part in parts)
+    found = fits(readings, none, walks)
+    widths = np.log(np.diagonal(found.root, axis1=-2, axis2=-1)).sum(axis=-1)
+    return -float((widths + (found.z**2).sum(axis=-1) / 2).sum(axis=1).min())
 
 
 def warmed(readings: Readings, walk: float, dof: Array, temperature: Array, level: float) -> Warmed:
@@ -150,19 +151,17 @@ def most_likely(readings: Readings, walk: float, dof: Array) -> Change | None:
     family, (n, k) = shapes(readings.time), readings.value.shape
     if n <= readings.base.shape[1]:
         return None
-    parts = [fit(readings, j, walk, family) for j in range(k)]
-    information = np.array([part.information for part in parts])
+    null = fits(readings, family, np.array([walk]))
+    information, score = null.information[0], null.score[0]
     raw = np.einsum("nh,nh->h", family.columns, family.columns) / (readings.sigma.min() ** 2)
     tells = (information > FAINT * np.maximum(raw, 1e-300)).all(axis=0)
     if not tells.any():
         return None
     information = np.where(tells, information, np.inf)
-    score = np.array([part.score for part in parts])
     squared = (score**2 / information).sum(axis=0)
     best = int(np.argmax(squared >= squared.max() * (1 - 1e-9)))
-    shrunk = _shrunk(float(squared[best]), k, float(_freedom(parts, readings, dof)[best]))
-    z = np.stack([part.z for part in parts]) * shrunk
-    found = odds(mixture(parts, family, readings.time, tells), z)
+    shrunk = _shrunk(float(squared[best]), k, float(_freedom(null, readings, dof)[best]))
+    found = odds(mixture(null, readings.time, tells), null.z[0] * shrunk)
     kind = _kind(found)
     squared = np.where(tells & _alike(family.kind, kind), squared, -1.0)
     best = int(np.argmax(squared >= squared.max() * (1 - 1e-9)))
@@ -207,16 +206,13 @@ def _shrunk(squared: float, k: int, dof: float) -> float:
     return float(-ndtri(single) / np.sqrt(squared))
 
 
-def _freedom(parts: list[Fit], readings: Readings, dof: Array) -> Array:
-    """(H,) degrees of freedom of the noise in each statistic."""
-    size = parts[0].shapes.shape[1]
+def _freedom(null: Fits, readings: Readings, dof: Array) -> Array:
+    """(H,) degrees of freedom of the noise in each statistic, of the fits at the one walk of the null."""
     if not np.isfinite(dof).any():
-        return np.full(size, np.inf)
-    spoilt = np.zeros(size)
-    for j, part in enumerate(parts):
-        weight = np.linalg.solve(part.root.T, part.shapes)
-        share = (weight * readings.sigma[:, [j]]) ** 2 / np.maximum(part.information, 1e-300)
-        spoilt = np.maximum(spoilt, (share**2 / dof[:, None]).sum(axis=0))
+        return np.full(null.shapes.shape[-1], np.inf)
+    weight = np.linalg.solve(null.root[0].swapaxes(1, 2), null.shapes[0])
+    share = (weight * readings.sigma.T[..., None]) ** 2 / np.maximum(null.information[0], 1e-300)[:, None, :]
+    spoilt = (share**2 / dof[:, None]).sum(axis=1).max(axis=0)
     return np.asarray(1 / np.maximum(spoilt, 1e-12))
 
 
@@ -258,20 +254,22 @@ def _warmth(readings: Readings, temperature: Array, rival: Change | None, level:
     if not tells_of_temperature(temperature):
         return None
     column = _centred(temperature)
-    family = Shapes(column[:, None], np.zeros(1, int), np.zeros(1, int), np.ones(1), np.ones(1))
-    fits = [[fit(readings, j, float(q), family) for j in range(readings.value.shape[1])] for q in WALKS]
-    likely = [sum(f.log_likelihood + f.score[0] ** 2 / f.information[0] / 2 for f in row) for row in fits]
-    best = fits[int(np.argmax(likely))]
-    information = np.array([f.information[0] for f in best])
-    size = np.array([f.score[0] for f in best]) / information
+    found = fits(readings, _alone(column))
+    score, information = found.score[..., 0], found.information[..., 0]
+    best = int(np.argmax((found.log_likelihood + score**2 / information / 2).sum(axis=1)))
+    size, information = score[best] / information[best], information[best]
     squared = float((size**2 * information).sum())
-    p = float(np.exp(-squared / 2)) if len(best) == 2 else 2 * float(ndtr(-np.sqrt(squared)))
+    p = float(np.exp(-squared / 2)) if len(size) == 2 else 2 * float(ndtr(-np.sqrt(squared)))
     explains = rival is None or _explained(readings, column) >= _explained(readings, rival.column)
     return Warmth(size, information**-0.5, p, p < level and explains)
 
 
 def _explained(readings: Readings, column: Array) -> float:
     """Twice the log likelihood ratio of a column against noise alone."""
-    family = Shapes(column[:, None], np.zeros(1, int), np.zeros(1, int), np.ones(1), np.ones(1))
-    parts = [fit(readings, j, 0.0, family) for j in range(readings.value.shape[1])]
-    return sum(float(f.score[0] ** 2 / max(f.information[0], 1e-300)) for f in parts)
+    found = fits(readings, _alone(column), np.zeros(1))
+    return float((found.score**2 / np.maximum(found.information, 1e-300)).sum())
+
+
+def _alone(column: Array) -> Shapes:
+    """One shape, a column (n,) of any unit, for a fit of its size."""
+    return Shapes(column[:, None], np.zeros(1, int), np.zeros(1, int), np.ones(1), np.ones(1))

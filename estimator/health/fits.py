@@ -16,7 +16,6 @@ the restricted one (Harville 1974). The level at the last session is the best li
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import solve_triangular
 
 from estimator.health.shapes import Kind, Shapes
 from estimator.session import Array
@@ -55,94 +54,91 @@ class Readings:
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
-    """One component at one strength of the walk."""
+class Fits:
+    """All k components at Q strengths of the walk, about H shapes."""
 
-    log_likelihood: float
-    """Without a change, up to a constant that all fits of the component share."""
+    family: Shapes
+    walks: Array
+    """(Q,) T a root year."""
+    span: float
+    """Years from the first session to the last."""
+    log_likelihood: Array
+    """(Q, k) without a change, up to a constant that all fits of a component share."""
     z: Array
-    """(n,) whitened readings, freed of the base; dimensionless."""
+    """(Q, k, n) whitened readings, freed of the base; dimensionless."""
     shapes: Array
-    """(n, H) whitened shapes, freed of the base; per unit of size."""
+    """(Q, k, n, H) whitened shapes, freed of the base; per unit of size."""
     information: Array
-    """(H,) S, per unit of size squared."""
+    """(Q, k, H) S, per unit of size squared."""
     score: Array
-    """(H,) x, per unit of size."""
+    """(Q, k, H) x, per unit of size."""
     gain: Array
-    """(n,) weights of the readings in the last level, dimensionless."""
-    variance: float
-    """Of that level, sizes known; T²."""
+    """(Q, k, n) weights of the readings in the last level, dimensionless."""
+    variance: Array
+    """(Q, k) of that level, sizes known; T²."""
     root: Array
-    """(n, n) lower triangular, C = root·rootᵀ, T."""
+    """(Q, k, n, n) lower triangular, C = root·rootᵀ, T."""
     frame: Array
-    """(n, b) orthonormal, what the whitened base spans."""
+    """(Q, k, n, b) orthonormal, what the whitened base spans."""
+
+    def log_evidence(self) -> Array:
+        """(Q, P) log marginal likelihood at each strength of the walk, of each part, without unit."""
+        none = self.log_likelihood.sum(axis=1)
+        ratios = [np.zeros(len(none))]
+        for part in range(1, len(PARTS)):
+            weighed = self.log_ratios(part) + np.log(self.family.share[self.of_kind(part)])
+            ratios.append(np.logaddexp.reduce(weighed, axis=1) if weighed.shape[1] else np.zeros(len(none)))
+        return none[:, None] + np.stack(ratios, axis=1)
+
+    def log_ratios(self, part: int) -> Array:
+        """(Q, H') log Bayes factor of the shapes of a part's kind against no change; dimensionless."""
+        own, s2 = self.of_kind(part), PART_SIZES[part] ** 2
+        spread = s2 * self.information[..., own]
+        return 0.5 * np.asarray(s2 * self.score[..., own] ** 2 / (1 + spread) - np.log1p(spread)).sum(axis=1)
+
+    def of_kind(self, part: int) -> Array:
+        """(H',) places of the shapes of a part's kind."""
+        return np.flatnonzero(self.family.kind == PART_KINDS[part])
 
 
-def fit(readings: Readings, component: int, q: float, family: Shapes) -> Fit:
-    """One component of the readings at a walk of ``q``, T a root year."""
-    t, sigma = readings.time, np.maximum(readings.sigma[:, component], LEAST)
-    walk = q**2 * np.minimum.outer(t, t)
-    root = np.linalg.cholesky(np.diag(sigma**2) + walk)
-    stacked = np.concatenate([readings.value[:, [component]], family.columns, readings.base, walk[:, [-1]]], axis=1)
-    white = solve_triangular(root, stacked, lower=True)
-    z, f, base, last = white[:, 0], white[:, 1:-1], white[:, 1:-1], white[:, -1]
-    f, base = f[:, : family.columns.shape[1]], base[:, family.columns.shape[1] :]
+def fits(readings: Readings, family: Shapes, walks: Array = WALKS) -> Fits:
+    """Every component at every one of ``walks`` (Q,), T a root year."""
+    n, columns = len(readings.time), family.columns.shape[1]
+    wandering = np.minimum.outer(readings.time, readings.time)
+    walk = walks[:, None, None, None] ** 2 * wandering
+    noise = np.eye(n) * np.maximum(readings.sigma.T, LEAST)[:, None, :] ** 2
+    root = np.linalg.cholesky(noise + walk)
+    last = np.broadcast_to(walk[..., [-1]], (*root.shape[:3], 1))
+    value = np.broadcast_to(readings.value.T[..., None], last.shape)
+    shared = np.concatenate([family.columns, readings.base], axis=1)
+    shared = np.broadcast_to(shared, (*root.shape[:2], *shared.shape))
+    white = np.linalg.solve(root, np.concatenate([value, last, shared], axis=-1))
+    last, base = white[..., [1]], white[..., 2 + columns :]
     frame, corner = np.linalg.qr(base)
-    z, f = z - frame @ (frame.T @ z), f - frame @ (frame.T @ f)
+    free = np.delete(white[..., : 2 + columns], 1, axis=-1)
+    free = free - frame @ (_turned(frame) @ free)
+    z, shapes = free[..., 0], free[..., 1:]
     # the last level = now·θ̂ + lastᵀ(z̃ − B̃ θ̂), with θ̂ = R⁻¹ Qᵀ z̃
-    along = solve_triangular(corner, readings.now - base.T @ last, trans="T")
-    gain = solve_triangular(root, frame @ along + last, lower=True, trans="T")
-    return Fit(
-        log_likelihood=-float(np.log(np.diag(root)).sum() + np.log(np.abs(np.diag(corner))).sum() + z @ z / 2),
+    along = np.linalg.solve(_turned(corner), readings.now[:, None] - _turned(base) @ last)
+    return Fits(
+        family=family,
+        walks=walks,
+        span=float(readings.time[-1] - readings.time[0]),
+        log_likelihood=-_log_diagonal(root) - _log_diagonal(corner) - (z**2).sum(axis=-1) / 2,
         z=z,
-        shapes=f,
-        information=np.einsum("nh,nh->h", f, f),
-        score=z @ f,
-        gain=gain,
-        variance=max(float(walk[-1, -1] - last @ last + along @ along), 0.0),
+        shapes=shapes,
+        information=(shapes**2).sum(axis=-2),
+        score=(z[..., None, :] @ shapes)[..., 0, :],
+        gain=np.linalg.solve(_turned(root), frame @ along + last)[..., 0],
+        variance=np.maximum(walk[..., -1, -1] + ((along**2).sum(axis=-2) - (last**2).sum(axis=-2))[..., 0], 0.0),
         root=root,
         frame=frame,
     )
 
 
-@dataclass(frozen=True, eq=False)
-class Fits:
-    """All components at all strengths of the walk."""
-
-    family: Shapes
-    span: float
-    """Years from the first session to the last."""
-    by_walk: tuple[tuple[Fit, ...], ...]
-    """Q times k."""
-
-    def log_evidence(self) -> Array:
-        """(Q, P) log marginal likelihood at each strength of the walk, of each part, without unit."""
-        rows = []
-        for parts in self.by_walk:
-            none = sum(fit.log_likelihood for fit in parts)
-            ratios = [self._mean_ratio(self.log_ratios(parts, p), p) for p in range(1, len(PARTS))]
-            rows.append(none + np.array([0.0, *ratios]))
-        return np.array(rows)
-
-    def log_ratios(self, parts: tuple[Fit, ...], part: int) -> Array:
-        """(H',) log Bayes factor of the shapes of a part's kind against no change; dimensionless."""
-        of_kind, s2 = self.family.kind == PART_KINDS[part], PART_SIZES[part] ** 2
-        total = np.zeros(int(of_kind.sum()))
-        for one in parts:
-            information, score = one.information[of_kind], one.score[of_kind]
-            total += 0.5 * s2 * score**2 / (1 + s2 * information) - 0.5 * np.log1p(s2 * information)
-        return total
-
-    def _mean_ratio(self, log_ratios: Array, part: int) -> float:
-        if not log_ratios.size:
-            return 0.0
-        share = self.family.share[self.family.kind == PART_KINDS[part]]
-        top = log_ratios.max()
-        return float(top + np.log(np.sum(share * np.exp(log_ratios - top))))
+def _turned(matrices: Array) -> Array:
+    return np.swapaxes(matrices, -1, -2)
 
 
-def fits(readings: Readings, family: Shapes) -> Fits:
-    """At every strength of the walk."""
-    components = range(readings.value.shape[1])
-    by_walk = tuple(tuple(fit(readings, j, float(q), family) for j in components) for q in WALKS)
-    return Fits(family, float(readings.time[-1] - readings.time[0]), by_walk)
+def _log_diagonal(matrices: Array) -> Array:
+    return np.asarray(np.log(np.abs(np.diagonal(matrices, axis1=-2, axis2=-1))).sum(axis=-1))

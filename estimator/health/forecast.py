@@ -66,12 +66,20 @@ def passage(draws: Draws, prior: Prior, swing: float, rng: np.random.Generator) 
 def _hazard(length: Array, prior: Prior, k: int) -> Array:
     """(N, h) expected number of new events that take a draw at (N, h) lengths, T, beyond its tolerance by `AHEAD`."""
     jumps, drifts = PART_KINDS == Kind.JUMP, PART_KINDS == Kind.LATE
-    now = np.interp(length, DISTANCES, prior.rate[jumps] @ _beyond_jump(k))
+    now = _looked_up((prior.rate[jumps] @ _beyond_jump(k))[None], length)
     steps = np.diff(AHEAD)
     jumped = np.concatenate([np.zeros((len(length), 1)), np.cumsum((now[:, :-1] + now[:, 1:]) / 2 * steps, axis=1)], 1)
     table = np.einsum("s,shd->hd", prior.rate[drifts], _beyond_drift(k))
-    drifted = np.stack([np.interp(length[:, h], DISTANCES, table[h]) for h in range(len(AHEAD))], axis=1)
-    return np.asarray(jumped + drifted)
+    return np.asarray(jumped + _looked_up(table, length))
+
+
+def _looked_up(table: Array, length: Array) -> Array:
+    """(N, h) of a table (h or 1, 41) over `DISTANCES`, linear between them, at (N, h) lengths from 0 to 1 T."""
+    steps = len(DISTANCES) - 1
+    below = np.minimum((length * steps).astype(int), steps - 1)
+    row = np.arange(len(table))
+    lower, upper = table[row, below], table[row, below + 1]
+    return np.asarray(lower + (length * steps - below) * (upper - lower))
 
 
 @lru_cache(maxsize=2)

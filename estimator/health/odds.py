@@ -18,8 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.health.fits import PART_KINDS, PART_SIZES, Fit
-from estimator.health.shapes import Kind, Shapes
+from estimator.health.fits import PART_KINDS, PART_SIZES, Fits
+from estimator.health.shapes import Kind
 from estimator.session import Array
 
 DRAWS = 1000
@@ -90,9 +90,10 @@ class Mixture:
         return z
 
 
-def mixture(fits: list[Fit], family: Shapes, time: Array, tells: Array) -> Mixture:
-    """Of the fits of all components under the null; ``tells`` (H,) bool: shapes that leave a trace."""
+def mixture(null: Fits, time: Array, tells: Array) -> Mixture:
+    """Of the fits at the one walk of the null; ``tells`` (H,) bool: shapes that leave a trace."""
     shape, kind, share, size2 = [], [], [], []
+    family, information = null.family, null.information[0]
     for place in np.flatnonzero(PART_KINDS != Kind.NONE):
         own_kind = PART_KINDS[place] == PART_KINDS
         own = np.flatnonzero((family.kind == PART_KINDS[place]) & tells)
@@ -102,25 +103,25 @@ def mixture(fits: list[Fit], family: Shapes, time: Array, tells: Array) -> Mixtu
         share.append(SHARES[Kind(int(PART_KINDS[place]))] * family.share[own] / sizes)
         size2.append(np.full(len(own), PART_SIZES[place] ** 2))
     places = np.concatenate(shape)
-    information = np.array([fit.information for fit in fits])
     length = np.sqrt(np.where(tells, information, np.inf))
-    modes = [_modes(fit, time) for fit in fits]
+    values, vectors = _modes(null, time)
     return Mixture(
-        unit=np.stack([fit.shapes for fit in fits]) / length[:, None, :],
+        unit=null.shapes[0] / length[:, None, :],
         shape=places,
         kind=np.concatenate(kind),
         share=np.concatenate(share),
         strength=information[:, places] * np.concatenate(size2),
-        modes=np.stack([vectors for _, vectors in modes]),
-        walked=np.stack([values for values, _ in modes]),
+        modes=vectors,
+        walked=values,
     )
 
 
-def _modes(fit: Fit, time: Array) -> tuple[Array, Array]:
-    """(n,) eigenvalues, per T², and (n, n) eigenvectors of W̃."""
-    half = np.linalg.solve(fit.root, np.minimum.outer(time, time))
-    whole = np.linalg.solve(fit.root, half.T)
-    free = np.eye(len(time)) - fit.frame @ fit.frame.T
+def _modes(null: Fits, time: Array) -> tuple[Array, Array]:
+    """(k, n) eigenvalues, per T², and (k, n, n) eigenvectors of W̃."""
+    root, frame = null.root[0], null.frame[0]
+    half = np.linalg.solve(root, np.broadcast_to(np.minimum.outer(time, time), root.shape))
+    whole = np.linalg.solve(root, half.swapaxes(1, 2))
+    free = np.eye(len(time)) - frame @ frame.swapaxes(1, 2)
     values, vectors = np.linalg.eigh(free @ whole @ free)
     return np.maximum(values, 0.0), vectors
 

@@ -60,21 +60,22 @@ class Hypotheses:
 def weighed(found: Fits, prior: Prior) -> Hypotheses:
     """All hypotheses, by prior times likelihood."""
     expected = np.log(np.maximum(prior.parts(found.span), 1e-300))
-    logs, walks, parts, places = [], [], [], []
-    for q, by_component in enumerate(found.by_walk):
-        none = sum(fit.log_likelihood for fit in by_component) + np.log(prior.walk[q])
-        for p in range(len(PARTS)):
-            shape = np.flatnonzero(found.family.kind == PART_KINDS[p]) if p else np.zeros(1, dtype=int)
-            if not shape.size:
-                continue
-            gain = found.log_ratios(by_component, p) + np.log(found.family.share[shape]) if p else np.zeros(1)
-            logs.append(none + expected[p] + gain)
-            walks.append(np.full(len(shape), q))
-            parts.append(np.full(len(shape), p))
-            places.append(shape)
-    log = np.concatenate(logs)
+    none = found.log_likelihood.sum(axis=1) + np.log(prior.walk)
+    logs, parts, places = [none[:, None] + expected[0]], [np.zeros(1, dtype=int)], [np.zeros(1, dtype=int)]
+    for p in range(1, len(PARTS)):
+        shape = found.of_kind(p)
+        logs.append(none[:, None] + expected[p] + found.log_ratios(p) + np.log(found.family.share[shape]))
+        parts.append(np.full(len(shape), p))
+        places.append(shape)
+    log = np.concatenate(logs, axis=1)
     weight = np.exp(log - log.max())
-    return Hypotheses(weight / weight.sum(), np.concatenate(walks), np.concatenate(parts), np.concatenate(places))
+    walk, column = np.indices(log.shape).reshape(2, -1)
+    return Hypotheses(
+        weight=weight.ravel() / weight.sum(),
+        walk=walk,
+        part=np.concatenate(parts)[column],
+        shape=np.concatenate(places)[column],
+    )
 
 
 def draw(readings: Readings, family: Shapes, prior: Prior, rng: np.random.Generator) -> Draws:
@@ -116,14 +117,12 @@ def _sizes_and_levels(
     """(N, k) sizes and (N, k) levels of the drawn hypotheses ``of``: walk, part and shape, each (N,)."""
     q, part, shape = of
     k = value.shape[1]
-    table = {name: np.array([[getattr(f, name) for f in row] for row in found.by_walk])
-             for name in ("information", "score", "variance")}  # fmt: skip
-    known = np.array([[f.gain @ value[:, j] for j, f in enumerate(row)] for row in found.by_walk])
-    moved = np.array([[last - f.gain @ found.family.columns for f in row] for row in found.by_walk])
+    known = np.einsum("qkn,nk->qk", found.gain, value)
+    moved = last - found.gain @ found.family.columns
     has = (part > 0)[:, None]
     s2 = np.where(has, PART_SIZES[part][:, None] ** 2, 0.0)
-    information, score = table["information"][q, :, shape], table["score"][q, :, shape]
+    information, score = found.information[q, :, shape], found.score[q, :, shape]
     spread = s2 / (1 + s2 * information)
     size = spread * score + np.sqrt(spread) * rng.standard_normal((len(q), k))
     level = known[q] + size * moved[q, :, shape]
-    return size, level + np.sqrt(table["variance"][q]) * rng.standard_normal((len(q), k))
+    return size, level + np.sqrt(found.variance[q]) * rng.standard_normal((len(q), k))

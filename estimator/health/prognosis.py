@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from estimator.health.detection import LEVEL, Change, Detected, Warmth, detect, tells_of_temperature, warmed
-from estimator.health.fits import Readings, fit, fits
+from estimator.health.fits import Readings, fits
 from estimator.health.forecast import AHEAD, EARLY, MEDIAN, Future, future, passage, reach, together
 from estimator.health.pooled import Evidence, Prior
 from estimator.health.posterior import Draws, draw
@@ -186,11 +186,11 @@ def _rate(detected: Detected, draws: Draws, prior: Prior, way: Array) -> tuple[f
         middle = float(draws.mean(rates))
         return middle, float(np.sqrt(draws.mean((rates - middle) ** 2)))
     readings = detected.readings
-    parts = [fit(readings, j, prior.usual_walk, shapes(readings.time)) for j in range(len(way))]
-    start = int(np.flatnonzero(shapes(readings.time).kind == Kind.START)[0])
-    variance = np.array([1 / (part.information[start] + STEEPEST**-2) for part in parts])
-    score = np.array([part.score[start] for part in parts])
-    return float((variance * score) @ way), float(np.sqrt(variance @ way**2))
+    family = shapes(readings.time)
+    found = fits(readings, family, np.array([prior.usual_walk]))
+    start = int(np.flatnonzero(family.kind == Kind.START)[0])
+    variance = 1 / (found.information[0, :, start] + STEEPEST**-2)
+    return float((variance * found.score[0, :, start]) @ way), float(np.sqrt(variance @ way**2))
 
 
 def _swing(warmth: Warmth | None, track: Track) -> float:

@@ -28,7 +28,7 @@ BYTES = {"schema": {"type": "string", "format": "binary"}}
 
 @router.get(
     "/{id}/certificate",
-    responses={200: {"content": {PDF: BYTES, XML: {"schema": {"type": "string"}}}}, **errors(404, 422, 507)},
+    responses={200: {"content": {PDF: BYTES, XML: {"schema": {"type": "string"}}}}, **errors(404, 409, 422, 507)},
     response_class=Response,
 )
 def read_certificate(
@@ -46,6 +46,7 @@ def read_certificate(
 
     The first request issues it under a number of its own. Asked for again, the same record gives the same number and
     the same bytes; when what it states has changed, it has a new number and names the one it replaces.
+    A session that is not accepted has none.
     """
     found = certified_session(storage, diagnose(storage, id, now), laboratory_of(settings))
     issue = issue_certificate(storage, statement_of(found), now, who=by.strip() or NOT_STATED)

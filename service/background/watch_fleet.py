@@ -8,7 +8,7 @@ from threading import Event
 from service.background.flag_overdue import flag_overdue
 from service.background.flag_shifted_stands import flag_shifted_stands
 from service.background.guard import Guard
-from service.flows.relearn import relearn
+from service.background.relearn import relearn
 from service.metrics import Metrics
 from service.storage import Storage
 

@@ -34,9 +34,10 @@ class Client:
     server: str
     http: httpx.Client
 
-    def upload(self, file: Path) -> dict[str, Any]:
-        """Sends a session file; RefusedError with its problems when the service cannot use it."""
-        response = self._answer("POST", "/sessions", files={"file": (file.name, file.read_bytes())})
+    def upload(self, file: Path, stated: dict[str, str] | None = None) -> dict[str, Any]:
+        """Sends a session file with what is ``stated`` of it; RefusedError with its problems when it is unusable."""
+        sent = {"file": (file.name, file.read_bytes())}
+        response = self._answer("POST", "/sessions", files=sent, data=stated or {})
         answer: dict[str, Any] = response.json()
         return answer
 

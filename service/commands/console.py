@@ -17,7 +17,7 @@ from service.errors import RefusedError
 FAILED = 1
 """Exit code where what was asked for could not be done."""
 UNUSABLE = 2
-"""Exit code where a file or an argument cannot be used; typer's own is the same."""
+"""Exit code where a file cannot be used."""
 
 T = TypeVar("T")
 

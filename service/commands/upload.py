@@ -1,8 +1,9 @@
 """`imu-health upload`: session files to a running service."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Annotated, Any
 
+import typer
 from rich.markup import escape
 
 from service.commands.client import connected
@@ -20,11 +21,30 @@ COLOURS = {
 """Of the verdicts, as on the pages."""
 
 
-def upload_files(files: Files, server: Server = DEFAULT_SERVER, as_json: AsJson = False) -> None:
+Supersedes = Annotated[
+    str | None, typer.Option(metavar="ID", help="Stored session that this corrected file stands for from now on.")
+]
+By = Annotated[str | None, typer.Option(help="Who replaces it; with --supersedes.")]
+Why = Annotated[str | None, typer.Option(help="What was wrong; with --supersedes.")]
+
+
+def upload_files(
+    files: Files,
+    server: Server = DEFAULT_SERVER,
+    as_json: AsJson = False,
+    *,
+    supersedes: Supersedes = None,
+    by: By = None,
+    why: Why = None,
+) -> None:
     """Upload session files and print the verdict of each; a file that is already there is stored once."""
+    if supersedes and len(files) > 1:
+        raise typer.BadParameter("one corrected file stands for one session", param_hint="--supersedes")
+    given = {"supersedes": supersedes, "by": by, "why": why}
+    stated = {name: text for name, text in given.items() if text}
     show: Callable[[dict[str, Any]], None] = print_json if as_json else _print_line
     with connected(server) as client:
-        for_each(files, client.upload, show, "uploading")
+        for_each(files, lambda file: client.upload(file, stated), show, "uploading")
 
 
 def _print_line(answer: dict[str, Any]) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 
 from estimator.session import CalibrationSession
 from estimator.writing import session_document
-from service.errors import ConflictError
+from service.errors import ConflictError, NotFoundError
 from service.flows.receive import Reception, receive
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
@@ -37,8 +37,12 @@ def correct_session(reception: Reception, id: str, by: str, now: datetime) -> Re
 
 
 def correction_of(storage: Storage, id: str) -> str:
-    """What the corrected file of a questioned session would hold otherwise; empty where nothing is known."""
-    return ", ".join(correction.text for correction in _corrections(storage, id)[1])
+    """What the corrected file of a questioned session would hold otherwise; empty where nothing is known, or where its
+    file is lost."""
+    try:
+        return ", ".join(correction.text for correction in _corrections(storage, id)[1])
+    except NotFoundError:
+        return ""
 
 
 def _corrections(storage: Storage, id: str) -> tuple[CalibrationSession, tuple[Correction, ...]]:

@@ -9,10 +9,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 
+from estimator.errors import SessionError
 from estimator.parity import parity_check
 from estimator.parity.as_calibration import parity_calibration
 from estimator.results import Calibration
 from estimator.session import CALIBRATIONS, IN_SERVICE
+from service.errors import NotFoundError
 from service.flows.flagging.drift import flag_drift
 from service.flows.flagging.fold import settle_sessions
 from service.flows.flagging.settle import Occasion
@@ -150,7 +152,10 @@ def _recording(store: Store, way: Deriving, session: StoredSession, place: Place
     store.history.drop(session)
     if place.reference is None:
         return Judged(known.get(session.id), (), NOTHING_TO_COMPARE, is_reference=False)
-    source = read_upload(way.files.read(session.sha256), session.filename)
+    try:
+        source = read_upload(way.files.read(session.sha256), session.filename)
+    except (NotFoundError, SessionError) as lost:
+        return Judged(known.get(session.id), (), f"It cannot be compared: {lost}", is_reference=False)
     reference = known.get(place.reference.id)
     found = Comparison(reference, parity_check(source, reference))
     unit_type = store.unit_types.of_unit_at(session.unit, computed_at)

@@ -2,12 +2,14 @@
 
 from dataclasses import dataclass
 
+from estimator.errors import SessionError
 from estimator.session import CalibrationSession
+from service.errors import NotFoundError
 from service.ingest import read_upload
 from service.judging.cause_sizes import Yardstick
 from service.judging.model_in_force import in_force
 from service.judging.reference import reference_of
-from service.judging.reservations import Doubted, reservations_of
+from service.judging.reservations import UNCHECKED, Doubted, reservations_of
 from service.judging.standing import Basis, Otherwise, verdicts_under_alternatives
 from service.judging.tolerances import tolerances_of
 from service.records.decision import Verdict, nominal_factor_of
@@ -81,9 +83,15 @@ def weigh(session: CalibrationSession, found: Diagnosed, by: Weighing) -> Weighe
 
 
 def weigh_again(store: Store, files: Files, id: str) -> None:
-    """After another calibration or verdict of a session came into force: what it is said with."""
+    """After another calibration or verdict of a session came into force: what it is said with; where its file is lost
+    or can no longer be read, that nobody could look."""
     session, made = store.sessions.get(id), store.diagnoses.get(id)
-    if made is not None and made.found is not None:
+    if made is None or made.found is None:
+        return
+    try:
         source = read_upload(files.read(session.sha256), session.filename)
-        weighed = weigh(source, made.found, weighing_of(store, id, source.block))
-        store.diagnoses.put_reservations(id, weighed.reservations)
+    except (NotFoundError, SessionError):
+        store.diagnoses.put_reservations(id, UNCHECKED)
+        return
+    weighed = weigh(source, made.found, weighing_of(store, id, source.block))
+    store.diagnoses.put_reservations(id, weighed.reservations)

@@ -5,6 +5,7 @@ from datetime import timedelta
 
 from estimator.results import Calibration
 from estimator.session import AS_LEFT, CalibrationSession
+from service.errors import ConflictError
 from service.ingest import read_upload
 from service.judging.model_in_force import in_force
 from service.judging.reference import reference_of
@@ -15,6 +16,7 @@ from service.records.history import HistoryPoint
 from service.records.model import ModelRevision
 from service.records.paper import Customer, Laboratory, Traceability
 from service.records.session import SessionReport, StoredSession
+from service.records.state import RecordState
 from service.records.unit import UnitType
 from service.settings import VERSION, Settings
 from service.storage import Storage
@@ -28,6 +30,7 @@ MOST_POINTS = 10_000
 """Points of the unit's history that are read, of the newest sessions up to the certified one."""
 MOST_EARLIER = 50
 """Earlier sessions among which the one is looked for that shows the unit as found."""
+NOT_ACCEPTED = "This session is {state}: no certificate is issued of a record that does not count."
 JUST_AFTER = timedelta(microseconds=1)
 """The finest step of a stored time."""
 
@@ -79,11 +82,13 @@ def laboratory_of(settings: Settings) -> Laboratory:
 
 
 def certified_session(storage: Storage, diagnosis: StoredDiagnosis, laboratory: Laboratory) -> CertifiedSession:
-    """The session of a diagnosis with all that its certificate needs."""
+    """The session of a diagnosis with all that its certificate needs; ConflictError where it does not count."""
     id = diagnosis.session
     with storage.database.reading() as store:
         report = session_report(store, id)
         stored = report.session
+        if stored.state is not RecordState.ACCEPTED:
+            raise ConflictError(NOT_ACCEPTED.format(state=stored.state))
         until = stored.started_at + JUST_AFTER
         return CertifiedSession(
             report=report,

@@ -35,7 +35,7 @@ def usable(store: Store, serial: str, now: datetime) -> Usable:
         usable=not against,
         why=against[0] if against else words.on(words.YES, _at(session), due=_day(report.summary.due)),
         reasons=against,
-        reservations=tuple(_reservations(store, session, flags)),
+        reservations=(*_reservations(store, session, flags), *_waiting(report, session)),
         until=report.summary.due,
         verdict=None if session is None else session.verdict,
         session=None if session is None else session.id,
@@ -111,6 +111,14 @@ def _reservations(store: Store, session: StoredSession | None, flags: tuple[Flag
             yield words.on(words.NOT_DIAGNOSED, session.started_at)
         yield from (words.reserved(one) for one in session.reservations or ())
     yield from (words.flagged(flag) for flag in flags if flag.matter not in (*FORBIDDING, Matter.OVERDUE))
+
+
+def _waiting(report: UnitReport, session: StoredSession | None) -> Iterator[str]:
+    """Later sessions that wait for an engineer: what they may show does not count yet."""
+    for later in report.sessions:
+        is_later = session is None or later.started_at > session.started_at
+        if is_later and later.state is RecordState.QUESTIONED:
+            yield words.on(words.WAITS, later.started_at)
 
 
 def _at(session: StoredSession | None) -> datetime:

@@ -22,6 +22,7 @@ NO_DUE = "It is not known when its calibration is due: calibrate it."
 FUTURE = "Its session is dated {day}, which is still to come: put the date right."
 FLAGGED = "Flag {id} is open: {summary}"
 CLOSE = "Within tolerance, but by less than the uncertainty of the measurement: {reason}"
+WAITS = "The session of {day} waits for an engineer and does not count yet: accept it, correct it or withdraw it."
 NOT_DIAGNOSED = "The session of {day} is not diagnosed yet: ask again in a minute."
 
 

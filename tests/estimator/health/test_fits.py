@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from estimator.health.fits import PARTS, WALKS, Readings, fit, fits
+from estimator.health.fits import PARTS, WALKS, Readings, fits
 from estimator.health.shapes import Kind, shapes
 from estimator.session import Array
 from tests.estimator.health.histories import dates, measured, readings, walk
@@ -30,8 +30,7 @@ def test_ratios_are_those_of_the_joint_distribution() -> None:
     family = shapes(of.time)
     found = fits(of, family)
     part = next(p for p, (kind, size) in enumerate(PARTS) if kind is Kind.JUMP and size == 0.6)
-    for q, parts in zip(WALKS, found.by_walk, strict=True):
-        ratios = found.log_ratios(parts, part)
+    for q, ratios in zip(WALKS, found.log_ratios(part), strict=True):
         for place, ratio in zip(np.flatnonzero(family.kind == Kind.JUMP), ratios, strict=True):
             column = family.columns[:, place]
             exact = [stats.multivariate_normal(np.zeros(7), joint(of, q, column, s)).logpdf(of.value[:, 0])
@@ -41,7 +40,7 @@ def test_ratios_are_those_of_the_joint_distribution() -> None:
 
 def test_strengths_of_the_walk_compare_as_in_the_joint_distribution() -> None:
     of = one_history()
-    found = [parts[0].log_likelihood for parts in fits(of, shapes(of.time)).by_walk]
+    found = fits(of, shapes(of.time)).log_likelihood[:, 0]
     exact = [stats.multivariate_normal(np.zeros(7), joint(of, q, of.time, 0)).logpdf(of.value[:, 0]) for q in WALKS]
     assert np.diff(found) == pytest.approx(np.diff(exact), abs=1e-3)
 
@@ -49,8 +48,8 @@ def test_strengths_of_the_walk_compare_as_in_the_joint_distribution() -> None:
 @pytest.mark.parametrize("q", [0.0, 0.3])
 def test_the_last_level_is_that_of_the_joint_distribution(q: float) -> None:
     of = one_history()
-    found = fit(of, 0, q, shapes(of.time))
+    found = fits(of, shapes(of.time), np.array([q]))
     prior = joint(of, q, of.time, 0) - np.diag(of.sigma[:, 0] ** 2)
     gain = prior @ np.linalg.inv(prior + np.diag(of.sigma[:, 0] ** 2))
-    assert found.gain @ of.value[:, 0] == pytest.approx((gain @ of.value[:, 0])[-1], abs=1e-4)
-    assert found.variance == pytest.approx((prior - gain @ prior)[-1, -1], rel=1e-3)
+    assert found.gain[0, 0] @ of.value[:, 0] == pytest.approx((gain @ of.value[:, 0])[-1], abs=1e-4)
+    assert found.variance[0, 0] == pytest.approx((prior - gain @ prior)[-1, -1], rel=1e-3)

@@ -37,6 +37,14 @@ def test_a_withdrawn_session_stays_readable_and_leaves_history_and_verdict(http:
     ]
 
 
+def test_no_certificate_is_issued_of_a_session_that_does_not_count(http: httpx.Client) -> None:
+    post(http, f"/sessions/{SECOND}/withdraw")
+    refused = http.get(f"/api/v1/sessions/{SECOND}/certificate")
+    assert (refused.status_code, refused.json()["detail"][:28]) == (409, "This session is withdrawn: n")
+    assert http.get(f"/api/v1/sessions/{SECOND}/certificates").json()["certificates"] == []
+    assert "Certificate (PDF)" not in http.get(f"/sessions/{SECOND}").text
+
+
 def test_a_session_is_accepted_again_once(http: httpx.Client) -> None:
     post(http, f"/sessions/{SECOND}/withdraw")
     assert post(http, f"/sessions/{SECOND}/accept")["verdict"] == "fail"

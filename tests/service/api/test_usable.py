@@ -1,5 +1,6 @@
 """May a unit be used? Every rule on its own, over HTTP and on the command line."""
 
+import json
 from collections.abc import Callable
 from datetime import UTC, datetime
 from typing import Any
@@ -112,6 +113,16 @@ def test_a_broken_chain_is_a_reservation(asked: Asking) -> None:
     assert found["usable"]
     assert "Traceability is interrupted" in found["reservation"]
     assert [line for line in found["reservations"] if "interrupted" in line]
+
+
+def test_a_later_session_that_waits_for_an_engineer_is_a_reservation(asked: Asking) -> None:
+    later = json.loads(session_bytes(seed=3, month=3))
+    table = later["table"]
+    for sensor in later["sensors"]:
+        table[sensor["name"]] = [1000 * reading for reading in table[sensor["name"]]]
+    found = asked(*FIT, json.dumps(later).encode(), at=datetime(2026, 3, 5, tzinfo=UTC))
+    assert found["usable"]
+    assert "The session of 1 Mar 2026 waits for an engineer" in found["reservation"]
 
 
 def test_the_same_answer_is_not_sent_twice(holding: Holding) -> None:

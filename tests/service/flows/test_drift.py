@@ -4,9 +4,8 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from service.background.guard import plainly
+from service.background.relearn import relearn
 from service.flows.receive import upload
-from service.flows.relearn import relearn
 from service.records.flag import Matter
 from service.records.outlook import Action, ParameterTrend, UnitOutlook
 from service.storage import Storage
@@ -79,11 +78,11 @@ def test_a_fleet_does_not_depend_on_the_order_in_which_its_sessions_came(storage
     measure(storage, {1: 0.0, 3: 0.0, 5: 0.0})
     alone = outlook(storage)
     measure(storage, {1: 0.0, 3: 10.0, 5: 25.0}, unit="BA-018")
-    assert relearn(storage, NOW, plainly) == 1
+    assert relearn(storage, NOW) == 1
     together = outlook(storage)
     assert together.learned_from == 2 * alone.learned_from
     assert together.risk != alone.risk
-    assert relearn(storage, NOW + timedelta(hours=1), plainly) == 0
+    assert relearn(storage, NOW + timedelta(hours=1)) == 0
 
 
 def test_the_temperature_of_a_session_is_kept(storage: Storage) -> None:

@@ -10,16 +10,20 @@ import pytest
 from benchmarks.study.degrees_of_freedom import measured
 from estimator.writing import session_document
 from service.flows.accept_model import accept_model
+from service.flows.choose_reference import choose_reference
 from service.flows.diagnose import diagnose
 from service.flows.recalibrate import recalibrate
 from service.flows.receive import upload
+from service.judging.reservations import UNCHECKED
 from service.records.decision import Verdict
 from service.records.model import NewModel, Scope
 from service.records.reservation import Doubt, Reservation, Reservations
 from service.storage import Storage
+from service.storage.files import content_hash
 from tests.databases import one_engine
 from tests.service.diagnosed import boasting, swaying_stand
 from tests.service.doubtful import CLAUSE, JUMPED, MISTAKEN, REFERENCE, SLIGHTLY, jumped
+from tests.service.records import step, way
 from tests.service.sessions import session_bytes, session_id
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
@@ -53,6 +57,15 @@ def test_a_named_cause_beyond_a_third_of_the_tolerance_is_a_reservation(storage:
 @one_engine
 def test_a_cause_below_a_third_of_the_tolerance_leaves_the_verdict_plain(storage: Storage) -> None:
     assert weighed(storage, SLIGHTLY) == (Verdict.PASS, ())
+
+
+@one_engine
+def test_a_lost_file_leaves_the_verdict_unchecked_and_stops_nothing(storage: Storage) -> None:
+    second = session_bytes(seed=2, month=2)
+    weighed(storage, (REFERENCE, second))
+    storage.files.path(content_hash(second)).unlink()
+    choose_reference(storage, way(storage), session_id(second), step())
+    assert stored(storage, session_id(second))[1] == UNCHECKED
 
 
 @one_engine

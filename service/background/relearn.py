@@ -1,20 +1,16 @@
-"""Flow: outlooks are made again where the other units of their type have told more since, or where there is none."""
+"""Work beside the requests: outlooks are made again where their type has told more since, or where there is none."""
 
-from collections.abc import Callable
-from contextlib import AbstractContextManager
 from datetime import datetime
 
+from service.background.guard import Alone, plainly
 from service.flows.flagging.drift import flag_drift
 from service.flows.flagging.settle import Occasion
 from service.flows.refresh_outlook import digest, of_type, refresh_outlook
 from service.storage import Storage
 from service.storage.store import Store
 
-Alone = Callable[[str, str], AbstractContextManager[None]]
-"""How the work on one unit is done, so that what fails there ends there."""
 
-
-def relearn(storage: Storage, now: datetime, alone: Alone) -> int:
+def relearn(storage: Storage, now: datetime, alone: Alone = plainly) -> int:
     """Brings every outlook up to what its type tells by now, and returns how many that were.
 
     What a unit tells of its type does not depend on the type, so one round is enough, and the outlooks of a fleet do
