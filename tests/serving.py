@@ -2,6 +2,7 @@
 
 import asyncio
 import socket
+import ssl
 from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import Event, Thread
@@ -12,6 +13,9 @@ from fastapi import FastAPI
 
 from service.app import create_app
 from service.settings import Settings
+
+TLS = ssl.create_default_context()
+"""Read once: every client that reads the certificates of this machine anew takes longer for it than for its test."""
 
 
 class Server(uvicorn.Server):
@@ -74,5 +78,5 @@ def serving(settings: Settings) -> Iterator[str]:
 @contextmanager
 def http_client(app: FastAPI) -> Iterator[httpx.Client]:
     """HTTP to a running application."""
-    with running(app) as address, httpx.Client(base_url=address, timeout=60) as client:
+    with running(app) as address, httpx.Client(base_url=address, timeout=60, verify=TLS) as client:
         yield client

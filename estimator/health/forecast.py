@@ -66,20 +66,25 @@ def passage(draws: Draws, prior: Prior, swing: float, rng: np.random.Generator) 
 def _hazard(length: Array, prior: Prior, k: int) -> Array:
     """(N, h) expected number of new events that take a draw at (N, h) lengths, T, beyond its tolerance by `AHEAD`."""
     jumps, drifts = PART_KINDS == Kind.JUMP, PART_KINDS == Kind.LATE
-    now = _looked_up((prior.rate[jumps] @ _beyond_jump(k))[None], length)
-    steps = np.diff(AHEAD)
-    jumped = np.concatenate([np.zeros((len(length), 1)), np.cumsum((now[:, :-1] + now[:, 1:]) / 2 * steps, axis=1)], 1)
-    table = np.einsum("s,shd->hd", prior.rate[drifts], _beyond_drift(k))
-    return np.asarray(jumped + _looked_up(table, length))
+    table = np.stack(
+        [
+            np.broadcast_to(prior.rate[jumps] @ _beyond_jump(k), (len(AHEAD), len(DISTANCES))),
+            np.tensordot(prior.rate[drifts], _beyond_drift(k), axes=1),
+        ],
+        axis=-1,
+    )
+    now, drifted = np.moveaxis(_looked_up(table, length), -1, 0)
+    jumped = np.cumsum((now[:, :-1] + now[:, 1:]) / 2 * np.diff(AHEAD), axis=1)
+    return np.asarray(drifted + np.pad(jumped, ((0, 0), (1, 0))))
 
 
 def _looked_up(table: Array, length: Array) -> Array:
-    """(N, h) of a table (h or 1, 41) over `DISTANCES`, linear between them, at (N, h) lengths from 0 to 1 T."""
+    """(N, h, 2) of a table (h, 41, 2) over `DISTANCES`, linear between them, at (N, h) lengths from 0 to 1 T."""
     steps = len(DISTANCES) - 1
     below = np.minimum((length * steps).astype(int), steps - 1)
     row = np.arange(len(table))
-    lower, upper = table[row, below], table[row, below + 1]
-    return np.asarray(lower + (length * steps - below) * (upper - lower))
+    lower = table[row, below]
+    return np.asarray(lower + (length * steps - below)[..., None] * (table[row, below + 1] - lower))
 
 
 @lru_cache(maxsize=2)

@@ -1,5 +1,7 @@
 """The HTTP API, /api/v1: one route file a resource, one shape for every error."""
 
+from functools import cache
+
 from fastapi import APIRouter, FastAPI
 
 from service.api import (
@@ -31,13 +33,20 @@ PREFIX = "/api/v1"
 
 def mount(app: FastAPI) -> None:
     """Adds every route of the API, its error shape and its description to the application."""
-    api = APIRouter(prefix=PREFIX)
+    app.router.routes.extend(_every().routes)
+    add_problem_handlers(app)
+    describe(app)
+
+
+@cache
+def _every() -> APIRouter:
+    """The routes of all applications: what a route does depends on its request alone, and building them is slow."""
+    api, every = APIRouter(prefix=PREFIX), APIRouter()
     for resource in (
         sessions, records, certificates, diagnoses, events, usable, labels, units, unit_types, models, plans, stands,
         flags, notes, webhooks, feeds, fleet,
     ):  # fmt: skip
         api.include_router(resource.router)
-    app.include_router(api)
-    app.include_router(operations.router)
-    add_problem_handlers(app)
-    describe(app)
+    every.include_router(api)
+    every.include_router(operations.router)
+    return every

@@ -3,7 +3,9 @@
 `mount` joins them to the service. Pages ask the flows; they know nothing of the store's tables.
 """
 
-from fastapi import FastAPI
+from functools import cache
+
+from fastapi import APIRouter, FastAPI
 from starlette.middleware.gzip import GZipMiddleware
 
 from service.pages import (
@@ -22,15 +24,19 @@ from service.pages.problem import ProblemPages, unexpected_pages
 
 def mount(app: FastAPI) -> None:
     """Adds the pages, their static files, error pages, compression and the security headers of every answer."""
-    app.include_router(routes.router)
-    app.include_router(diagnosis_routes.router)
-    app.include_router(flag_routes.router)
-    app.include_router(event_routes.router)
-    app.include_router(record_routes.router)
-    app.include_router(paper_routes.router)
-    app.include_router(plan_routes.router)
-    app.include_router(assets.router)
+    app.router.routes.extend(_every().routes)
     unexpected_pages(app)
     app.add_middleware(ProblemPages)
     app.add_middleware(GZipMiddleware, minimum_size=1000, compresslevel=6)
     app.add_middleware(SecurityHeaders)
+
+
+@cache
+def _every() -> APIRouter:
+    """The addresses of all pages, built once for all applications."""
+    every = APIRouter()
+    for part in (
+        routes, diagnosis_routes, flag_routes, event_routes, record_routes, paper_routes, plan_routes, assets,
+    ):  # fmt: skip
+        every.include_router(part.router)
+    return every

@@ -6,6 +6,7 @@ shows empty boxes, never says less than the record, and is the same on every mac
 """
 
 from dataclasses import asdict
+from functools import lru_cache
 from typing import Any
 from unicodedata import category
 
@@ -24,6 +25,7 @@ def printable(text: str) -> str:
     return "".join(c if is_printable(c) else f"‹U+{ord(c):04X}›" for c in text)
 
 
+@lru_cache(maxsize=4096)
 def is_printable(character: str) -> bool:
     """Whether a document can show the character."""
     if character in BREAKS:
