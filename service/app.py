@@ -10,11 +10,11 @@ from fastapi.concurrency import run_in_threadpool
 
 from service import api, pages
 from service.api.measured import Measured
+from service.application import Application, Gate
 from service.background.deliver_messages import deliver_until
 from service.background.derive_pending import derive_pending
 from service.background.diagnose_pending import diagnose_pending
 from service.background.watch_fleet import watch_fleet
-from service.dependencies import Application
 from service.settings import VERSION, Settings
 from service.storage import Database, Files, Storage
 
@@ -34,7 +34,8 @@ def utc_now() -> datetime:
 
 def create_app(settings: Settings, clock: Callable[[], datetime] = utc_now) -> FastAPI:
     """The service on the database and the folder that the settings name; the schema must be up to date."""
-    application = Application(settings, Storage(Database(settings.database), Files(settings.files)), clock)
+    storage = Storage(Database(settings.database), Files(settings.files))
+    application = Application(settings, storage, clock, Gate(settings))
     app = FastAPI(
         title="imu-health",
         version=VERSION,

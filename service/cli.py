@@ -36,6 +36,9 @@ COMMANDS = {
     "plan": "plan.plan_session",
     "parity": "parity.parity",
     "recalibrate": "recalibrate.recalibrate_units",
+    "user": "accounts.user",
+    "token": "accounts.token",
+    "audit": "accounts.audit",
     "db": "database.database",
 }
 """Every command, and where it is below `service.commands`: a function, or commands of its own."""

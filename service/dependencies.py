@@ -1,36 +1,30 @@
 """What routes of the API and of the pages ask for by type."""
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Annotated
 
 from fastapi import BackgroundTasks, Depends, Request
 from starlette.types import Message
 
+from service.admission import PersonOf
+from service.application import Application, application_of
 from service.background.diagnose_pending import diagnose_quietly
 from service.errors import TooLargeError
-from service.flows.diagnose import InProgress, diagnose_now_or_later
+from service.flows.diagnose import diagnose_now_or_later
 from service.flows.receive import Reception
 from service.metrics import Metrics
 from service.records.diagnosis import StoredDiagnosis
+from service.records.identity import Person
 from service.settings import Settings
 from service.storage import Storage
 from service.storage.store import Store
 
+CREW = "crew"
+"""Who uploads, where nobody says who they are."""
 ENVELOPE = 64 * 1024
 """Bytes that a form may add to its files: for each of 200 a boundary and headers of some 300."""
-
-
-@dataclass(frozen=True)
-class Application:
-    """What `create_app` joins and every request can reach, as ``app.state.application``."""
-
-    settings: Settings
-    storage: Storage
-    clock: Callable[[], datetime]
-    diagnosing: InProgress = field(default_factory=InProgress)
-    metrics: Metrics = field(default_factory=Metrics)
 
 
 @dataclass(frozen=True)
@@ -51,40 +45,44 @@ class Diagnoser:
         self.after_the_answer.add_task(diagnose_quietly, own.storage, id, own.clock(), own.diagnosing)
 
 
-def _application(request: Request) -> Application:
-    application: Application = request.app.state.application
-    return application
-
-
 def _settings(request: Request) -> Settings:
-    return _application(request).settings
+    return application_of(request).settings
 
 
-def _storage(request: Request) -> Storage:
-    return _application(request).storage
+def _storage(request: Request, person: PersonOf) -> Storage:
+    return _acting(application_of(request).storage, person)
+
+
+def _acting(storage: Storage, person: Person) -> Storage:
+    """The same stores; the audit trail names who acts."""
+    return replace(storage, database=storage.database.acting(person.account))
+
+
+StorageOf = Annotated[Storage, Depends(_storage)]
+"""Both stores, for flows that write."""
 
 
 def _metrics(request: Request) -> Metrics:
-    return _application(request).metrics
+    return application_of(request).metrics
 
 
 def _now(request: Request) -> datetime:
-    return _application(request).clock()
+    return application_of(request).clock()
 
 
 def _reading(request: Request) -> Iterator[Store]:
-    with _application(request).storage.database.reading() as store:
+    with application_of(request).storage.database.reading() as store:
         yield store
 
 
 def _diagnoser(request: Request, after_the_answer: BackgroundTasks) -> Diagnoser:
-    return Diagnoser(_application(request), after_the_answer)
+    return Diagnoser(application_of(request), after_the_answer)
 
 
-def _reception(request: Request, after_the_answer: BackgroundTasks) -> Reception:
-    own = _application(request)
+def _reception(request: Request, storage: StorageOf, person: PersonOf, after_the_answer: BackgroundTasks) -> Reception:
+    own = application_of(request)
     later = Diagnoser(own, after_the_answer).later
-    return Reception(own.storage, own.settings.coverage_factor, own.metrics, later)
+    return Reception(storage, own.settings.coverage_factor, own.metrics, later, person.signs(CREW))
 
 
 def limited(request: Request, most: int, *, is_form: bool) -> Request:
@@ -107,8 +105,6 @@ def limited(request: Request, most: int, *, is_form: bool) -> Request:
 
 SettingsOf = Annotated[Settings, Depends(_settings)]
 """The settings of the service."""
-StorageOf = Annotated[Storage, Depends(_storage)]
-"""Both stores, for flows that write."""
 MetricsOf = Annotated[Metrics, Depends(_metrics)]
 """The figures of the service."""
 DiagnoserOf = Annotated[Diagnoser, Depends(_diagnoser)]

@@ -1,10 +1,13 @@
 """Errors of the service: one tree; the class is the status, and every answer has one shape (problem+json, RFC 9457).
 
 ServiceError (500)
+├── SignInError (401)         somebody must sign in first, or did so wrongly
+├── ForbiddenError (403)      the one who asked may not do this
 ├── NotFoundError (404)       no such session, unit or unit type
 ├── ConflictError (409)       what is asked for does not fit what was done before
 ├── RefusedError (422)        an upload or a request that cannot be used; holds every problem with its place
 ├── TooLargeError (413)       an upload beyond the limit
+├── TooOftenError (429)       wrong sign-ins in a row; try again after `retry_after`
 ├── NoSpaceError (507)        the disk is full; nothing was stored
 └── AwayError (503)           the database does not answer or is not up to date; try again after `retry_after`
 """
@@ -27,6 +30,18 @@ class ServiceError(Exception):
     def title(self) -> str:
         """The status in words."""
         return self.status.phrase
+
+
+class SignInError(ServiceError):
+    """Somebody must sign in first, or did so wrongly."""
+
+    status = HTTPStatus.UNAUTHORIZED
+
+
+class ForbiddenError(ServiceError):
+    """The one who asked may not do this."""
+
+    status = HTTPStatus.FORBIDDEN
 
 
 class NotFoundError(ServiceError):
@@ -55,6 +70,13 @@ class TooLargeError(ServiceError):
     """An upload beyond the limit."""
 
     status = HTTPStatus.REQUEST_ENTITY_TOO_LARGE
+
+
+class TooOftenError(ServiceError):
+    """Too many wrong sign-ins in a row."""
+
+    status = HTTPStatus.TOO_MANY_REQUESTS
+    retry_after = 60
 
 
 class NoSpaceError(ServiceError):

@@ -1,8 +1,9 @@
 """What an operator sets, by environment variables that start with IMU_HEALTH_."""
 
 from importlib.metadata import version
+from ipaddress import ip_address
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from platformdirs import user_data_dir
 from pydantic import Field, field_validator
@@ -33,6 +34,17 @@ class Settings(BaseSettings):
     )
     host: str = Field(default="127.0.0.1", description="Address to listen on.")
     port: int = Field(default=8000, ge=0, le=65535, description="Port to listen on.")
+    sign_in: Literal["auto", "required", "off"] = Field(
+        default="auto",
+        description="Who must sign in. auto: nobody while the service listens on this machine only and there is no "
+        "account yet; everybody otherwise. off: nobody, whoever reaches the address.",
+    )
+    metrics_token: str = Field(
+        default="",
+        pattern="^([!-~]{16,})?$",
+        repr=False,
+        description="Bearer token that opens /metrics and nothing else, 16 characters or more.",
+    )
     max_upload_bytes: int = Field(default=64 * 1024 * 1024, gt=0, description="Largest upload that is accepted, bytes.")
     coverage_factor: float = Field(
         default=2.0, gt=0, le=5, description="k: expanded uncertainty and guard band are k times the standard one."
@@ -61,6 +73,14 @@ class Settings(BaseSettings):
     @classmethod
     def _split(cls, given: object) -> object:
         return tuple(filter(None, (h.strip() for h in given.split(",")))) if isinstance(given, str) else given
+
+    @property
+    def is_local(self) -> bool:
+        """Whether only programs on this machine reach the service."""
+        try:
+            return ip_address(self.host).is_loopback
+        except ValueError:
+            return self.host == "localhost"
 
     @property
     def database(self) -> str:

@@ -4,6 +4,7 @@ from functools import cache
 
 from fastapi import APIRouter, FastAPI
 
+from service.admission import ADMITTED
 from service.api import (
     certificates,
     diagnoses,
@@ -11,6 +12,7 @@ from service.api import (
     feeds,
     flags,
     fleet,
+    identity,
     labels,
     models,
     notes,
@@ -26,8 +28,9 @@ from service.api import (
 )
 from service.api.openapi import describe
 from service.api.problems import add_problem_handlers
+from service.identity.access import API
 
-PREFIX = "/api/v1"
+PREFIX = API
 """The version of the contract is part of every address."""
 
 
@@ -41,10 +44,10 @@ def mount(app: FastAPI) -> None:
 @cache
 def _every() -> APIRouter:
     """The routes of all applications: what a route does depends on its request alone, and building them is slow."""
-    api, every = APIRouter(prefix=PREFIX), APIRouter()
+    api, every = APIRouter(prefix=PREFIX), APIRouter(dependencies=ADMITTED)
     for resource in (
         sessions, records, certificates, diagnoses, events, usable, labels, units, unit_types, models, plans, stands,
-        flags, notes, webhooks, feeds, fleet,
+        flags, notes, webhooks, feeds, fleet, identity,
     ):  # fmt: skip
         api.include_router(resource.router)
     every.include_router(api)

@@ -4,6 +4,7 @@ from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query, Response
 
+from service.admission import PersonOf
 from service.api.exports import as_file
 from service.api.schemas.corrections import CorrectionDocument
 from service.api.schemas.fields import SessionId, Text
@@ -36,6 +37,7 @@ def read_certificate(
     storage: StorageOf,
     settings: SettingsOf,
     now: Now,
+    person: PersonOf,
     *,
     format: Annotated[
         Literal["pdf", "dcc"], Query(description="For people, or as a Digital Calibration Certificate for programs.")
@@ -49,7 +51,7 @@ def read_certificate(
     A session that is not accepted has none.
     """
     found = certified_session(storage, diagnose(storage, id, now), laboratory_of(settings))
-    issue = issue_certificate(storage, statement_of(found), now, who=by.strip() or NOT_STATED)
+    issue = issue_certificate(storage, statement_of(found), now, who=person.signs(by.strip()) or NOT_STATED)
     name = f"{found.report.session.unit}-{issue.number}-certificate"
     if format == "dcc":
         return as_file(certificate_dcc(found, issue), XML, f"{name}.xml")

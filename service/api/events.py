@@ -2,6 +2,7 @@
 
 from fastapi import APIRouter
 
+from service.admission import PersonOf
 from service.api.schemas.events import (
     FoundAndLeftLine,
     FoundAndLeftSchema,
@@ -26,9 +27,11 @@ router = APIRouter(prefix="/units", tags=["units"])
 
 
 @router.post("/{serial:path}/services", status_code=201, responses=errors(400, 404, 422))
-def add_service(serial: Serial, new: NewServiceSchema, reception: ReceptionOf, now: Now) -> ServiceSchema:
+def add_service(
+    serial: Serial, new: NewServiceSchema, reception: ReceptionOf, now: Now, person: PersonOf
+) -> ServiceSchema:
     """Record a known break; the first session measured after it is the new reference, whenever it was uploaded."""
-    done = NewService(new.kind, new.at or now, new.note, new.by, new.sensor)
+    done = NewService(new.kind, new.at or now, new.note, person.signs(new.by), new.sensor)
     k = reception.coverage_factor
     service, derived = record_service(reception.storage, serial, done, now, coverage_factor=k)
     ask_again(reception, () if derived is None else derived.undiagnosed)
@@ -43,9 +46,9 @@ def read_notes(serial: Serial, store: Reading) -> NoteList:
 
 
 @router.post("/{serial:path}/notes", status_code=201, responses=errors(400, 404, 422))
-def write_note(serial: Serial, new: NewNote, storage: StorageOf, now: Now) -> NoteSchema:
+def write_note(serial: Serial, new: NewNote, storage: StorageOf, now: Now, person: PersonOf) -> NoteSchema:
     """Keep a remark on the unit's history. It can be withdrawn, never changed."""
-    note = add_note(storage, serial, new.text, at=new.at or now, who=new.by, now=now)
+    note = add_note(storage, serial, new.text, at=new.at or now, who=person.signs(new.by), now=now)
     return NoteSchema.model_validate(note)
 
 

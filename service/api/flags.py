@@ -4,6 +4,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
+from service.admission import PersonOf
 from service.api.schemas.fields import Number, Text, Window, WindowOf
 from service.api.schemas.flags import FlagPage, FlagSchema, Handling
 from service.api.schemas.problem import errors
@@ -38,12 +39,12 @@ def list_flags(
 
 
 @router.post("/{id}/acknowledge", responses=errors(400, 404, 409, 422))
-def acknowledge(id: Number, handling: Handling, storage: StorageOf, now: Now) -> FlagSchema:
+def acknowledge(id: Number, handling: Handling, storage: StorageOf, now: Now, person: PersonOf) -> FlagSchema:
     """Say that somebody looks after the flag, and why it can stay for now."""
-    return FlagSchema.model_validate(acknowledge_flag(storage, id, handling.by, handling.why, now))
+    return FlagSchema.model_validate(acknowledge_flag(storage, id, person.signs(handling.by), handling.why, now))
 
 
 @router.post("/{id}/resolve", responses=errors(400, 404, 409, 422))
-def resolve(id: Number, handling: Handling, storage: StorageOf, now: Now) -> FlagSchema:
+def resolve(id: Number, handling: Handling, storage: StorageOf, now: Now, person: PersonOf) -> FlagSchema:
     """Say that the matter is settled, and how."""
-    return FlagSchema.model_validate(resolve_flag(storage, id, handling.by, handling.why, now))
+    return FlagSchema.model_validate(resolve_flag(storage, id, person.signs(handling.by), handling.why, now))

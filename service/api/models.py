@@ -4,6 +4,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
+from service.admission import PersonOf
 from service.api.schemas.fields import Number, Text, WindowOf
 from service.api.schemas.flags import Handling
 from service.api.schemas.models import ModelPage, ModelSchema
@@ -17,9 +18,9 @@ router = APIRouter(prefix="/models", tags=["models"])
 
 
 @router.post("/{id}/withdraw", status_code=201, responses=errors(400, 404, 409, 422))
-def withdraw_cause(id: Number, handling: Handling, storage: StorageOf, now: Now) -> ModelSchema:
+def withdraw_cause(id: Number, handling: Handling, storage: StorageOf, now: Now, person: PersonOf) -> ModelSchema:
     """Take an accepted cause out of the model: a revision of its own; sessions from now on are calibrated without."""
-    return ModelSchema.model_validate(withdraw_model(storage, id, handling.by, handling.why, now))
+    return ModelSchema.model_validate(withdraw_model(storage, id, person.signs(handling.by), handling.why, now))
 
 
 @router.get("", responses=errors(422))

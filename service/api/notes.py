@@ -2,6 +2,7 @@
 
 from fastapi import APIRouter
 
+from service.admission import PersonOf
 from service.api.schemas.events import NoteSchema
 from service.api.schemas.fields import Number
 from service.api.schemas.flags import Handling
@@ -13,6 +14,6 @@ router = APIRouter(prefix="/notes", tags=["units"])
 
 
 @router.post("/{id}/withdraw", responses=errors(400, 404, 409, 422))
-def withdraw(id: Number, handling: Handling, storage: StorageOf, now: Now) -> NoteSchema:
+def withdraw(id: Number, handling: Handling, storage: StorageOf, now: Now, person: PersonOf) -> NoteSchema:
     """Say that a note no longer holds, and why. It stays on record."""
-    return NoteSchema.model_validate(withdraw_note(storage, id, handling.by, handling.why, now))
+    return NoteSchema.model_validate(withdraw_note(storage, id, person.signs(handling.by), handling.why, now))

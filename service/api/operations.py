@@ -29,7 +29,7 @@ def readiness(storage: StorageOf) -> ServiceState:
     return ServiceState(status="ready")
 
 
-@router.get("/metrics", responses={200: {"content": {"text/plain": {}}}}, response_class=Response)
+@router.get("/metrics", responses={200: {"content": {"text/plain": {}}}, **errors()}, response_class=Response)
 def metrics(figures: MetricsOf) -> Response:
     """Figures for Prometheus."""
     return Response(figures.text(), media_type=CONTENT_TYPE_LATEST)

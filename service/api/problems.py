@@ -10,7 +10,7 @@ from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
 
 from estimator.errors import Problem
-from service.errors import AwayError, RefusedError, ServiceError
+from service.errors import AwayError, RefusedError, ServiceError, SignInError, TooOftenError
 from service.log import log
 
 MEDIA_TYPE = "application/problem+json"
@@ -46,7 +46,9 @@ def problem(
 
 def _service_error(_: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, ServiceError)
-    headers = {"Retry-After": str(error.retry_after)} if isinstance(error, AwayError) else None
+    headers = {"Retry-After": str(error.retry_after)} if isinstance(error, AwayError | TooOftenError) else None
+    if isinstance(error, SignInError):
+        headers = {"WWW-Authenticate": "Bearer"}
     found = error.problems if isinstance(error, RefusedError) else None
     return problem(error.status, error.detail, found, headers)
 

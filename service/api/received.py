@@ -1,21 +1,26 @@
 """What came with an upload: the bytes unchanged, however they were sent, and never more than the limit."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Annotated, Any
 
 from fastapi import Depends, Query, Request
 from starlette.datastructures import UploadFile
 
 from estimator.errors import Problem
+from service.admission import PersonOf
 from service.api.schemas.fields import LongText, Text
 from service.api.schemas.sessions import SessionFile
 from service.dependencies import SettingsOf, limited
-from service.errors import RefusedError
+from service.errors import ForbiddenError, RefusedError
+from service.records.identity import Role
 from service.records.received import Replaced, SentFile
+from service.settings import Settings
 
 NEEDED = "is missing; a session is replaced by somebody and for a reason"
 LONGEST_WHY = 2000
 """Characters, as for every reason."""
+REPLACES = "A session is replaced by an engineer: upload the file as it is, and tell one."
 NO_FILE = "The form holds no file. Send the session as the body, or as the form's part `file`."
 
 
@@ -29,10 +34,23 @@ FIELDS = ("supersedes", "by", "why")
 
 
 async def _received(
-    request: Request, settings: SettingsOf, supersedes: Supersedes = None, by: By = None, why: Why = None
+    request: Request,
+    settings: SettingsOf,
+    person: PersonOf,
+    supersedes: Supersedes = None,
+    by: By = None,
+    why: Why = None,
 ) -> SentFile:
     """The file, from the body or from the part `file` of a form."""
-    stated = dict(zip(FIELDS, (supersedes, by, why), strict=True))
+    sent = await _sent(request, settings, {"supersedes": supersedes, "by": person.signs(by or ""), "why": why})
+    if sent.replaces is None:
+        return sent
+    if not person.may(Role.ENGINEER):
+        raise ForbiddenError(REPLACES)
+    return replace(sent, replaces=replace(sent.replaces, who=person.signs(sent.replaces.who)))
+
+
+async def _sent(request: Request, settings: Settings, stated: dict[str, str | None]) -> SentFile:
     content_type = request.headers.get("content-type", "").lower()
     is_form = content_type.startswith("multipart/form-data")
     body = limited(request, settings.max_upload_bytes, is_form=is_form)

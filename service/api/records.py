@@ -2,6 +2,7 @@
 
 from fastapi import APIRouter, Request
 
+from service.admission import PersonOf
 from service.api.schemas.events import ServiceSchema
 from service.api.schemas.fields import Number, Serial, SessionId
 from service.api.schemas.flags import Handling
@@ -34,49 +35,51 @@ def read_states(id: SessionId, store: Reading) -> StateList:
 
 
 @router.post("/sessions/{id}/withdraw", responses=REFUSALS, tags=["sessions"])
-def withdraw(id: SessionId, handling: Handling, reception: ReceptionOf, now: Now) -> SessionSchema:
+def withdraw(id: SessionId, handling: Handling, reception: ReceptionOf, now: Now, person: PersonOf) -> SessionSchema:
     """Take a session back. It stays readable, and nothing that is known of its unit rests on it any more."""
-    step = Step(handling.by, now, handling.why)
+    step = Step(person.signs(handling.by), now, handling.why)
     session, derived = withdraw_session(reception.storage, deriving(reception, now), id, step)
     ask_again(reception, derived.undiagnosed)
     return SessionSchema.model_validate(session)
 
 
 @router.post("/sessions/{id}/accept", responses=REFUSALS, tags=["sessions"])
-def accept(id: SessionId, handling: Handling, reception: ReceptionOf, now: Now) -> SessionSchema:
+def accept(id: SessionId, handling: Handling, reception: ReceptionOf, now: Now, person: PersonOf) -> SessionSchema:
     """Say that a session counts that was questioned, withdrawn or superseded."""
-    step = Step(handling.by, now, handling.why)
+    step = Step(person.signs(handling.by), now, handling.why)
     session, derived = accept_session(reception.storage, deriving(reception, now), id, step)
     ask_again(reception, derived.undiagnosed)
     return SessionSchema.model_validate(session)
 
 
 @router.post("/sessions/{id}/correct", responses=REFUSALS, tags=["sessions"])
-def correct(id: SessionId, given: Correcting, request: Request, reception: ReceptionOf, now: Now) -> ReceiptSchema:
+def correct(
+    id: SessionId, given: Correcting, request: Request, reception: ReceptionOf, now: Now, person: PersonOf
+) -> ReceiptSchema:
     """Make a corrected file of a questioned session's, with what would put it right, and let it stand for it."""
-    receipt = correct_session(reception, id, given.by, now)
+    receipt = correct_session(reception, id, person.signs(given.by), now)
     url = str(request.url_for("read_session", id=receipt.id))
     return ReceiptSchema.model_validate({**vars(receipt), "url": url}, from_attributes=True)
 
 
 @router.post("/sessions/{id}/supersede", responses=REFUSALS, tags=["sessions"])
-def supersede(id: SessionId, given: Superseding, reception: ReceptionOf, now: Now) -> SessionSchema:
+def supersede(id: SessionId, given: Superseding, reception: ReceptionOf, now: Now, person: PersonOf) -> SessionSchema:
     """Say that another stored session stands for this one: a corrected file, of another unit or date."""
     by = given.superseded_by or successor_of(reception.storage, id)
-    replaced = Replaced(id, given.by, given.why)
+    replaced = Replaced(id, person.signs(given.by), given.why)
     session, derived = supersede_session(reception.storage, deriving(reception, now), replaced, by)
     ask_again(reception, derived.undiagnosed)
     return SessionSchema.model_validate(session)
 
 
 @router.post("/units/{serial:path}/reference", responses=REFUSALS, tags=["units"])
-def choose(serial: Serial, new: NewReference, reception: ReceptionOf, now: Now) -> SessionSchema:
+def choose(serial: Serial, new: NewReference, reception: ReceptionOf, now: Now, person: PersonOf) -> SessionSchema:
     """Choose and approve the session that all others of its epoch are judged against."""
     with reception.storage.database.reading() as store:
         owner = store.sessions.get(new.session).unit
     if owner != serial:
         raise ConflictError(f"Session {new.session} is of {owner}, not of {serial}.")
-    step = Step(new.by, now, new.why)
+    step = Step(person.signs(new.by), now, new.why)
     session, derived = choose_reference(reception.storage, deriving(reception, now), new.session, step)
     ask_again(reception, derived.undiagnosed)
     return SessionSchema.model_validate(session)
@@ -90,9 +93,9 @@ def read_derivation(serial: Serial, store: Reading) -> DerivationSchema:
 
 
 @router.post("/services/{id}/withdraw", responses=REFUSALS, tags=["units"])
-def withdraw_break(id: Number, handling: Handling, reception: ReceptionOf, now: Now) -> ServiceSchema:
+def withdraw_break(id: Number, handling: Handling, reception: ReceptionOf, now: Now, person: PersonOf) -> ServiceSchema:
     """Take a service back. It stays on record and is no break any more."""
-    step = Step(handling.by, now, handling.why)
+    step = Step(person.signs(handling.by), now, handling.why)
     service, derived = withdraw_service(reception.storage, deriving(reception, now), id, step)
     ask_again(reception, derived.undiagnosed)
     return ServiceSchema.model_validate(service)

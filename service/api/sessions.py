@@ -4,6 +4,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 
+from service.admission import PersonOf
 from service.api.received import REQUEST_BODY, FileOf
 from service.api.schemas.events import NewStage
 from service.api.schemas.fields import Revision, SessionId, Text, WindowOf
@@ -84,9 +85,9 @@ def read_calibration(id: SessionId, store: Reading, revision: Revision = None) -
 
 
 @router.put("/{id}/stage", responses=errors(400, 404, 422))
-def mark_session(id: SessionId, new: NewStage, storage: StorageOf, now: Now) -> SessionSchema:
+def mark_session(id: SessionId, new: NewStage, storage: StorageOf, now: Now, person: PersonOf) -> SessionSchema:
     """Say whether the session shows the unit as found or as left; the file's own word gives way to this."""
-    return SessionSchema.model_validate(set_stage(storage, id, new.stage, new.by, now))
+    return SessionSchema.model_validate(set_stage(storage, id, new.stage, person.signs(new.by), now))
 
 
 @router.get("/{id}/file", responses={200: {"content": ANY_BYTES}, **errors(404, 422)}, response_class=Response)

@@ -4,6 +4,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path
 
+from service.admission import PersonOf
 from service.api.schemas.fields import TEXT
 from service.api.schemas.papers import NewStandCertificate, StandCertificateList, StandCertificateSchema
 from service.api.schemas.problem import errors
@@ -35,8 +36,10 @@ def list_stand_certificates(name: StandName, store: Reading) -> StandCertificate
 
 @router.put("/{name:path}/certificate", responses=errors(400, 404, 422))
 def put_stand_certificate(
-    name: StandName, new: NewStandCertificate, storage: StorageOf, now: Now
+    name: StandName, new: NewStandCertificate, storage: StorageOf, now: Now, person: PersonOf
 ) -> StandCertificateSchema:
     """Record the certificate of a stand's own calibration; a session is judged by the one of its day."""
     given = StandCertificate(name, new.number, new.issued_by, new.issued_on, new.valid_until)
-    return StandCertificateSchema.model_validate(record_stand_certificate(storage, given, now, who=new.by))
+    return StandCertificateSchema.model_validate(
+        record_stand_certificate(storage, given, now, who=person.signs(new.by))
+    )

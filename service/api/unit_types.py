@@ -4,10 +4,11 @@ from dataclasses import fields
 
 from fastapi import APIRouter
 
+from service.admission import PersonOf
 from service.api.schemas.fields import TypeName, WindowOf
 from service.api.schemas.problem import errors
 from service.api.schemas.units import NewTolerances, TolerancesSchema, UnitTypePage, UnitTypeSchema
-from service.dependencies import Now, Reading, StorageOf
+from service.dependencies import CREW, Now, Reading, StorageOf
 from service.flows.set_tolerances import set_tolerances
 from service.records.unit import Tolerances
 
@@ -30,10 +31,13 @@ def read_unit_type(name: TypeName, store: Reading) -> UnitTypeSchema:
 
 
 @router.put("/{name:path}", responses=errors(400, 404, 422))
-def change_tolerances(name: TypeName, new: NewTolerances, storage: StorageOf, now: Now) -> UnitTypeSchema:
+def change_tolerances(
+    name: TypeName, new: NewTolerances, storage: StorageOf, now: Now, person: PersonOf
+) -> UnitTypeSchema:
     """Other tolerances, from the next session on, and another longest interval. Past decisions keep theirs."""
     gyro = None if new.gyro_tolerances is None else _record(new.gyro_tolerances)
-    changed = set_tolerances(storage, name, _record(new.tolerances), gyro, now, interval_days=new.maximum_interval_days)
+    days, who = new.maximum_interval_days, person.signs(CREW)
+    changed = set_tolerances(storage, name, _record(new.tolerances), gyro, now, interval_days=days, who=who)
     return UnitTypeSchema.model_validate(changed)
 
 

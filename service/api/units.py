@@ -4,6 +4,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 
+from service.admission import PersonOf
 from service.api.exports import as_csv, as_parquet, history_table
 from service.api.flags import WantedState, flag_page
 from service.api.schemas.fields import Moment, Serial, WantedText, WantedVerdict, WindowOf
@@ -19,7 +20,7 @@ from service.api.schemas.units import (
     UnitReportSchema,
     UnitSummarySchema,
 )
-from service.dependencies import Now, Reading, SettingsOf, StorageOf
+from service.dependencies import CREW, Now, Reading, SettingsOf, StorageOf
 from service.flows.recalibrate import recalibrate
 from service.flows.set_customer import set_customer
 from service.flows.set_lot import set_lot
@@ -93,9 +94,9 @@ def read_outlook(
 
 
 @router.put("/{serial:path}/lot", responses=errors(400, 404, 422))
-def change_lot(serial: Serial, new: NewLot, storage: StorageOf, now: Now) -> UnitSummarySchema:
+def change_lot(serial: Serial, new: NewLot, storage: StorageOf, now: Now, person: PersonOf) -> UnitSummarySchema:
     """Record the unit's production lot; a lot that drifts unlike the others is named on the fleet page."""
-    return UnitSummarySchema.model_validate(set_lot(storage, serial, new.lot or None, now))
+    return UnitSummarySchema.model_validate(set_lot(storage, serial, new.lot or None, now, who=person.signs(CREW)))
 
 
 @router.get("/{serial:path}/customer", responses=errors(404, 422))
@@ -105,16 +106,19 @@ def read_customer(serial: Serial, store: Reading) -> CustomerSchema:
 
 
 @router.put("/{serial:path}/customer", responses=errors(400, 404, 422))
-def change_customer(serial: Serial, new: NewCustomer, storage: StorageOf, now: Now) -> CustomerSchema:
+def change_customer(serial: Serial, new: NewCustomer, storage: StorageOf, now: Now, person: PersonOf) -> CustomerSchema:
     """Record for whom the unit is calibrated; its certificates name them."""
     customer = Customer(new.name.strip(), new.address.strip())
-    return CustomerSchema.model_validate(set_customer(storage, serial, customer, now, who=new.by))
+    return CustomerSchema.model_validate(set_customer(storage, serial, customer, now, who=person.signs(new.by)))
 
 
 @router.post("/{serial:path}/recalibrate", responses=errors(404, 422))
-def recalibrate_unit(serial: Serial, storage: StorageOf, settings: SettingsOf, now: Now) -> RecalibratedSchema:
+def recalibrate_unit(
+    serial: Serial, storage: StorageOf, settings: SettingsOf, now: Now, person: PersonOf
+) -> RecalibratedSchema:
     """Compute the stored sessions again under the model in force. What was computed before stays readable."""
-    done = recalibrate(storage, serial, now, coverage_factor=settings.coverage_factor)
+    k, who = settings.coverage_factor, person.signs("engineer")
+    done = recalibrate(storage, serial, now, coverage_factor=k, who=who)
     return RecalibratedSchema.model_validate(done)
 
 

@@ -4,6 +4,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
+from service.admission import PersonOf
 from service.api.schemas.fields import Limit, Name, Number
 from service.api.schemas.problem import errors
 from service.api.schemas.webhooks import DeliveryList, DeliverySchema, NewWebhook, WebhookList, WebhookSchema
@@ -21,9 +22,11 @@ def list_webhooks(store: Reading) -> WebhookList:
 
 
 @router.post("", status_code=201, responses=errors(400, 422))
-def register_webhook(new: NewWebhook, storage: StorageOf, settings: SettingsOf, now: Now) -> WebhookSchema:
+def register_webhook(
+    new: NewWebhook, storage: StorageOf, settings: SettingsOf, now: Now, person: PersonOf
+) -> WebhookSchema:
     """Tell an address of flags and verdicts from now on. Its host must be among those that the operator allows."""
-    webhook = register(storage, settings.webhook_hosts, new.url, new.secret, who=new.by, now=now)
+    webhook = register(storage, settings.webhook_hosts, new.url, new.secret, who=person.signs(new.by), now=now)
     return WebhookSchema.model_validate(webhook)
 
 

@@ -1,5 +1,6 @@
 """Talking to a running service over HTTP; its refusals become the errors that commands already understand."""
 
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -12,6 +13,8 @@ import httpx
 from estimator.errors import Problem
 from service.errors import RefusedError, ServiceError
 
+TOKEN = "IMU_HEALTH_TOKEN"
+"""Environment variable with the token of whoever calls; on a command line others on the machine could read it."""
 TIMEOUT = httpx.Timeout(300.0, connect=5.0)
 """Seconds; the report of a large fleet takes some tens."""
 
@@ -23,6 +26,9 @@ def connected(server: str) -> "Iterator[Client]":
         http = httpx.Client(base_url=f"{server.rstrip('/')}/api/v1", timeout=TIMEOUT)
     except httpx.InvalidURL as fault:
         raise ServiceError(f"{server} is not an address: {fault}") from fault
+    token = os.environ.get(TOKEN, "")
+    if token:
+        http.headers["Authorization"] = f"Bearer {token}"
     with http:
         yield Client(server, http)
 

@@ -1,21 +1,26 @@
 """`imu-health serve`: the service, with its schema up to date, and the demonstration fleet where it is asked for."""
 
-import ipaddress
 import socket
+from dataclasses import dataclass
 from typing import Annotated
 
 import typer
 import uvicorn
 
-from service.app import create_app
+from service.app import create_app, utc_now
 from service.commands.console import progress, say
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.demo.fill import FILES, fill, is_wanted
+from service.flows.identity.links import make_link
 from service.log import write_log
 from service.settings import Settings
 from service.storage import Database, Files, Storage
 from service.storage.schema import upgrade
 
+STARTED = "who started the service"
+"""As the audit trail names them."""
+FIRST = "To make everybody sign in, open this within an hour and make the first account:"
+AGAIN = "To sign in as {login} with a new password, once, within an hour:"
 LAST_ANSWERS = 10
 """Seconds that a stopping service gives the requests at hand."""
 
@@ -29,8 +34,8 @@ def serve(
 ) -> None:
     """Start the service: schema brought up to date, pages and API on one address."""
     settings = settings_from(host=host, port=port, database_url=database_url, data_folder=data_folder)
-    if not _is_loopback(settings.host):
-        say(f"Listening on {settings.host}: anyone who reaches this address can read and upload, there is no sign-in.")
+    if settings.sign_in == "off" and not settings.is_local:
+        say(f"Listening on {settings.host} without sign-in: whoever reaches this address may do everything.")
     upgrade(settings.database)
     if demo:
         _fill(settings)
@@ -43,23 +48,48 @@ def serve(
         access_log=False,
         timeout_graceful_shutdown=LAST_ANSWERS,
     )
-    _Server(config).run()
+    _Server(config, _invitation(settings)).run()
+
+
+@dataclass(frozen=True)
+class _Invitation:
+    """A link for whoever starts the service."""
+
+    secret: str
+    words: str
 
 
 class _Server(uvicorn.Server):
-    """Says where it listens once it does."""
+    """Says where it listens once it does, and how to sign in."""
+
+    def __init__(self, config: uvicorn.Config, invitation: _Invitation | None) -> None:
+        super().__init__(config)
+        self._invitation = invitation
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
         host, port = self.servers[0].sockets[0].getsockname()[:2]
-        typer.echo(f"imu-health is ready: open http://{f'[{host}]' if ':' in host else host}:{port}")
+        address = f"http://{f'[{host}]' if ':' in host else host}:{port}"
+        typer.echo(f"imu-health is ready: open {address}")
+        if self._invitation is not None:
+            typer.echo(f"{self._invitation.words} {address}/sign-in/{self._invitation.secret}")
 
 
-def _is_loopback(host: str) -> bool:
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return host == "localhost"
+def _invitation(settings: Settings) -> _Invitation | None:
+    """For the first account of all; later for the administrator at this machine, whose log others do not read."""
+    if settings.sign_in == "off":
+        return None
+    storage = Storage(Database(settings.database), Files(settings.files))
+    with storage.database.reading() as store:
+        has_accounts, admin = store.accounts.any(), store.accounts.first_admin()
+    invitation = None
+    if not has_accounts:
+        invitation = _Invitation(make_link(storage, None, utc_now(), STARTED), FIRST)
+    elif admin is not None and settings.is_local:
+        words = AGAIN.format(login=admin.login)
+        invitation = _Invitation(make_link(storage, admin.login, utc_now(), STARTED), words)
+    storage.database.close()
+    return invitation
 
 
 def _fill(settings: Settings) -> None:

@@ -37,7 +37,7 @@ def accept_model(storage: Storage, diagnosis: StoredDiagnosis, new: NewModel, no
         )
         revision = store.models.add(accepted)
         details = {"cause": new.cause, "sensors": list(finding.sensors), "session": session.id, "note": new.note}
-        store.log.audit(
+        store.audit.write(
             now, new.by, "accept model", f"{new.scope} {revision.subject}", {"revision": revision.id, **details}
         )
         return revision

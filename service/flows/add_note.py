@@ -10,5 +10,5 @@ def add_note(storage: Storage, serial: str, text: str, *, at: datetime, who: str
     """Keeps a note on a unit at a date."""
     with storage.database.writing() as store:
         id = store.notes.add(store.units.key(serial), at, text, who, now)
-        store.log.audit(now, who, "note", serial, {"note": id, "at": at.isoformat(), "text": text})
+        store.audit.write(now, who, "note", serial, {"note": id, "at": at.isoformat(), "text": text})
         return store.notes.get(id)

@@ -20,4 +20,4 @@ def change(
     store.states.put_session(session.id, state, superseded_by)
     store.states.add(RecordKind.SESSION, session.id, state, step, superseded_by)
     details = {"unit": session.unit, "before": session.state.value, "why": step.why, "superseded_by": superseded_by}
-    store.log.audit(step.at, step.who, DONE[state], session.id, details)
+    store.audit.write(step.at, step.who, DONE[state], session.id, details)

@@ -17,7 +17,7 @@ def choose_reference(storage: Storage, way: Deriving, id: str, step: Step) -> tu
         session = store.sessions.get(id)
         _require_possible(store, session)
         store.states.choose(unit, id, step)
-        store.log.audit(step.at, step.who, "choose reference", id, {"unit": session.unit, "why": step.why})
+        store.audit.write(step.at, step.who, "choose reference", id, {"unit": session.unit, "why": step.why})
         derived = derive_again(store, way, session.unit, session.started_at, (id,))
         return store.sessions.get(id), derived
 

@@ -96,7 +96,7 @@ def diagnose(storage: Storage, id: str, now: datetime) -> StoredDiagnosis:
     with storage.database.writing() as store:
         if store.diagnoses.add_once(made):
             details = {"state": made.state.value, "summary": made.summary}
-            store.log.audit(now, "diagnosis", "diagnose", id, details)
+            store.audit.write(now, "diagnosis", "diagnose", id, details)
             flag_diagnosis(store, made, now)
             if made.found is not None:
                 question_diagnosed(store, Deriving(storage.files, COVERAGE, now), id, made.found)

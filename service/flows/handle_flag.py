@@ -34,5 +34,5 @@ def _bring(storage: Storage, id: int, state: FlagState, *, who: str, why: str, n
         store.flags.put(id, now, state=state)
         store.notices.add(unit, DONE[state], now, who, why, flag=id)
         store.fleet.count_flags(unit)
-        store.log.audit(now, who, DONE[state], flag.unit, {"flag": id, "why": why})
+        store.audit.write(now, who, DONE[state], flag.unit, {"flag": id, "why": why})
         return store.flags.get(id)

@@ -35,5 +35,5 @@ def issue_certificate(storage: Storage, statement: Statement, now: datetime, *, 
             content_hash=statement.content_hash,
         )
         store.certificates.add(new)
-        store.log.audit(now, who, "certificate", new.number, {"replaces": new.replaces})
+        store.audit.write(now, who, "certificate", new.number, {"replaces": new.replaces})
     return new

@@ -100,4 +100,4 @@ def _put_in_force(store: Store, way: Deriving, serial: str, made: Sequence[_Made
     for one in new:
         known, now = before[one.session.id], store.sessions.get(one.session.id)
         details = {"revision": now.revision, "verdict": now.verdict.value, "before": known.verdict.value}
-        store.log.audit(way.at, who, "recalibrate", now.id, details)
+        store.audit.write(way.at, who, "recalibrate", now.id, details)

@@ -45,6 +45,8 @@ class Reception:
     metrics: Metrics
     later: Callable[[str], None]
     """Is given the id of a session that is to be diagnosed after the answer."""
+    who: str = "crew"
+    """That sends the files."""
 
 
 def receive(reception: Reception, file: SentFile, now: datetime) -> Receipt:
@@ -94,7 +96,10 @@ def ask_again(reception: Reception, ids: Iterable[str]) -> None:
 def _stored_or_refused(reception: Reception, file: SentFile, now: datetime) -> Receipt | RefusedError:
     k = reception.coverage_factor
     try:
-        return upload(reception.storage, file.content, file.filename, now, coverage_factor=k, replaces=file.replaces)
+        return upload(
+            reception.storage, file.content, file.filename, now,
+            coverage_factor=k, who=reception.who, replaces=file.replaces,
+        )  # fmt: skip
     except RefusedError as refusal:
         return refusal
 
@@ -182,7 +187,7 @@ def _store(store: Store, way: Deriving, received: Received, new: Calibrated, rep
     derived = derive_again(store, way, record.unit, since, (record.id,))
     stored = store.sessions.get(record.id)
     details = {"unit": stored.unit, "verdict": stored.verdict.value, "revision": stored.revision}
-    store.log.audit(received.at, received.who, "upload", stored.id, details)
+    store.audit.write(received.at, received.who, "upload", stored.id, details)
     return _receipt(stored, created=True, derived=derived, before=gone)
 
 

@@ -35,7 +35,7 @@ def record_service(
             step = Step(who, now, new.note or "recorded again")
             store.states.add(RecordKind.SERVICE, str(number), RecordState.ACCEPTED, step)
         details = {"kind": new.kind, "at": new.at.isoformat(), "note": new.note, "sensor": new.sensor}
-        store.log.audit(now, who, "service", serial, details)
+        store.audit.write(now, who, "service", serial, details)
         derived = derive_again(store, Deriving(storage.files, coverage_factor, now), serial, new.at)
         return store.services.get(number), derived
 

@@ -17,5 +17,5 @@ def record_stand_certificate(storage: Storage, new: StandCertificate, now: datet
         if new not in store.stand_certificates.of_stand(new.stand):
             store.stand_certificates.add(new, who, now)
             details = {"number": new.number, "valid_until": new.valid_until.isoformat()}
-            store.log.audit(now, who, "stand-certificate", new.stand, details)
+            store.audit.write(now, who, "stand-certificate", new.stand, details)
     return new

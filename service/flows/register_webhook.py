@@ -22,7 +22,7 @@ def register_webhook(
         raise RefusedError("The webhook cannot be registered.", (Problem("url", fault),))
     with storage.database.writing() as store:
         webhook = store.webhooks.add(url, secret, who, now)
-        store.log.audit(now, who, "add webhook", str(webhook.id), {"url": url})
+        store.audit.write(now, who, "add webhook", str(webhook.id), {"url": url})
         return webhook
 
 

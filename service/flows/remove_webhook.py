@@ -10,4 +10,4 @@ def remove_webhook(storage: Storage, id: int, who: str, now: datetime) -> None:
     with storage.database.writing() as store:
         url = store.webhooks.get(id).url
         store.webhooks.remove(id, now)
-        store.log.audit(now, who, "remove webhook", str(id), {"url": url})
+        store.audit.write(now, who, "remove webhook", str(id), {"url": url})

@@ -13,5 +13,5 @@ def set_customer(storage: Storage, serial: str, new: Customer, now: datetime, *,
         before = store.units.customer(serial)
         if before != new:
             store.units.set_customer(serial, new)
-            store.log.audit(now, who, "customer", serial, {"before": vars(before), "customer": vars(new)})
+            store.audit.write(now, who, "customer", serial, {"before": vars(before), "customer": vars(new)})
     return new

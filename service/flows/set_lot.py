@@ -11,8 +11,9 @@ def set_lot(storage: Storage, serial: str, lot: str | None, now: datetime, *, wh
     """Records the lot, or that none is known; the same one again changes nothing."""
     with storage.database.writing() as store:
         store.units.hold(serial)
-        if store.units.set_lot(serial, lot):
-            store.log.audit(now, who, "lot", serial, {"lot": lot})
+        was = store.units.set_lot(serial, lot)
+        if was != lot:
+            store.audit.write(now, who, "lot", serial, {"before": was, "lot": lot})
         found = store.fleet.unit(serial)
     if found is None:
         raise NotFoundError(f"There is no unit {serial!r}.")

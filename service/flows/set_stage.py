@@ -12,5 +12,5 @@ def set_stage(storage: Storage, id: str, stage: str | None, who: str, now: datet
         session = store.sessions.get(id)
         if session.stage != stage:
             store.sessions.set_stage(id, stage)
-            store.log.audit(now, who, "stage", id, {"unit": session.unit, "before": session.stage, "stage": stage})
+            store.audit.write(now, who, "stage", id, {"unit": session.unit, "before": session.stage, "stage": stage})
         return store.sessions.get(id)

@@ -25,12 +25,13 @@ def set_tolerances(
     with storage.database.writing() as store:
         current = store.unit_types.hold(name)
         if interval_days is not None and interval_days != current.maximum_interval_days:
+            was = current.maximum_interval_days
             current = store.unit_types.set_interval(name, interval_days)
             for serial in store.units.of_type(name):
                 refresh_outlook(store, serial)
-            store.log.audit(now, who, "interval", name, {"maximum_interval_days": interval_days})
+            store.audit.write(now, who, "interval", name, {"before": was, "maximum_interval_days": interval_days})
         if (current.tolerances, current.gyro_tolerances) == (tolerances, gyro_tolerances):
             return current
         revised = store.unit_types.revise(name, tolerances, gyro_tolerances, now)
-        store.log.audit(now, who, "tolerances", name, asdict(revised))
+        store.audit.write(now, who, "tolerances", name, {"before": asdict(current), **asdict(revised)})
         return revised

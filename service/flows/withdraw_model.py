@@ -19,5 +19,5 @@ def withdraw_model(storage: Storage, revision: int, by: str, why: str, now: date
             replace(known, evidence=None, accepted_by=by, note=why, accepted_at=now, withdraws=known.id)
         )
         details = {"revision": made.id, "withdraws": known.id, "cause": known.cause, "why": why}
-        store.log.audit(now, by, "withdraw model", f"{known.scope} {known.subject}", details)
+        store.audit.write(now, by, "withdraw model", f"{known.scope} {known.subject}", details)
         return made

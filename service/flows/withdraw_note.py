@@ -13,5 +13,5 @@ def withdraw_note(storage: Storage, id: int, who: str, why: str, now: datetime) 
         note = store.notes.get(id)
         if not store.notes.withdraw(id, who, why, now):
             raise ConflictError(f"Note {id} was withdrawn before.")
-        store.log.audit(now, who, "withdraw note", note.unit, {"note": id, "why": why})
+        store.audit.write(now, who, "withdraw note", note.unit, {"note": id, "why": why})
         return store.notes.get(id)

@@ -17,6 +17,6 @@ def withdraw_service(storage: Storage, way: Deriving, number: int, step: Step) -
         store.services.put_state(number, RecordState.WITHDRAWN)
         store.states.add(RecordKind.SERVICE, str(number), RecordState.WITHDRAWN, step)
         details = {"service": number, "kind": service.kind, "at": service.at.isoformat(), "why": step.why}
-        store.log.audit(step.at, step.who, "withdraw service", service.unit, details)
+        store.audit.write(step.at, step.who, "withdraw service", service.unit, details)
         derived = derive_again(store, way, service.unit, service.at)
         return store.services.get(number), derived

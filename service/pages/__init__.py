@@ -8,7 +8,10 @@ from functools import cache
 from fastapi import APIRouter, FastAPI
 from starlette.middleware.gzip import GZipMiddleware
 
+from service.admission import ADMITTED
 from service.pages import (
+    account_routes,
+    admin_routes,
     assets,
     diagnosis_routes,
     event_routes,
@@ -34,9 +37,10 @@ def mount(app: FastAPI) -> None:
 @cache
 def _every() -> APIRouter:
     """The addresses of all pages, built once for all applications."""
-    every = APIRouter()
+    every = APIRouter(dependencies=ADMITTED)
     for part in (
-        routes, diagnosis_routes, flag_routes, event_routes, record_routes, paper_routes, plan_routes, assets,
+        routes, account_routes, admin_routes, diagnosis_routes,
+        flag_routes, event_routes, record_routes, paper_routes, plan_routes, assets,
     ):  # fmt: skip
         every.include_router(part.router)
     return every

@@ -12,7 +12,7 @@ from service.flows.diagnose import diagnose
 from service.flows.recalibrate import recalibrate
 from service.flows.withdraw_model import withdraw_model
 from service.pages.diagnosis import diagnosis_page
-from service.pages.forms import NO_NUL, OWN_FORM, SEE_OTHER, Key
+from service.pages.forms import NO_NUL, OWN_FORM, SEE_OTHER, By, Key
 from service.pages.render import render
 from service.records.model import NewModel, Scope
 from service.views.diagnosis_report import diagnosis_report
@@ -35,7 +35,7 @@ def accept(
     *,
     cause: Annotated[str, Form(max_length=200, pattern=NO_NUL)],
     scope: Annotated[Scope, Form()],
-    by: Annotated[str, Form(min_length=1, max_length=200, pattern=NO_NUL)],
+    by: By,
     note: Annotated[str, Form(max_length=2000, pattern=NO_NUL)] = "",
 ) -> RedirectResponse:
     """Accepts a named cause, and shows the models that concern the session."""
@@ -50,7 +50,7 @@ def withdraw(
     storage: StorageOf,
     now: Now,
     *,
-    by: Annotated[str, Form(min_length=1, max_length=200, pattern=NO_NUL)],
+    by: By,
     why: Annotated[str, Form(min_length=1, max_length=2000, pattern=NO_NUL)],
 ) -> RedirectResponse:
     """Takes an accepted cause out of the model again, and shows the models that concern the session."""

@@ -4,6 +4,7 @@ from typing import Annotated
 
 from fastapi import Depends, Form, HTTPException, Path, Request
 
+from service.admission import PersonOf
 from service.pages.headers import sent_by_this_site
 
 SEE_OTHER = 303
@@ -13,8 +14,14 @@ SAYS_SOMETHING = r"^[^\x00]*\S[^\x00]*$"
 
 Key = Annotated[str, Path(max_length=200, pattern=r"^[^\x00]+$")]
 Number = Annotated[int, Path(ge=1, le=2_000_000_000)]
-By = Annotated[str, Form(max_length=200, pattern=SAYS_SOMETHING)]
-"""Somebody's name."""
+
+
+def _by(person: PersonOf, by: Annotated[str, Form(max_length=200, pattern=SAYS_SOMETHING)]) -> str:
+    return person.signs(by)
+
+
+By = Annotated[str, Depends(_by)]
+"""Somebody's name: the account's, or as they wrote it where nobody signs in."""
 Why = Annotated[str, Form(max_length=2000, pattern=SAYS_SOMETHING)]
 
 

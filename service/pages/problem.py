@@ -3,8 +3,10 @@
 import json
 from dataclasses import dataclass
 from typing import Any
+from urllib.parse import quote
 
 from fastapi import FastAPI, Request, Response
+from fastapi.responses import RedirectResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from estimator.errors import Problem
@@ -13,9 +15,12 @@ from service.pages.headers import HEADERS
 from service.pages.render import render
 
 PROBLEM = b"application/problem+json"
+UNAUTHORIZED, SEE_OTHER = 401, 303
 ADVICE = {
-    403: "Open the page from this service itself and try again.",
+    401: "Sign in, then go back and send it once more.",
+    403: "If it was a form, open its page again and send it once more. If it is not yours to do, ask who may.",
     404: "The address may be mistyped, or the link is older than the data.",
+    409: "Look at the record again: it may have changed since the page was loaded.",
     413: "Split the recording, or average it before the upload.",
     422: "Correct what is listed and try again.",
     503: "Nothing was lost. The page works again as soon as the database answers: try again in a few seconds.",
@@ -105,6 +110,10 @@ class _Turner:
 
     async def _send_page(self, start: Message) -> None:
         page = problem_page(json.loads(self.body))
+        if page.status == UNAUTHORIZED and self.scope["method"] == "GET":
+            back = quote(Request(self.scope).url.path)
+            await RedirectResponse(f"/sign-in?next={back}", SEE_OTHER)(self.scope, self.receive, self.send)
+            return
         response = render(Request(self.scope), "problem.html", page, page.status)
         kept = [(k, v) for k, v in start["headers"] if k.lower() in (b"retry-after", b"allow")]
         response.raw_headers.extend(kept)

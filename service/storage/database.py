@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from copy import copy
 
 from sqlalchemy.orm import Session
 
@@ -16,9 +17,15 @@ class Database:
     """Hands out one transaction at a time."""
 
     def __init__(self, url: str) -> None:
-        self.url = url
+        self.url, self._account = url, ""
         self.engine = open_engine(url)
         self._writing_engine = self.engine.execution_options(**{WRITES: True})
+
+    def acting(self, account: str) -> "Database":
+        """The same database; what it writes into the audit trail names an account."""
+        own = copy(self)
+        own._account = account
+        return own
 
     @contextmanager
     def reading(self) -> Iterator[Store]:
@@ -30,7 +37,9 @@ class Database:
     def writing(self) -> Iterator[Store]:
         """One transaction: committed when the block ends, undone when it raises."""
         with database_faults(), Session(self._writing_engine) as session:
-            yield Store(session)
+            store = Store(session, self._account)
+            yield store
+            store.audit.seal()
             session.commit()
 
     def require_ready(self) -> None:

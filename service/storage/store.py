@@ -4,6 +4,8 @@ from functools import cached_property
 
 from sqlalchemy.orm import Session
 
+from service.storage.queries.accounts import Accounts
+from service.storage.queries.audit import Audit
 from service.storage.queries.calibrations import Calibrations
 from service.storage.queries.certificates import Certificates
 from service.storage.queries.derivations import Derivations
@@ -19,9 +21,11 @@ from service.storage.queries.notices import Notices
 from service.storage.queries.outlooks import Outlooks
 from service.storage.queries.services import Services
 from service.storage.queries.sessions import Sessions
+from service.storage.queries.sign_ins import SignIns
 from service.storage.queries.stand_certificates import StandCertificates
 from service.storage.queries.stands import Stands
 from service.storage.queries.states import States
+from service.storage.queries.tokens import Tokens
 from service.storage.queries.unit_types import UnitTypes
 from service.storage.queries.units import Units
 from service.storage.queries.webhooks import Webhooks
@@ -30,8 +34,8 @@ from service.storage.queries.webhooks import Webhooks
 class Store:
     """The stored fleet as one transaction sees it."""
 
-    def __init__(self, session: Session) -> None:
-        self._session = session
+    def __init__(self, session: Session, account: str = "") -> None:
+        self._session, self._account = session, account
 
     @cached_property
     def unit_types(self) -> UnitTypes:
@@ -135,5 +139,25 @@ class Store:
 
     @cached_property
     def log(self) -> Log:
-        """Refused uploads and the audit trail."""
+        """Refused uploads."""
         return Log(self._session)
+
+    @cached_property
+    def audit(self) -> Audit:
+        """Who did what."""
+        return Audit(self._session, self._account)
+
+    @cached_property
+    def accounts(self) -> Accounts:
+        """Who may sign in."""
+        return Accounts(self._session)
+
+    @cached_property
+    def tokens(self) -> Tokens:
+        """What programs show instead of a password."""
+        return Tokens(self._session)
+
+    @cached_property
+    def sign_ins(self) -> SignIns:
+        """Signed-in browsers, and links that sign somebody in once."""
+        return SignIns(self._session)

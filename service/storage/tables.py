@@ -18,6 +18,8 @@ unit_types ──< tolerance_revisions          stands ──< stand_certificate
                    ├──< reference_choices     record_states   what became of sessions and services, append-only
                    ├──< certificates          numbers of the papers that were issued, append-only
                    └──< model_revisions       causes that engineers accepted, numbered through
+
+accounts ──< tokens, sign_ins, sign_in_links  who may sign in, and what programs and browsers show for it
 """
 
 from datetime import datetime
@@ -384,12 +386,15 @@ class RefusalRow(Base):
 
 
 class AuditRow(Base):
-    """Who did what when; the database itself refuses to change or delete a line."""
+    """Who did what when, each line with a hash of itself and of the one before; the database itself refuses to change
+    or delete a line."""
 
     __tablename__ = "audit"
     id: Mapped[int] = mapped_column(primary_key=True)
     at: Mapped[datetime] = mapped_column(index=True)
     who: Mapped[str]
+    account: Mapped[str] = mapped_column(String(260), server_default="")
     action: Mapped[str] = mapped_column(String(40))
     subject: Mapped[str]
     details: Mapped[dict[str, Any]]
+    hash: Mapped[str] = mapped_column(String(64), server_default="")

@@ -11,10 +11,17 @@ from service.settings import Settings
 from tests.databases import one_engine
 from tests.serving import http_client
 
-EXAMPLES = {"serial": "BA-017", "id": "3f9a0c5be1d24786aa10", "name": "hex"}
-NUMBERED = ("/api/v1/flags/", "/api/v1/models/", "/api/v1/notes/", "/api/v1/services/", "/api/v1/webhooks/")
+EXAMPLES = {"serial": "BA-017", "id": "3f9a0c5be1d24786aa10", "name": "hex", "login": "k.ito"}
+NUMBERED = (
+    "/api/v1/flags/",
+    "/api/v1/models/",
+    "/api/v1/notes/",
+    "/api/v1/services/",
+    "/api/v1/tokens/",
+    "/api/v1/webhooks/",
+)
 """Where the id is a number."""
-NEEDS_NO_DATABASE = {"/healthz", "/metrics"}
+NEEDS_NO_DATABASE = {"/healthz"}
 QUERIES = {"/api/v1/plan": {"unit_type": "RA-6"}}
 """What makes a route ask the database; a plan for a cone does not."""
 BODIES: dict[str, Any] = {
@@ -43,6 +50,9 @@ BODIES: dict[str, Any] = {
     "/api/v1/flags/{id}/acknowledge": {"by": "K. Ito", "why": "seen"},
     "/api/v1/flags/{id}/resolve": {"by": "K. Ito", "why": "done"},
     "/api/v1/unit-types/{name}": {"tolerances": {"scale": 1e-4, "bias": 1e-4, "quadratic": None, "axis": 1e-4}},
+    "/api/v1/accounts": {"login": "k.ito", "role": "admin"},
+    "/api/v1/accounts/{login}": {"role": "crew"},
+    "/api/v1/tokens": {"label": "bench", "role": "crew"},
     "/api/v1/sessions": {"format": "imu-session/2"},
 }
 

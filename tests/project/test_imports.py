@@ -9,11 +9,13 @@ from tests.project.source import PACKAGES, Module, modules
 
 SERVICE_LAYERS = (
     {"settings", "errors", "records", "measures", "log"},
-    {"metrics", "words"},
+    {"identity", "metrics", "words"},
     {"ingest", "storage", "planning"},
     {"judging"},
     {"flows", "views", "charts"},
     {"background", "reports"},
+    {"application"},
+    {"admission"},
     {"dependencies"},
     {"api", "pages"},
     {"app", "demo"},
@@ -38,8 +40,15 @@ ESTIMATOR_LAYERS = (
 HOMES = {
     "sqlalchemy": ("service.storage", "migrations"),
     "alembic": ("service.storage", "migrations"),
-    "fastapi": ("service.api", "service.pages", "service.dependencies", "service.app"),
-    "starlette": ("service.api", "service.pages", "service.dependencies", "service.app"),
+    "fastapi": (
+        "service.api",
+        "service.pages",
+        "service.dependencies",
+        "service.application",
+        "service.admission",
+        "service.app",
+    ),
+    "starlette": ("service.api", "service.pages", "service.dependencies", "service.admission", "service.app"),
     "typer": ("service.cli", "service.commands"),
     "structlog": ("service.log", "service.api.measured"),
 }

@@ -44,6 +44,11 @@ class Sessions(Queries):
             raise NotFoundError(f"There is no session {id!r}.")
         return _session_record(*found)
 
+    def all_simulated(self) -> bool:
+        """Whether there is a demonstration to look at, and nothing else."""
+        kinds = set(self._session.scalars(select(SessionRow.simulated).distinct()))
+        return kinds == {True}
+
     def page(self, unit: str | None, offset: int, limit: int) -> tuple[StoredSession, ...]:
         """Sessions, newest measurement first, of one unit or of all."""
         query = _sessions().order_by(SessionRow.started_at.desc(), SessionRow.id.desc())

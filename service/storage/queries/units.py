@@ -15,12 +15,12 @@ class Units(Queries):
         """Whether a session of this unit was ever stored."""
         return self._session.scalar(select(UnitRow.id).where(UnitRow.serial == serial)) is not None
 
-    def set_lot(self, serial: str, lot: str | None) -> bool:
-        """Records a unit's production lot; whether it is another one than before."""
+    def set_lot(self, serial: str, lot: str | None) -> str | None:
+        """Records a unit's production lot, and returns the one before."""
         unit = self._session.scalars(select(UnitRow).where(UnitRow.serial == serial)).one()
-        changed, unit.lot = unit.lot != lot, lot
+        was, unit.lot = unit.lot, lot
         self._session.flush()
-        return changed
+        return was
 
     def customer(self, serial: str) -> Customer:
         """For whom a unit is calibrated."""

@@ -19,7 +19,7 @@ from tests.service.sessions import session_bytes
 from tests.serving import http_client, running
 
 HTML = {"Accept": "text/html"}
-MOST_QUERIES = 9
+MOST_QUERIES = 10
 
 
 def post(client: httpx.Client, content: bytes, **headers: str) -> httpx.Response:

@@ -1,0 +1,115 @@
+"""Who sends a request, and whether they may: asked once for every route, before anything of it is done."""
+
+from typing import Annotated, Any
+
+from fastapi import Depends, Request
+from starlette.datastructures import UploadFile
+
+from service.application import Application, application_of
+from service.errors import ForbiddenError, SignInError
+from service.identity.access import API, METRICS, NEEDED, Route
+from service.identity.secret import csrf_of, is_same, stored_hash
+from service.records.identity import EVERYBODY, LOOKING, STRANGER, Person, Role
+from service.storage.queries.tokens import is_stale
+
+COOKIE = "imu-health"
+"""Holds the secret of a signed-in browser."""
+CSRF = "csrf"
+"""Field of every form that a signed-in browser sends; scripts send the header."""
+CSRF_HEADER = "X-CSRF-Token"
+SAFE = ("GET", "HEAD", "OPTIONS")
+SIGN_IN_FIRST = "Sign in first, or send a token: `Authorization: Bearer …`."
+BAD_TOKEN = "This token is not known, or it has expired or was revoked."
+BAD_FORM = "This form is not of the page that you have open. Load the page again and send it once more."
+
+
+def route_of(scope: Any) -> Route:
+    """Method and path of the route that takes a request, with names for what stands in it."""
+    path = getattr(scope.get("route"), "path", "")
+    return scope["method"], f"{API}{path}" if scope["path"].startswith(f"{API}/") else path
+
+
+def _person(request: Request) -> Person:
+    """Who sends the request; a token that is none is an error, a cookie that is none is nobody."""
+    person = STRANGER
+    if NEEDED.get(route_of(request.scope)) is not None:
+        person = _by_token(request) or _by_cookie(request) or _unknown(application_of(request))
+    request.state.person = person
+    return person
+
+
+PersonOf = Annotated[Person, Depends(_person)]
+"""Who sends the request."""
+
+
+def _by_token(request: Request) -> Person | None:
+    kind, _, secret = request.headers.get("authorization", "").partition(" ")
+    if kind.lower() != "bearer":
+        return None
+    own = application_of(request)
+    if (
+        route_of(request.scope) == METRICS
+        and own.settings.metrics_token
+        and is_same(secret, own.settings.metrics_token)
+    ):
+        return Person("", "", Role.ADMIN, token="metrics")
+    now = own.clock()
+    with own.storage.database.reading() as store:
+        shown = store.tokens.shown(stored_hash(secret.strip()), now)
+    if shown is None:
+        raise SignInError(BAD_TOKEN)
+    token, account = shown
+    if is_stale(token, now):
+        with own.storage.database.writing() as store:
+            store.tokens.used(token.id, now)
+    role = min(token.role, account.role, key=list(Role).index)
+    return Person(account.login, account.name, role, token=token.label)
+
+
+def _by_cookie(request: Request) -> Person | None:
+    secret = request.cookies.get(COOKIE)
+    if not secret:
+        return None
+    own = application_of(request)
+    with own.storage.database.reading() as store:
+        account = store.sign_ins.shown(stored_hash(secret), own.clock())
+    return None if account is None else Person(account.login, account.name, account.role, csrf=csrf_of(secret))
+
+
+def _unknown(own: Application) -> Person:
+    """Somebody who shows nothing: everybody, where nobody needs to sign in; else a demonstration may be looked at."""
+    if own.gate.is_open(own.storage):
+        return EVERYBODY
+    with own.storage.database.reading() as store:
+        return LOOKING if store.sessions.all_simulated() else STRANGER
+
+
+async def _admitted(request: Request, person: PersonOf) -> None:
+    """Whether this person may; a signed-in browser proves that the form is ours."""
+    route = route_of(request.scope)
+    if route not in NEEDED:
+        raise ForbiddenError(f"Nobody may {route[0]} {route[1]}: it has no rule.")
+    needed = NEEDED[route]
+    if needed is None:
+        return
+    if not person.may(needed):
+        raise ForbiddenError(_lacking(person, needed)) if person.login else SignInError(SIGN_IN_FIRST)
+    if person.csrf and request.method not in SAFE and not is_same(await _proof(request), person.csrf):
+        raise ForbiddenError(BAD_FORM)
+
+
+def _lacking(person: Person, needed: Role) -> str:
+    return f"This needs the role {needed}; {person.account} is {person.role}. Ask an administrator."
+
+
+async def _proof(request: Request) -> str:
+    """What a form or a script brings back; of an upload the header or the address, for its body is not read here."""
+    shown = request.headers.get(CSRF_HEADER) or request.query_params.get(CSRF)
+    if shown is None and request.headers.get("content-type", "").startswith("application/x-www-form-urlencoded"):
+        field = (await request.form()).get(CSRF)
+        shown = None if isinstance(field, UploadFile) else field
+    return shown or ""
+
+
+ADMITTED = [Depends(_admitted)]
+"""What every router asks first."""

@@ -1,0 +1,50 @@
+"""What is joined at the start and every request can reach, as ``app.state.application``."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from datetime import datetime
+
+from fastapi import Request
+
+from service.flows.diagnose import InProgress
+from service.identity.attempts import Attempts
+from service.metrics import Metrics
+from service.settings import Settings
+from service.storage import Storage
+
+
+class Gate:
+    """Whether everybody may do everything: on this machine alone, until the first account is made."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings, self._has_accounts = settings, False
+
+    def is_open(self, storage: Storage) -> bool:
+        """Asks the database until there is an account; accounts are never deleted."""
+        if self._settings.sign_in != "auto":
+            return self._settings.sign_in == "off"
+        if not self._settings.is_local:
+            return False
+        if not self._has_accounts:
+            with storage.database.reading() as store:
+                self._has_accounts = store.accounts.any()
+        return not self._has_accounts
+
+
+@dataclass(frozen=True)
+class Application:
+    """What `create_app` joins."""
+
+    settings: Settings
+    storage: Storage
+    clock: Callable[[], datetime]
+    gate: Gate
+    diagnosing: InProgress = field(default_factory=InProgress)
+    metrics: Metrics = field(default_factory=Metrics)
+    attempts: Attempts = field(default_factory=Attempts)
+
+
+def application_of(request: Request) -> Application:
+    """The application that a request came to."""
+    application: Application = request.app.state.application
+    return application

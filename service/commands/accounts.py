@@ -1,0 +1,187 @@
+"""`imu-health user`, `token`, `audit`: who may sign in, for whoever may reach the database."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import UTC, datetime, timedelta
+from typing import Annotated
+
+import typer
+from rich.markup import escape
+from rich.table import Table
+
+from service.commands.console import FAILED, say, screen
+from service.commands.options import DatabaseUrl, DataFolder, settings_from
+from service.flows.identity.accounts import AccountChange, add_account, change_account
+from service.flows.identity.links import make_link
+from service.flows.identity.tokens import make_token, revoke_token
+from service.records.identity import Role
+from service.settings import Settings
+from service.storage import Database, Files, Storage
+
+WHO = "command line"
+"""As the audit trail names whoever reaches the database."""
+user = typer.Typer(name="user", add_completion=False, no_args_is_help=True, help="Make and change accounts.")
+token = typer.Typer(name="token", add_completion=False, no_args_is_help=True, help="Make and revoke tokens.")
+audit = typer.Typer(name="audit", add_completion=False, no_args_is_help=True, help="Read and check the audit trail.")
+Login = Annotated[str, typer.Argument(metavar="LOGIN", help="The account's login.", show_default=False)]
+RoleOf = Annotated[Role, typer.Option("--role", help="What they may do.", show_default=False)]
+
+
+@contextmanager
+def _opened(settings: Settings) -> Iterator[Storage]:
+    storage = Storage(Database(settings.database), Files(settings.files))
+    storage.database.require_ready()
+    yield storage
+    storage.database.close()
+
+
+@user.command("add")
+def add_user(
+    login: Login,
+    role: RoleOf,
+    name: Annotated[str, typer.Option(help="As papers name them.", show_default="the login")] = "",
+    database_url: DatabaseUrl = None,
+    data_folder: DataFolder = None,
+) -> None:
+    """Make an account and print the link with which its owner chooses a password. The first one must be an admin."""
+    settings = settings_from(database_url=database_url, data_folder=data_folder)
+    with _opened(settings) as storage:
+        made = add_account(storage, login, name, role, _now(), who=WHO)
+        _print_link(settings, made.login, make_link(storage, made.login, _now(), WHO))
+
+
+@user.command("link")
+def link_user(login: Login, database_url: DatabaseUrl = None, data_folder: DataFolder = None) -> None:
+    """Print a link with which the account's owner chooses another password, once, within an hour."""
+    settings = settings_from(database_url=database_url, data_folder=data_folder)
+    with _opened(settings) as storage:
+        _print_link(settings, login, make_link(storage, login, _now(), WHO))
+
+
+@user.command("change")
+def change_user(
+    login: Login,
+    role: Annotated[Role | None, typer.Option(help="What they may do.", show_default="as it is")] = None,
+    name: Annotated[str | None, typer.Option(help="As papers name them.", show_default="as it is")] = None,
+    active: Annotated[
+        bool | None, typer.Option("--active/--inactive", help="Whether they may sign in.", show_default="as it is")
+    ] = None,
+    database_url: DatabaseUrl = None,
+    data_folder: DataFolder = None,
+) -> None:
+    """Give an account another role or name, or keep its owner out. Accounts are never deleted."""
+    with _opened(settings_from(database_url=database_url, data_folder=data_folder)) as storage:
+        found = change_account(storage, login, AccountChange(name, role, active), _now(), who=WHO)
+    state = "may sign in" if found.is_active else "may not sign in"
+    screen().print(f"[bold]{escape(found.login)}[/]  {escape(found.name)}  {found.role}  {state}")
+
+
+@user.command("list")
+def list_users(database_url: DatabaseUrl = None, data_folder: DataFolder = None) -> None:
+    """Print every account."""
+    with (
+        _opened(settings_from(database_url=database_url, data_folder=data_folder)) as storage,
+        storage.database.reading() as store,
+    ):
+        accounts = store.accounts.every()
+    table = Table("Login", "Name", "Role", "State")
+    for one in accounts:
+        state = "may sign in" if one.is_active and one.has_password else "no password yet"
+        table.add_row(escape(one.login), escape(one.name), one.role, state if one.is_active else "may not sign in")
+    screen().print(table)
+
+
+@token.command("add")
+def add_token(
+    login: Login,
+    role: RoleOf,
+    label: Annotated[str, typer.Option(help="What it is for.", show_default=False)],
+    days: Annotated[int, typer.Option(min=1, max=366, help="How long it holds.")] = 90,
+    database_url: DatabaseUrl = None,
+    data_folder: DataFolder = None,
+) -> None:
+    """Make a token for an account and print its secret, which is not shown again."""
+    with _opened(settings_from(database_url=database_url, data_folder=data_folder)) as storage:
+        lasts = timedelta(days=days)
+        made, secret = make_token(storage, login, label, role, _now(), lasts=lasts, who=WHO)
+    say(f"Token {made.id} for {made.login}, {made.role}, until {made.expires_at:%Y-%m-%d}:")
+    typer.echo(secret)
+
+
+@token.command("revoke")
+def take_token(
+    id: Annotated[int, typer.Argument(metavar="TOKEN", help="Number of the token.", show_default=False)],
+    database_url: DatabaseUrl = None,
+    data_folder: DataFolder = None,
+) -> None:
+    """Let nobody in with a token any more; it stays listed."""
+    with _opened(settings_from(database_url=database_url, data_folder=data_folder)) as storage:
+        found = revoke_token(storage, id, _now(), who=WHO)
+    screen().print(f"Token {found.id} of [bold]{escape(found.login)}[/], {escape(found.label)}, is revoked.")
+
+
+@token.command("list")
+def list_tokens(database_url: DatabaseUrl = None, data_folder: DataFolder = None) -> None:
+    """Print every token; secrets are not kept."""
+    with (
+        _opened(settings_from(database_url=database_url, data_folder=data_folder)) as storage,
+        storage.database.reading() as store,
+    ):
+        tokens = store.tokens.every()
+    table = Table("Token", "Login", "For", "Role", "Until", "Last used", "Revoked")
+    for one in tokens:
+        days = (f"{at:%Y-%m-%d}" if at else "" for at in (one.expires_at, one.last_used_at, one.revoked_at))
+        table.add_row(str(one.id), escape(one.login), escape(one.label), one.role, *days)
+    screen().print(table)
+
+
+@audit.command("verify")
+def verify(
+    expect: Annotated[
+        str, typer.Option(metavar="HASH", help="Last hash that was noted before; it must still be there.")
+    ] = "",
+    database_url: DatabaseUrl = None,
+    data_folder: DataFolder = None,
+) -> None:
+    """Work out the chain of the whole trail again. Note the last hash elsewhere: it shows later that none was cut."""
+    with (
+        _opened(settings_from(database_url=database_url, data_folder=data_folder)) as storage,
+        storage.database.reading() as store,
+    ):
+        check, is_there = store.audit.check(), not expect or store.audit.has(expect)
+    if check.broken is not None:
+        say(f"Line {check.broken} does not follow from the lines before it: the trail was changed there.")
+        raise typer.Exit(FAILED)
+    if not is_there:
+        say("The hash that was noted is not in the trail: lines were cut off, or it is another trail.")
+        raise typer.Exit(FAILED)
+    screen().print(f"All {check.lines} lines follow from one another. Last hash: {check.last}")
+
+
+@audit.command("list")
+def list_lines(
+    subject: Annotated[str | None, typer.Option(help="Only what was done to this.", show_default="all")] = None,
+    most: Annotated[int, typer.Option(min=1, max=100_000, help="How many lines.")] = 50,
+    database_url: DatabaseUrl = None,
+    data_folder: DataFolder = None,
+) -> None:
+    """Print who did what, the newest first."""
+    with (
+        _opened(settings_from(database_url=database_url, data_folder=data_folder)) as storage,
+        storage.database.reading() as store,
+    ):
+        lines = store.audit.page(most, None, subject)
+    table = Table("When", "Who", "Account", "What", "To")
+    for line in lines:
+        table.add_row(f"{line.at:%Y-%m-%d %H:%M}", *map(escape, (line.who, line.account, line.action, line.subject)))
+    screen().print(table)
+
+
+def _print_link(settings: Settings, login: str, secret: str) -> None:
+    address = settings.public_url.rstrip("/") or f"http://{settings.host}:{settings.port}"
+    say(f"For {login}, to choose a password, once, within an hour:")
+    typer.echo(f"{address}/sign-in/{secret}")
+
+
+def _now() -> datetime:
+    return datetime.now(UTC)

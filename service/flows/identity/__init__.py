@@ -1,0 +1,1 @@
+"""What changes who may sign in: accounts, passwords, links, tokens; one verb a file."""

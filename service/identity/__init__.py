@@ -1,0 +1,1 @@
+"""Who somebody is, and what a route needs: passwords, secrets, the table of rules."""

@@ -1,0 +1,155 @@
+"""What each route asks of whoever calls it. Every route stands here once; one that does not is closed to everybody, so
+that no new route is open because somebody forgot it."""
+
+from collections.abc import Iterable, Mapping
+
+from service.records.identity import Role
+
+API = "/api/v1"
+UNIT, SESSION = f"{API}/units/{{serial:path}}", f"{API}/sessions/{{id}}"
+Route = tuple[str, str]
+"""Method and path as the route table writes it."""
+
+PUBLIC = """
+GET /healthz
+GET /readyz
+GET /static/{name}
+GET /sign-in
+POST /sign-in
+GET /sign-in/{secret}
+POST /sign-in/{secret}
+POST /sign-out
+"""
+"""What somebody may who has not signed in."""
+
+VIEWER = f"""
+GET /
+GET /units/{{serial:path}}
+GET /sessions/{{id}}
+GET /sessions/{{id}}/diagnosis
+GET /flags
+GET /stand-certificates
+GET /plan
+GET /account
+POST /account/password
+POST /account/tokens
+POST /account/tokens/{{id}}/revoke
+GET {API}/sessions
+GET {SESSION}
+GET {SESSION}/calibration
+GET {SESSION}/file
+GET {SESSION}/states
+GET {SESSION}/certificates
+GET {SESSION}/correction
+GET {SESSION}/diagnosis
+GET {API}/units
+GET {UNIT}
+GET {UNIT}/history
+GET {UNIT}/flags
+GET {UNIT}/outlook
+GET {UNIT}/derivation
+GET {UNIT}/notes
+GET {UNIT}/found-and-left
+GET {UNIT}/usable
+GET {UNIT}/label.pdf
+GET {UNIT}/label.svg
+GET {UNIT}/customer
+GET {API}/unit-types
+GET {API}/unit-types/{{name:path}}
+GET {API}/models
+GET {API}/plan
+GET {API}/stands
+GET {API}/stands/{{name:path}}/certificates
+GET {API}/flags
+GET {API}/feeds/flags.atom
+GET {API}/feeds/due.ics
+GET {API}/fleet
+GET {API}/fleet/report
+GET {API}/me
+GET {API}/tokens
+POST {API}/tokens
+DELETE {API}/tokens/{{id}}
+"""
+
+CREW = f"""
+GET /upload
+POST /upload
+POST /units/{{serial:path}}/services
+POST /units/{{serial:path}}/notes
+POST /units/{{serial:path}}/customer
+POST /notes/{{id}}/withdraw
+POST /sessions/{{id}}/stage
+POST {API}/sessions
+PUT {SESSION}/stage
+GET {SESSION}/certificate
+POST {UNIT}/services
+POST {UNIT}/notes
+PUT {UNIT}/lot
+PUT {UNIT}/customer
+POST {API}/notes/{{id}}/withdraw
+"""
+
+ENGINEER = f"""
+POST /sessions/{{id}}/diagnosis/accept
+POST /sessions/{{id}}/diagnosis/withdraw/{{revision}}
+POST /units/{{serial:path}}/recalibrate
+POST /flags/{{id}}/acknowledge
+POST /flags/{{id}}/resolve
+POST /sessions/{{id}}/withdraw
+POST /sessions/{{id}}/accept
+POST /sessions/{{id}}/correct
+POST /sessions/{{id}}/reference
+POST /services/{{id}}/withdraw
+POST /stand-certificates
+POST {SESSION}/withdraw
+POST {SESSION}/accept
+POST {SESSION}/correct
+POST {SESSION}/supersede
+POST {SESSION}/diagnosis/accept
+POST {UNIT}/reference
+POST {UNIT}/recalibrate
+POST {API}/services/{{id}}/withdraw
+POST {API}/models/{{id}}/withdraw
+POST {API}/flags/{{id}}/acknowledge
+POST {API}/flags/{{id}}/resolve
+PUT {API}/unit-types/{{name:path}}
+PUT {API}/stands/{{name:path}}/certificate
+"""
+
+ADMIN = f"""
+GET /metrics
+GET /accounts
+POST /accounts
+POST /accounts/{{login}}
+POST /accounts/{{login}}/link
+GET /audit
+GET {API}/accounts
+POST {API}/accounts
+PUT {API}/accounts/{{login}}
+POST {API}/accounts/{{login}}/link
+GET {API}/audit
+GET {API}/audit/check
+GET {API}/webhooks
+POST {API}/webhooks
+GET {API}/webhooks/{{id}}/deliveries
+DELETE {API}/webhooks/{{id}}
+"""
+METRICS: Route = ("GET", "/metrics")
+"""That a token of its own opens as well."""
+
+
+def _routes(text: str) -> Iterable[Route]:
+    for line in text.split("\n"):
+        if line:
+            method, _, path = line.partition(" ")
+            yield method, path
+
+
+NEEDED: Mapping[Route, Role | None] = {
+    **dict.fromkeys(_routes(PUBLIC)),
+    **dict.fromkeys(_routes(VIEWER), Role.VIEWER),
+    **dict.fromkeys(_routes(CREW), Role.CREW),
+    **dict.fromkeys(_routes(ENGINEER), Role.ENGINEER),
+    **dict.fromkeys(_routes(ADMIN), Role.ADMIN),
+}
+"""The least role of every route; None where nobody needs one."""

@@ -1,0 +1,140 @@
+"""The addresses at which somebody signs in and out and looks after their own account."""
+
+from datetime import timedelta
+from typing import Annotated
+
+from fastapi import APIRouter, Form, Path, Query, Request, Response
+from fastapi.responses import HTMLResponse, RedirectResponse
+
+from service.admission import COOKIE, PersonOf
+from service.application import application_of
+from service.dependencies import Now, Reading, SettingsOf, StorageOf
+from service.errors import ForbiddenError, SignInError
+from service.flows.identity.accounts import change_password
+from service.flows.identity.links import Chosen, link_of, use_link
+from service.flows.identity.sign_in import LASTS, sign_in, sign_out
+from service.flows.identity.tokens import make_token, revoke_token
+from service.identity.passwords import LONGEST, SHORTEST
+from service.pages.account import LinkPage, SignInPage, account_page
+from service.pages.forms import NO_NUL, SEE_OTHER, Number
+from service.pages.render import render
+from service.records.identity import Role
+from service.settings import Settings
+
+router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
+Login = Annotated[str, Form(max_length=200, pattern=NO_NUL)]
+Password = Annotated[str, Form(max_length=LONGEST, pattern=NO_NUL)]
+Secret = Annotated[str, Path(max_length=100, pattern=r"^[A-Za-z0-9_-]+$")]
+Label = Annotated[str, Form(min_length=1, max_length=200, pattern=NO_NUL)]
+
+
+@router.get("/sign-in")
+def show_sign_in(request: Request, next: Annotated[str, Query(max_length=2000)] = "/") -> HTMLResponse:
+    """Login and password."""
+    return render(request, "sign_in.html", SignInPage(_inside(next), ""))
+
+
+@router.post("/sign-in")
+def take_sign_in(
+    request: Request,
+    login: Login,
+    password: Password,
+    storage: StorageOf,
+    settings: SettingsOf,
+    now: Now,
+    next: Annotated[str, Form(max_length=2000)] = "/",
+) -> Response:
+    """Signs in, or says that it was wrong."""
+    attempts, address = application_of(request).attempts, request.client.host if request.client else ""
+    attempts.require_few(login, address)
+    try:
+        secret = sign_in(storage, login, password, now)
+    except SignInError as wrong:
+        attempts.wrong(login, address)
+        return render(request, "sign_in.html", SignInPage(_inside(next), wrong.detail), wrong.status)
+    return _signed_in(request, settings, secret, _inside(next))
+
+
+@router.get("/sign-in/{secret}")
+def show_link(request: Request, secret: Secret, storage: StorageOf, now: Now) -> HTMLResponse:
+    """What somebody fills in who opened a link; looking at it does not use it up."""
+    return render(request, "link.html", LinkPage(secret, link_of(storage, secret, now), SHORTEST))
+
+
+@router.post("/sign-in/{secret}")
+def take_link(
+    request: Request,
+    secret: Secret,
+    password: Password,
+    storage: StorageOf,
+    settings: SettingsOf,
+    now: Now,
+    login: Login = "",
+    name: Login = "",
+) -> Response:
+    """Sets the password and signs in."""
+    return _signed_in(request, settings, use_link(storage, secret, Chosen(login, name, password), now), "/")
+
+
+@router.post("/sign-out")
+def take_sign_out(request: Request, storage: StorageOf) -> RedirectResponse:
+    """The browser is nobody's any more."""
+    sign_out(storage, request.cookies.get(COOKIE, ""))
+    answer = RedirectResponse("/sign-in", SEE_OTHER)
+    answer.delete_cookie(COOKIE)
+    return answer
+
+
+@router.get("/account")
+def show_account(request: Request, store: Reading, person: PersonOf, now: Now) -> HTMLResponse:
+    """One's own name, password and tokens."""
+    return render(request, "account.html", account_page(store.tokens.every(person.login) if person.login else (), now))
+
+
+@router.post("/account/password")
+def take_password(old: Password, new: Password, storage: StorageOf, person: PersonOf, now: Now) -> RedirectResponse:
+    """Another password; every browser of the account must sign in again."""
+    change_password(storage, person.login, old, new, now)
+    return RedirectResponse("/sign-in", SEE_OTHER)
+
+
+@router.post("/account/tokens")
+def take_token(
+    request: Request,
+    label: Label,
+    role: Annotated[Role, Form()],
+    days: Annotated[int, Form(ge=1, le=366)],
+    storage: StorageOf,
+    person: PersonOf,
+    now: Now,
+) -> HTMLResponse:
+    """A new token; its secret is on this page and nowhere else."""
+    if not person.login or not person.may(role):
+        raise ForbiddenError(f"{person.account or 'Nobody'} cannot make a token for {role}.")
+    _, secret = make_token(storage, person.login, label, role, now, lasts=timedelta(days=days), who=person.name)
+    with storage.database.reading() as store:
+        return render(request, "account.html", account_page(store.tokens.every(person.login), now, secret))
+
+
+@router.post("/account/tokens/{id}/revoke")
+def take_back(id: Number, storage: StorageOf, person: PersonOf, now: Now) -> RedirectResponse:
+    """Nobody gets in with it any more."""
+    with storage.database.reading() as store:
+        owner = store.tokens.get(id).login
+    if owner != person.login and not person.may(Role.ADMIN):
+        raise ForbiddenError("This token is another account's.")
+    revoke_token(storage, id, now, who=person.signs("admin"))
+    return RedirectResponse("/account", SEE_OTHER)
+
+
+def _inside(address: str) -> str:
+    """An address of this service; any other is the fleet's, so that no link to the sign-in leads elsewhere."""
+    return address if address.startswith("/") and not address.startswith(("//", "/\\")) else "/"
+
+
+def _signed_in(request: Request, settings: Settings, secret: str, to: str) -> RedirectResponse:
+    answer = RedirectResponse(to, SEE_OTHER)
+    is_secure = request.url.scheme == "https" or settings.public_url.startswith("https:")
+    age = int(LASTS.total_seconds())
+    answer.set_cookie(COOKIE, secret, max_age=age, httponly=True, samesite="lax", secure=is_secure)
+    return answer

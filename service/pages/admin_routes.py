@@ -1,0 +1,84 @@
+"""The addresses of those who administer: accounts and the audit trail."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Form, Path, Query, Request
+from fastapi.responses import HTMLResponse, RedirectResponse
+
+from service.admission import PersonOf
+from service.dependencies import Now, Reading, StorageOf
+from service.flows.identity.accounts import AccountChange, add_account, change_account
+from service.flows.identity.links import make_link
+from service.pages.admin import AccountsPage, audit_page
+from service.pages.forms import NO_NUL, SEE_OTHER
+from service.pages.render import render
+from service.records.identity import Role
+
+router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
+AUDIT_LINES = 100
+"""On a page."""
+OPEN = "whoever is at this machine"
+Login = Annotated[str, Path(max_length=60, pattern=NO_NUL)]
+Written = Annotated[str, Form(max_length=200, pattern=NO_NUL)]
+
+
+@router.get("/accounts")
+def show_accounts(request: Request, store: Reading) -> HTMLResponse:
+    """Everybody who may sign in, or once might."""
+    return render(request, "accounts.html", AccountsPage(store.accounts.every(), tuple(Role), "", ""))
+
+
+@router.post("/accounts")
+def take_account(
+    request: Request,
+    login: Written,
+    role: Annotated[Role, Form()],
+    storage: StorageOf,
+    person: PersonOf,
+    now: Now,
+    name: Written = "",
+) -> HTMLResponse:
+    """Makes an account and shows the link with which its owner chooses a password."""
+    made = add_account(storage, login, name, role, now, who=person.signs(OPEN))
+    return _with_link(request, storage, made.login, make_link(storage, made.login, now, person.signs(OPEN)))
+
+
+@router.post("/accounts/{login}")
+def change(
+    login: Login,
+    name: Written,
+    role: Annotated[Role, Form()],
+    storage: StorageOf,
+    person: PersonOf,
+    now: Now,
+    is_active: Annotated[bool, Form()] = False,
+) -> RedirectResponse:
+    """Another name or role, or the account may no longer sign in."""
+    change_account(storage, login, AccountChange(name, role, is_active), now, who=person.signs(OPEN))
+    return RedirectResponse("/accounts", SEE_OTHER)
+
+
+@router.post("/accounts/{login}/link")
+def show_link(request: Request, login: Login, storage: StorageOf, person: PersonOf, now: Now) -> HTMLResponse:
+    """Shows a new link for an account."""
+    return _with_link(request, storage, login, make_link(storage, login, now, person.signs(OPEN)))
+
+
+@router.get("/audit")
+def show_audit(
+    request: Request,
+    store: Reading,
+    before: Annotated[int | None, Query(ge=1, le=2_000_000_000)] = None,
+    subject: Annotated[str, Query(max_length=200, pattern=NO_NUL)] = "",
+) -> HTMLResponse:
+    """Who did what, the newest first."""
+    wanted = subject.strip()
+    lines = store.audit.page(AUDIT_LINES, before, wanted or None)
+    check = store.audit.check() if before is None and not wanted else None
+    return render(request, "audit.html", audit_page(lines, check, wanted, AUDIT_LINES))
+
+
+def _with_link(request: Request, storage: StorageOf, login: str, secret: str) -> HTMLResponse:
+    link = f"{str(request.base_url).rstrip('/')}/sign-in/{secret}"
+    with storage.database.reading() as store:
+        return render(request, "accounts.html", AccountsPage(store.accounts.every(), tuple(Role), login, link))

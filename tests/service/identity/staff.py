@@ -1,0 +1,40 @@
+"""People with accounts, as tests need them: one of every role, signed in by token."""
+
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+
+from service.flows.identity.accounts import add_account
+from service.flows.identity.links import Chosen, make_link, use_link
+from service.flows.identity.tokens import make_token
+from service.records.identity import Role
+from service.storage import Storage
+
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
+PASSWORD = "correct horse battery"
+"""Of everybody."""
+
+
+@dataclass(frozen=True)
+class Staff:
+    """Headers of a token for each role."""
+
+    tokens: dict[Role, str]
+
+    def headers(self, role: Role | None) -> dict[str, str]:
+        """Of nobody, none."""
+        return {} if role is None else {"Authorization": f"Bearer {self.tokens[role]}"}
+
+
+def staffed(storage: Storage, now: datetime = NOW) -> Staff:
+    """One account of every role, named after it, each with a token that holds for a year."""
+    tokens = {}
+    for role in reversed(Role):
+        add_account(storage, role, role.title(), role, now, who="test")
+        year = timedelta(days=365)
+        tokens[role] = make_token(storage, role, "bench", role, now, lasts=year, who="test")[1]
+    return Staff(tokens)
+
+
+def with_password(storage: Storage, login: str, now: datetime = NOW) -> None:
+    """Chooses the password of an account."""
+    use_link(storage, make_link(storage, login, now, "test"), Chosen("", "", PASSWORD), now)
