@@ -28,6 +28,12 @@ one_engine = pytest.mark.parametrize("databases", ["sqlite"], indirect=True)
 """For a fact that no statement to a database decides."""
 
 
+def all_on_one_engine(metafunc: pytest.Metafunc) -> None:
+    """For a file of such facts, under the name of the hook, `pytest_generate_tests`."""
+    if "databases" in metafunc.fixturenames:
+        metafunc.definition.add_marker(one_engine)
+
+
 class Databases(ABC):
     """Makes databases of one engine."""
 

@@ -24,6 +24,20 @@ from service.pages import (
 from service.pages.headers import SecurityHeaders
 from service.pages.problem import ProblemPages, unexpected_pages
 
+PARTS = (
+    routes,
+    account_routes,
+    admin_routes,
+    diagnosis_routes,
+    flag_routes,
+    event_routes,
+    record_routes,
+    paper_routes,
+    plan_routes,
+    assets,
+)
+"""Every file of addresses."""
+
 
 def mount(app: FastAPI) -> None:
     """Adds the pages, their static files, error pages, compression and the security headers of every answer."""
@@ -38,9 +52,6 @@ def mount(app: FastAPI) -> None:
 def _every() -> APIRouter:
     """The addresses of all pages, built once for all applications."""
     every = APIRouter(dependencies=ADMITTED)
-    for part in (
-        routes, account_routes, admin_routes, diagnosis_routes,
-        flag_routes, event_routes, record_routes, paper_routes, plan_routes, assets,
-    ):  # fmt: skip
+    for part in PARTS:
         every.include_router(part.router)
     return every

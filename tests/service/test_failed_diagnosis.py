@@ -22,6 +22,7 @@ from service.metrics import Metrics
 from service.records.diagnosis import DiagnosisState
 from service.settings import Settings
 from service.storage import Storage
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.diagnosed import warm
 from tests.service.pages.test_http import HTML
 from tests.service.sessions import session_id

@@ -3,6 +3,7 @@
 import json
 import tracemalloc
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -25,6 +26,12 @@ def results(m, *, change=lambda true: true, runs=RUNS, motion="auto", **options)
     return found
 
 
+@cache
+def unchanged():
+    """Of six sensors that nothing happened to, said to move in any way."""
+    return results(6, motion="any")
+
+
 @pytest.mark.parametrize("m", [4, 6, 9])
 def test_an_unchanged_block_is_called_changed_no_more_often_than_stated(m):
     alarms = sum(r.detected for r in results(m))
@@ -42,13 +49,13 @@ def test_rest_raises_no_alarms():
 
 def test_stated_sigmas_are_honest():
     """Where the sensors are said to sit in one point, as they do; a stated place leaves half a millimetre."""
-    found = results(6, motion="any")
+    found = unchanged()
     z = np.array([s.bias.size / s.bias.sigma for r in found for s in r.sensors])
     assert 0.8 < np.sqrt(np.mean(z**2)) < 1.2
 
 
 def test_p_values_of_unchanged_blocks_are_spread():
-    p = np.array([r.p_value for r in results(6, motion="any")])
+    p = np.array([r.p_value for r in unchanged()])
     assert 0.2 < np.mean(p < 0.5) < 0.7
 
 

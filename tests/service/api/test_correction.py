@@ -10,6 +10,7 @@ import pytest
 
 from tests.builders import accelerometer_block, arbitrary_orientations, gyro_block, raw_log
 from tests.conftest import Holding
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.diagnosed import ECCENTRIC, accepted, held, send
 from tests.service.turntable import alignment_bytes
 

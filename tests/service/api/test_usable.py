@@ -10,6 +10,7 @@ import pytest
 
 from service.app import create_app
 from tests.conftest import Holding, SettingsHolding
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.reports.laboratory import state_all
 from tests.service.sessions import FAILED, session_bytes, session_id
 from tests.serving import http_client

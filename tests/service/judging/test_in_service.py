@@ -13,6 +13,7 @@ from service.records.decision import Verdict
 from service.records.event import NewService
 from service.storage import Storage
 from tests.builders import gyro_block
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.estimator.parity.test_gyros import gyros
 from tests.estimator.parity.test_gyros import recording as gyro_recording
 from tests.service.recordings import recording_bytes, recording_document

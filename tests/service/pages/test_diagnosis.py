@@ -10,6 +10,7 @@ from sqlalchemy import text as sql
 from service.app import create_app
 from service.storage import Storage
 from tests.conftest import Holding, SettingsHolding
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.diagnosed import ALIASES, TEMPERATURE, UNEXPLAINED, drawn, files_of, held, send, warm
 from tests.service.pages.test_http import HTML, MOST_QUERIES, counted
 from tests.service.sessions import session_bytes, session_id

@@ -7,6 +7,7 @@ from typing import Any
 import httpx
 
 from tests.conftest import Holding
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.diagnosed import TWO_AT_ONCE, boasting, diagnosis_of, held, swaying_stand
 from tests.service.pages.test_diagnosis import page
 from tests.service.pages.test_http import HTML

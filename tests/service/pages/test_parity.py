@@ -9,6 +9,7 @@ import pytest
 
 from tests.blind.flight import Setting, draw_block, fly, tumble
 from tests.conftest import Holding
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.recordings import recording_bytes, recording_document
 from tests.service.sessions import session_bytes, session_id
 

@@ -12,6 +12,7 @@ from service.flows.receive import upload
 from service.storage import Storage
 from service.words.conditions import condition_of
 from tests.conftest import Holding
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.diagnosed import ECCENTRIC, accepted, diagnosis_of, held
 from tests.service.recordings import recording_bytes
 from tests.service.reports.documents import pages_of, text_of

@@ -9,6 +9,7 @@ import typst
 
 from service.reports.pictures import PALETTE
 from service.reports.printable import RANGES, is_printable, printable
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.reports.documents import text_of
 
 SOURCE = b"""#set text(font: ("Libertinus Serif", "DejaVu Sans Mono"))

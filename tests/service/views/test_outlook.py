@@ -11,6 +11,7 @@ from service.records.event import NewService
 from service.records.outlook import UnitOutlook
 from service.storage import Storage
 from service.views.outlook import fleet_outlook, outlook_of
+from tests.databases import one_engine
 from tests.service.sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
@@ -20,7 +21,7 @@ def measure(storage: Storage, months: dict[int, float], unit: str = "BA-017", **
     """Sessions of a unit by month of 2026, with how far A3's bias has moved, µg."""
     for month, moved in months.items():
         content = session_bytes(seed=month, month=month, a3_moved=moved, unit=unit, **changes)  # type: ignore[arg-type]
-        upload(storage, content, "a.json", NOW)
+        upload(storage, content, "a.json", NOW, outlook=month == max(months))
 
 
 def outlook(storage: Storage, now: datetime) -> UnitOutlook:
@@ -29,6 +30,7 @@ def outlook(storage: Storage, now: datetime) -> UnitOutlook:
         return outlook_of(store, "BA-017", now)
 
 
+@one_engine
 def test_a_drift_brings_the_unit_back_before_its_tolerance(storage: Storage) -> None:
     measure(storage, {1: 0.0, 3: 7.0, 5: 14.0, 7: 21.0, 9: 28.0})
     found = outlook(storage, NOW)
@@ -52,6 +54,7 @@ def test_a_stable_unit_comes_back_after_the_longest_interval_at_the_latest(stora
     assert outlook(storage, NOW + timedelta(days=60)).overdue
 
 
+@one_engine
 def test_a_service_ends_every_trend_until_the_unit_is_measured_again(storage: Storage) -> None:
     measure(storage, {1: 0.0, 3: 15.0, 5: 30.0, 7: 45.0})
     record_service(storage, "BA-017", NewService("repair", datetime(2026, 8, 1, tzinfo=UTC)), NOW)
@@ -63,6 +66,7 @@ def test_a_service_ends_every_trend_until_the_unit_is_measured_again(storage: St
     assert all(abs(t.level) < 0.5 * t.tolerance for t in after.trends)
 
 
+@one_engine
 def test_a_sudden_change_is_dated(storage: Storage) -> None:
     measure(storage, {1: 0.0, 2: 0.0, 3: 0.0, 4: 0.0, 5: 40.0, 6: 40.0, 7: 40.0, 8: 40.0})
     found = outlook(storage, NOW)
@@ -70,6 +74,7 @@ def test_a_sudden_change_is_dated(storage: Storage) -> None:
     assert stepped == {("A3", "bias"): [5]}
 
 
+@one_engine
 def test_a_rate_is_set_against_the_type_s_other_units(storage: Storage) -> None:
     for number in range(4):
         measure(storage, {1: 0.0, 4: 0.0, 7: 0.0}, unit=f"BA-00{number}")
