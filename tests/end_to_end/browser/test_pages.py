@@ -28,6 +28,10 @@ PATHS = (
     "/flags",
     "/upload",
     "/plan",
+    "/sign-in",
+    "/accounts",
+    "/account",
+    "/audit",
     "/plan?kind=gyroscope&runs=direct&bias=0.05",
     "/units/nobody",
 )
@@ -57,7 +61,7 @@ class Seen:
 
 OVERFLOW = "document.documentElement.scrollWidth - window.innerWidth"
 LEVELS = "[...document.querySelectorAll('h1,h2,h3')].map((h) => +h.tagName[1])"
-NAMELESS = "[...document.querySelectorAll('input,select')].filter((e) => !e.labels.length).length"
+NAMELESS = "[...document.querySelectorAll('input:not([type=hidden]),select')].filter((e) => !e.labels.length).length"
 
 
 def visit(browser: Browser, site: Site, path: str, width: int) -> Seen:
