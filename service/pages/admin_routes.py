@@ -6,6 +6,7 @@ from fastapi import APIRouter, Form, Path, Query, Request
 from fastapi.responses import HTMLResponse, RedirectResponse
 
 from service.admission import PersonOf
+from service.application import application_of
 from service.dependencies import Now, Reading, StorageOf
 from service.flows.identity.accounts import AccountChange, add_account, change_account
 from service.flows.identity.links import make_link
@@ -70,15 +71,17 @@ def show_audit(
     store: Reading,
     before: Annotated[int | None, Query(ge=1, le=2_000_000_000)] = None,
     subject: Annotated[str, Query(max_length=200, pattern=NO_NUL)] = "",
+    check: bool = False,
 ) -> HTMLResponse:
     """Who did what, the newest first."""
     wanted = subject.strip()
     lines = store.audit.page(AUDIT_LINES, before, wanted or None)
-    check = store.audit.check() if before is None and not wanted else None
-    return render(request, "audit.html", audit_page(lines, check, wanted, AUDIT_LINES))
+    checked = store.audit.check() if check else None
+    return render(request, "audit.html", audit_page(lines, checked, wanted, AUDIT_LINES))
 
 
 def _with_link(request: Request, storage: StorageOf, login: str, secret: str) -> HTMLResponse:
-    link = f"{str(request.base_url).rstrip('/')}/sign-in/{secret}"
+    address = application_of(request).settings.public_url or str(request.base_url)
+    link = f"{address.rstrip('/')}/sign-in/{secret}"
     with storage.database.reading() as store:
         return render(request, "accounts.html", AccountsPage(store.accounts.every(), tuple(Role), login, link))

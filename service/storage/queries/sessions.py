@@ -46,8 +46,9 @@ class Sessions(Queries):
 
     def all_simulated(self) -> bool:
         """Whether there is a demonstration to look at, and nothing else."""
-        kinds = set(self._session.scalars(select(SessionRow.simulated).distinct()))
-        return kinds == {True}
+        is_real = select(UnitRow.id).where(UnitRow.simulated.is_(False)).limit(1)
+        is_any = select(UnitRow.id).limit(1)
+        return self._session.scalar(is_real) is None and self._session.scalar(is_any) is not None
 
     def page(self, unit: str | None, offset: int, limit: int) -> tuple[StoredSession, ...]:
         """Sessions, newest measurement first, of one unit or of all."""

@@ -9,12 +9,14 @@ from fastapi.routing import iter_route_contexts
 
 from service.admission import SIGN_IN_FIRST
 from service.app import create_app
+from service.flows.receive import upload
 from service.identity.access import NEEDED, Route
 from service.records.identity import Role
 from service.settings import Settings
 from service.storage import Storage
 from tests.databases import one_engine
 from tests.service.identity.staff import NOW, Staff, staffed
+from tests.service.sessions import session_bytes
 from tests.serving import http_client
 
 WHO: tuple[Role | None, ...] = (None, *Role)
@@ -101,3 +103,13 @@ def test_figures_are_read_with_a_token_of_their_own_and_nothing_else(required: S
         assert client.get("/metrics", headers=headers).status_code == 200
         assert client.get("/api/v1/units", headers=headers).status_code == 401
         assert client.get("/metrics").status_code == 401
+
+
+@one_engine
+def test_a_demonstration_may_be_looked_at_and_nothing_else(required: Settings, storage: Storage) -> None:
+    upload(storage, session_bytes(), "a.json", NOW, simulated=True)
+    with http_client(create_app(required)) as client:
+        assert client.get("/units/BA-017").status_code == 200
+        assert client.post("/api/v1/sessions", content=session_bytes(unit="BA-018")).status_code == 401
+        upload(storage, session_bytes(unit="BA-018"), "a.json", NOW)
+        assert client.get("/api/v1/units/BA-017").status_code == 401
