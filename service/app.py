@@ -15,8 +15,10 @@ from service.background.deliver_messages import deliver_until
 from service.background.derive_pending import derive_pending
 from service.background.diagnose_pending import diagnose_pending
 from service.background.watch_fleet import watch_fleet
+from service.metrics import Metrics
 from service.settings import VERSION, Settings
 from service.storage import Database, Files, Storage
+from service.storage.waits import Waits
 
 DESCRIPTION = (
     "Health of redundant inertial measurement units: calibration sessions in, parameters with uncertainties, "
@@ -34,8 +36,7 @@ def utc_now() -> datetime:
 
 def create_app(settings: Settings, clock: Callable[[], datetime] = utc_now) -> FastAPI:
     """The service on the database and the folder that the settings name; the schema must be up to date."""
-    storage = Storage(Database(settings.database), Files(settings.files))
-    application = Application(settings, storage, clock, Gate(settings))
+    application = _application(settings, clock)
     app = FastAPI(
         title="imu-health",
         version=VERSION,
@@ -49,6 +50,15 @@ def create_app(settings: Settings, clock: Callable[[], datetime] = utc_now) -> F
     pages.mount(app)
     app.add_middleware(Measured, metrics=application.metrics)
     return app
+
+
+def _application(settings: Settings, clock: Callable[[], datetime]) -> Application:
+    metrics = Metrics()
+    waits = Waits(
+        settings.database_lock_seconds, settings.database_statement_seconds, settings.database_connect_seconds
+    )
+    storage = Storage(Database(settings.database, waits), Files(settings.files, metrics.count_file_fault))
+    return Application(settings, storage, clock, Gate(settings), metrics=metrics)
 
 
 def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncContextManager[None]]:

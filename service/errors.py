@@ -9,7 +9,8 @@ ServiceError (500)
 ├── TooLargeError (413)       an upload beyond the limit
 ├── TooOftenError (429)       wrong sign-ins in a row; try again after `retry_after`
 ├── NoSpaceError (507)        the disk is full; nothing was stored
-└── AwayError (503)           the database does not answer or is not up to date; try again after `retry_after`
+├── DamagedError (500)        a stored file is not what was uploaded, and is not given out
+└── AwayError (503)           the database or the folder of files cannot be used; try again after `retry_after`
 """
 
 from http import HTTPStatus
@@ -85,8 +86,12 @@ class NoSpaceError(ServiceError):
     status = HTTPStatus.INSUFFICIENT_STORAGE
 
 
+class DamagedError(ServiceError):
+    """A stored file is not what was uploaded, and is not given out."""
+
+
 class AwayError(ServiceError):
-    """The database does not answer, or its schema is not up to date."""
+    """The database does not answer or its schema is not up to date, or the folder of files cannot be written."""
 
     status = HTTPStatus.SERVICE_UNAVAILABLE
     retry_after = 5

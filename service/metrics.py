@@ -32,6 +32,13 @@ class Metrics:
             registry=self._registry,
         )
 
+        self._files = Counter(
+            "imu_health_file_faults",
+            "Stored files that were missing or damaged when they were read, and those put back by another upload.",
+            ("fault",),
+            registry=self._registry,
+        )
+
     def count_upload(self, receipt: Receipt) -> None:
         """A session that was stored, or was stored before."""
         self._uploads.labels(receipt.verdict.value if receipt.created else "stored-before").inc()
@@ -44,6 +51,10 @@ class Metrics:
     def count_fault(self, work: str, fault: str) -> None:
         """A piece of work beside the requests that failed."""
         self._faults.labels(work, fault).inc()
+
+    def count_file_fault(self, fault: str) -> None:
+        """A stored file that is missing or damaged, or was put back."""
+        self._files.labels(fault).inc()
 
     def text(self) -> bytes:
         """All figures in Prometheus' form."""

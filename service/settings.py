@@ -32,6 +32,15 @@ class Settings(BaseSettings):
         description="SQLAlchemy URL: sqlite:///path or postgresql://user:password@host/name. "
         "Default: the file imu-health.sqlite in data_folder.",
     )
+    database_lock_seconds: float = Field(
+        default=10.0, gt=0, le=600, description="Longest wait for a lock or a free connection of the database, s."
+    )
+    database_statement_seconds: float = Field(
+        default=30.0, gt=0, le=3600, description="Longest wait for one statement of PostgreSQL, s."
+    )
+    database_connect_seconds: float = Field(
+        default=5.0, ge=2, le=600, description="Longest wait for a connection to PostgreSQL, s; two at least."
+    )
     host: str = Field(default="127.0.0.1", description="Address to listen on.")
     port: int = Field(default=8000, ge=0, le=65535, description="Port to listen on.")
     sign_in: Literal["auto", "required", "off"] = Field(

@@ -90,7 +90,7 @@ def mark_session(id: SessionId, new: NewStage, storage: StorageOf, now: Now, per
     return SessionSchema.model_validate(set_stage(storage, id, new.stage, person.signs(new.by), now))
 
 
-@router.get("/{id}/file", responses={200: {"content": ANY_BYTES}, **errors(404, 422)}, response_class=Response)
+@router.get("/{id}/file", responses={200: {"content": ANY_BYTES}, **errors(404, 422, 500)}, response_class=Response)
 def read_file(id: SessionId, store: Reading, storage: StorageOf) -> Response:
     """The uploaded bytes, unchanged."""
     session = store.sessions.get(id)

@@ -42,7 +42,7 @@ def watch_fleet(
 
 
 def look(storage: Storage, clock: Callable[[], datetime], metrics: Metrics) -> bool:
-    """One look at the whole fleet; whether all of it could be looked at."""
+    """One look at the whole fleet and at what dead processes left; whether all of it could be looked at."""
     guard = Guard(metrics)
     with guard.alone("outlooks", ""):
         relearn(storage, clock(), guard.alone)
@@ -50,4 +50,6 @@ def look(storage: Storage, clock: Callable[[], datetime], metrics: Metrics) -> b
         flag_overdue(storage, clock(), guard.alone)
     with guard.alone("stands", ""):
         flag_shifted_stands(storage, clock(), guard.alone)
+    with guard.alone("half-written files", ""):
+        storage.files.sweep()
     return not guard.failed

@@ -12,7 +12,7 @@ import numpy as np
 
 from estimator.session import CalibrationSession
 from estimator.writing import session_document
-from service.errors import ConflictError, NotFoundError
+from service.errors import ConflictError
 from service.flows.receive import Reception, receive
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
@@ -22,6 +22,7 @@ from service.records.received import Replaced, SentFile
 from service.records.session import Receipt
 from service.records.state import RecordState
 from service.storage import Storage
+from service.storage.files import LOST
 
 UNKNOWN = "Nothing is known that would put session {id} right: upload a corrected file that names it, or accept it."
 
@@ -41,7 +42,7 @@ def correction_of(storage: Storage, id: str) -> str:
     file is lost."""
     try:
         return ", ".join(correction.text for correction in _corrections(storage, id)[1])
-    except NotFoundError:
+    except LOST:
         return ""
 
 

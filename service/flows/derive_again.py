@@ -14,7 +14,6 @@ from estimator.parity import parity_check
 from estimator.parity.as_calibration import parity_calibration
 from estimator.results import Calibration
 from estimator.session import CALIBRATIONS, IN_SERVICE
-from service.errors import NotFoundError
 from service.flows.flagging.drift import flag_drift
 from service.flows.flagging.fold import settle_sessions
 from service.flows.flagging.settle import Occasion
@@ -30,6 +29,7 @@ from service.records.decision import Judged
 from service.records.derivation import Counted
 from service.records.session import StoredSession
 from service.storage import Files
+from service.storage.files import LOST
 from service.storage.store import Store
 from service.words.advice import too_few
 
@@ -154,7 +154,7 @@ def _recording(store: Store, way: Deriving, session: StoredSession, place: Place
         return Judged(known.get(session.id), (), NOTHING_TO_COMPARE, is_reference=False)
     try:
         source = read_upload(way.files.read(session.sha256), session.filename)
-    except (NotFoundError, SessionError) as lost:
+    except (*LOST, SessionError) as lost:
         return Judged(known.get(session.id), (), f"It cannot be compared: {lost}", is_reference=False)
     reference = known.get(place.reference.id)
     found = Comparison(reference, parity_check(source, reference))

@@ -14,7 +14,6 @@ from estimator.diagnosis import diagnose as find_causes
 from estimator.errors import SessionError
 from estimator.results import COVERAGE
 from estimator.session import DIAGNOSED, CalibrationSession
-from service.errors import NotFoundError
 from service.flows.derive_again import Deriving
 from service.flows.flagging.diagnosis import flag_diagnosis
 from service.flows.question_session import question_diagnosed
@@ -27,6 +26,7 @@ from service.records.session import StoredSession
 from service.settings import VERSION
 from service.storage import Files, Storage
 from service.storage.diagnosis_document import diagnosis_to_dict, inapplicable_to_dict, read_diagnosis, written
+from service.storage.files import LOST
 from service.storage.store import Store
 from service.words.diagnosis import NOT_APPLICABLE, cannot_be_diagnosed, fault_of_the_program, summary_of
 
@@ -190,7 +190,7 @@ def _comparable(files: Files, task: Task, session: CalibrationSession) -> list[C
     for past in task.earlier:
         try:
             earlier = _read(files, past)
-        except (NotFoundError, SessionError):
+        except (*LOST, SessionError):
             continue
         if _sensors(earlier) == _sensors(session):
             found.append(earlier)

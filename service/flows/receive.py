@@ -137,6 +137,7 @@ def upload(
             store.sessions.get(replaces.session)
         known = store.sessions.by_hash(received.sha256)
     if known is not None:
+        storage.files.put_back(content)
         return _known(storage, way, known, replaces)
     try:
         calibrated = _calibrated(storage, check(content, received.filename, now))

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 from estimator.errors import SessionError
 from estimator.session import CalibrationSession
-from service.errors import NotFoundError
 from service.ingest import read_upload
 from service.judging.cause_sizes import Yardstick
 from service.judging.model_in_force import in_force
@@ -16,6 +15,7 @@ from service.records.decision import Verdict, nominal_factor_of
 from service.records.diagnosis import Diagnosed
 from service.records.reservation import Reservation
 from service.storage import Files
+from service.storage.files import LOST
 from service.storage.store import Store
 
 
@@ -90,7 +90,7 @@ def weigh_again(store: Store, files: Files, id: str) -> None:
         return
     try:
         source = read_upload(files.read(session.sha256), session.filename)
-    except (NotFoundError, SessionError):
+    except (*LOST, SessionError):
         store.diagnoses.put_reservations(id, UNCHECKED)
         return
     weighed = weigh(source, made.found, weighing_of(store, id, source.block))

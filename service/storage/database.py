@@ -11,14 +11,15 @@ from service.storage.engine import WRITES, open_engine
 from service.storage.faults import database_faults
 from service.storage.schema import head_revision, stored_revision
 from service.storage.store import Store
+from service.storage.waits import Waits
 
 
 class Database:
     """Hands out one transaction at a time."""
 
-    def __init__(self, url: str) -> None:
+    def __init__(self, url: str, waits: Waits | None = None) -> None:
         self.url, self._account = url, ""
-        self.engine = open_engine(url)
+        self.engine = open_engine(url, waits)
         self._writing_engine = self.engine.execution_options(**{WRITES: True})
 
     def acting(self, account: str) -> "Database":

@@ -1,18 +1,23 @@
 """Engines: SQLite with write-ahead log, foreign keys and patience; PostgreSQL through psycopg 3."""
 
 import sqlite3
+from collections.abc import Callable
 from pathlib import Path
+from time import monotonic, sleep
+from typing import Any
 
+import psycopg
 from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url
+from sqlalchemy.engine.interfaces import DBAPIConnection, Dialect
 from sqlalchemy.exc import ArgumentError
 from sqlalchemy.pool import ConnectionPoolEntry
 
 from service.errors import ServiceError
+from service.storage.folders import make_folder
+from service.storage.waits import Waits, connect_within
 
-BUSY_TIMEOUT_MS = 10_000
-"""Milliseconds that a connection waits for another one's write lock before the database counts as away."""
-WAIT_FOR_CONNECTION, WAIT_FOR_SERVER = 10, 5
-"""Seconds for a free connection of the pool, and for PostgreSQL to answer, before it counts as away."""
+LOOK_AGAIN = 0.02
+"""Seconds between two attempts at what SQLite refuses at once while another process does the same."""
 WRITES = "imu_health_writes"
 """Execution option of a connection that will write."""
 
@@ -35,31 +40,60 @@ def _unknown(fault: str) -> ServiceError:
     return ServiceError(f"{fault}: a database's address is sqlite:///path or postgresql://user:password@host/name.")
 
 
-def open_engine(url: str) -> Engine:
+def open_engine(url: str, waits: Waits | None = None) -> Engine:
     """An engine for the database; the folder of an SQLite file is made when it is missing.
 
     Its errors repeat statements without their values, so that no secret and no upload comes into a log with them.
     """
-    parsed = normal_url(url)
+    parsed, waits = normal_url(url), waits or Waits()
     if parsed.get_backend_name() != "sqlite":
-        return create_engine(
-            parsed, hide_parameters=True, pool_pre_ping=True, pool_timeout=10, connect_args={"connect_timeout": 5}
-        )
-    if parsed.database and parsed.database != ":memory:":
-        Path(parsed.database).parent.mkdir(parents=True, exist_ok=True)
-    engine = create_engine(parsed, hide_parameters=True)
-    event.listen(engine, "connect", _prepare_sqlite)
+        engine = create_engine(parsed, hide_parameters=True, pool_pre_ping=True, pool_timeout=waits.lock)
+        event.listen(engine, "do_connect", _connecting(waits))
+        return engine
+    if not parsed.database or parsed.database == ":memory:":
+        raise _unknown("It names no file")
+    make_folder(Path(parsed.database).absolute().parent)
+    engine = create_engine(parsed, hide_parameters=True, pool_timeout=waits.lock)
+    event.listen(engine, "connect", _preparing(waits))
     event.listen(engine, "begin", _begin_sqlite)
     return engine
 
 
-def _prepare_sqlite(connection: sqlite3.Connection, _: ConnectionPoolEntry) -> None:
+def _connecting(waits: Waits) -> Callable[..., psycopg.Connection[Any]]:
+    def connect(
+        _: Dialect, __: ConnectionPoolEntry, given: list[Any], named: dict[str, Any]
+    ) -> psycopg.Connection[Any]:
+        assert not given, "psycopg is given its arguments by name"
+        return connect_within(waits, named)
+
+    return connect
+
+
+def _preparing(waits: Waits) -> Callable[[DBAPIConnection, ConnectionPoolEntry], None]:
     """Leaves transactions to `_begin_sqlite`, and makes a commit durable and a reader never block a writer."""
-    connection.isolation_level = None
-    for pragma in (
-        f"busy_timeout={BUSY_TIMEOUT_MS}", "journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"
-    ):  # fmt: skip
-        connection.execute(f"PRAGMA {pragma}").close()
+
+    def prepare(connection: DBAPIConnection, _: ConnectionPoolEntry) -> None:
+        assert isinstance(connection, sqlite3.Connection)
+        connection.isolation_level = None
+        connection.execute(f"PRAGMA busy_timeout={round(1000 * waits.lock)}").close()
+        _write_ahead(connection, monotonic() + waits.lock)
+        for pragma in ("synchronous=FULL", "foreign_keys=ON"):
+            connection.execute(f"PRAGMA {pragma}").close()
+
+    return prepare
+
+
+def _write_ahead(connection: sqlite3.Connection, end: float) -> None:
+    """Of several processes that open a new file at once SQLite refuses all but one the change of its journal."""
+    while True:
+        try:
+            connection.execute("PRAGMA journal_mode=WAL").close()
+        except sqlite3.OperationalError as fault:
+            if fault.sqlite_errorcode & 0xFF != sqlite3.SQLITE_BUSY or monotonic() > end:
+                raise
+            sleep(LOOK_AGAIN)
+        else:
+            return
 
 
 def _begin_sqlite(connection: Connection) -> None:

@@ -14,12 +14,24 @@ FULL_SQLSTATES = frozenset({"53100"})
 """PostgreSQL: disk_full."""
 DAMAGED = frozenset({sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT})
 """SQLite: what the file holds cannot be read as a database."""
+CLOSED = frozenset({sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_PERM})
+"""SQLite: the file cannot be opened or written, and waiting does not help."""
+PRIMARY = 0xFF
+"""The bits of an SQLite error code that say what it is; the others say where."""
 FULL_ERRNOS = frozenset({errno.ENOSPC, errno.EDQUOT})
 """The disk, or what the service may use of it, is full."""
 DATABASE_FAULTS = (SQLAlchemyError,)
 """Whatever else the database, or what speaks to it, refuses."""
 NO_SPACE = "The disk is full: nothing was stored. Free some space and send it again."
 NO_DATABASE = "The database's file is damaged, or is not an SQLite database."
+NOT_WRITABLE = (
+    "The database's file cannot be opened or written. Nothing was stored. Check that it and its folder are there, "
+    "and that the user of the service may write them."
+)
+NO_FOLDER = (
+    "The folder of uploaded files cannot be written ({reason}): nothing was stored. Check that it is there, and that "
+    "the user of the service may write it; then send it again."
+)
 AWAY = "The database does not answer. Nothing was lost; try again in a few seconds."
 """What is said to the one who asked: what holds, and what to do."""
 
@@ -34,8 +46,10 @@ def database_faults() -> Iterator[None]:
     except DBAPIError as fault:
         if _is_full(fault):
             raise NoSpaceError(NO_SPACE) from fault
-        if getattr(fault.orig, "sqlite_errorcode", None) in DAMAGED:
+        if _sqlite_code(fault) in DAMAGED:
             raise ServiceError(NO_DATABASE) from fault
+        if _sqlite_code(fault) in CLOSED:
+            raise AwayError(NOT_WRITABLE) from fault
         if fault.connection_invalidated or isinstance(fault, OperationalError | InterfaceError):
             raise AwayError(AWAY) from fault
         raise
@@ -43,17 +57,21 @@ def database_faults() -> Iterator[None]:
 
 @contextmanager
 def disk_faults() -> Iterator[None]:
-    """Turns "no space left on device" into an error of the service."""
+    """Turns "no space left on device" and "may not be written" into errors of the service."""
     try:
         yield
     except OSError as fault:
         if fault.errno in FULL_ERRNOS:
             raise NoSpaceError(NO_SPACE) from fault
-        raise
+        raise AwayError(NO_FOLDER.format(reason=fault.strerror or fault)) from fault
 
 
 def _is_full(fault: DBAPIError) -> bool:
-    cause = fault.orig
-    if isinstance(cause, sqlite3.Error):
-        return getattr(cause, "sqlite_errorcode", None) == sqlite3.SQLITE_FULL
-    return getattr(cause, "sqlstate", None) in FULL_SQLSTATES
+    sqlstate = getattr(fault.orig, "sqlstate", None)
+    return _sqlite_code(fault) == sqlite3.SQLITE_FULL or sqlstate in FULL_SQLSTATES
+
+
+def _sqlite_code(fault: DBAPIError) -> int | None:
+    """What SQLite says went wrong; None of another database, or where it does not say."""
+    code = getattr(fault.orig, "sqlite_errorcode", None)
+    return None if code is None else code & PRIMARY

@@ -1,15 +1,23 @@
 """The schema's revisions: Alembic from the installed package, without a file of settings."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 
 from alembic import command
 from alembic.config import Config
 from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
-from sqlalchemy import Connection
+from alembic.util import CommandError
+from sqlalchemy import Connection, text
 
+from service.errors import ServiceError
 from service.storage.engine import WRITES, open_engine
 from service.storage.faults import database_faults
+from service.storage.waits import PATIENT
+
+MIGRATION_LOCK = 0x696D_7568
+"""The key of PostgreSQL's advisory lock: the letters "imuh", so that no other program takes it by chance."""
 
 
 def migrations(connection: Connection | None = None) -> Config:
@@ -20,26 +28,70 @@ def migrations(connection: Connection | None = None) -> Config:
     return config
 
 
+@contextmanager
+def alone(url: str) -> Iterator[Connection]:
+    """One transaction in which nobody else changes the schema: others wait until it ends.
+
+    SQLite has one writer at a time anyway, and its transaction takes that place at once.
+    """
+    engine = open_engine(url, PATIENT)
+    try:
+        with database_faults(), engine.execution_options(**{WRITES: True}).begin() as connection:
+            if connection.dialect.name == "postgresql":
+                connection.execute(text("SELECT pg_advisory_xact_lock(:key)"), {"key": MIGRATION_LOCK})
+            yield connection
+    finally:
+        engine.dispose()
+
+
 def upgrade(url: str, revision: str = "head") -> None:
     """Brings the schema up to a revision; a database that is there already is left alone."""
-    engine = open_engine(url)
-    with database_faults(), engine.execution_options(**{WRITES: True}).begin() as connection:
-        command.upgrade(migrations(connection), revision)
-    engine.dispose()
+    with alone(url) as connection:
+        raise_to(connection, revision)
 
 
 def downgrade(url: str, revision: str) -> None:
     """Takes the schema back to a revision; what later ones added is gone."""
-    engine = open_engine(url)
-    with database_faults(), engine.execution_options(**{WRITES: True}).begin() as connection:
+    with alone(url) as connection:
+        take_back(connection, revision)
+
+
+def raise_to(connection: Connection, revision: str) -> None:
+    """The same within a transaction of the caller's."""
+    with _known_revisions(connection, revision):
+        command.upgrade(migrations(connection), revision)
+
+
+def take_back(connection: Connection, revision: str) -> None:
+    """The same within a transaction of the caller's."""
+    with _known_revisions(connection, revision):
         command.downgrade(migrations(connection), revision)
-    engine.dispose()
+
+
+@contextmanager
+def _known_revisions(connection: Connection, wanted: str) -> Iterator[None]:
+    """Says what Alembic only hints at: the database is of a newer version, or there is no such revision."""
+    found = stored_revision(connection)
+    if found is not None and not is_known(found):
+        raise ServiceError(
+            f"The database's schema is at {found}, which this version does not know: a newer version made it. "
+            f"Nothing was changed. Start that version; this one goes up to {head_revision()}."
+        )
+    try:
+        yield
+    except CommandError as fault:
+        raise ServiceError(f"The schema cannot be brought to {wanted!r}: {fault}. Nothing was changed.") from fault
 
 
 @cache
 def head_revision() -> str | None:
     """The revision that this version of the program needs."""
     return ScriptDirectory.from_config(migrations()).get_current_head()
+
+
+def is_known(revision: str) -> bool:
+    """Whether this version has the migration that leads to a revision."""
+    return any(script.revision == revision for script in ScriptDirectory.from_config(migrations()).walk_revisions())
 
 
 def stored_revision(connection: Connection) -> str | None:

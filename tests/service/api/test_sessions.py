@@ -9,7 +9,8 @@ import httpx
 from estimator import calibrate
 from estimator.reading import read_session
 from service.flows.receive import upload
-from service.storage import Storage
+from service.settings import Settings
+from service.storage import Files, Storage
 from tests.builders import accelerometer_block
 from tests.conftest import Holding
 from tests.service.sessions import session_bytes, session_id
@@ -118,3 +119,18 @@ def test_sessions_are_listed_page_by_page_newest_first(client: httpx.Client, sto
     rest = client.get(SESSIONS, params={"limit": 2, "page": first["next_page"]}).json()
     months = [s["started_at"][5:7] for s in first["sessions"] + rest["sessions"]]
     assert (months, rest["next_page"]) == (["05", "04", "03"], None)
+
+
+def test_a_stored_file_that_was_changed_is_never_given_out_and_the_same_upload_puts_it_back(
+    client: httpx.Client, settings: Settings
+) -> None:
+    content = session_bytes()
+    file = f"{SESSIONS}/{post(client, content).json()['id']}/file"
+    Files(settings.files).path(sha256(content).hexdigest()).write_bytes(b"changed")
+    answer = client.get(file)
+    assert (answer.status_code, answer.headers["content-type"]) == (500, "application/problem+json")
+    assert "not what was uploaded" in answer.json()["detail"]
+    assert post(client, content).status_code == 200
+    assert client.get(file).content == content
+    assert 'imu_health_file_faults_total{fault="damaged"} 1.0' in client.get("/metrics").text
+    assert 'imu_health_file_faults_total{fault="put back"} 1.0' in client.get("/metrics").text
