@@ -40,6 +40,8 @@ COMMANDS = {
     "token": "accounts.token",
     "audit": "accounts.audit",
     "db": "database.database",
+    "backup": "backup.backup",
+    "restore": "backup.restore_backup",
 }
 """Every command, and where it is below `service.commands`: a function, or commands of its own."""
 

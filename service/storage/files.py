@@ -1,25 +1,18 @@
 """Uploaded bytes, unchanged, under the name of their hash; safe on disk before the database knows of them."""
 
-import fcntl
-import os
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
-from tempfile import NamedTemporaryFile
 
 from service.errors import DamagedError, NotFoundError
 from service.log import log
 from service.storage.faults import disk_faults
 from service.storage.folders import make_folder, sync_folder
+from service.storage.parts import PART, sweep, written_whole
 
-PART = ".part-"
-"""Begins the name of a file that is still being written."""
 LOST = (NotFoundError, DamagedError)
 """What reading a file may end in although it was stored."""
-YOUNG = 60.0
-"""Seconds in which a file may be made but not yet held by the one who writes it; a thousandth would do."""
 
 
 def content_hash(content: bytes) -> str:
@@ -54,7 +47,8 @@ class Files:
         with disk_faults():
             if not self._holds(target, digest):
                 make_folder(target.parent)
-                _write_whole(target, content)
+                with written_whole(target) as file:
+                    file.write(content)
             for folder in (target.parent, self.folder, self.folder.parent):
                 sync_folder(folder)
         return digest
@@ -90,10 +84,8 @@ class Files:
 
     def sweep(self) -> int:
         """Removes what dead processes left half written, and returns how many; whoever still writes holds a lock."""
-        if not self.folder.is_dir():
-            return 0
         with disk_faults():
-            return sum(_remove_dead(part) for part in self.folder.glob(f"*/{PART}*"))
+            return sweep(self.folder, f"*/{PART}*")
 
     def _holds(self, target: Path, digest: str) -> bool:
         """Whether the file is there as it was uploaded."""
@@ -105,31 +97,3 @@ class Files:
     def _tell(self, fault: str, digest: str) -> None:
         log.error("stored file unusable", fault=fault, sha256=digest)
         self.count(fault)
-
-
-def _write_whole(target: Path, content: bytes) -> None:
-    """Under another name first: the file appears complete or not at all."""
-    with NamedTemporaryFile(dir=target.parent, prefix=PART, delete=False) as part:
-        try:
-            fcntl.flock(part, fcntl.LOCK_EX)
-            part.write(content)
-            part.flush()
-            os.fsync(part.fileno())
-            os.replace(part.name, target)
-        except OSError:
-            Path(part.name).unlink(missing_ok=True)
-            raise
-
-
-def _remove_dead(part: Path) -> bool:
-    """Whether it was nobody's any more, and is gone."""
-    try:
-        with part.open("rb") as file:
-            if time.time() - os.fstat(file.fileno()).st_mtime < YOUNG:
-                return False
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            part.unlink()
-    except (FileNotFoundError, BlockingIOError):
-        return False
-    log.info("half-written file removed", file=part.name)
-    return True

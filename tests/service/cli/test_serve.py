@@ -40,6 +40,7 @@ def test_db_upgrade_and_downgrade(run: Run, databases: Databases) -> None:
     ready = Database(url)
     ready.require_ready()
     ready.close()
+    assert run("db", "downgrade", "-1", "--database-url", url).code == 0
     assert run("db", "downgrade", "base", "--database-url", url).code == 0
     assert run("db", "upgrade", "--database-url", url).code == 0
 

@@ -10,7 +10,8 @@ import pytest
 
 from service.errors import AwayError, DamagedError, NoSpaceError, NotFoundError
 from service.storage.faults import disk_faults
-from service.storage.files import YOUNG, Files
+from service.storage.files import Files
+from service.storage.parts import YOUNG
 
 
 def half_written(files: Files, *, age: float) -> Path:

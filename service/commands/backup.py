@@ -1,0 +1,65 @@
+"""`imu-health backup` and `imu-health restore`: one file with all that is stored, for either database."""
+
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+from service.commands.console import FAILED, say
+from service.commands.options import DatabaseUrl, DataFolder, settings_from
+from service.storage import Files
+from service.storage.backup import restore, verified, write_backup
+from service.storage.backup.manifest import Manifest
+
+File = Annotated[Path, typer.Argument(metavar="FILE", help="The backup.", show_default=False)]
+
+
+class WritesByDefault(TyperGroup):
+    """`backup FILE` is `backup write FILE`."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> Any:
+        """The first word is a command, or what to write."""
+        if args and args[0] != "--help" and args[0] not in self.commands:
+            args = ["write", *args]
+        return super().parse_args(ctx, args)
+
+
+backup = typer.Typer(
+    name="backup",
+    cls=WritesByDefault,
+    add_completion=False,
+    no_args_is_help=True,
+    help="Write all that is stored into one file, while the service runs: `imu-health backup FILE`.",
+)
+
+
+@backup.command("write")
+def write(file: File, database_url: DatabaseUrl = None, data_folder: DataFolder = None) -> None:
+    """Write database and uploaded files into one file; it is there whole or not at all. The same as `backup FILE`."""
+    settings = settings_from(database_url=database_url, data_folder=data_folder)
+    manifest = write_backup(settings.database, Files(settings.files), file, datetime.now(UTC))
+    typer.echo(f"{file}: {_told(manifest)}.")
+    if manifest.lost:
+        say(f"{len(manifest.lost)} uploaded files are missing or damaged and not in it: {', '.join(manifest.lost)}.")
+        raise typer.Exit(FAILED)
+
+
+@backup.command("verify")
+def verify(file: File) -> None:
+    """Read a backup from end to end and compare every part with its hash."""
+    manifest = verified(file)
+    typer.echo(f"{file} is whole: {_told(manifest)}, made {manifest.made_at:%Y-%m-%d %H:%M} UTC.")
+
+
+def restore_backup(file: File, database_url: DatabaseUrl = None, data_folder: DataFolder = None) -> None:
+    """Put a backup into an empty database, of either kind, and an empty data folder."""
+    settings = settings_from(database_url=database_url, data_folder=data_folder)
+    manifest = restore(file, settings.database, settings.files)
+    typer.echo(f"Restored {_told(manifest)}.")
+
+
+def _told(manifest: Manifest) -> str:
+    rows = sum(table.rows for table in manifest.tables)
+    return f"{rows:,} rows, {len(manifest.files):,} files, schema {manifest.revision}"

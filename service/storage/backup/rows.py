@@ -1,0 +1,113 @@
+"""Rows as lines that mean the same on SQLite and on PostgreSQL, by the tables that the database really has."""
+
+import base64
+import json
+from collections.abc import Callable, Iterator
+from datetime import UTC, date, datetime
+from typing import Any
+
+from sqlalchemy import (
+    JSON,
+    Column,
+    Connection,
+    Date,
+    DateTime,
+    LargeBinary,
+    MetaData,
+    Table,
+    Text,
+    cast,
+    func,
+    select,
+    text,
+)
+from sqlalchemy.types import UserDefinedType
+
+BATCH = 500
+"""Rows that are held at a time: the widest, a calibration, has some ten kilobytes."""
+BOOKKEEPING = "alembic_version"
+"""The table that is made by the migrations themselves."""
+
+
+class _Written(UserDefinedType[str]):
+    """JSON as it was written, character by character; the driver passes it on."""
+
+    cache_ok = True
+
+    def get_col_spec(self, **_: Any) -> str:
+        return "JSON"
+
+
+def tables_of(connection: Connection) -> list[Table]:
+    """The tables of a database; one that refers to another comes after it."""
+    metadata = MetaData()
+    metadata.reflect(connection)
+    return [table for table in metadata.sorted_tables if table.name != BOOKKEEPING]
+
+
+def lines_of(connection: Connection, table: Table) -> Iterator[bytes]:
+    """Every row, by primary key."""
+    columns = [cast(c, Text).label(c.name) if isinstance(c.type, JSON) else c for c in table.columns]
+    plain = [_plain(column) for column in table.columns]
+    query = select(*columns).order_by(*table.primary_key.columns)
+    with connection.execution_options(yield_per=BATCH).execute(query) as found:
+        for row in found:
+            values = [None if value is None else to(value) for to, value in zip(plain, row, strict=True)]
+            yield json.dumps(values, ensure_ascii=False, separators=(",", ":")).encode() + b"\n"
+
+
+def put_lines(connection: Connection, table: Table, columns: tuple[str, ...], lines: Iterator[bytes]) -> None:
+    """Puts rows into a table that is empty."""
+    own = [table.columns[name] for name in columns]
+    stored = [_stored(column, naive=connection.dialect.name == "sqlite") for column in own]
+    for column in own:
+        if isinstance(column.type, JSON):
+            column.type = _Written()
+    batch: list[dict[str, Any]] = []
+    for line in lines:
+        values = zip(own, stored, json.loads(line), strict=True)
+        batch.append({c.name: None if value is None else to(value) for c, to, value in values})
+        if len(batch) == BATCH:
+            connection.execute(table.insert(), batch)
+            batch = []
+    if batch:
+        connection.execute(table.insert(), batch)
+
+
+def continue_numbers(connection: Connection, table: Table) -> None:
+    """PostgreSQL hands out numbers after the largest that was put in; SQLite does so by itself."""
+    if connection.dialect.name != "postgresql":
+        return
+    for column in table.primary_key.columns:
+        place = {"table": f'"{table.name}"', "column": column.name}
+        sequence = connection.scalar(text("SELECT pg_get_serial_sequence(:table, :column)"), place)
+        largest = connection.scalar(select(func.max(column))) if sequence else None
+        if largest is not None:
+            connection.execute(text("SELECT setval(:sequence, :largest)"), {"sequence": sequence, "largest": largest})
+
+
+def _plain(column: Column[Any]) -> Callable[[Any], Any]:
+    """How a value of a column is written down."""
+    if isinstance(column.type, DateTime):
+        return _instant
+    if isinstance(column.type, Date):
+        return date.isoformat
+    if isinstance(column.type, LargeBinary):
+        return lambda value: base64.b64encode(value).decode()
+    return lambda value: value
+
+
+def _instant(value: datetime) -> str:
+    """SQLite's times are UTC without saying so."""
+    return (value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)).isoformat()
+
+
+def _stored(column: Column[Any], *, naive: bool) -> Callable[[Any], Any]:
+    """How a value that was written down is put in again."""
+    if isinstance(column.type, DateTime):
+        return lambda value: datetime.fromisoformat(value).replace(tzinfo=None if naive else UTC)
+    if isinstance(column.type, Date):
+        return date.fromisoformat
+    if isinstance(column.type, LargeBinary):
+        return base64.b64decode
+    return lambda value: value

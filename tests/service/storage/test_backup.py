@@ -1,0 +1,229 @@
+"""A backup holds everything, goes into either engine, and is there whole or not at all."""
+
+import os
+import signal
+import subprocess
+import sys
+import zipfile
+from concurrent.futures import ThreadPoolExecutor
+from datetime import UTC, datetime
+from pathlib import Path
+
+import httpx
+import pytest
+from sqlalchemy import text
+
+from service.app import create_app
+from service.errors import ConflictError, DamagedError, ServiceError
+from service.settings import Settings
+from service.storage import Database, Files
+from service.storage.backup import restore, verified, write_backup
+from service.storage.schema import upgrade
+from tests.conftest import SettingsHolding
+from tests.databases import ENGINES, Databases, one_engine
+from tests.service.sessions import FAILED, session_bytes
+from tests.service.storage.whole import files, rows
+from tests.serving import http_client
+
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
+
+
+@pytest.fixture
+def full(settings_holding: SettingsHolding) -> Settings:
+    """A service with flags, notes, a certificate's customer and a refusal."""
+    settings = settings_holding(*FAILED)
+    with http_client(create_app(settings)) as client:
+        note(client, "dropped; Ω ≠ 0")
+        client.post("/api/v1/sessions", content=b"{}")
+        client.put("/api/v1/units/BA-017/customer", json={"name": "Aero", "address": "Derby"}).raise_for_status()
+    return settings
+
+
+@pytest.fixture(params=ENGINES)
+def other(request: pytest.FixtureRequest) -> Databases:
+    """Each engine in turn, to restore into."""
+    found: Databases = request.getfixturevalue(request.param)
+    return found
+
+
+def note(client: httpx.Client, words: str) -> None:
+    """Writes something with a number of its own."""
+    client.post("/api/v1/units/BA-017/notes", json={"text": words, "by": "K. Ito"}).raise_for_status()
+
+
+def backup_of(settings: Settings, folder: Path) -> Path:
+    """A backup of a service."""
+    write_backup(settings.database, Files(settings.files), folder / "all.backup", NOW)
+    return folder / "all.backup"
+
+
+def test_a_backup_restores_everything_into_either_engine(full: Settings, other: Databases, tmp_path: Path) -> None:
+    url = other.empty()
+    restore(backup_of(full, tmp_path), url, tmp_path / "new" / "files")
+    assert rows(url) == rows(full.database)
+    assert files(tmp_path / "new") == files(full.files) != {}
+
+
+def test_a_restored_service_goes_on(full: Settings, other: Databases, tmp_path: Path) -> None:
+    new = Settings(database_url=other.empty(), data_folder=tmp_path / "new")
+    restore(backup_of(full, tmp_path), new.database, new.files)
+    with http_client(create_app(new)) as client:
+        note(client, "after restoring")
+        assert client.post("/api/v1/sessions", content=FAILED[0]).status_code == 200
+        assert client.post("/api/v1/sessions", content=session_bytes(seed=9, month=6)).status_code == 201
+
+
+def test_a_backup_of_an_earlier_schema_is_restored_as_it_was(databases: Databases, tmp_path: Path) -> None:
+    old, new = databases.empty(), databases.empty()
+    upgrade(old, "0003")
+    write_backup(old, Files(tmp_path / "files"), tmp_path / "old", NOW)
+    assert restore(tmp_path / "old", new, tmp_path / "new").revision == "0003"
+    upgrade(new)
+    assert rows(new) == {name: [] for name in rows(new)}
+
+
+def test_what_is_uploaded_meanwhile_is_wholly_in_it_or_not_at_all(full: Settings, tmp_path: Path) -> None:
+    meanwhile = [session_bytes(seed=seed, month=seed - 46) for seed in (50, 51)]
+    with http_client(create_app(full)) as client, ThreadPoolExecutor(1) as uploading:
+        answers = [uploading.submit(client.post, "/api/v1/sessions", content=content) for content in meanwhile]
+        number = 0
+        while not all(answer.done() for answer in answers):
+            manifest = write_backup(full.database, Files(full.files), tmp_path / str(number), NOW)
+            sizes = {table.name: table.rows for table in manifest.tables}
+            assert (sizes["sessions"], manifest.lost) == (len(manifest.files), ())
+            assert sizes["sessions"] == sizes["calibrations"]
+            number += 1
+    assert [answer.result().status_code for answer in answers] == [201] * 2
+
+
+def test_nothing_is_restored_over_what_is_there(full: Settings, databases: Databases, tmp_path: Path) -> None:
+    backup, before = backup_of(full, tmp_path), rows(full.database)
+    with pytest.raises(ConflictError, match="database is not empty"):
+        restore(backup, full.database, tmp_path / "new")
+    with pytest.raises(ConflictError, match="never written over"):
+        backup_of(full, tmp_path)
+    Files(tmp_path / "held").keep(b"something else")
+    with pytest.raises(ConflictError, match="held is not empty"):
+        restore(backup, databases.empty(), tmp_path / "held")
+    assert rows(full.database) == before
+
+
+@one_engine
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.9, 0.999])
+def test_a_backup_that_was_cut_off_or_changed_is_refused(full: Settings, tmp_path: Path, share: float) -> None:
+    backup = backup_of(full, tmp_path)
+    content = backup.read_bytes()
+    backup.write_bytes(content[: int(share * len(content))])
+    with pytest.raises(ServiceError, match="cut off"):
+        verified(backup)
+    place = int(share * 0.9 * len(content))
+    backup.write_bytes(content[:place] + bytes([content[place] ^ 1]) + content[place + 1 :])
+    with pytest.raises(ServiceError):
+        verified(backup)
+
+
+@one_engine
+@pytest.mark.parametrize("member", ["tables/sessions.jsonl", "files/"])
+def test_a_part_that_was_replaced_is_named(full: Settings, tmp_path: Path, member: str) -> None:
+    backup = backup_of(full, tmp_path)
+    with zipfile.ZipFile(backup) as old, zipfile.ZipFile(tmp_path / "forged", "w") as new:
+        for name in old.namelist():
+            new.writestr(name, b"forged" if name.startswith(member) else old.read(name))
+    with pytest.raises(DamagedError, match="changed or is missing"):
+        verified(tmp_path / "forged")
+
+
+@one_engine
+def test_a_lost_file_is_told_and_the_rest_is_kept(full: Settings, tmp_path: Path) -> None:
+    whole = Files(full.files)
+    digest = min(files(full.files))
+    whole.path(digest).write_bytes(b"changed")
+    manifest = write_backup(full.database, whole, tmp_path / "all.backup", NOW)
+    assert (manifest.lost, len(manifest.files)) == ((digest,), 1)
+    assert verified(tmp_path / "all.backup") == manifest
+
+
+def test_a_restore_that_fails_leaves_a_database_without_a_schema(
+    full: Settings, databases: Databases, tmp_path: Path
+) -> None:
+    url, backup = databases.empty(), backup_of(full, tmp_path)
+    (tmp_path / "place").write_text("no folder can be here")
+    with pytest.raises(ServiceError):
+        restore(backup, url, tmp_path / "place" / "files")
+    database = Database(url)
+    with pytest.raises(ServiceError, match="is at nothing"):
+        database.require_ready()
+    database.close()
+
+
+KILLED = """
+import os, signal, sys
+from datetime import UTC, datetime
+from pathlib import Path
+from service.storage import Files
+from service.storage.backup import restore, write_backup
+left = int(sys.argv[1])
+def look(frame, event, argument):
+    global left
+    if event == "call" and frame.f_code.co_filename.endswith(PLACES):
+        left -= 1
+        if not left:
+            os.kill(os.getpid(), signal.SIGKILL)
+PLACES = ("backup/write.py", "backup/restore.py", "backup/rows.py", "storage/files.py", "storage/parts.py")
+sys.setprofile(look)
+if sys.argv[2] == "backup":
+    write_backup(sys.argv[3], Files(Path(sys.argv[4])), Path(sys.argv[5]), datetime.now(UTC))
+else:
+    restore(Path(sys.argv[5]), sys.argv[3], Path(sys.argv[4]))
+"""
+"""Ends itself as `kill -9` does, at the n-th call of a function of the backup."""
+
+
+def killed_at(call: int, *what: object) -> bool:
+    """Whether it was killed before it was done."""
+    done = subprocess.run([sys.executable, "-c", KILLED, str(call), *map(str, what)], check=False)
+    assert done.returncode in (0, -signal.SIGKILL)
+    return done.returncode != 0
+
+
+CALLS = (2, 500, 1500, 1950)
+"""At the beginning, twice on the way, near the end: restoring so little takes 1971 calls, writing it 2390."""
+
+
+@pytest.mark.parametrize("call", CALLS)
+def test_a_backup_that_is_killed_leaves_nothing_that_looks_whole(full: Settings, tmp_path: Path, call: int) -> None:
+    target = tmp_path / "all.backup"
+    assert killed_at(call, "backup", full.database, full.files, target) != target.exists()
+    for rest in tmp_path.glob(".part-*"):
+        os.utime(rest, (0, 0))
+    write_backup(full.database, Files(full.files), tmp_path / "again.backup", NOW)
+    assert not list(tmp_path.glob(".part-*"))
+
+
+@pytest.mark.parametrize("call", CALLS)
+def test_a_restore_that_is_killed_leaves_no_schema_and_can_be_started_again(
+    full: Settings, databases: Databases, tmp_path: Path, call: int
+) -> None:
+    url, backup, folder = databases.empty(), backup_of(full, tmp_path), tmp_path / "new" / "files"
+    if killed_at(call, "restore", url, folder, backup):
+        database = Database(url)
+        with database.engine.connect() as connection:
+            assert connection.dialect.get_table_names(connection) == []
+        database.close()
+        restore(backup, url, folder)
+    assert rows(url) == rows(full.database)
+    assert files(folder) == files(full.files)
+
+
+def test_a_new_schema_holds_no_rows_that_a_restore_would_meet(databases: Databases) -> None:
+    assert {name for name, found in rows(databases.migrated()).items() if found} == set()
+
+
+def test_numbers_go_on_after_the_largest(full: Settings, other: Databases, tmp_path: Path) -> None:
+    url = other.empty()
+    restore(backup_of(full, tmp_path), url, tmp_path / "new")
+    database = Database(url)
+    with database.engine.begin() as connection:
+        insert = "INSERT INTO audit (at, who, action, subject, details) VALUES (:at, 'a', 'b', 'c', '{}') RETURNING id"
+        assert connection.scalar(text(insert), {"at": "2026-01-01 00:00:00"}) == len(rows(full.database)["audit"]) + 1
+    database.close()

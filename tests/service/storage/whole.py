@@ -1,0 +1,26 @@
+"""The whole state of a service, read through the tables that the program knows: for comparing two of them."""
+
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import select
+
+from service.storage import Database
+from service.storage.tables import Base
+
+
+def rows(url: str) -> dict[str, list[tuple[Any, ...]]]:
+    """Every row of every table, by primary key."""
+    database = Database(url)
+    with database.engine.connect() as connection:
+        found = {
+            table.name: [tuple(row) for row in connection.execute(select(table).order_by(*table.primary_key.columns))]
+            for table in Base.metadata.sorted_tables
+        }
+    database.close()
+    return found
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    """Every uploaded file."""
+    return {path.name: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
