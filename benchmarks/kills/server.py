@@ -1,0 +1,70 @@
+"""The service as a process that can be killed; forked from one that has read the program already, so that it starts
+in no time."""
+
+import logging
+import multiprocessing
+import os
+import signal
+import socket
+from dataclasses import dataclass
+from multiprocessing.process import BaseProcess
+
+import httpx
+import uvicorn
+
+from service.app import create_app
+from service.settings import Settings
+
+SOON = 120.0
+"""Seconds in which a service must answer after it was started, on a machine that has much else to do."""
+
+forking = multiprocessing.get_context("forkserver")
+forking.set_forkserver_preload(["service.app", "uvicorn"])
+
+
+def free_port() -> int:
+    """A port that nobody listens on."""
+    with socket.create_server(("127.0.0.1", 0)) as found:
+        port: int = found.getsockname()[1]
+    return port
+
+
+def serve(settings: Settings, port: int) -> None:
+    """What the process does until it is killed."""
+    logging.disable()
+    uvicorn.run(create_app(settings), port=port, log_level="critical")
+
+
+@dataclass
+class Service:
+    """A service at a fixed address, running or dead."""
+
+    settings: Settings
+    port: int
+    process: BaseProcess | None = None
+
+    @property
+    def address(self) -> str:
+        """Where it listens."""
+        return f"http://127.0.0.1:{self.port}"
+
+    def start(self) -> None:
+        """Starts it, and waits until it is ready."""
+        self.process = forking.Process(target=serve, args=(self.settings, self.port), daemon=True)
+        self.process.start()
+        transport = httpx.HTTPTransport(retries=0)
+        with httpx.Client(transport=transport) as client:
+            for _ in range(int(SOON / 0.05)):
+                try:
+                    if client.get(f"{self.address}/readyz", timeout=SOON).status_code == 200:
+                        return
+                except httpx.TransportError:
+                    self.process.join(0.05)
+        raise TimeoutError("the service did not become ready")
+
+    def kill(self) -> None:
+        """`kill -9`."""
+        assert self.process is not None
+        assert self.process.pid is not None
+        os.kill(self.process.pid, signal.SIGKILL)
+        self.process.join()
