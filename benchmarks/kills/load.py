@@ -12,8 +12,9 @@ from threading import Event, Lock
 import httpx
 
 from tests.service.sessions import session_bytes
+from tests.service.storage.intact import SENSORS
 
-CLIENTS = 3
+CLIENTS = 2
 SESSIONS_OF_A_UNIT = 6
 """So that histories are read and written too, and do not grow so long that little is uploaded."""
 GIVEN_UP = 0.5
@@ -82,4 +83,4 @@ class Load:
 def _session(number: int) -> bytes:
     """The sessions of a unit, a month apart; then those of the next."""
     unit, month = divmod(number, SESSIONS_OF_A_UNIT)
-    return session_bytes(seed=number, unit=f"KT-{unit:04d}", month=month + 1)
+    return session_bytes(seed=number, unit=f"KT-{unit:04d}", month=month + 1, m=SENSORS)

@@ -49,6 +49,7 @@ def open_engine(url: str, waits: Waits | None = None) -> Engine:
     if parsed.get_backend_name() != "sqlite":
         engine = create_engine(parsed, hide_parameters=True, pool_pre_ping=True, pool_timeout=waits.lock)
         event.listen(engine, "do_connect", _connecting(waits))
+        event.listen(engine, "checkin", _end_transaction)
         return engine
     if not parsed.database or parsed.database == ":memory:":
         raise _unknown("It names no file")
@@ -56,6 +57,7 @@ def open_engine(url: str, waits: Waits | None = None) -> Engine:
     engine = create_engine(parsed, hide_parameters=True, pool_timeout=waits.lock)
     event.listen(engine, "connect", _preparing(waits))
     event.listen(engine, "begin", _begin_sqlite)
+    event.listen(engine, "checkin", _end_transaction)
     return engine
 
 
@@ -100,3 +102,14 @@ def _begin_sqlite(connection: Connection) -> None:
     """A writer takes the write lock at once, so that waiting for it never fails half-way."""
     writes = connection.get_execution_options().get(WRITES)
     connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
+
+
+def _end_transaction(connection: DBAPIConnection | None, place: ConnectionPoolEntry) -> None:
+    """A commit that failed can leave its transaction open, with its locks: the next user of the connection must not
+    go on with it."""
+    if connection is None:
+        return
+    try:
+        connection.rollback()
+    except (sqlite3.Error, psycopg.Error):
+        place.invalidate()

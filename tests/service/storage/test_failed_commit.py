@@ -1,0 +1,33 @@
+"""A commit that the database refuses leaves nothing behind: neither rows nor a lock."""
+
+import pytest
+from sqlalchemy import text
+from sqlalchemy.exc import IntegrityError
+
+from service.storage import Database
+from service.storage.engine import WRITES
+from tests.databases import Databases
+
+LATE = {
+    "sqlite": ["PRAGMA defer_foreign_keys=ON"],
+    "postgresql": ["ALTER TABLE note_withdrawals ALTER CONSTRAINT fk_note_withdrawals_note_id INITIALLY DEFERRED"],
+}
+"""How each engine is made to look at references only when the transaction is committed."""
+DEFERRABLE = "ALTER TABLE note_withdrawals ALTER CONSTRAINT fk_note_withdrawals_note_id DEFERRABLE"
+
+
+def test_after_a_refused_commit_the_next_user_of_the_connection_finds_no_transaction(databases: Databases) -> None:
+    database = Database(databases.migrated())
+    writing = database.engine.execution_options(**{WRITES: True})
+    if database.engine.name == "postgresql":
+        with writing.begin() as connection:
+            connection.execute(text(DEFERRABLE))
+    with pytest.raises(IntegrityError), writing.begin() as connection:
+        for statement in LATE[database.engine.name]:
+            connection.execute(text(statement))
+        connection.execute(text("INSERT INTO note_withdrawals VALUES (5, '2026-01-01', 'a', 'b')"))
+    with database.writing() as store:
+        assert not store.units.exists("BA-017")
+    with database.engine.connect() as connection:
+        assert connection.scalar(text("SELECT count(*) FROM note_withdrawals")) == 0
+    database.close()
