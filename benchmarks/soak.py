@@ -1,0 +1,58 @@
+"""Uploads sessions one after another and looks at the service's memory and descriptors on the way; a table, and exit
+code 1 where descriptors grow."""
+
+import argparse
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+import httpx
+
+from benchmarks.kills.server import Service, free_port
+from service.settings import Settings
+from tests.databases import sqlite_databases
+from tests.service.sessions import session_bytes
+
+LOOKS = 6
+"""Times that it is looked, evenly over the uploads."""
+SPARE = 20
+"""Descriptors that may come and go: connections of the pool, files that are read at the moment."""
+
+
+def main() -> int:
+    """The table."""
+    asked = argparse.ArgumentParser(description=__doc__)
+    asked.add_argument("--uploads", type=int, default=300)
+    given = asked.parse_args()
+    with sqlite_databases() as databases, tempfile.TemporaryDirectory(prefix="imu-soak-") as folder:
+        service = Service(Settings(database_url=databases.migrated(), data_folder=Path(folder)), free_port())
+        service.start()
+        seen = list(_looked(service, given.uploads))
+        service.kill()
+    print("| uploads | memory, MB | descriptors |\n| --- | --- | --- |")
+    print("\n".join(f"| {number} | {memory:.0f} | {handles} |" for number, memory, handles in seen))
+    return seen[-1][2] > seen[0][2] + SPARE
+
+
+def _looked(service: Service, uploads: int) -> list[tuple[int, float, int]]:
+    """Uploads so far, resident memory in MB, open descriptors."""
+    assert service.process is not None
+    assert service.process.pid is not None
+    seen, every = [], max(uploads // LOOKS, 1)
+    with httpx.Client(base_url=service.address, timeout=120) as client:
+        for number in range(1, uploads + 1):
+            content = session_bytes(seed=number, unit=f"SK-{number:05d}", m=4)
+            client.post("/api/v1/sessions", content=content).raise_for_status()
+            if number % every == 0:
+                seen.append((number, *_taken(service.process.pid)))
+    return seen
+
+
+def _taken(pid: int) -> tuple[float, int]:
+    pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE") / 1e6, len(list(Path(f"/proc/{pid}/fd").iterdir()))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
