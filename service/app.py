@@ -15,6 +15,7 @@ from service.background.deliver_messages import deliver_until
 from service.background.derive_pending import derive_pending
 from service.background.diagnose_pending import diagnose_pending
 from service.background.watch_fleet import watch_fleet
+from service.boundary import guard
 from service.metrics import Metrics
 from service.settings import VERSION, Settings
 from service.storage import Database, Files, Storage
@@ -47,6 +48,7 @@ def create_app(settings: Settings, clock: Callable[[], datetime] = utc_now) -> F
     )
     app.state.application = application
     api.mount(app)
+    guard(app, settings)
     pages.mount(app)
     app.add_middleware(Measured, metrics=application.metrics)
     return app

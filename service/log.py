@@ -33,6 +33,12 @@ log: BoundLogger = structlog.wrap_logger(
 """The service's log; until `write_log` is called only warnings are shown."""
 
 
+def request_id() -> str | None:
+    """The id of the request that is being answered; None beside the requests."""
+    found: str | None = structlog.contextvars.get_contextvars().get("request_id")
+    return found
+
+
 def write_log(to: TextIO = sys.stderr) -> None:
     """Writes the service's lines, and warnings of its libraries, to a stream."""
     handler = logging.StreamHandler(to)

@@ -1,7 +1,7 @@
 """Figures for Prometheus: requests by operation and status with their time, uploads by what became of them,
 work beside the requests that failed."""
 
-from prometheus_client import CollectorRegistry, Counter, Histogram, generate_latest
+from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
 
 from service.records.session import Receipt
 
@@ -38,6 +38,14 @@ class Metrics:
             ("fault",),
             registry=self._registry,
         )
+
+        self._room = Gauge(
+            "imu_health_free_bytes", "Room on the disk of uploaded files, bytes.", registry=self._registry
+        )
+
+    def note_room(self, free: int) -> None:
+        """How much room is left for uploads, bytes."""
+        self._room.set(free)
 
     def count_upload(self, receipt: Receipt) -> None:
         """A session that was stored, or was stored before."""

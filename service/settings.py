@@ -4,6 +4,7 @@ from importlib.metadata import version
 from ipaddress import ip_address
 from pathlib import Path
 from typing import Annotated, Literal
+from urllib.parse import urlsplit
 
 from platformdirs import user_data_dir
 from pydantic import Field, field_validator
@@ -54,7 +55,30 @@ class Settings(BaseSettings):
         repr=False,
         description="Bearer token that opens /metrics and nothing else, 16 characters or more.",
     )
+    allowed_hosts: Annotated[tuple[str, ...], NoDecode] = Field(
+        default=(),
+        description="Names that requests may call the service by, beside this machine's own and that of public_url, "
+        "separated by commas: imu.example.org, or imu.example.org:8443 for that port only; * allows any.",
+    )
     max_upload_bytes: int = Field(default=64 * 1024 * 1024, gt=0, description="Largest upload that is accepted, bytes.")
+    max_body_bytes: int = Field(
+        default=256 * 1024, gt=0, description="Largest body of any other request, such as a note or a form, bytes."
+    )
+    client_seconds: float = Field(
+        default=10.0,
+        gt=0,
+        le=3600,
+        description="Seconds that a client is waited for, beside what a slow line needs for its bytes.",
+    )
+    max_connections: int = Field(default=500, gt=0, description="Connections that may be open at once.")
+    stop_seconds: float = Field(
+        default=30.0, ge=0, le=3600, description="Longest that a stopping service lets requests at hand finish, s."
+    )
+    min_free_bytes: int = Field(
+        default=256 * 1024 * 1024,
+        ge=0,
+        description="Room that the disk of uploaded files keeps: with less, uploads are refused, bytes.",
+    )
     coverage_factor: float = Field(
         default=2.0, gt=0, le=5, description="k: expanded uncertainty and guard band are k times the standard one."
     )
@@ -78,10 +102,17 @@ class Settings(BaseSettings):
         description="Address under which people reach the pages, for labels; default: that of the request.",
     )
 
-    @field_validator("webhook_hosts", mode="before")
+    @field_validator("webhook_hosts", "allowed_hosts", mode="before")
     @classmethod
     def _split(cls, given: object) -> object:
         return tuple(filter(None, (h.strip() for h in given.split(",")))) if isinstance(given, str) else given
+
+    @field_validator("public_url")
+    @classmethod
+    def _with_a_host(cls, given: str) -> str:
+        if given and not urlsplit(given).hostname:
+            raise ValueError("names no host")
+        return given
 
     @property
     def is_local(self) -> bool:

@@ -12,6 +12,7 @@ import uvicorn
 from fastapi import FastAPI
 
 from service.app import create_app
+from service.boundary.server import address_of, server_config
 from service.settings import Settings
 
 TLS = ssl.create_default_context()
@@ -22,7 +23,8 @@ class Server(uvicorn.Server):
     """Says at once that it has started, and stops as soon as it is told to, where uvicorn looks ten times a second."""
 
     def __init__(self, app: FastAPI) -> None:
-        super().__init__(uvicorn.Config(app, port=0, log_level="warning"))
+        settings: Settings = app.state.application.settings
+        super().__init__(server_config(app, settings.model_copy(update={"host": "127.0.0.1", "port": 0})))
         self.settled = Event()
         """Whether it has started, or never will."""
 
@@ -60,9 +62,8 @@ def running(app: FastAPI) -> Iterator[str]:
     thread.start()
     server.settled.wait()
     assert server.started, "the service did not start"
-    port = server.servers[0].sockets[0].getsockname()[1]
     try:
-        yield f"http://127.0.0.1:{port}"
+        yield address_of(server)
     finally:
         server.stop()
         thread.join()

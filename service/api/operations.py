@@ -1,11 +1,14 @@
 """What those who run the service ask: is it alive, is it ready, what are its figures."""
 
+from typing import Literal
+
 from fastapi import APIRouter, Response
 from prometheus_client import CONTENT_TYPE_LATEST
 from pydantic import BaseModel, Field
 
 from service.api.schemas.problem import errors
-from service.dependencies import MetricsOf, StorageOf
+from service.dependencies import MetricsOf, SettingsOf, StorageOf
+from service.storage.space import space_at
 
 router = APIRouter(tags=["operations"])
 
@@ -13,23 +16,34 @@ router = APIRouter(tags=["operations"])
 class ServiceState(BaseModel):
     """The state of the service."""
 
-    status: str = Field(description="`ok` when it is alive, `ready` when it can answer.")
+    status: str = Field(description="`ok`: it is alive.")
+
+
+class Readiness(BaseModel):
+    """What the service can do."""
+
+    status: Literal["ready", "degraded"] = Field(
+        description="`ready` when it can do everything, `degraded` when it takes no uploads."
+    )
+    reasons: list[str] = Field(description="What it cannot do and why; empty when it is ready.")
 
 
 @router.get("/healthz")
-def health() -> ServiceState:
-    """Liveness: the process answers."""
+async def health() -> ServiceState:
+    """Liveness: the process answers, however busy it is."""
     return ServiceState(status="ok")
 
 
 @router.get("/readyz", responses=errors())
-def readiness(storage: StorageOf) -> ServiceState:
-    """Readiness: the database answers and its schema is the one this version needs."""
+def readiness(storage: StorageOf, settings: SettingsOf) -> Readiness:
+    """Readiness: the database answers, its schema is the one this version needs, and there is room for uploads."""
     storage.database.require_ready()
-    return ServiceState(status="ready")
+    lack = space_at(settings.files, settings.min_free_bytes).too_little
+    return Readiness(status="ready", reasons=[]) if lack is None else Readiness(status="degraded", reasons=[lack])
 
 
 @router.get("/metrics", responses={200: {"content": {"text/plain": {}}}, **errors()}, response_class=Response)
-def metrics(figures: MetricsOf) -> Response:
+def metrics(figures: MetricsOf, settings: SettingsOf) -> Response:
     """Figures for Prometheus."""
+    figures.note_room(space_at(settings.files, settings.min_free_bytes).free)
     return Response(figures.text(), media_type=CONTENT_TYPE_LATEST)

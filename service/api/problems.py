@@ -1,6 +1,6 @@
 """Every error of the service as application/problem+json."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from http import HTTPStatus
 from typing import Any
 
@@ -8,15 +8,20 @@ from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
+from starlette.routing import Match
 
 from estimator.errors import Problem
 from service.errors import AwayError, RefusedError, ServiceError, SignInError, TooOftenError
-from service.log import log
+from service.log import log, request_id
 
 MEDIA_TYPE = "application/problem+json"
 """RFC 9457."""
 UNEXPECTED = "Something went wrong that should not have. It was logged; nothing was stored half."
 """Says nothing of the cause, which may hold what others must not read; the log has it."""
+CUT_OFF = "The request ended before it was complete. Nothing was stored."
+METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE")
+"""That a route may take."""
 BODY_PARTS = ("body", "query", "path", "header")
 """What FastAPI puts before the name of a field."""
 
@@ -26,19 +31,27 @@ def add_problem_handlers(app: FastAPI) -> None:
     app.add_exception_handler(ServiceError, _service_error)
     app.add_exception_handler(RequestValidationError, _invalid_request)
     app.add_exception_handler(HTTPException, _http_error)
+    app.add_exception_handler(ClientDisconnect, _cut_off)
     app.add_exception_handler(Exception, _unexpected)
 
 
 def problem(
-    status: int, detail: str, problems: Sequence[Problem] | None = None, headers: Mapping[str, str] | None = None
+    status: int,
+    detail: str,
+    problems: Sequence[Problem] | None = None,
+    headers: Mapping[str, str] | None = None,
+    id: str | None = None,
 ) -> JSONResponse:
-    """The answer to a request that was not carried out."""
+    """The answer to a request that was not carried out; ``id`` where it is not known from what surrounds it."""
     content: dict[str, Any] = {
         "type": "about:blank",
         "title": HTTPStatus(status).phrase,
         "status": status,
         "detail": detail,
     }
+    known = id or request_id()
+    if known is not None:
+        content["request_id"] = known
     if problems is not None:
         content["problems"] = [{"field": p.field, "row": p.row, "message": p.message} for p in problems]
     return JSONResponse(content, status, headers, MEDIA_TYPE)
@@ -71,10 +84,35 @@ def _http_error(request: Request, error: Exception) -> JSONResponse:
         404: f"There is nothing at {request.url.path}.",
         405: f"{request.method} is not possible at {request.url.path}.",
     }
-    return problem(error.status_code, details.get(error.status_code, error.detail), None, error.headers)
+    headers = {"Allow": _allowed(request)} if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED else error.headers
+    return problem(error.status_code, details.get(error.status_code, error.detail), None, headers)
+
+
+def _cut_off(_: Request, error: Exception) -> JSONResponse:
+    """Nobody is there to read this; it is one line in the log and no fault of the service."""
+    return problem(400, CUT_OFF)
+
+
+def _allowed(request: Request) -> str:
+    """Every method that is taken where the request went; the framework names those of one route.
+
+    What only a more general route takes is left out: /units/X/lot can be read as the page of a unit named "X/lot".
+    """
+    routes = request.app.router.routes
+    template = getattr(request.scope.get("route"), "path", None)
+    own = {m for route in _every(routes) if route.path in (template, request.scope["path"]) for m in route.methods}
+    taken = (m for m in METHODS if any(r.matches({**request.scope, "method": m})[0] is Match.FULL for r in routes))
+    return ", ".join(m for m in taken if m in own)
+
+
+def _every(routes: Iterable[Any]) -> Iterator[Any]:
+    """The routes themselves, out of the routers that hold them."""
+    for route in routes:
+        held = getattr(route, "original_router", None)
+        yield from (route,) if held is None else _every(held.routes)
 
 
 def _unexpected(request: Request, error: Exception) -> JSONResponse:
     """The one boundary for what nobody foresaw."""
     log.error("request failed", request_id=request.state.request_id, exc_info=error)
-    return problem(500, UNEXPECTED)
+    return problem(500, UNEXPECTED, id=request.state.request_id)

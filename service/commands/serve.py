@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from typing import Annotated
 
 import typer
-import uvicorn
 
 from service.app import create_app, utc_now
+from service.boundary.hosts import hosts_of
+from service.boundary.server import Server, address_of
 from service.commands.console import progress, say
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.demo.fill import FILES, fill, is_wanted
@@ -16,13 +17,12 @@ from service.log import write_log
 from service.settings import Settings
 from service.storage import Database, Files, Storage
 from service.storage.schema import upgrade
+from service.storage.writable import require_writable
 
 STARTED = "who started the service"
 """As the audit trail names them."""
 FIRST = "To make everybody sign in, open this within an hour and make the first account:"
 AGAIN = "To sign in as {login} with a new password, once, within an hour:"
-LAST_ANSWERS = 10
-"""Seconds that a stopping service gives the requests at hand."""
 
 
 def serve(
@@ -36,19 +36,14 @@ def serve(
     settings = settings_from(host=host, port=port, database_url=database_url, data_folder=data_folder)
     if settings.sign_in == "off" and not settings.is_local:
         say(f"Listening on {settings.host} without sign-in: whoever reaches this address may do everything.")
+    if hosts_of(settings).any_address:
+        say("It answers to addresses in digits only: IMU_HEALTH_PUBLIC_URL or IMU_HEALTH_ALLOWED_HOSTS names it.")
+    require_writable(settings.files)
     upgrade(settings.database)
     if demo:
         _fill(settings)
     write_log()
-    config = uvicorn.Config(
-        create_app(settings),
-        settings.host,
-        settings.port,
-        log_config=None,
-        access_log=False,
-        timeout_graceful_shutdown=LAST_ANSWERS,
-    )
-    _Server(config, _invitation(settings)).run()
+    _Server(settings, _invitation(settings)).run()
 
 
 @dataclass(frozen=True)
@@ -59,17 +54,16 @@ class _Invitation:
     words: str
 
 
-class _Server(uvicorn.Server):
+class _Server(Server):
     """Says where it listens once it does, and how to sign in."""
 
-    def __init__(self, config: uvicorn.Config, invitation: _Invitation | None) -> None:
-        super().__init__(config)
+    def __init__(self, settings: Settings, invitation: _Invitation | None) -> None:
+        super().__init__(create_app(settings), settings)
         self._invitation = invitation
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
-        host, port = self.servers[0].sockets[0].getsockname()[:2]
-        address = f"http://{f'[{host}]' if ':' in host else host}:{port}"
+        address = address_of(self)
         typer.echo(f"imu-health is ready: open {address}")
         if self._invitation is not None:
             typer.echo(f"{self._invitation.words} {address}/sign-in/{self._invitation.secret}")

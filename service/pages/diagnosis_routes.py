@@ -12,7 +12,7 @@ from service.flows.diagnose import diagnose
 from service.flows.recalibrate import recalibrate
 from service.flows.withdraw_model import withdraw_model
 from service.pages.diagnosis import diagnosis_page
-from service.pages.forms import NO_NUL, OWN_FORM, SEE_OTHER, By, Key
+from service.pages.forms import NO_NUL, SEE_OTHER, By, Key
 from service.pages.render import render
 from service.records.model import NewModel, Scope
 from service.views.diagnosis_report import diagnosis_report
@@ -27,7 +27,7 @@ def show_diagnosis(request: Request, store: Reading, id: Key, diagnoser: Diagnos
     return render(request, "diagnosis.html", page)
 
 
-@router.post("/sessions/{id}/diagnosis/accept", dependencies=OWN_FORM)
+@router.post("/sessions/{id}/diagnosis/accept")
 def accept(
     id: Key,
     storage: StorageOf,
@@ -43,7 +43,7 @@ def accept(
     return RedirectResponse(f"/sessions/{id}/diagnosis#models", SEE_OTHER)
 
 
-@router.post("/sessions/{id}/diagnosis/withdraw/{revision}", dependencies=OWN_FORM)
+@router.post("/sessions/{id}/diagnosis/withdraw/{revision}")
 def withdraw(
     id: Key,
     revision: Annotated[int, Path(ge=1, le=2**31 - 1)],
@@ -58,7 +58,7 @@ def withdraw(
     return RedirectResponse(f"/sessions/{id}/diagnosis#models", SEE_OTHER)
 
 
-@router.post("/units/{serial:path}/recalibrate", dependencies=OWN_FORM)
+@router.post("/units/{serial:path}/recalibrate")
 def recalibrate_unit(serial: Key, storage: StorageOf, settings: SettingsOf, now: Now) -> RedirectResponse:
     """Computes a unit's sessions again under the model in force, and shows the unit."""
     recalibrate(storage, serial, now, coverage_factor=settings.coverage_factor)

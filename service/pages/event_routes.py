@@ -13,10 +13,10 @@ from service.flows.receive import ask_again
 from service.flows.record_service import record_service
 from service.flows.set_stage import set_stage
 from service.flows.withdraw_note import withdraw_note
-from service.pages.forms import NO_NUL, OWN_FORM, SEE_OTHER, By, Key, Number, Why
+from service.pages.forms import NO_NUL, SEE_OTHER, By, Key, Number, Why
 from service.records.event import NewService
 
-router = APIRouter(include_in_schema=False, dependencies=OWN_FORM)
+router = APIRouter(include_in_schema=False)
 
 At = Annotated[datetime | None, Form()]
 """A time in UTC; left empty it is now."""

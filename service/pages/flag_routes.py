@@ -8,7 +8,7 @@ from fastapi.responses import HTMLResponse, RedirectResponse
 from service.dependencies import Now, Reading, StorageOf
 from service.flows.handle_flag import acknowledge_flag, resolve_flag
 from service.pages.flags import flags_page
-from service.pages.forms import OWN_FORM, SEE_OTHER, By, Number, Why
+from service.pages.forms import SEE_OTHER, By, Number, Why
 from service.pages.render import render
 from service.records.flag import Flag, FlagState
 from service.storage.queries.flags import FlagQuery
@@ -26,13 +26,13 @@ def show_flags(request: Request, store: Reading) -> HTMLResponse:
     return render(request, "flags.html", flags_page(opened, MOST))
 
 
-@router.post("/{id}/acknowledge", dependencies=OWN_FORM)
+@router.post("/{id}/acknowledge")
 def acknowledge(id: Number, by: By, why: Why, storage: StorageOf, now: Now) -> RedirectResponse:
     """Somebody looks after the flag."""
     return _back(acknowledge_flag(storage, id, by, why, now))
 
 
-@router.post("/{id}/resolve", dependencies=OWN_FORM)
+@router.post("/{id}/resolve")
 def resolve(id: Number, by: By, why: Why, storage: StorageOf, now: Now) -> RedirectResponse:
     """The matter is settled."""
     return _back(resolve_flag(storage, id, by, why, now))

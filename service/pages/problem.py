@@ -20,8 +20,10 @@ ADVICE = {
     401: "Sign in, then go back and send it once more.",
     403: "If it was a form, open its page again and send it once more. If it is not yours to do, ask who may.",
     404: "The address may be mistyped, or the link is older than the data.",
+    408: "The connection may be slow or was interrupted: send it again.",
     409: "Look at the record again: it may have changed since the page was loaded.",
-    413: "Split the recording, or average it before the upload.",
+    413: "Shorten it; split a recording, or average it before the upload.",
+    421: "Open the service by the address that its operator gives.",
     422: "Correct what is listed and try again.",
     503: "Nothing was lost. The page works again as soon as the database answers: try again in a few seconds.",
     507: "Nothing was lost. Ask whoever runs this service to make room.",
@@ -38,6 +40,8 @@ class ProblemPage:
     detail: str
     problems: tuple[Problem, ...]
     advice: str
+    request_id: str
+    """Under which the log knows the request; empty where it has none."""
 
 
 def problem_page(problem: dict[str, Any]) -> ProblemPage:
@@ -52,11 +56,15 @@ def problem_page(problem: dict[str, Any]) -> ProblemPage:
             for p in problem.get("problems", ())
         ),
         advice=ADVICE.get(status, OTHERWISE),
+        request_id=str(problem.get("request_id", "")),
     )
 
 
 def unexpected_pages(app: FastAPI) -> None:
-    """Answers what nobody foresaw with a page too: that handler stands outside of every middleware."""
+    """Answers what nobody foresaw with a page too: that handler stands outside of every middleware.
+
+    The server closes the connection after it, and the answer says so, lest the next request is sent into it.
+    """
     answer = app.exception_handlers[Exception]
 
     def unexpected(request: Request, error: Exception) -> Response:
@@ -65,20 +73,20 @@ def unexpected_pages(app: FastAPI) -> None:
         if _wants_page(request.scope):
             page = problem_page(json.loads(bytes(response.body)))
             response = render(request, "problem.html", page, page.status)
-        response.headers.update({**HEADERS, REQUEST_ID: request.state.request_id})
+        response.headers.update({**HEADERS, REQUEST_ID: request.state.request_id, "Connection": "close"})
         return response
 
     app.add_exception_handler(Exception, unexpected)
 
 
 class ProblemPages:
-    """Turns problem+json answers to page requests into error pages; the API's own answers stay as they are."""
+    """Turns problems on their way to somebody's screen into error pages; programs get them as they are."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Passes everything through but problems on their way to a browser."""
+        """Passes everything through but problems on their way to a person."""
         if scope["type"] != "http" or not _wants_page(scope):
             await self.app(scope, receive, send)
             return
@@ -86,8 +94,9 @@ class ProblemPages:
 
 
 def _wants_page(scope: Scope) -> bool:
+    """Whether a browser asks for something to show, be it by a link into the API; programs do not ask for HTML."""
     accepted = dict(scope["headers"]).get(b"accept", b"")
-    return not scope["path"].startswith("/api/") and b"text/html" in accepted
+    return b"text/html" in accepted
 
 
 class _Turner:

@@ -2,11 +2,10 @@
 
 from typing import Annotated
 
-from fastapi import Depends, HTTPException, Request
+from fastapi import Depends, Request
 from starlette.datastructures import UploadFile
 
 from service.dependencies import SettingsOf, limited
-from service.pages.headers import sent_by_this_site
 from service.records.received import SentFile
 
 MOST_FILES = 200
@@ -14,9 +13,7 @@ MOST_FILES = 200
 
 
 async def _files(request: Request, settings: SettingsOf) -> tuple[SentFile, ...]:
-    """The chosen files; a form that another site sends is refused before it is read."""
-    if not sent_by_this_site(request):
-        raise HTTPException(403, "This form was sent by another site, so nothing was stored.")
+    """The chosen files."""
     body = limited(request, settings.max_upload_bytes, is_form=True)
     async with body.form(max_files=MOST_FILES, max_fields=10) as form:
         chosen = [file for file in form.getlist("files") if isinstance(file, UploadFile) and file.filename]

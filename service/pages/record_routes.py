@@ -12,10 +12,10 @@ from service.flows.correct_session import correct_session
 from service.flows.receive import ask_again, deriving
 from service.flows.withdraw_service import withdraw_service
 from service.flows.withdraw_session import withdraw_session
-from service.pages.forms import OWN_FORM, SEE_OTHER, By, Key, Number, Why
+from service.pages.forms import SEE_OTHER, By, Key, Number, Why
 from service.records.state import Step
 
-router = APIRouter(include_in_schema=False, dependencies=OWN_FORM)
+router = APIRouter(include_in_schema=False)
 
 
 @router.post("/sessions/{id}/withdraw")

@@ -81,5 +81,5 @@ _ENVIRONMENT = _environment()
 def render(request: Request, template: str, page: Any, status: int = 200) -> HTMLResponse:
     """The page of a frozen context; templates see it as ``page``."""
     person = getattr(request.state, "person", EVERYBODY)  # an address that no route took offers what it may
-    text = _ENVIRONMENT.get_template(template).render(page=page, path=request.url.path, person=person)
+    text = _ENVIRONMENT.get_template(template).render(page=page, path=request.scope["path"], person=person)
     return HTMLResponse(text, status, headers={"Cache-Control": "no-cache"})

@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
 from estimator.planning import Request, Wanted
 from estimator.results import ARCSEC
@@ -42,11 +42,20 @@ def _blank(value: object) -> object:
     return None if value == "" else value
 
 
-Positive = Annotated[float, Field(gt=0, le=1e9, allow_inf_nan=False)]
+LEAST, LARGEST = 1e-9, 1e9
+"""Of any amount in people's units: far beyond what any instrument tells, and far from where numbers end."""
+
+
+def _nothing(value: float) -> float:
+    """An error that no stand could be told from none."""
+    return value if value >= LEAST else 0.0
+
+
+Positive = Annotated[float, Field(ge=LEAST, le=LARGEST, allow_inf_nan=False)]
 Amount = Annotated[Positive | None, BeforeValidator(_blank)]
 Elevation = Annotated[float, Field(ge=1, le=89, allow_inf_nan=False)]
 Positions = Annotated[int, Field(ge=3, le=72)]
-Arcsec = Annotated[float, Field(ge=0, le=3600, allow_inf_nan=False)]
+Arcsec = Annotated[float, Field(ge=0, le=3600, allow_inf_nan=False), AfterValidator(_nothing)]
 
 
 class PlanQuestion(BaseModel):
@@ -80,7 +89,7 @@ class PlanQuestion(BaseModel):
         None, description="Positions a run; proposed where left out."
     )
     runs: Literal["both", "direct"] = Field("both", description="Both runs, or the direct one only.")
-    minutes: Annotated[float, Field(gt=0, le=1440, allow_inf_nan=False)] = Field(
+    minutes: Annotated[float, Field(ge=0.001, le=1440, allow_inf_nan=False)] = Field(
         2.0, description="Time that a position takes, minutes."
     )
     scale: Amount = Field(

@@ -9,7 +9,8 @@ from sqlalchemy.orm import Session
 from service.errors import AwayError
 from service.storage.engine import WRITES, open_engine
 from service.storage.faults import database_faults
-from service.storage.schema import head_revision, stored_revision
+from service.storage.revisions import unfit
+from service.storage.schema import stored_revision
 from service.storage.store import Store
 from service.storage.waits import Waits
 
@@ -47,12 +48,9 @@ class Database:
         """AwayError unless the database answers and its schema is the one this version needs."""
         with database_faults(), self.engine.connect() as connection:
             found = stored_revision(connection)
-        needed = head_revision()
-        if found != needed:
-            raise AwayError(
-                f"The database's schema is at {found or 'nothing'}, this version needs {needed}: "
-                "run `imu-health db upgrade`."
-            )
+        fault = unfit(found)
+        if fault is not None:
+            raise AwayError(fault)
 
     def close(self) -> None:
         """Gives back every connection."""

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from service.settings import Settings
 from tests.project.source import ROOT
 from tests.project.test_imports import ESTIMATOR_LAYERS, SERVICE_LAYERS
 
@@ -31,3 +32,9 @@ def test_every_file_that_a_page_names_is_there(page: Path) -> None:
     named = re.findall(rf"`((?:{ROOMS})/[\w./-]+)`", text)
     written = re.findall(r"new file `([^`]+)`:", text)  # by the reader of a how-to
     assert [path for path in named if path not in written and not (ROOT / path).exists()] == []
+
+
+def test_every_setting_is_in_the_table_of_settings() -> None:
+    table = (ROOT / "docs" / "settings.md").read_text(encoding="utf-8")
+    named = re.findall(r"^\| `IMU_HEALTH_([A-Z_]+)` \|", table, re.MULTILINE)
+    assert sorted(named) == sorted(name.upper() for name in Settings.model_fields)

@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-import yaml
 from typer.testing import CliRunner
 
 from service.cli import app
@@ -92,10 +91,3 @@ def test_links_inside_the_project_lead_somewhere(page: Path) -> None:
     targets = re.findall(r"\]\(([^)#\s]+)", page.read_text(encoding="utf-8"))
     missing = [t for t in targets if "://" not in t and not (page.parent / t).exists()]
     assert not missing
-
-
-def test_the_compose_file_publishes_on_this_machine_only() -> None:
-    services = yaml.safe_load((PROJECT / "docker" / "compose.yml").read_text())["services"]
-    assert services["imu-health"]["ports"] == ["127.0.0.1:8000:8000"]
-    assert "ports" not in services["database"]
-    assert (PROJECT / services["imu-health"]["build"]["dockerfile"]).exists()

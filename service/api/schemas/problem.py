@@ -32,6 +32,9 @@ class ProblemDocument(BaseModel):
     title: str = Field(description="The status in words.")
     status: int = Field(description="The HTTP status.")
     detail: str = Field(description="What happened, in a sentence for people.")
+    request_id: str | None = Field(
+        default=None, description="The id of the request, under which the log of the service knows it."
+    )
     problems: list[Fault] | None = Field(default=None, description="With 422: every fault with its place.")
 
 

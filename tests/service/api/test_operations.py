@@ -17,7 +17,7 @@ from tests.serving import http_client
 
 def test_the_service_is_alive_and_ready(client: httpx.Client) -> None:
     assert client.get("/healthz").json() == {"status": "ok"}
-    assert client.get("/readyz").json() == {"status": "ready"}
+    assert client.get("/readyz").json() == {"status": "ready", "reasons": []}
 
 
 def test_a_schema_of_another_version_is_not_ready(client: httpx.Client, store_url: str) -> None:
@@ -27,6 +27,18 @@ def test_a_schema_of_another_version_is_not_ready(client: httpx.Client, store_ur
     assert "imu-health db upgrade" in answer.json()["detail"]
     upgrade(store_url)
     assert client.get("/readyz").status_code == 200
+
+
+def test_a_schema_of_a_newer_version_is_not_ready_and_says_which_version_to_run(
+    client: httpx.Client, store_url: str
+) -> None:
+    engine = open_engine(store_url)
+    with engine.begin() as connection:
+        connection.execute(text("UPDATE alembic_version SET version_num = '9999'"))
+    engine.dispose()
+    answer = client.get("/readyz")
+    assert answer.status_code == 503
+    assert "run the newer version" in answer.json()["detail"]
 
 
 @one_engine

@@ -16,6 +16,8 @@ from service.cli import main
 from tests.builders import Document, accelerometer_block
 
 COMMAND = Path(sys.executable).parent / "imu-health"
+ROOT = Path(__file__).parents[3]
+ENTRYPOINT = ROOT / "docker" / "entrypoint.sh"
 READY = "imu-health is ready: open "
 
 
@@ -81,7 +83,7 @@ def started(*command: object, **environment: str) -> Iterator[str]:
         list(map(str, command)),
         stdout=subprocess.PIPE,
         text=True,
-        env={"PATH": f"{COMMAND.parent}:/usr/bin:/bin", **environment},
+        env={"PATH": f"{COMMAND.parent}:/usr/bin:/bin", "PYTHONPATH": str(ROOT), **environment},
     ) as process:
         try:
             assert process.stdout is not None

@@ -8,9 +8,7 @@ import pytest
 
 from service.storage.database import Database
 from tests.databases import Databases
-from tests.service.cli.conftest import COMMAND, Run, started
-
-ENTRYPOINT = Path(__file__).parents[3] / "docker" / "entrypoint.sh"
+from tests.service.cli.conftest import COMMAND, ENTRYPOINT, Run, started
 
 
 def test_without_demo_the_database_stays_empty(tmp_path: Path) -> None:
@@ -62,6 +60,14 @@ def test_a_file_that_is_no_database_is_said_on_one_line(run: Run, tmp_path: Path
     (tmp_path / "notes.txt").write_text("not a database, but long enough to be taken for one " * 100)
     ran = run("db", "upgrade", "--database-url", f"sqlite:///{tmp_path / 'notes.txt'}")
     assert (ran.code, ran.err.count("\n")) == (1, 1)
+
+
+@pytest.mark.parametrize("folder", ["/sys/imu-health", "/dev/null/imu-health"])
+def test_a_folder_that_cannot_be_written_is_named_at_the_start(run: Run, folder: str, store_url: str) -> None:
+    ran = run("serve", "--port", 0, "--data-folder", folder, "--database-url", store_url)
+    assert (ran.code, ran.err.count("\n")) == (1, 1)
+    assert folder in ran.err
+    assert "IMU_HEALTH_DATA_FOLDER" in ran.err
 
 
 def test_a_setting_that_makes_no_sense_is_named(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:

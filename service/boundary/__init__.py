@@ -1,0 +1,26 @@
+"""What every request passes before a route sees it: who it is for, who sent it, how large it is and how slow.
+
+`guard` puts the checks around an application; what they refuse has the one shape of every error.
+"""
+
+from fastapi import FastAPI
+
+from service.boundary.bodies import LimitedBodies, Limits
+from service.boundary.hosts import OwnHostOnly, hosts_of
+from service.boundary.origins import OwnSiteOnly
+from service.boundary.room import RoomForUploads
+from service.boundary.stopping import Door, Doorkeeper
+from service.settings import Settings
+
+
+def guard(app: FastAPI, settings: Settings) -> None:
+    """Adds the checks, the innermost first."""
+    app.add_middleware(RoomForUploads, folder=settings.files, least=settings.min_free_bytes)
+    app.add_middleware(LimitedBodies, limits=Limits(settings.max_body_bytes, settings.client_seconds))
+    app.add_middleware(OwnSiteOnly, public_url=settings.public_url)
+    app.state.door = Door()
+    app.add_middleware(Doorkeeper, door=app.state.door)
+    app.add_middleware(OwnHostOnly, hosts=hosts_of(settings), public_url=settings.public_url)
+
+
+__all__ = ["guard"]

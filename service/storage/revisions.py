@@ -1,0 +1,28 @@
+"""What is wrong with the revision that a database is at, and what to do about it."""
+
+from functools import cache
+
+from alembic.script import ScriptDirectory
+
+from service.storage.schema import head_revision, migrations
+
+
+@cache
+def known_revisions() -> frozenset[str]:
+    """Every revision that this version of the program knows."""
+    return frozenset(script.revision for script in ScriptDirectory.from_config(migrations()).walk_revisions())
+
+
+def unfit(found: str | None) -> str | None:
+    """Why this version cannot work with a revision; None for the one that it needs."""
+    needed = head_revision()
+    if found == needed:
+        return None
+    if found is not None and found not in known_revisions():
+        return (
+            f"The database's schema is at {found}, which a newer version of the program made; this one goes up to "
+            f"{needed}: run the newer version."
+        )
+    return (
+        f"The database's schema is at {found or 'nothing'}, this version needs {needed}: run `imu-health db upgrade`."
+    )

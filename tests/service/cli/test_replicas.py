@@ -1,0 +1,47 @@
+"""Two of the service behind one address, as the compose file starts them, on one PostgreSQL and one folder."""
+
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
+from pathlib import Path
+
+import httpx
+import pytest
+
+from tests.databases import PostgresDatabases
+from tests.service.cli.conftest import ENTRYPOINT, started
+from tests.service.sessions import session_bytes
+
+
+@pytest.fixture
+def replicas(postgresql: PostgresDatabases, tmp_path: Path) -> Iterator[tuple[str, str]]:
+    """Their addresses; the schema is there, as it is when a second one joins."""
+    shared = {
+        "IMU_HEALTH_PORT": "0",
+        "IMU_HEALTH_DATABASE_URL": postgresql.migrated(),
+        "IMU_HEALTH_DATA_FOLDER": str(tmp_path),
+    }
+    with ExitStack() as opened:
+        one, other = (opened.enter_context(started("/bin/sh", ENTRYPOINT, **shared)) for _ in range(2))
+        yield one, other
+
+
+def test_what_one_stores_the_other_shows(replicas: tuple[str, str]) -> None:
+    one, other = replicas
+    content = session_bytes()
+    stored = httpx.post(f"{one}/api/v1/sessions", content=content, timeout=60).json()["id"]
+    assert httpx.get(f"{other}/api/v1/sessions/{stored}/file").content == content
+    assert httpx.get(f"{other}/readyz").json()["status"] == "ready"
+
+
+def test_the_same_session_sent_to_both_at_once_is_stored_once(replicas: tuple[str, str]) -> None:
+    content = session_bytes(seed=2)
+
+    def send(address: str) -> httpx.Response:
+        return httpx.post(f"{address}/api/v1/sessions", content=content, timeout=60)
+
+    with ThreadPoolExecutor(2) as both:
+        answers = list(both.map(send, replicas))
+    assert sorted(answer.status_code for answer in answers) == [200, 201]
+    assert len({answer.json()["id"] for answer in answers}) == 1
+    assert len(httpx.get(f"{replicas[0]}/api/v1/sessions").json()["sessions"]) == 1
