@@ -1,16 +1,6 @@
 """What is wrong with the revision that a database is at, and what to do about it."""
 
-from functools import cache
-
-from alembic.script import ScriptDirectory
-
-from service.storage.schema import head_revision, migrations
-
-
-@cache
-def known_revisions() -> frozenset[str]:
-    """Every revision that this version of the program knows."""
-    return frozenset(script.revision for script in ScriptDirectory.from_config(migrations()).walk_revisions())
+from service.storage.schema import head_revision, is_known
 
 
 def unfit(found: str | None) -> str | None:
@@ -18,7 +8,7 @@ def unfit(found: str | None) -> str | None:
     needed = head_revision()
     if found == needed:
         return None
-    if found is not None and found not in known_revisions():
+    if found is not None and not is_known(found):
         return (
             f"The database's schema is at {found}, which a newer version of the program made; this one goes up to "
             f"{needed}: run the newer version."
