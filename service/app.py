@@ -16,6 +16,7 @@ from service.background.derive_pending import derive_pending
 from service.background.diagnose_pending import diagnose_pending
 from service.background.watch_fleet import watch_fleet
 from service.boundary import guard
+from service.ingest import limits
 from service.metrics import Metrics
 from service.settings import VERSION, Settings
 from service.storage import Database, Files, Storage
@@ -37,6 +38,7 @@ def utc_now() -> datetime:
 
 def create_app(settings: Settings, clock: Callable[[], datetime] = utc_now) -> FastAPI:
     """The service on the database and the folder that the settings name; the schema must be up to date."""
+    limits.use(limits.limits_of(settings))
     application = _application(settings, clock)
     app = FastAPI(
         title="imu-health",

@@ -1,16 +1,42 @@
 """What is joined at the start and every request can reach, as ``app.state.application``."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import datetime
 
 from fastapi import Request
 
+from service.errors import BusyError
 from service.flows.diagnose import InProgress
 from service.identity.attempts import Attempts
 from service.metrics import Metrics
 from service.settings import Settings
 from service.storage import Storage
+
+SMALL_BODY = 1024 * 1024
+"""Bytes of an upload that needs no place: a session of positions has a hundredth."""
+
+
+class Places:
+    """Of large uploads: each holds its bytes in memory. Used by the event loop alone, so it needs no lock."""
+
+    def __init__(self) -> None:
+        self._taken = 0
+
+    @contextmanager
+    def one_for(self, length: str, most: int) -> Iterator[None]:
+        """A place for an upload of this announced length, until it is worked on; BusyError where all are taken."""
+        if length.isdecimal() and int(length) <= SMALL_BODY:
+            yield
+            return
+        if self._taken >= most:
+            raise BusyError("Too many large files are being received; nothing of this one was stored. Send it again.")
+        self._taken += 1
+        try:
+            yield
+        finally:
+            self._taken -= 1
 
 
 class Gate:
@@ -41,6 +67,7 @@ class Application:
     gate: Gate
     diagnosing: InProgress = field(default_factory=InProgress)
     metrics: Metrics = field(default_factory=Metrics)
+    places: Places = field(default_factory=Places)
     attempts: Attempts = field(default_factory=Attempts)
 
 

@@ -1,6 +1,6 @@
 """What routes of the API and of the pages ask for by type."""
 
-from collections.abc import Iterator
+from collections.abc import AsyncIterator, Iterator
 from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Annotated
@@ -62,6 +62,13 @@ StorageOf = Annotated[Storage, Depends(_storage)]
 """Both stores, for flows that write."""
 
 
+async def _place(request: Request) -> AsyncIterator[None]:
+    """Of a large upload, from before its first byte until it has been worked on."""
+    own = application_of(request)
+    with own.places.one_for(request.headers.get("content-length", ""), own.settings.uploads_in_flight):
+        yield
+
+
 def _metrics(request: Request) -> Metrics:
     return application_of(request).metrics
 
@@ -105,6 +112,8 @@ def limited(request: Request, most: int, *, is_form: bool) -> Request:
 
 SettingsOf = Annotated[Settings, Depends(_settings)]
 """The settings of the service."""
+PlaceOf = Annotated[None, Depends(_place, scope="function")]
+"""A place for an upload; BusyError where all are taken."""
 MetricsOf = Annotated[Metrics, Depends(_metrics)]
 """The figures of the service."""
 DiagnoserOf = Annotated[Diagnoser, Depends(_diagnoser)]

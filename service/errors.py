@@ -11,6 +11,7 @@ ServiceError (500)
 ├── NoSpaceError (507)        the disk is full; nothing was stored
 ├── DamagedError (500)        a stored file is not what was uploaded, and is not given out
 └── AwayError (503)           the database or the folder of files cannot be used; try again after `retry_after`
+    └── BusyError (503)       too much is being read at once; nothing was stored
 """
 
 from http import HTTPStatus
@@ -96,3 +97,7 @@ class AwayError(ServiceError):
     status = HTTPStatus.SERVICE_UNAVAILABLE
     retry_after = 5
     """Seconds after which it is worth asking again."""
+
+
+class BusyError(AwayError):
+    """Too many large files are being read at once; nothing of this one was stored."""

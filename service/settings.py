@@ -79,6 +79,31 @@ class Settings(BaseSettings):
         ge=0,
         description="Room that the disk of uploaded files keeps: with less, uploads are refused, bytes.",
     )
+    max_rows: int = Field(default=2_000_000, gt=0, description="Most rows of an uploaded table.")
+    max_columns: int = Field(default=10_000, gt=0, description="Most columns of an uploaded table.")
+    max_cells: int = Field(
+        default=2_000_000,
+        gt=0,
+        description="Most cells of an uploaded table, rows × columns. More need more memory: see max_read_bytes.",
+    )
+    max_nesting: int = Field(default=32, gt=3, description="Most lists and objects within each other in a JSON file.")
+    max_unpacked_bytes: int = Field(
+        default=128 * 1024 * 1024, gt=0, description="Most that the compressed parts of a file unpack to, bytes."
+    )
+    max_read_seconds: int = Field(
+        default=20, gt=0, description="Longest computing that reading a file may take, seconds; by the clock thrice."
+    )
+    max_read_bytes: int = Field(
+        default=224 * 1024 * 1024, gt=0, description="Most memory that reading a file may take in its process, bytes."
+    )
+    reads_at_once: int = Field(
+        default=2, gt=0, description="Binary and large files that are read at once; others wait, then are asked back."
+    )
+    uploads_in_flight: int = Field(
+        default=4,
+        gt=0,
+        description="Large uploads that are received or worked on at once; others are asked back.",
+    )
     coverage_factor: float = Field(
         default=2.0, gt=0, le=5, description="k: expanded uncertainty and guard band are k times the standard one."
     )

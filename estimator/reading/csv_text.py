@@ -6,6 +6,7 @@ leading # lines the metadata stands in a JSON file of the same name beside it.
 
 import csv
 import math
+from collections.abc import Iterator
 from itertools import takewhile
 
 import numpy as np
@@ -13,18 +14,20 @@ import numpy as np
 from estimator.reading.columns import Column
 from estimator.reading.json_text import parse_json
 from estimator.reading.problems import Problems, shown
-from estimator.reading.shape import MOST_COLUMNS, MOST_ROWS
+from estimator.reading.shape import check_extent
 
 SEPARATORS = ",;\t"
 """Of cells; the one that the header has most of."""
+BLOCK = 1024 * 1024
+"""Characters that are taken apart at a time."""
 ADVICE = "put the session's JSON without its table before the header, each line starting with #"
 """To whoever gives a table without metadata."""
 
 
 def parse_csv(text: str, problems: Problems, sidecar: str | None = None) -> dict[str, object]:
     """The document of a CSV text, with the metadata of its # lines or else of the ``sidecar``'s JSON text."""
-    lines = text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\n ").split("\n")
-    leading = list(takewhile(lambda line: line.startswith("#") or not line.strip(), lines))
+    text = text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\n ")
+    leading = list(takewhile(lambda line: line.startswith("#") or not line.strip(), _lines(text)))
     metadata = "\n".join(line[1:] for line in leading)
     if not metadata.strip():
         if sidecar is None:
@@ -34,39 +37,79 @@ def parse_csv(text: str, problems: Problems, sidecar: str | None = None) -> dict
     if "table" in document:
         problems.add("table", "stands in the metadata of a CSV file; keep the readings in the CSV rows only")
     problems.lines_before_table = len(leading) + 1
-    return document | {"table": _parse_table(lines[len(leading) :], problems)}
+    return document | {"table": _parse_table(text, sum(len(line) + 1 for line in leading), problems)}
 
 
-def _parse_table(lines: list[str], problems: Problems) -> dict[str, Column]:
-    """Column name → cells of the CSV lines."""
-    if len(lines) - 1 > MOST_ROWS:
-        raise problems.fail("table", f"has {len(lines) - 1} rows; at most {MOST_ROWS} can be read")
-    if not lines:
+def _lines(text: str) -> Iterator[str]:
+    """Line after line, without their ends."""
+    at = 0
+    while at <= len(text):
+        end = text.find("\n", at)
+        end = len(text) if end < 0 else end
+        yield text[at:end]
+        at = end + 1
+
+
+def _blocks(text: str, at: int) -> Iterator[list[str]]:
+    """The lines from a place on, some at a time: a line is ten times as large in memory as in the text."""
+    while at < len(text):
+        end = text.find("\n", at + BLOCK)
+        end = len(text) if end < 0 else end
+        yield text[at:end].split("\n")
+        at = end + 1
+
+
+def _parse_table(text: str, start: int, problems: Problems) -> dict[str, Column]:
+    """Column name → cells of the lines from ``start`` on."""
+    if start >= len(text):
         return {}
-    separator = max(SEPARATORS, key=lines[0].count)
+    end = text.find("\n", start)
+    first = text[start:] if end < 0 else text[start:end]
+    separator = max(SEPARATORS, key=first.count)
+    check_extent(text.count("\n", start), first.count(separator) + 1, problems)
+    header: list[str] = []
+    parts: list[list[Column]] = []
+    uneven: dict[int, int] = {}
+    for lines in _blocks(text, start):
+        rows = _rows(lines, separator, problems)
+        if not header:
+            header, rows = rows[0], rows[1:]
+            parts = [[] for _ in header]
+        done = sum(map(len, parts[0]))
+        uneven |= {done + j: len(row) for j, row in enumerate(rows) if len(row) != len(header)}
+        rows = [row if len(row) == len(header) else (row + [""] * len(header))[: len(header)] for row in rows]
+        for k, cells in enumerate(parts):
+            cells.append(_cells([row[k] for row in rows]))
+    problems.add_rows("table", uneven, lambda j: f"has {uneven[j]} cells where the header has {len(header)}")
+    return named_columns(header, [_joined(cells) for cells in parts], problems)
+
+
+def _rows(lines: list[str], separator: str, problems: Problems) -> list[list[str]]:
+    """The cells of every line."""
     try:
-        header, *rows = csv.reader(lines, delimiter=separator)
+        rows = list(csv.reader(lines, delimiter=separator))
     except csv.Error as error:
         raise problems.fail("file", f"is not a readable CSV table: {error}") from error
-    if len(rows) != len(lines) - 1:
+    if len(rows) != len(lines) or lines[-1].count('"') % 2:
         raise problems.fail("table", "a cell holds a line break, or a quote is not closed; keep each row in one line")
-    rows = _even(rows, len(header), problems)
-    return named_columns(header, [_cells([row[k] for row in rows]) for k in range(len(header))], problems)
+    return rows
 
 
-def _even(rows: list[list[str]], width: int, problems: Problems) -> list[list[str]]:
-    """The rows, all as wide as the header; records those that are not."""
-    uneven = [j for j, row in enumerate(rows) if len(row) != width]
-    if not uneven:
-        return rows
-    problems.add_rows("table", uneven, lambda j: f"has {len(rows[j])} cells where the header has {width}")
-    return [(row + [""] * (width - len(row)))[:width] for row in rows]
+def _joined(parts: list[Column]) -> Column:
+    """One column; the parts are given up."""
+    whole: Column
+    arrays = [part for part in parts if isinstance(part, np.ndarray)]
+    if parts and len(arrays) == len(parts):
+        whole = np.concatenate(arrays)
+    else:
+        whole = [cell for part in parts for cell in (part.tolist() if isinstance(part, np.ndarray) else part)]
+    parts.clear()
+    return whole
 
 
 def named_columns(header: list[str], columns: list[Column], problems: Problems) -> dict[str, Column]:
     """Name → column; a nameless column is tolerated when it is empty (a separator at the end of every line)."""
-    if len(header) > MOST_COLUMNS:
-        raise problems.fail("table", f"has {len(header)} columns; at most {MOST_COLUMNS} can be read")
+    check_extent(0, len(header), problems)
     table: dict[str, Column] = {}
     for number, (name, cells) in enumerate(zip(map(str.strip, header), columns, strict=True), start=1):
         if name in table:

@@ -1,12 +1,21 @@
 """JSON text → a document. Keys given twice and whatever the parser cannot bear are problems, never crashes."""
 
 import json
+import re
 
 from estimator.reading.problems import Problems, cut
+
+MOST_LISTS = 100_000
+"""Lists and objects of one text: a table of the most columns takes a tenth, as many sensors as many again."""
+FURTHER = 100_000
+"""Commas beside those of the table: of the sensors, and within what the operator writes."""
+STRUCTURE = re.compile(r'"(?:[^"\\]|\\.)*+"?|[\[{]|[\]}]', re.DOTALL)
+"""A text, which may hold brackets, or a bracket. A text without an end runs to the end, so nothing is read twice."""
 
 
 def parse_json(text: str, problems: Problems) -> dict[str, object]:
     """The object that the text holds; raises FormatError when it holds none."""
+    _check_extent(text, problems)
     repeated: list[str] = []
 
     def as_object(pairs: list[tuple[str, object]]) -> dict[str, object]:
@@ -29,6 +38,24 @@ def parse_json(text: str, problems: Problems) -> dict[str, object]:
     if not isinstance(document, dict):
         raise problems.fail("file", "must hold one JSON object in braces, with the key format")
     return document
+
+
+def _check_extent(text: str, problems: Problems) -> None:
+    """Raises FormatError where the text would become too much in memory, before it becomes that."""
+    most = problems.most
+    if text.count(",") > most.cells + FURTHER:
+        raise problems.fail("table", f"has more than {most.cells} cells; average or split it")
+    depth = lists = 0
+    for found in STRUCTURE.finditer(text):
+        start = text[found.start()]
+        if start in "]}":
+            depth -= 1
+        elif start != '"':
+            depth, lists = depth + 1, lists + 1
+            if depth > most.nesting:
+                raise problems.fail("file", f"is nested deeper than {most.nesting} levels; check what was written")
+            if lists > MOST_LISTS:
+                raise problems.fail("file", f"holds more than {MOST_LISTS} lists; give each column as one list")
 
 
 def _repeated(keys: list[str]) -> list[str]:

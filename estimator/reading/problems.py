@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable
 from itertools import islice
 
 from estimator.errors import FormatError, Problem, ScheduleError
+from estimator.reading.extent import Extent
 
 ROWS_SHOWN = 20
 """Faulty rows of one column that are named one by one; the others are counted."""
@@ -19,8 +20,10 @@ class Problems:
     A reader that records a fault returns a stand-in value and goes on; no session is built while there are faults.
     """
 
-    def __init__(self, source: str | None) -> None:
+    def __init__(self, source: str | None, most: Extent | None = None) -> None:
         self.source = None if source is None else printable(source)
+        self.most = most or Extent()
+        """That the file may hold; more is a fault."""
         self.lines_before_table: int | None = None
         """Set for CSV: row r of the table is line r + this of the file."""
         self._found: list[Problem] = []

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from pathlib import Path
 
+from estimator.reading.extent import Extent
 from estimator.reading.fields import Fields, Interval
 from estimator.reading.keys import FORMAT, TOP, check_keys
 from estimator.reading.problems import Problems, shown
@@ -18,13 +19,16 @@ COUNT_TIME = Interval(0, 1e6, "s", above=True)
 """Beyond, the unit is mistaken."""
 
 
-def read_session(source: str | Path | Mapping[str, object] | bytes, *, name: str | None = None) -> CalibrationSession:
+def read_session(
+    source: str | Path | Mapping[str, object] | bytes, *, name: str | None = None, most: Extent | None = None
+) -> CalibrationSession:
     """Read and check one calibration session.
 
     Parameters
     ----------
     source : a path (.json, or .csv with its metadata), a dict with the content of a JSON file, or a file's bytes.
     name : what messages call the source; the path unless given.
+    most : how much it may hold; `Extent()` unless given.
 
     Returns
     -------
@@ -35,7 +39,7 @@ def read_session(source: str | Path | Mapping[str, object] | bytes, *, name: str
     FormatError : the source cannot be read, or fields of it are wrong; ``problems`` holds every one with its row.
     ScheduleError : every field is right, but the rows cannot support the programme.
     """
-    problems = Problems(name or display_name(source))
+    problems = Problems(name or display_name(source), most)
     return _assemble(Fields(load(source, problems), "", problems))
 
 

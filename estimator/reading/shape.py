@@ -12,10 +12,6 @@ from estimator.reading.fields import Fields
 from estimator.reading.keys import COLUMNS, UNKNOWN_LOOKED_AT, meant_key
 from estimator.reading.problems import Problems, shown
 
-MOST_ROWS = 10**7
-"""About what a file of the largest size holds (`source.LARGEST_FILE`)."""
-MOST_COLUMNS = 10**4
-"""The readings and standard errors of `sensors.MOST` sensors, and others five times as many."""
 SENSOR_LIKE = re.compile(r"(a|g|w|acc|accel|gyr|gyro)?[ _]?([xyz]|\d{1,3})", re.IGNORECASE)
 """Names that people give to sensors: a1, gx, acc_3."""
 
@@ -28,8 +24,7 @@ def read_columns(document: Fields) -> Columns | None:
         found = "missing" if table is None else f"is {shown(table)}"
         document.add("table", f"{found}; give the columns of readings, each with one value per row")
         return None
-    if len(table) > MOST_COLUMNS:
-        raise problems.fail("table", f"has {len(table)} columns; at most {MOST_COLUMNS} can be read")
+    check_extent(0, len(table), problems)
     given = {str(name): cells for name, cells in table.items() if cells is not None}
     lists = {name: cells for name, cells in given.items() if _is_column(cells)}
     for name in (name for name in given if name not in lists):
@@ -39,6 +34,17 @@ def read_columns(document: Fields) -> Columns | None:
         return None
     good = {name: cells for name, cells in lists.items() if len(cells) == rows}
     return Columns(good, rows, frozenset(given) - frozenset(good), problems)
+
+
+def check_extent(rows: int, columns: int, problems: Problems) -> None:
+    """Raises FormatError where a table of this size is too large."""
+    most, advice = problems.most, "can be read, so average or split it"
+    if rows > most.rows:
+        raise problems.fail("table", f"has {rows} rows; at most {most.rows} {advice}")
+    if columns > most.columns:
+        raise problems.fail("table", f"has {columns} columns; at most {most.columns} can be read")
+    if rows * columns > most.cells:
+        raise problems.fail("table", f"has {rows} rows × {columns} columns; at most {most.cells} cells {advice}")
 
 
 def check_unknown(columns: Columns, names: list[str]) -> None:
@@ -57,8 +63,7 @@ def _row_count(lists: Mapping[str, Column], problems: Problems) -> int:
     """The number of rows that most columns have; 0 when there are none."""
     lengths = Counter(map(len, lists.values()))
     longest = max(lengths, default=0)
-    if longest > MOST_ROWS:
-        raise problems.fail("table", f"has {longest} rows; at most {MOST_ROWS} can be read, so average or split it")
+    check_extent(longest, len(lists), problems)
     rows = max(lengths, key=lambda length: (lengths[length], length), default=0)
     if rows == 0:
         problems.add("table", "has no rows; give one row per reading")

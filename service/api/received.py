@@ -11,7 +11,7 @@ from estimator.errors import Problem
 from service.admission import PersonOf
 from service.api.schemas.fields import LongText, Text
 from service.api.schemas.sessions import SessionFile
-from service.dependencies import SettingsOf, limited
+from service.dependencies import PlaceOf, SettingsOf, limited
 from service.errors import ForbiddenError, RefusedError
 from service.records.identity import Role
 from service.records.received import Replaced, SentFile
@@ -37,6 +37,8 @@ async def _received(
     request: Request,
     settings: SettingsOf,
     person: PersonOf,
+    _: PlaceOf,
+    *,
     supersedes: Supersedes = None,
     by: By = None,
     why: Why = None,

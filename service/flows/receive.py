@@ -15,6 +15,7 @@ from service.flows.keep import keep
 from service.flows.question_session import question
 from service.flows.refuse import refuse
 from service.flows.supersede_session import give_way, supersede
+from service.ingest import in_turn
 from service.ingest.checked import Checked, check, plain_filename
 from service.ingest.digest import content_digest
 from service.judging.calibrate import Calibrated, basis_of, calibrate
@@ -96,10 +97,11 @@ def ask_again(reception: Reception, ids: Iterable[str]) -> None:
 def _stored_or_refused(reception: Reception, file: SentFile, now: datetime) -> Receipt | RefusedError:
     k = reception.coverage_factor
     try:
-        return upload(
-            reception.storage, file.content, file.filename, now,
-            coverage_factor=k, who=reception.who, replaces=file.replaces,
-        )  # fmt: skip
+        with in_turn(file.content):
+            return upload(
+                reception.storage, file.content, file.filename, now,
+                coverage_factor=k, who=reception.who, replaces=file.replaces,
+            )  # fmt: skip
     except RefusedError as refusal:
         return refusal
 

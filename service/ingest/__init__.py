@@ -1,35 +1,52 @@
-"""Uploads of every accepted format → one checked session. The content decides what a file is, never its name."""
+"""Uploads of every accepted format → one checked session. The content decides what a file is, never its name.
 
-from collections.abc import Callable
+Binary formats, and text that is long enough to take time or memory, are read by a process of their own: see `apart`.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from estimator.reading import read_session
 from estimator.session import CalibrationSession
-from service.ingest import hdf5, mat, parquet, xlsx
+from service.ingest.apart import read_apart, turn
+from service.ingest.formats import BINARY, is_binary
+from service.ingest.limits import in_force
 
-Reader = Callable[[bytes, str], dict[str, object]]
-
-READERS: tuple[tuple[bytes, Reader], ...] = (
-    (parquet.MAGIC, parquet.read_parquet),
-    (xlsx.MAGIC, xlsx.read_xlsx),
-    (hdf5.MAGIC, hdf5.read_hdf5),
-    (mat.MAGIC, mat.read_mat),
-)
-"""First bytes of a binary format, and what reads it; anything else is JSON or CSV, or refused as neither."""
+LONG = 1024 * 1024
+"""Bytes of text that are read here: a tenth of a second at most, and 40 MB. A session of positions has a hundredth."""
 
 
 def read_upload(content: bytes, filename: str) -> CalibrationSession:
     """The session that the content holds; raises SessionError with every problem, named after the file."""
-    for magic, read in READERS:
-        if content.startswith(magic):
-            return read_session(read(content, filename), name=filename)
-    return read_session(content, name=filename)
+    if _is_apart(content):
+        return apart_session(content, filename)
+    return read_session(content, name=filename, most=in_force().extent)
+
+
+@contextmanager
+def in_turn(content: bytes) -> Iterator[None]:
+    """Around all that is done with an upload: only so many that are read apart are held in memory at once."""
+    if _is_apart(content):
+        with turn():
+            yield
+    else:
+        yield
+
+
+def _is_apart(content: bytes) -> bool:
+    return is_binary(content) or len(content) > LONG
+
+
+def apart_session(content: bytes, filename: str) -> CalibrationSession:
+    """The same, by a process of its own."""
+    session = read_apart("session", content, filename)
+    assert isinstance(session, CalibrationSession)
+    return session
 
 
 def read_file(path: Path) -> CalibrationSession:
     """The same for a file on this machine, where the metadata of a CSV table may stand in a JSON file beside it."""
     with path.open("rb") as file:
-        start = file.read(max(len(magic) for magic, _ in READERS))
-    if any(start.startswith(magic) for magic, _ in READERS):
-        return read_upload(path.read_bytes(), str(path))
-    return read_session(path)
+        start = file.read(max(map(len, BINARY)))
+    return apart_session(path.read_bytes(), str(path)) if is_binary(start) else read_session(path)

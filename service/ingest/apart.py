@@ -1,29 +1,237 @@
-"""Files read by a program of their own, with limits on time and memory: some libraries fall over on damaged ones."""
+"""Files read by a process of their own, with limits of memory and time: no file can end, freeze or bloat this one.
 
+One process per program, started when it is first needed, has the readers loaded and does nothing but fork
+(`service.ingest.fork_server`). Each file gets a fork, which takes the bytes through a socket and gives back plain
+arrays: see `service.ingest.exchange`.
+"""
+
+import atexit
 import json
+import os
+import socket
+import struct
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict
 from pathlib import Path
+from threading import Condition, Lock, local
 from typing import Any
 
-from service.ingest.limits import refusal
+from estimator.errors import FormatError, Problem, ScheduleError, SessionError
+from service.errors import BusyError
+from service.ingest import limits
+from service.ingest.exchange import DAMAGED, Array, plain_bytes, unpack
+from service.ingest.limits import Limits, refusal
 
-SECONDS = 30
-"""After which the program is stopped: a whole file is read in a few."""
+SERVER = "service.ingest.fork_server"
+ROOT = str(Path(__file__).parents[2])
+"""Where this package lies, so that the process finds the same."""
+INHERITED = ("PATH", "LANG", "LC_ALL", "LD_LIBRARY_PATH", "TMPDIR", "OPENBLAS_NUM_THREADS")
+"""Of the environment; the rest may hold secrets, which nothing that reads strangers' files needs."""
+FRUGAL = {"POLARS_MAX_THREADS": "1", "MALLOC_ARENA_MAX": "1"}
+"""One thread: more take address space, and several files are read at once already."""
+WAITING = 3
+"""Times the computing time that reading may last: the machine may be busy with other things."""
+GRACE = 5.0
+"""Seconds beyond that before the process is taken for lost, which ends itself at its time."""
+PATIENCE = 10.0
+"""Seconds that a file waits for its turn before its sender is asked to come again."""
+MOST_WAITING = 8
+"""Files that wait for their turn: each holds a thread that answers requests, of which there are 40."""
+LONGEST_LINE = 16 * 1024 * 1024
+"""Bytes of JSON that come back: names, texts and problems; 10,000 columns take a tenth of it."""
+MOMENT = 0.3
+"""Seconds within which a process that is ending has ended."""
+SIZE = struct.Struct(">Q")
+READY = b"r"
+FELL = (OSError, EOFError, *DAMAGED)
+"""What a fork that ends before its answer is seen as."""
 
 
-def read_apart(program: Path, content: bytes, filename: str, *arguments: str) -> tuple[dict[str, Any], bytes]:
-    """The program's answer, a line of JSON, and what follows it; FormatError where it refuses, falls or takes long."""
-    command = [sys.executable, "-I", str(program), *arguments]
+def read_apart(job: str, content: bytes, filename: str) -> Any:
+    """What the job makes of the content; a SessionError where it cannot be used, BusyError where it must wait."""
+    most = limits.in_force()
+    with turn():
+        try:
+            return _asked_again_if_ended(job, content, filename, most)
+        except FELL as error:
+            if isinstance(error, SessionError):
+                raise
+            raise refusal(
+                filename,
+                f"cannot be read with {most.memory // 1024**2} MiB of memory in {most.seconds} s: it is damaged, or "
+                "much larger inside than outside; write it again, or average or split it",
+            ) from error
+
+
+@contextmanager
+def turn() -> Iterator[None]:
+    """One of the turns of reading apart, for all that is done with a file: what it holds may be large until then."""
+    with _turns.taken(limits.in_force().at_once):
+        yield
+
+
+def _asked_again_if_ended(job: str, content: bytes, filename: str, most: Limits) -> Any:
+    """A file is not to blame where the process that forks was ended from outside: it is read once more."""
     try:
-        child = subprocess.run(command, input=content, capture_output=True, timeout=SECONDS, check=True)
-    except subprocess.TimeoutExpired as error:
-        raise refusal(filename, f"cannot be read within {SECONDS} s; it is damaged, write it again") from error
-    except subprocess.CalledProcessError as error:
-        raise refusal(filename, "is damaged and cannot be read; write it again") from error
-    line, _, rest = child.stdout.partition(b"\n")
-    answer: dict[str, Any] = json.loads(line)
-    if "refused" in answer:
-        field, message = answer["refused"]
-        raise refusal(filename, message, field)
-    return answer, rest
+        return _asked(job, content, filename, most)
+    except FELL as error:
+        if isinstance(error, SessionError) or not _server.has_ended():
+            raise
+    return _asked(job, content, filename, most)
+
+
+def _asked(job: str, content: bytes, filename: str, most: Limits) -> Any:
+    with _server.fork() as child:
+        child.settimeout(most.seconds * WAITING + GRACE)
+        request = {"job": job, "filename": filename, "size": len(content), "limits": asdict(most)}
+        _send(child, json.dumps(request).encode())
+        child.sendall(content)
+        line = _line(child)
+        if line.startswith(b'{"refused"'):
+            raise _refused(json.loads(line)["refused"])
+        return unpack(line, most.memory, lambda array: _fill(child, array))
+
+
+def _refused(found: dict[str, Any]) -> FormatError | ScheduleError:
+    kind = ScheduleError if found["schedule"] else FormatError
+    return kind([Problem(str(field), str(text), row) for field, text, row in found["problems"]], found["source"])
+
+
+def _send(child: socket.socket, line: bytes) -> None:
+    child.sendall(SIZE.pack(len(line)) + line)
+
+
+def _line(child: socket.socket) -> bytes:
+    (size,) = SIZE.unpack(_exactly(child, SIZE.size))
+    if size > LONGEST_LINE:
+        raise ValueError("a longer answer than agreed")
+    return _exactly(child, size)
+
+
+def _exactly(child: socket.socket, size: int) -> bytes:
+    found = bytearray(size)
+    _fill_view(child, memoryview(found))
+    return bytes(found)
+
+
+def _fill(child: socket.socket, array: Array) -> None:
+    if array.size:
+        _fill_view(child, plain_bytes(array))
+
+
+def _fill_view(child: socket.socket, view: memoryview) -> None:
+    while view:
+        got = child.recv_into(view)
+        if not got:
+            raise EOFError("the process ended before its answer")
+        view = view[got:]
+
+
+class _Server:
+    """The process that forks, started when it is first needed and again when it is gone."""
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+        self._process: subprocess.Popen[bytes] | None = None
+        self._control: socket.socket | None = None
+        self._owner = 0
+
+    @contextmanager
+    def fork(self) -> Iterator[socket.socket]:
+        """A connection to a new process."""
+        own, theirs = socket.socketpair()
+        with own:
+            with theirs, self._lock:
+                try:
+                    self._pass(theirs)
+                except OSError:  # the process was ended from outside: once more with a new one
+                    self.stop()
+                    self._pass(theirs)
+            yield own
+
+    def _pass(self, connection: socket.socket) -> None:
+        if self._control is None or self._owner != os.getpid():
+            self._start()
+        assert self._control is not None
+        socket.send_fds(self._control, [READY], [connection.fileno()])
+
+    def has_ended(self) -> bool:
+        """Whether it was ended; the last moments of one that is ending are waited for."""
+        if self._process is not None:
+            try:
+                self._process.wait(MOMENT)
+            except subprocess.TimeoutExpired:
+                return False
+        return True
+
+    def _start(self) -> None:
+        """Its input is the connection; when that closes, because this process is gone, it ends."""
+        self.stop()
+        self._control, theirs = socket.socketpair()
+        self._owner = os.getpid()
+        environment = {name: os.environ[name] for name in INHERITED if name in os.environ}
+        with theirs:
+            self._process = subprocess.Popen(
+                [sys.executable, "-P", "-m", SERVER],
+                stdin=theirs.fileno(),
+                stdout=subprocess.DEVNULL,
+                env=environment | FRUGAL | {"PYTHONPATH": ROOT},
+            )
+        if self._control.recv(1) != READY:
+            raise RuntimeError("the process that reads files did not start; see its message above")
+
+    def stop(self) -> None:
+        """Ends it, as the end of this process does in any case."""
+        if self._control is not None:
+            self._control.close()
+        if self._process is not None and self._owner == os.getpid():
+            self._process.wait(GRACE)
+        self._process = self._control = None
+
+
+class _Turns:
+    """At most so many files at once; a few wait for a while, further ones are asked to come again."""
+
+    def __init__(self) -> None:
+        self._changed = Condition()
+        self._busy = self._waiting = 0
+        self._own = local()
+
+    @contextmanager
+    def taken(self, at_once: int) -> Iterator[None]:
+        """A turn; a thread that has one needs no other."""
+        if getattr(self._own, "held", False):
+            yield
+            return
+        with self._changed:
+            self._wait(at_once)
+            self._busy += 1
+        self._own.held = True
+        try:
+            yield
+        finally:
+            self._own.held = False
+            with self._changed:
+                self._busy -= 1
+                self._changed.notify()
+
+    def _wait(self, at_once: int) -> None:
+        if self._busy < at_once:
+            return
+        if self._waiting >= MOST_WAITING:
+            raise BusyError(BUSY)
+        self._waiting += 1
+        try:
+            if not self._changed.wait_for(lambda: self._busy < at_once, PATIENCE):
+                raise BusyError(BUSY)
+        finally:
+            self._waiting -= 1
+
+
+BUSY = "Many large files are being read; nothing of this one was stored. Send it again in a few seconds."
+_server = _Server()
+_turns = _Turns()
+atexit.register(_server.stop)

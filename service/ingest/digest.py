@@ -5,15 +5,20 @@ fifteen; times in UTC.
 """
 
 import hashlib
+from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
 from datetime import UTC, datetime
 
 import numpy as np
+from numpy.typing import NDArray
 
 from estimator.session import CalibrationSession
 
 DIGITS = 32
 """Bits of a number that count: far below the noise of any reading, and far above what a format rounds off."""
+
+BLOCK = 100_000
+"""Numbers that are rounded at a time: each takes some ten times its size meanwhile."""
 
 
 def content_digest(session: CalibrationSession) -> str:
@@ -24,27 +29,40 @@ def content_digest(session: CalibrationSession) -> str:
     return digest.hexdigest()
 
 
-def _parts(name: str, value: object) -> list[bytes]:
+def _parts(name: str, value: object) -> Iterator[bytes]:
     """Every value with its name, in a fixed order; what is not stated is left out."""
     if value is None:
-        return []
+        return
     if is_dataclass(value):
-        return [part for f in fields(value) for part in _parts(f"{name}.{f.name}", getattr(value, f.name))]
-    if isinstance(value, tuple):
-        return [part for i, item in enumerate(value) for part in _parts(f"{name}[{i}]", item)]
-    return [f"{name}=".encode(), _bytes(name, value), b"\n"]
+        for f in fields(value):
+            yield from _parts(f"{name}.{f.name}", getattr(value, f.name))
+    elif isinstance(value, tuple):
+        for i, item in enumerate(value):
+            yield from _parts(f"{name}[{i}]", item)
+    else:
+        yield f"{name}=".encode()
+        yield from _bytes(name, value)
+        yield b"\n"
 
 
-def _bytes(name: str, value: object) -> bytes:
+def _bytes(name: str, value: object) -> Iterator[bytes]:
     if name == ".started_at":
-        return _in_utc(str(value)).encode()
-    if isinstance(value, str):
-        return value.strip().encode()
-    array = np.asarray(value, dtype=float)
+        yield _in_utc(str(value)).encode()
+    elif isinstance(value, str):
+        yield value.strip().encode()
+    else:
+        array = np.asarray(value)
+        yield f"{array.shape}".encode()
+        flat = array.reshape(-1)
+        for at in range(0, len(flat), BLOCK):
+            yield _rounded(flat[at : at + BLOCK].astype(float))
+
+
+def _rounded(array: NDArray[np.float64]) -> bytes:
     fraction, exponent = np.frexp(np.where(np.isfinite(array), array, 0.0))
     kept = np.rint(np.ldexp(fraction, DIGITS)) / 2.0**DIGITS
     rounded = np.where(np.isfinite(array), np.ldexp(kept, exponent) + 0.0, np.nan)
-    return f"{array.shape}".encode() + rounded.astype("<f8").tobytes()
+    return rounded.astype("<f8").tobytes()
 
 
 def _in_utc(stated: str) -> str:

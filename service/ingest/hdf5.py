@@ -1,19 +1,70 @@
-"""HDF5: group `readings` with one dataset a column; the metadata as JSON in the root's text attribute `imu-session`."""
+"""HDF5: group `readings` with one dataset a column; the metadata as JSON in the root's text attribute `imu-session`.
 
-from pathlib import Path
+Only plain datasets inside the file are followed: links to other files, and data kept in them, are refused. The library
+loops for ever or falls over on some damaged files, so it is only ever used in a process of its own.
+"""
 
-from service.ingest.apart import read_apart
+from collections.abc import Iterator
+from contextlib import contextmanager
+from io import BytesIO
+
+import h5py
+import numpy as np
+
+from service.ingest.limits import check_table, refusal
 from service.ingest.metadata import KEY, with_metadata
 
-MAGIC = b"\x89HDF\r\n\x1a\n"
-"""First bytes (HDF5 file format, III.A)."""
-CHILD = Path(__file__).with_name("hdf5_child.py")
-"""Run by its path, so that it imports nothing of the service."""
-MOST_CELLS = 5_000_000
-"""Fewer than of other formats: they pass through a pipe as JSON."""
+GROUP = "readings"
+"""That holds one dataset a column."""
+MOST_LABELS = 200_000
+"""Texts of one column: each is an object of its own in memory."""
+PLAIN = "must be a one-dimensional dataset of numbers or text inside the file"
+DAMAGED = (OSError, RuntimeError, TypeError, LookupError, ArithmeticError, UnicodeError, AttributeError)
+"""What h5py raises on files cut off or written over; also ValueError, which a SessionError is too."""
 
 
 def read_hdf5(content: bytes, filename: str) -> dict[str, object]:
     """The document that an HDF5 file holds."""
-    answer, _ = read_apart(CHILD, content, filename, KEY, str(MOST_CELLS))
-    return with_metadata(answer["metadata"], answer["columns"], filename)
+    with _damage_refused(filename), h5py.File(BytesIO(content), "r") as file:
+        metadata = file.attrs.get(KEY)
+        if not isinstance(metadata, str):
+            raise refusal(filename, f"has no text attribute {KEY}; put the session's JSON without its table there")
+        if not isinstance(file.get(GROUP, getlink=True), h5py.HardLink) or not isinstance(file[GROUP], h5py.Group):
+            raise refusal(filename, f"has no group {GROUP}; put one dataset per column there")
+        group = file[GROUP]
+        check_table(filename, 0, len(group))
+        datasets = {name: _dataset(group, name, filename) for name in group}
+        check_table(filename, max((column.size for column in datasets.values()), default=0), len(datasets))
+        columns = {name: _values(name, column, filename) for name, column in datasets.items()}
+    return with_metadata(metadata, columns, filename)
+
+
+@contextmanager
+def _damage_refused(filename: str) -> Iterator[None]:
+    try:
+        yield
+    except (*DAMAGED, ValueError) as error:
+        if hasattr(error, "problems"):
+            raise
+        raise refusal(filename, "is damaged or not a readable HDF5 file; write it again") from error
+
+
+def _dataset(group: h5py.Group, name: str, filename: str) -> h5py.Dataset:
+    """The column of this name, when it is a plain one."""
+    if not isinstance(group.get(name, getlink=True), h5py.HardLink):
+        raise refusal(filename, f"is a link; {PLAIN}", name)
+    item = group[name]
+    if not isinstance(item, h5py.Dataset) or item.ndim != 1 or item.is_virtual or item.external:
+        raise refusal(filename, f"is not a plain column; {PLAIN}", name)
+    return item
+
+
+def _values(name: str, column: h5py.Dataset, filename: str) -> object:
+    """The cells; None where a text is empty, NaN where a number is missing."""
+    if column.dtype.kind in "fiu":
+        return np.asarray(column[()])
+    if h5py.check_string_dtype(column.dtype) is None:
+        raise refusal(filename, f"is of type {column.dtype}; {PLAIN}", name)
+    if column.size > MOST_LABELS:
+        raise refusal(filename, f"has {column.size} texts; at most {MOST_LABELS}, so use whole numbers", name)
+    return [column[row].decode("utf-8") or None for row in range(column.size)]

@@ -1,20 +1,26 @@
-"""MATLAB files up to version 7: one variable a column, text as a char matrix; the metadata in `imu_session`."""
+"""MATLAB files up to version 7: one variable a column, text as a char matrix; the metadata in `imu_session`.
+
+Structures, cells and objects may declare any size with a few bytes: they are named, never read. The library falls over
+on some damaged files, so it is only ever used in a process of its own.
+"""
 
 import zlib
 from io import BytesIO
-from pathlib import Path
+from math import prod
 from typing import Any, Literal
 
 import numpy as np
+from scipy.io import loadmat, whosmat
+from scipy.io.matlab import MatReadError, matfile_version
 
-from service.ingest.apart import read_apart
-from service.ingest.limits import MOST_CELLS, MOST_TEXT, refusal
+from estimator.errors import FormatError
+from service.ingest.limits import check_table, in_force, refusal
 from service.ingest.metadata import with_metadata
 
-MAGIC = b"MATLAB "
-"""First bytes of every MAT file."""
 VERSION = b"MATLAB 5.0 MAT-file"
 """First bytes of one that is read: level 5, not the HDF5 of version 7.3."""
+LEVEL_5 = 1
+"""How scipy numbers MAT files up to version 7."""
 VARIABLE = "imu_session"
 """The variable that holds the session."""
 HEADER = 128
@@ -23,14 +29,20 @@ COMPRESSED = 15
 """Type of an element that holds another one deflated (miCOMPRESSED)."""
 NUMERIC = ("double", "single", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64")
 """Classes whose values are numbers."""
-CHILD = Path(__file__).with_name("mat_child.py")
-"""Run by its path, so that it imports nothing of the service."""
+PLAIN = ("char", *NUMERIC)
+"""Classes whose values are text or numbers."""
+DAMAGED = (OSError, ValueError, TypeError, LookupError, ArithmeticError, zlib.error, MatReadError)
+"""What scipy raises on files cut off or written over at various places."""
+
+MOST_TEXT = 1_000_000
+"""Characters of text beside the table's cells: the metadata, and the labels of its rows."""
+
+Declared = tuple[str, tuple[int, ...], str]
+"""Name, shape and class of a variable."""
 
 
 def read_mat(content: bytes, filename: str) -> dict[str, object]:
     """The document that a MAT file holds."""
-    if not content.startswith(VERSION):
-        raise refusal(filename, "is of a MATLAB version that is not read; save it with save(…, '-v7')")
     columns = variables(content, filename, most_rows=1)
     metadata = columns.pop(VARIABLE, None)
     text = None if metadata is None else metadata.ravel().tolist()
@@ -44,20 +56,41 @@ def variables(content: bytes, filename: str, *, most_rows: int) -> dict[str, np.
 
     FormatError where one is neither text nor numbers, or has more than so many rows and columns.
     """
-    if _unpacked_size(content) > MOST_TEXT:
-        raise refusal(filename, f"unpacks to more than {MOST_TEXT // 1024**2} MiB; average or split the log")
-    answer, arrays = read_apart(CHILD, content, filename, str(MOST_CELLS))
-    names, cells = [name for name, _, _ in answer["declared"]], 0
-    for name, shape, kind in answer["declared"]:
-        if kind not in (*NUMERIC, "char") or names.count(name) > 1:
+    if not content.startswith(VERSION):
+        raise refusal(filename, "is of a MATLAB version that is not read; save it with save(…, '-v7')")
+    most = in_force().unpacked
+    if _unpacked_size(content, most) > most:
+        raise refusal(filename, f"unpacks to more than {most // 1024**2} MiB; average or split the log")
+    try:
+        declared = _declared(content)
+        _check_declared(declared, filename, most_rows)
+        found = loadmat(BytesIO(content))  # type: ignore[arg-type]  # stubs lack file-likes
+        return {name: np.asarray(found[name]) for name, _, _ in declared}
+    except DAMAGED as error:
+        if isinstance(error, FormatError):
+            raise
+        raise refusal(filename, "is damaged or not a readable MAT file; write it again") from error
+
+
+def _declared(content: bytes) -> list[Declared]:
+    if matfile_version(BytesIO(content))[0] != LEVEL_5:  # type: ignore[arg-type]  # stubs lack file-likes
+        raise ValueError("the header says another version than 5")
+    found = whosmat(BytesIO(content), chars_as_strings=False)  # type: ignore[arg-type]  # stubs lack file-likes
+    return [(name, shape, kind) for name, shape, kind in found]
+
+
+def _check_declared(declared: list[Declared], filename: str, most_rows: int) -> None:
+    """Raises where a variable is no column, or all of them are too many cells."""
+    names = [name for name, _, _ in declared]
+    for name, shape, kind in declared:
+        if kind not in PLAIN or names.count(name) > 1:
             raise refusal(filename, f"is of kind {kind}; give each column once, as numbers or as a char matrix", name)
         if len(shape) != 2 or (kind != "char" and min(shape) > most_rows):
             raise refusal(filename, f"has the shape {tuple(shape)}; a column is a vector, or a char matrix", name)
-        cells += shape[0] * shape[1]
-    if cells > MOST_CELLS:
-        raise refusal(filename, f"has {cells} cells; at most {MOST_CELLS} can be read, so average or split it", "table")
-    with np.load(BytesIO(arrays), allow_pickle=False) as found:
-        return {name: found[f"arr_{place}"] for place, name in enumerate(names)}
+    check_table(filename, 0, len(declared))
+    cells, most = sum(prod(shape) for _, shape, _ in declared), in_force().cells
+    if cells > most + MOST_TEXT:
+        raise refusal(filename, f"has {cells} cells; at most {most} can be read, so average or split it", "table")
 
 
 def _cells(column: np.ndarray[Any, Any]) -> object:
@@ -66,23 +99,23 @@ def _cells(column: np.ndarray[Any, Any]) -> object:
     return [text.strip() or None for text in column.ravel().tolist()]
 
 
-def _unpacked_size(content: bytes) -> int:
+def _unpacked_size(content: bytes, most: int) -> int:
     """Bytes of all compressed variables once unpacked, counted no further than the limit."""
     order: Literal["little", "big"] = "little" if content[126:128] == b"IM" else "big"
     at, total = HEADER, 0
-    while at + 8 <= len(content) and total <= MOST_TEXT:
+    while at + 8 <= len(content) and total <= most:
         kind = int.from_bytes(content[at : at + 4], order)
         size = int.from_bytes(content[at + 4 : at + 8], order)
         if kind == COMPRESSED:
-            total += _inflated(content[at + 8 : at + 8 + size])
+            total += _inflated(content[at + 8 : at + 8 + size], most)
         at += 8 + size
     return total
 
 
-def _inflated(packed: bytes) -> int:
+def _inflated(packed: bytes, most: int) -> int:
     unpack, total = zlib.decompressobj(), 0
     try:
-        while packed and total <= MOST_TEXT:
+        while packed and total <= most:
             total += len(unpack.decompress(packed, 1 << 20))
             packed = unpack.unconsumed_tail
     except zlib.error:

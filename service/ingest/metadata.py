@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from estimator.reading.json_text import parse_json
 from estimator.reading.problems import Problems
-from service.ingest.limits import refusal
+from service.ingest.limits import in_force, refusal
 
 KEY = "imu-session"
 """Under which a table's file keeps the session's other fields."""
@@ -12,7 +12,7 @@ KEY = "imu-session"
 
 def with_metadata(text: str, columns: Mapping[str, object], filename: str) -> dict[str, object]:
     """The document of a session: the JSON metadata, and the columns as its table."""
-    problems = Problems(filename)
+    problems = Problems(filename, in_force().extent)
     document = parse_json(text, problems)
     problems.raise_if_any()
     if "table" in document:

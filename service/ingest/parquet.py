@@ -4,11 +4,11 @@ from io import BytesIO
 
 import polars as pl
 
-from service.ingest.limits import MOST_TEXT, check_cells, refusal
+from service.ingest.limits import check_table, refusal
 from service.ingest.metadata import KEY, with_metadata
 
-MAGIC = b"PAR1"
-"""First bytes (Apache Parquet file format)."""
+MOST_TEXT = 64 * 1024 * 1024
+"""Bytes of the labels of a column."""
 
 
 def read_parquet(content: bytes, filename: str) -> dict[str, object]:
@@ -16,8 +16,10 @@ def read_parquet(content: bytes, filename: str) -> dict[str, object]:
     try:
         metadata = pl.read_parquet_metadata(BytesIO(content)).get(KEY)
         scan = pl.scan_parquet(BytesIO(content))
-        rows = scan.select(pl.len()).collect().item()
-        check_cells(filename, rows, len(scan.collect_schema()))
+        schema = scan.collect_schema()
+        check_table(filename, scan.select(pl.len()).collect().item(), len(schema))
+        for name, dtype in schema.items():
+            _check_type(name, dtype, filename)
         frame = scan.collect()
     except (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError) as error:
         raise refusal(filename, "is damaged or not a readable Parquet file; write it again") from error
@@ -31,15 +33,21 @@ def columns_of(frame: pl.DataFrame, filename: str) -> dict[str, object]:
     return {series.name: _cells(series, filename) for series in frame}
 
 
+def _check_type(name: str, dtype: pl.DataType, filename: str) -> None:
+    """Raises for what is no column of a table, before it is unpacked."""
+    labels = (pl.String, pl.Categorical, pl.Enum, pl.Boolean)
+    if not (dtype.is_numeric() or dtype in labels or isinstance(dtype, pl.Enum | pl.Categorical)):
+        raise refusal(filename, f"is of type {dtype}; a column holds numbers or text", name)
+
+
 def _cells(series: pl.Series, filename: str) -> object:
+    _check_type(series.name, series.dtype, filename)
     if series.dtype.is_numeric() and not series.has_nulls():
         return series.to_numpy()
     if series.dtype.is_numeric() or series.dtype == pl.Boolean:
         return series.to_list()
     if series.dtype in (pl.Categorical, pl.Enum):
         series = series.cast(pl.String)
-    if series.dtype != pl.String:
-        raise refusal(filename, f"is of type {series.dtype}; a column holds numbers or text", series.name)
     if (series.str.len_bytes().sum() or 0) > MOST_TEXT:
         raise refusal(filename, "holds far too much text; labels should be short", series.name)
     return series.to_list()

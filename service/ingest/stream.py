@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from estimator.reading import read_session
 from estimator.session import CalibrationSession
 from service.ingest import parquet, read_upload
+from service.ingest.formats import PARQUET
 from service.ingest.limits import refusal
 from service.ingest.metadata import KEY, with_metadata
 
@@ -43,7 +44,7 @@ def open_recording(path: Path) -> Recording:
     """The recording in a file; raises SessionError with every problem of its head."""
     with path.open("rb") as file:
         start = file.read(LONGEST_HEADER)
-    if start.startswith(parquet.MAGIC):
+    if start.startswith(PARQUET):
         return _scanned(path, pl.scan_parquet(path), _parquet_metadata(path))
     if start.lstrip(b"\xef\xbb\xbf \r\n").startswith(b"#"):
         return _csv(path, start)

@@ -5,14 +5,14 @@ from typing import Annotated
 from fastapi import Depends, Request
 from starlette.datastructures import UploadFile
 
-from service.dependencies import SettingsOf, limited
+from service.dependencies import PlaceOf, SettingsOf, limited
 from service.records.received import SentFile
 
 MOST_FILES = 200
 """In one form: some years of sessions of a unit; it bounds how many parts the form's parser holds."""
 
 
-async def _files(request: Request, settings: SettingsOf) -> tuple[SentFile, ...]:
+async def _files(request: Request, settings: SettingsOf, _: PlaceOf) -> tuple[SentFile, ...]:
     """The chosen files."""
     body = limited(request, settings.max_upload_bytes, is_form=True)
     async with body.form(max_files=MOST_FILES, max_fields=10) as form:

@@ -29,9 +29,9 @@ def test_a_packed_session_is_taken_and_damaged_ones_are_refused(house: House) ->
 
 def test_a_file_that_unpacks_to_too_much_is_refused(house: House, tmp_path: Path) -> None:
     bomb = tmp_path / "bomb.json.gz"
-    bomb.write_bytes(gzip.compress(bytes(257 * 1024**2), 1))
+    bomb.write_bytes(gzip.compress(bytes(129 * 1024**2), 1))
     said = house.run("python", "-c", READ.format(file=bomb))
-    assert "unpacks to more than 256 MiB" in said
+    assert "unpacks to more than 128 MiB" in said
 
 
 READ = """

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 
 from estimator.applied_vector import STANDARD_GRAVITY
+from service.ingest.apart import read_apart
 from service.ingest.convert.contract import Converter, Document
 from service.ingest.convert.documents import columns, session, triad
 from service.ingest.convert.files import expect_count, read_bytes, refuse
-from service.ingest.mat import variables
 
 BYTE_ORDER = slice(126, 128)
 """Where the header of a MAT file says how its bytes run."""
@@ -21,7 +21,8 @@ def array(path: Path) -> np.ndarray[Any, Any] | None:
     content = read_bytes(path)
     if content[BYTE_ORDER] not in (b"IM", b"MI"):
         raise refuse(path, "file", "is no MAT file of version 5")
-    return variables(content, path.name, most_rows=3).get("ACC_meas")
+    found: np.ndarray[Any, Any] | None = read_apart("mat-matrices", content, path.name).get("ACC_meas")
+    return found
 
 
 def convert(paths: list[Path]) -> list[tuple[str, Document]]:

@@ -1,0 +1,104 @@
+"""The page of what files cost."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from benchmarks.files.service import Cost
+from service.ingest import LONG
+from service.settings import Settings
+
+LIMITS = (
+    "max_upload_bytes", "max_rows", "max_columns", "max_cells", "max_nesting", "max_unpacked_bytes",
+    "max_read_seconds", "max_read_bytes", "reads_at_once", "uploads_in_flight",
+)  # fmt: skip
+ANSWERS = {
+    "max_upload_bytes": "413",
+    "reads_at_once": "503 with `Retry-After`",
+    "uploads_in_flight": "503 with `Retry-After`",
+}
+"""Of the limits that are not answered 422."""
+MEBIBYTE = 1024**2
+
+
+@dataclass(frozen=True)
+class Row:
+    """One file, or several at once."""
+
+    name: str
+    size: int
+    cost: Cost
+
+
+def page(rows: Sequence[Row], ordinary: dict[str, float]) -> str:
+    """The whole page."""
+    worst = max(row.cost.memory for row in rows if "at once" not in row.name)
+    wait = max(row.cost.wait for row in rows)
+    return f"""# What a file may cost
+
+Made by `python -m benchmarks.files`; edit `benchmarks/files/page.py`, not this page.
+
+No file that somebody uploads may end, freeze or bloat the service. Four things see to that:
+
+* **Nothing is believed.** The extent of a table is counted before anything is built from it: the cells of a workbook
+  one by one, wherever its sheets lie; rows and columns of CSV; lists, nesting and commas of JSON.
+* **Another process reads.** XLSX, HDF5, MAT and Parquet, and text of more than {LONG // MEBIBYTE} MiB, are read by a
+  process of their own. Before it sees a byte the kernel bounds its memory, its computing time and its time by the
+  clock. It cannot write files, knows no setting and no password, and gives back numbers and text, never objects
+  (no pickle). When it is ended, the upload is answered 422 with what to do, and the service goes on.
+* **Few at once.** So many files are read at the same time; some more wait up to ten seconds; the others are answered
+  503 with `Retry-After`.
+* **The bytes stay.** What is stored is the upload, unchanged, under its hash.
+
+The process is a fork of one that has the readers loaded. An ordinary file of 240 rows is read in {_times(ordinary)}
+(median), fork included; JSON of that size is read in place.
+
+## Limits
+
+| setting | default | answer | |
+| --- | --- | --- | --- |
+{_limits()}
+
+A raw log beyond them is averaged first, or sent in parts. Where more cells are allowed, more memory must be:
+about 60 bytes a cell.
+
+## Measured
+
+Against a running service: peak memory over idle of the service and its readers together (proportional set size, so
+that shared pages count once), and the longest that `/healthz` took to answer meanwhile. Hostile files come first, all
+made by code in `benchmarks/files/hostile.py`; then the heaviest files that are allowed, stored with verdict and
+diagnosis.
+
+Worst single file: {worst:.0f} MiB over idle. Longest wait for `/healthz`: {wait:.2f} s.
+
+| file | size, kB | answer | seconds | memory over idle, MiB | longest /healthz, s |
+| --- | --- | --- | --- | --- | --- |
+{_table(rows)}
+
+How long things take depends on the machine and on what else it does; memory does not.
+
+## Fuzzing
+
+`tests/service/ingest/test_hostile.py` damages valid files of every format at random: each is read, or refused with a
+reason. `python -m benchmarks.fuzz` does the same guided by the code that it reaches, for as long as it is let.
+"""
+
+
+def _times(ordinary: dict[str, float]) -> str:
+    return ", ".join(f"{time:.0f} ms as {name}" for name, time in ordinary.items())
+
+
+def _limits() -> str:
+    fields = Settings.model_fields
+    return "\n".join(
+        f"| `IMU_HEALTH_{name.upper()}` | {fields[name].default:,} | {ANSWERS.get(name, '422')} | "
+        f"{fields[name].description} |"
+        for name in LIMITS
+    )
+
+
+def _table(rows: Sequence[Row]) -> str:
+    return "\n".join(
+        f"| {row.name} | {row.size / 1000:,.1f} | {', '.join(map(str, row.cost.statuses))} | {row.cost.seconds:.1f} "
+        f"| {row.cost.memory:.0f} | {row.cost.wait:.2f} |"
+        for row in rows
+    )

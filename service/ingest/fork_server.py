@@ -1,0 +1,123 @@
+"""The process that has the readers loaded and forks for every file: see `service.ingest.apart`, which starts it.
+
+A fork limits itself before it sees a byte of the file: address space, computing time, and an alarm for the time by the
+clock, which the kernel keeps whatever a library does. It starts in milliseconds, because everything is loaded already.
+"""
+
+import gc
+import json
+import os
+import resource
+import signal
+import socket
+import sys
+from pathlib import Path
+from typing import Any
+
+from estimator.errors import ScheduleError, SessionError
+from service.ingest import jobs, limits
+from service.ingest.apart import READY, SIZE, WAITING
+from service.ingest.exchange import Array, pack, plain_bytes
+from service.ingest.limits import Limits, refusal
+
+STATM = Path("/proc/self/statm")
+"""Sizes of this process in pages, the whole first (Linux)."""
+USUAL = 512 * 1024**2
+"""Bytes of address space that the readers take where the platform does not say."""
+STDIN, STDERR = 0, 2
+"""File descriptors: of the way to the program that asks, and of its messages."""
+
+
+def main() -> None:
+    """Fork for every connection that is passed in, until the program that asks is gone."""
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for the forks: the kernel takes them away
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # of a terminal; the program that asks decides
+    gc.collect()
+    gc.freeze()
+    with socket.socket(fileno=STDIN) as control:
+        control.sendall(READY)
+        while _served(control):
+            pass
+
+
+def _served(control: socket.socket) -> bool:
+    message, handles, _, _ = socket.recv_fds(control, 1, 1)
+    if not message:
+        return False
+    with socket.socket(fileno=handles[0]) as connection:
+        if os.fork() == 0:
+            _answer_and_end(control, connection)
+    return True
+
+
+def _answer_and_end(control: socket.socket, connection: socket.socket) -> None:
+    """In the fork; a fault of a reader ends it too, with a traceback."""
+    control.close()
+    _quieten_libraries()
+    _answer(connection)
+    connection.close()
+    os._exit(0)
+
+
+def _quieten_libraries() -> None:
+    """They print what they think of a damaged file; what Python says of a fault of ours is still written."""
+    sys.stderr = os.fdopen(os.dup(STDERR), "w")
+    with open(os.devnull, "wb") as nowhere:
+        os.dup2(nowhere.fileno(), STDERR)
+
+
+def _answer(connection: socket.socket) -> None:
+    (size,) = SIZE.unpack(connection.recv(SIZE.size, socket.MSG_WAITALL))
+    request = json.loads(connection.recv(size, socket.MSG_WAITALL))
+    most = Limits(**request["limits"])
+    limits.use(most)
+    _limit_this_process(most)
+    try:
+        line, arrays = _read(connection, request)
+    except MemoryError:
+        line, arrays = _refusal(_too_large(request["filename"], most)), ()
+    connection.sendall(SIZE.pack(len(line)) + line)
+    for array in arrays:
+        connection.sendall(plain_bytes(array))
+
+
+def _read(connection: socket.socket, request: dict[str, Any]) -> tuple[bytes, tuple[Array, ...]]:
+    content = connection.recv(request["size"], socket.MSG_WAITALL) if request["size"] else b""
+    try:
+        packed = pack(jobs.JOBS[request["job"]](content, request["filename"]))
+    except SessionError as error:
+        return _refusal(error), ()
+    return packed.line, packed.arrays
+
+
+def _too_large(filename: str, most: Limits) -> SessionError:
+    size = most.memory // 1024**2
+    return refusal(filename, f"needs more than {size} MiB of memory to be read; average or split it")
+
+
+def _refusal(error: SessionError) -> bytes:
+    found = [(problem.field, problem.message, problem.row) for problem in error.problems]
+    schedule = isinstance(error, ScheduleError)
+    return json.dumps({"refused": {"schedule": schedule, "problems": found, "source": error.source}}).encode()
+
+
+def _limit_this_process(most: Limits) -> None:
+    """Limits that end it, and no way to dump what it holds."""
+    space = _address_space() + most.memory
+    resource.setrlimit(resource.RLIMIT_AS, (space, space))
+    resource.setrlimit(resource.RLIMIT_CPU, (most.seconds, most.seconds))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+    signal.setitimer(signal.ITIMER_REAL, most.seconds * WAITING)
+
+
+def _address_space() -> int:
+    """Bytes that this process has before it reads anything."""
+    try:
+        return int(STATM.read_text().split()[0]) * resource.getpagesize()
+    except OSError:
+        return USUAL
+
+
+if __name__ == "__main__":
+    main()

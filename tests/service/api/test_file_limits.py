@@ -1,0 +1,77 @@
+"""What a file may hold and how many are taken at once: settings, each with its answer."""
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
+from threading import Event
+
+import httpx
+import pytest
+
+from benchmarks.files.hostile import HOSTILE
+from service.app import create_app
+from service.ingest import limits
+from service.settings import Settings
+from tests.databases import one_engine
+from tests.service.sessions import session_bytes
+from tests.serving import http_client
+
+LARGE = 2 * 1024 * 1024
+Limited = Callable[..., httpx.Client]
+
+
+@pytest.fixture
+def limited(settings: Settings) -> Iterator[Limited]:
+    """A service with other limits; the usual ones come back afterwards."""
+    usual = limits.in_force()
+    with ExitStack() as stack:
+        yield lambda **changes: stack.enter_context(http_client(create_app(settings.model_copy(update=changes))))
+    limits.use(usual)
+
+
+@one_engine
+@pytest.mark.parametrize(
+    ("name", "most", "words"),
+    [
+        ("max_rows", 3, "rows; at most 3"),
+        ("max_columns", 4, "columns; at most 4"),
+        ("max_cells", 20, "at most 20 cells"),
+        ("max_nesting", 2, "nested deeper than 2"),
+    ],
+)
+def test_a_file_beyond_a_limit_is_refused_with_what_to_do(limited: Limited, name: str, most: int, words: str) -> None:
+    answer = limited(**{name: most}).post("/api/v1/sessions", content=session_bytes())
+    assert (answer.status_code, answer.headers["content-type"]) == (422, "application/problem+json")
+    assert words in answer.json()["problems"][0]["message"]
+
+
+@one_engine
+def test_a_file_that_ended_processes_ends_none(limited: Limited) -> None:
+    client = limited()
+    (hostile,) = (one for one in HOSTILE if one.name == "xlsx-sheet-called-a-picture")
+    answer = client.post("/api/v1/sessions", files={"file": hostile.make()})
+    assert (answer.status_code, answer.json()["problems"][0]["field"]) == (422, "file")
+    assert client.post("/api/v1/sessions", content=session_bytes()).status_code == 201
+
+
+def held(until: Event, started: Event) -> Iterator[bytes]:
+    """A body of unknown length that comes slowly."""
+    yield b" "
+    started.set()
+    until.wait()
+
+
+@one_engine
+@pytest.mark.parametrize("path", ["/api/v1/sessions", "/upload"])
+def test_beyond_the_large_uploads_in_flight_a_sender_is_asked_to_come_again(limited: Limited, path: str) -> None:
+    client, until, started = limited(uploads_in_flight=1), Event(), Event()
+    with ThreadPoolExecutor() as threads:
+        first = threads.submit(client.post, "/api/v1/sessions", content=held(until, started))
+        started.wait()
+        while (second := client.post(path, files={"files": b" " * LARGE})).status_code == 422:
+            pass  # the first has not arrived yet
+        small = client.post("/api/v1/sessions", content=session_bytes())
+        until.set()
+    assert (second.status_code, second.headers["retry-after"]) == (503, "5")
+    assert (small.status_code, first.result().status_code) == (201, 422)
+    assert client.post("/api/v1/sessions", content=b" " * LARGE).status_code == 422
