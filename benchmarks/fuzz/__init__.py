@@ -1,0 +1,1 @@
+"""Readers given damaged files, guided by the code that they reach."""
