@@ -1,9 +1,7 @@
 """What a file may hold and how many are taken at once: settings, each with its answer."""
 
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
-from threading import Event
 
 import httpx
 import pytest
@@ -54,24 +52,14 @@ def test_a_file_that_ended_processes_ends_none(limited: Limited) -> None:
     assert client.post("/api/v1/sessions", content=session_bytes()).status_code == 201
 
 
-def held(until: Event, started: Event) -> Iterator[bytes]:
-    """A body of unknown length that comes slowly."""
-    yield b" "
-    started.set()
-    until.wait()
-
-
 @one_engine
 @pytest.mark.parametrize("path", ["/api/v1/sessions", "/upload"])
-def test_beyond_the_large_uploads_in_flight_a_sender_is_asked_to_come_again(limited: Limited, path: str) -> None:
-    client, until, started = limited(uploads_in_flight=1), Event(), Event()
-    with ThreadPoolExecutor() as threads:
-        first = threads.submit(client.post, "/api/v1/sessions", content=held(until, started))
-        started.wait()
-        while (second := client.post(path, files={"files": b" " * LARGE})).status_code == 422:
-            pass  # the first has not arrived yet
-        small = client.post("/api/v1/sessions", content=session_bytes())
-        until.set()
+def test_beyond_the_large_uploads_in_flight_a_sender_is_asked_to_come_again(settings: Settings, path: str) -> None:
+    app = create_app(settings.model_copy(update={"uploads_in_flight": 1}))
+    with http_client(app) as client:
+        with app.state.application.places.one_for("", 1):
+            second = client.post(path, files={"files": b" " * LARGE})
+            small = client.post("/api/v1/sessions", content=session_bytes())
+        third = client.post("/api/v1/sessions", content=b" " * LARGE)
     assert (second.status_code, second.headers["retry-after"]) == (503, "5")
-    assert (small.status_code, first.result().status_code) == (201, 422)
-    assert client.post("/api/v1/sessions", content=b" " * LARGE).status_code == 422
+    assert (small.status_code, third.status_code) == (201, 422)
