@@ -31,7 +31,10 @@ def proposals(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
 
 
 def schedule(session: CalibrationSession, beta: Array, flipped: Array) -> CalibrationSession:
-    """The planned session with rows ``beta`` (R,), rad, and ``flipped`` (R,), spaced in time as before."""
+    """The planned session with rows ``beta`` (R,), rad, and ``flipped`` (R,), spaced in time as before.
+
+    How it will vibrate nobody plans.
+    """
     rows, period = len(beta), PERIOD
     if session.time is not None and len(session.time) > 1:
         period = max(float(np.median(np.diff(session.time))), 1e-3)
@@ -44,6 +47,7 @@ def schedule(session: CalibrationSession, beta: Array, flipped: Array) -> Calibr
         standard_errors=nothing,
         time=None if session.time is None else period * np.arange(rows),
         temperature=None if session.temperature is None else np.full(rows, float(session.temperature.mean())),
+        vibration=None,
         position=None,
     )
 

@@ -16,7 +16,7 @@ from estimator.simulate import simulate
 from tests.estimator.calibration.cases import accelerometers, block
 from tests.estimator.causes.hiding import Scene, strength, with_readings
 from tests.estimator.causes.physics import ACTED, SENSOR, World
-from tests.estimator.causes.worlds import truth_of
+from tests.estimator.causes.worlds import truth_of, wandering
 
 VOLTS = np.full(6, 3e-6)
 
@@ -101,3 +101,15 @@ def test_the_measurement_carried_out_tells_them_apart_as_far_as_promised(pair: P
         rivals = [r.strength for r in finding.ranking if r.cause == pair.rival and r.sensors == finding.sensors]
         reached.append(np.sqrt(finding.strength**2 - (rivals[0] if rivals else 0.0) ** 2))
     assert abs(np.mean(reached) - said.then) < 0.25 * said.then + 1.0
+
+
+def test_a_session_that_records_vibration_gets_proposals_of_any_length() -> None:
+    at = baseline_of(measured_with_vibration())
+    assert {len(plan.setting.n) for _, plan in proposals(at)} > {len(at.setting.n)}
+    assert all(plan.setting.vibration is None for _, plan in proposals(at))
+
+
+def measured_with_vibration() -> CalibrationSession:
+    """A session whose rows shake differently."""
+    session = wandering(BOTH)
+    return simulate(session, truth_of(session), np.random.default_rng(1), noise=VOLTS)
