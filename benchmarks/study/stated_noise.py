@@ -20,6 +20,9 @@ FACTORS = (0.1, 1 / 3, 1.0, 3.0)
 WHO = ("one", "half", "all")
 HIDDEN = tuple(c for c in CATALOGUE if c not in DISCRETE | {"excess-noise"})
 NOISE = "excess-noise"
+SOUND = 3
+"""Sound sessions for every one with an effect: a share of one in a hundred is told by some hundred sessions."""
+
 REPEATED = ("bias_repeatability_m_s2", "bias_repeatability_rad_s")
 
 INTRODUCTION = (
@@ -55,8 +58,11 @@ class Answer:
 
 
 def wishes(sessions: int, seed: int) -> Iterator[Wish]:
-    """So many sessions of every kind."""
-    for k, (factor, who, hidden) in product(range(sessions), product(FACTORS, WHO, (False, True))):
+    """So many sessions of every kind with an effect, and more sound ones."""
+    kinds = list(product(FACTORS, WHO, (False, True)))
+    for k, (factor, who, hidden) in product(range(SOUND * sessions), kinds):
+        if hidden and k >= sessions:
+            continue
         place = (seed, k, round(10 * factor), WHO.index(who))
         yield Wish(factor, who, hidden, place, HIDDEN[(7 * k + 3 * WHO.index(who) + round(10 * factor)) % len(HIDDEN)])
 
