@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from estimator.diagnosis.selection.borne_out import hold, too_sure
 from estimator.diagnosis.selection.chosen_again import without_unpredictive
 from estimator.diagnosis.selection.common_or_own import common_or_own
 from estimator.diagnosis.selection.lack_of_fit import with_unlike_noise, without_common_rows, without_misfits
@@ -19,7 +20,23 @@ def accepted(start: SearchState) -> SearchState:
         state = believed(start)
         claims = doubted(state)
     rival = whatever_the_scale(start, claims) if claims else None
-    return rival or state or believed(start)
+    return borne_out(start, rival or state or believed(start))
+
+
+def borne_out(start: SearchState, state: SearchState) -> SearchState:
+    """The state with names only that hold whether or not the stated noise that they rest on is right.
+
+    Where one does not, causes are sought anew with that noise known up to a factor. Nothing is claimed of it: its
+    readings do not tell that it is wrong, but they do not bear out that it is right either.
+    """
+    claims = state.noise_claims
+    while doubt := too_sure(state):
+        claims = (*claims, *doubt)
+        unknown = with_unknown_scale(start, claims, state.found)
+        if hold(unknown, state.found):
+            break
+        state = replace(believed(unknown), noise_claims=state.noise_claims)
+    return state
 
 
 def whatever_the_scale(start: SearchState, claims: tuple[NoiseClaim, ...]) -> SearchState | None:
@@ -33,7 +50,7 @@ def whatever_the_scale(start: SearchState, claims: tuple[NoiseClaim, ...]) -> Se
     found = believed(with_unknown_scale(start, wide))
     left = doubted(found)
     if left and sensors_of(left) != sensors_of(wide):
-        found = believed(with_unknown_scale(start, left))
+        found = believed(with_unknown_scale(start, left, found.found))
         left = doubted(found) or left
     return replace(found, noise_claims=left) if left else None
 

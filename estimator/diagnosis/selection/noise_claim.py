@@ -22,8 +22,8 @@ from estimator.diagnosis.residuals.fitted import unstated_noise
 from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.excess_noise import sensor_scatter
-from estimator.diagnosis.selection.search_state import SearchState
-from estimator.diagnosis.selection.start import begun_with, with_earlier_scatter
+from estimator.diagnosis.selection.search_state import Found, SearchState
+from estimator.diagnosis.selection.start import as_they_scatter, begun_with, with_earlier_scatter
 from estimator.diagnosis.signatures.noise import NoiseClaim
 from estimator.session import Array
 
@@ -153,20 +153,24 @@ def sensors_of(claims: Iterable[NoiseClaim]) -> set[int]:
     return {i for claim in claims for i in claim.sensors}
 
 
-def with_unknown_scale(start: SearchState, claims: tuple[NoiseClaim, ...]) -> SearchState:
+def with_unknown_scale(
+    start: SearchState, claims: tuple[NoiseClaim, ...], found: tuple[Found, ...] = ()
+) -> SearchState:
     """The search begun anew with the noise of some sensors known up to a factor, which each one's own readings tell.
 
     The others of its kind tell nothing: what all show, such as a warm-up of the whole block, would pass for noise.
+    ``found`` was found before, and is no noise.
     """
     baseline = start.baseline
-    variance, unstated = baseline.variance.copy(), baseline.unstated.copy()
+    sensors = sorted(sensors_of(claims))
+    unstated = baseline.unstated.copy()
     expected = np.zeros(len(unstated)) if baseline.expected_ratio is None else baseline.expected_ratio.copy()
-    for claim in claims:
-        own = list(claim.sensors)
-        variance[:, own] *= claim.ratio
-        unstated[own], expected[own] = True, 0.0
-    changed = replace(baseline, variance=variance, unstated=unstated, expected_ratio=expected)
+    unstated[sensors], expected[sensors] = True, 0.0
+    off = [claim.sensors for claim in claims if claim.freedom > 0]
+    named = np.concatenate([f.best.shape.columns for f in found], axis=-1) if found else None
+    scaled = as_they_scatter(baseline, off, named)
+    changed = replace(scaled, unstated=unstated, expected_ratio=expected)
     again = refitted(changed)
     moved = np.abs(again.parameters.axis - baseline.parameters.axis).max()
-    earlier = with_earlier_scatter(start, sorted(sensors_of(claims)))
+    earlier = with_earlier_scatter(start, sensors)
     return replace(begun_with(earlier, again if moved < LINEAR else changed), noise_claims=claims)

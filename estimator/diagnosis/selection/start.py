@@ -10,10 +10,12 @@ from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.between_sessions import parameter_change
 from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.selection.search_state import SearchState
+from estimator.diagnosis.selection.search_state import NEW_DIRECTION, SearchState
 from estimator.diagnosis.signatures.lasting import traces_of
 from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance
 from estimator.diagnosis.signatures.patterns import PATTERNS
+from estimator.diagnosis.signatures.traces import INVISIBLE
+from estimator.session import Array
 
 ROUNDS = 20
 """Steps of a sensor's variance: each brings it half nearer at least."""
@@ -49,7 +51,7 @@ def begin_anew(state: SearchState, scatter: Sequence[ExcessVariance | Autocorrel
     sensors = [one.sensor for one in scatter]
     unstated = state.baseline.unstated.copy()
     unstated[sensors] = True
-    known = as_they_scatter(replace(state.baseline, unstated=unstated), sensors)
+    known = as_they_scatter(replace(state.baseline, unstated=unstated), [[i] for i in sensors])
     ratio = np.median(known.variance / state.baseline.variance, axis=0)
     found = [one if one.ratio == 1 else replace(one, ratio=float(ratio[one.sensor])) for one in scatter]
     excess = (*state.excess, *(s for s in found if isinstance(s, ExcessVariance)))
@@ -61,25 +63,40 @@ def begin_anew(state: SearchState, scatter: Sequence[ExcessVariance | Autocorrel
 def with_earlier_scatter(state: SearchState, sensors: Sequence[int]) -> SearchState:
     """The state whose earlier sessions state nothing of the noise of some sensors either: their residuals tell it."""
     kinds = state.baseline.setting.kinds
-    history = (refitted(as_they_scatter(h, sensors)) if h.setting.kinds == kinds else h for h in state.history)
+    each = [[i] for i in sensors]
+    history = (refitted(as_they_scatter(h, each)) if h.setting.kinds == kinds else h for h in state.history)
     return replace(state, history=tuple(history))
 
 
-def as_they_scatter(baseline: Baseline, sensors: Sequence[int]) -> Baseline:
+def as_they_scatter(baseline: Baseline, groups: Sequence[Sequence[int]], named: Array | None = None) -> Baseline:
     """The baseline with the variance of some sensors that of their own residuals (restricted likelihood).
 
-    Step by step: a sensor that is believed too much pulls what all share of a row to its own readings.
+    Sensors of one group are off by one factor. ``named`` (R, m, q) are effects, any unit, that count as no noise. Step
+    by step: a sensor that is believed too much pulls what all share of a row to its own readings.
     """
     variance = baseline.variance.copy()
     for _ in range(ROUNDS):
-        residuals = WhitenedResiduals.of(replace(baseline, variance=variance))
-        rows = residuals.rows
-        own = residuals.sensor_of_row[:rows] == np.array(sensors)[:, None]
-        larger = (own @ residuals.z[:rows] ** 2) / np.maximum(own @ residuals.row_freedom, 1.0)
-        variance[:, sensors] *= larger
+        energy, freedom = left_of_sensors(WhitenedResiduals.of(replace(baseline, variance=variance)), named)
+        larger = np.array([energy[list(g)].sum() / max(freedom[list(g)].sum(), 1.0) for g in groups])
+        for group, factor in zip(groups, larger, strict=True):
+            variance[:, list(group)] *= factor
         if np.abs(np.log(larger)).max() < CLOSE:
             break
     return replace(baseline, variance=variance)
+
+
+def left_of_sensors(residuals: WhitenedResiduals, named: Array | None) -> tuple[Array, Array]:
+    """(m,) energy, dimensionless, and (m,) degrees of freedom of what effects (R, m, q) leave of each sensor."""
+    rows, m = residuals.rows, len(residuals.baseline.unstated)
+    z, freedom = residuals.z[:rows], residuals.row_freedom
+    if named is not None:
+        trace, raw = residuals.trace(named)[:rows], np.linalg.norm(residuals.whitened(named), axis=0)
+        shown = np.linalg.norm(trace, axis=0) > INVISIBLE * raw
+        basis, size, _ = np.linalg.svd(trace[:, shown] / raw[shown], full_matrices=False)
+        basis = basis[:, size > NEW_DIRECTION * size.max(initial=0.0)]
+        z, freedom = z - basis @ (basis.T @ z), freedom - (basis**2).sum(axis=1)
+    own = residuals.sensor_of_row[:rows] == np.arange(m)[:, None]
+    return own @ z**2, own @ freedom
 
 
 def begun_with(state: SearchState, baseline: Baseline) -> SearchState:

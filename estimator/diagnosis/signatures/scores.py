@@ -130,11 +130,16 @@ def shows_itself(projected: Projected, traces: Traces, s: int, fitted: Array) ->
         return True
     basis, size, _ = np.linalg.svd(own, full_matrices=False)
     basis = basis[:, size > 1e-9 * max(size[0], 1e-300)]
-    along = basis.T @ projected.z[:rows]
-    energy, rest = projected.scatter.without([traces.shapes[s]], basis[None], along[None])
+    return tail(projected, traces.shapes[s], basis) * max(traces.places, 1) < ALONE
+
+
+def tail(projected: Projected, shape: Shape, basis: Array) -> float:
+    """p-value of what a shape explains through ``basis`` (n, q), orthonormal, or through its part in N readings."""
+    along = basis.T @ projected.z[: len(basis)]
+    energy, rest = projected.scatter.without([shape], basis[None], along[None])
     q = np.array([max(basis.shape[1], 1)])
     statistic = equivalent_chi2((along**2).sum(keepdims=True), q, energy, rest)
-    return float(chdtrc(q, statistic)[0]) * max(traces.places, 1) < ALONE
+    return float(chdtrc(q, statistic)[0])
 
 
 def within_reason(setting: Setting, cause: Signature, shape: Shape, amplitude: Array) -> bool:

@@ -1,0 +1,81 @@
+"""A name rests on the stated noise of the sensors that carry it: it must hold whether or not that noise is right.
+
+Theory
+------
+Let T be what a name explains, χ² with q degrees of freedom where nothing acts and the stated noise is right, and E with
+f degrees of freedom what all names leave of the sensor. Where its stated noise is wrong by a factor that nobody knows,
+(T/q)/(E/f) is F with q and f. T and E are independent given the noise, so that without an effect
+
+    P(T ≥ t | E) = (1 − w) P(χ²_q ≥ t) + w P(F_{q,f} ≥ (t/q)/(E/f)),        w/(1 − w) = π/(1 − π) · B(E)
+
+with π how often stated noise is wrong and B(E) the Bayes factor of noise larger than stated against noise as stated,
+½(E − f) − ½ f ln(E/f) − ½ ln(f/2) in logarithms. What a name carries on several sensors is at the mercy of each.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.special import expit, logit
+
+from estimator.diagnosis.selection.common_or_own import seen_from
+from estimator.diagnosis.selection.excess_noise import sensor_scatter, with_unknown_noise
+from estimator.diagnosis.selection.ranking import extended_basis, family_p_value
+from estimator.diagnosis.selection.search_state import LEVEL, Found, SearchState
+from estimator.diagnosis.signatures.noise import NoiseClaim
+from estimator.diagnosis.signatures.scores import Projected, rescored, tail
+from estimator.session import Array
+
+WRONG = 0.03
+"""π, how often a sensor's standard errors are too small, as sd/√n of samples that hang together is: so often that one
+block of six in six has such a sensor."""
+
+STRONG = float(np.log(10))
+"""ln B(E) that is strong evidence of larger noise (Jeffreys). Then E/f is not its scale: readings that are believed too
+much pull what all share of a row to themselves, and the fit must be made again."""
+
+FEWEST = 2.0
+"""Degrees of freedom below which a sensor's residual tells nothing of its noise: what the file states is all there is.
+"""
+
+
+def too_sure(state: SearchState) -> tuple[NoiseClaim, ...]:
+    """Sensors whose stated noise names may not rest on: it is too small by strong evidence, or may be and a name would
+    then not hold."""
+    larger = log_evidence_of_more(state)
+    sensors = sorted({i for f in state.found for i in doubted_for(state, f, larger)})
+    energy, freedom = sensor_scatter(state)
+    kinds = state.baseline.setting.kinds
+    return tuple(NoiseClaim(kinds[i], (i,), float(energy[i] / freedom[i]), float(freedom[i])) for i in sensors)
+
+
+def doubted_for(state: SearchState, found: Found, larger: Array) -> set[int]:
+    """Sensors that one name may not rest on; ``larger`` (m,) ln B(E)."""
+    asked = [i for i in found.best.sensors or range(len(larger)) if np.isfinite(larger[i])]
+    at_its_mercy = {i: float(expit(logit(WRONG) + larger[i])) * p_if_unknown(state, found, i) for i in asked}
+    bound = LEVEL / max(len(asked), 1) if sum(at_its_mercy.values()) >= LEVEL else np.inf
+    return {i for i in asked if larger[i] > STRONG or at_its_mercy[i] >= bound}
+
+
+def hold(state: SearchState, names: tuple[Found, ...]) -> bool:
+    """Whether names of another search are all significant beside one another in the noise of this one."""
+    seen = seen_from(state, names)
+    beside = replace(state, found=seen)
+    again = [rescored(state.residuals, f.best, beside.attributed(without=f)) for f in seen]
+    return len(seen) == len(names) and all(family_p_value(s, state.families) < LEVEL for s in again)
+
+
+def p_if_unknown(state: SearchState, found: Found, sensor: int) -> float:
+    """Family-wise p-value of a name beside the others, the noise of a sensor known from its readings alone."""
+    doubting, attributed = with_unknown_noise(state, sensor), state.attributed(without=found)
+    own = extended_basis(attributed, found.best.trace)[:, attributed.shape[1] :]
+    p_value = tail(Projected.of(doubting.residuals, attributed), found.best.shape, own)
+    return family_p_value(replace(found.best, p_value=p_value), state.families)
+
+
+def log_evidence_of_more(state: SearchState) -> Array:
+    """ln B(E), (m,) of noise larger than stated; −∞ where none is stated or nothing tells it."""
+    energy, freedom = sensor_scatter(state)
+    f = np.maximum(freedom, FEWEST)
+    ratio = np.maximum(energy / f, 1.0)
+    log_evidence = 0.5 * f * (ratio - 1 - np.log(ratio)) - 0.5 * np.log(f / 2)
+    return np.where((freedom >= FEWEST) & ~state.baseline.unstated, log_evidence, -np.inf)

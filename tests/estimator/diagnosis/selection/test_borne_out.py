@@ -1,0 +1,78 @@
+"""A name holds whether or not the stated noise that it rests on is right."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.stats import f
+
+from estimator import CalibrationSession, diagnose
+from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.diagnosis.selection.acceptance import believed, borne_out
+from estimator.diagnosis.selection.borne_out import log_evidence_of_more, p_if_unknown, too_sure
+from estimator.diagnosis.selection.excess_noise import sensor_scatter
+from estimator.diagnosis.selection.start import as_they_scatter, begin
+from estimator.simulate import simulate
+from tests.estimator.calibration.cases import accelerometers, block
+from tests.estimator.causes.worlds import truth_of, wandering
+from tests.estimator.diagnosis.selection.small import SENSOR, candidate, effect, measured, names, start
+from tests.estimator.diagnosis.selection.test_noise_claim import stated
+
+FEW = wandering(block(accelerometers(4), 8))
+NOISE = np.full(4, 3e-6)
+SECOND = slice(SENSOR, SENSOR + 1)
+
+
+def sound(seed: int) -> CalibrationSession:
+    """Eight positions in both runs; nothing acts."""
+    return simulate(FEW, truth_of(FEW), np.random.default_rng([61, seed]), noise=NOISE)
+
+
+def test_errors_of_one_sensor_three_times_too_small_give_no_other_name() -> None:
+    """Eleven readings beyond the parameters: too few to say that the noise is wrong, few enough to find a shape in."""
+    found = [diagnose(stated(sound(seed), 1 / 3, SECOND)).findings for seed in range(60)]
+    assert sum(any(g.cause != "excess-noise" for g in one) for one in found) <= 1
+
+
+def test_of_a_name_on_one_sensor_the_doubtful_tail_is_that_of_f() -> None:
+    state = start(("bias-jump",), 0.2 * effect("bias-jump"))
+    found = candidate(state, "bias-jump")
+    state = replace(state, found=(found,))
+    energy, freedom = (x[SENSOR] for x in sensor_scatter(state))
+    expected = f.sf(found.best.statistic / (energy / freedom), 1, freedom) * found.best.places * state.families
+    assert p_if_unknown(state, found, SENSOR) == pytest.approx(expected, rel=0.02)
+
+
+def test_a_name_that_stated_noise_alone_bears_is_doubted() -> None:
+    session = stated(measured(0.12 * effect("bias-jump")), 0.5, SECOND)
+    state = begin(baseline_of(session), (), start(("bias-jump",)).catalogue)
+    state = replace(state, found=(candidate(state, "bias-jump"),))
+    assert [claim.sensors for claim in too_sure(state)] == [(SENSOR,)]
+
+
+def test_a_strong_name_holds_and_the_search_stands_as_it_is() -> None:
+    session = stated(measured(effect("bias-jump")), 0.55, SECOND)
+    begun = begin(baseline_of(session), (), start(("bias-jump",)).catalogue)
+    state = believed(begun)
+    assert too_sure(state)
+    assert borne_out(begun, state) is state
+    assert names(state) == [("bias-jump", (SENSOR,))]
+
+
+def test_noise_that_is_not_stated_is_not_doubted() -> None:
+    session = measured()
+    errors = np.where(np.arange(4) == SENSOR, np.nan, session.standard_errors)
+    larger = log_evidence_of_more(begin(baseline_of(replace(session, standard_errors=errors)), (), ()))
+    assert np.isfinite(larger).tolist() == [i != SENSOR for i in range(4)]
+
+
+@pytest.mark.parametrize("strength", [0.0, 1.0])
+def test_a_factor_common_to_sensors_is_found_beside_a_stand_and_a_named_effect(strength: float) -> None:
+    """Restricted likelihood: what all share of a row hides part of a noise that is believed too much."""
+    added, ratios = strength * effect("bias-jump"), []
+    for seed in range(100, 160):
+        baseline = baseline_of(stated(measured(added, seed), 1 / 3, slice(0, 2)))
+        named = candidate(begin(baseline, (), start(("bias-jump",)).catalogue), "bias-jump") if strength else None
+        scaled = as_they_scatter(baseline, [[0, 1]], None if named is None else named.best.shape.columns)
+        ratios.append(np.median(scaled.variance / baseline.variance, axis=0))
+    assert np.mean(ratios, axis=0) == pytest.approx([9.0, 9.0, 1.0, 1.0], rel=0.1)
