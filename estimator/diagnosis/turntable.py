@@ -15,7 +15,7 @@ from estimator.causes.catalogue import UNEXPLAINED
 from estimator.causes.turntable import LeverArm as Cause
 from estimator.diagnosis.explanation.detection_limits import required
 from estimator.diagnosis.results import Diagnosis, Finding, Gain, Limit, Rival, Score, Separation, Structure
-from estimator.results import ARCSEC
+from estimator.results import ARCSEC, COVERAGE
 from estimator.session import ACCELEROMETER, CalibrationSession
 
 CENTIMETRE, MICRO_G = 0.01, STANDARD_GRAVITY * 1e-6
@@ -100,9 +100,10 @@ def _finding(arm: LeverArm, arms: LeverArms) -> Finding:
 
 
 def _centimetres(length: float, sigma: float) -> str:
-    """``4.1 ± 0.2 cm``, with two digits of the uncertainty at most."""
-    digits = 1 if sigma >= COARSE else 2
-    return f"{length / CENTIMETRE:.{digits}f} ± {sigma / CENTIMETRE:.{digits}f} cm"
+    """``4.1 ± 0.2 cm``: U = 2σ, with two digits of it at most."""
+    expanded = COVERAGE * sigma
+    digits = 1 if expanded >= COARSE else 2
+    return f"{length / CENTIMETRE:.{digits}f} ± {expanded / CENTIMETRE:.{digits}f} cm"
 
 
 def _strength(arm: LeverArm, model: str) -> float:

@@ -37,7 +37,7 @@ def test_lever_arms_are_named_with_their_place() -> None:
 
 def test_the_sentence_says_how_far() -> None:
     assert (
-        diagnose(turned(AWAY)).findings[0].sentence == "A1 stands 9.1 ± 0.1 cm from the turn axis and feels the turns."
+        diagnose(turned(AWAY)).findings[0].sentence == "A1 stands 9.1 ± 0.3 cm from the turn axis and feels the turns."
     )
 
 
