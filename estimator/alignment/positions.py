@@ -7,6 +7,7 @@ import numpy as np
 
 from estimator.errors import Problem, ScheduleError
 from estimator.session import Array, CalibrationSession
+from estimator.wording import counted
 
 UNEVEN = 0.01
 """Part of the interval by which the rows' times may stray from equal steps: clocks stray less, a lost row more."""
@@ -57,7 +58,7 @@ def interval(session: CalibrationSession) -> float:
         return 1.0 / session.sample_rate
     steps = np.diff(session.time)
     if len(steps) < 2:
-        raise ScheduleError([Problem("time_s", f"has {len(session.time)} rows; a time series is needed")])
+        raise ScheduleError([Problem("time_s", f"has {counted(len(session.time), 'row')}; a time series is needed")])
     usual = float(np.median(steps))
     uneven = np.flatnonzero(np.abs(steps - usual) > UNEVEN * usual)
     if usual <= 0 or len(uneven):

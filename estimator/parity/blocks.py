@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from estimator.errors import Problem, ScheduleError
 from estimator.parity.ledger import Blocks, Ledger
 from estimator.parity.rest import Mask, resting
+from estimator.wording import counted, few
 
 AUTO, STILL, ANY = "auto", "still", "any"
 MOTIONS = (AUTO, STILL, ANY)
@@ -143,8 +144,9 @@ def grouped(blocks: Blocks, still: Mask) -> NDArray[np.intp]:
 def too_short(total: int, ledger: Ledger) -> str:
     """What is missing."""
     if ledger.averaged:
-        return f"{total} rows are too few to know their noise; give {FEWEST_GROUPS} or more"
-    return f"the recording holds {total} blocks of one second; parity needs {FEWEST_GROUPS} or more: record longer"
+        return f"{few(total, 'row')} to know their noise; give {FEWEST_GROUPS} or more"
+    held = counted(total, "block")
+    return f"the recording holds {held} of one second; parity needs {FEWEST_GROUPS} or more: record longer"
 
 
 def too_saturated(saturated: tuple[str, ...], total: int, clean: int) -> str:

@@ -29,6 +29,7 @@ from estimator.errors import Problem, ScheduleError
 from estimator.forward import measured
 from estimator.parameters import SensorParameters
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
+from estimator.wording import few
 
 FLATTEST = 0.05
 """|det E| below which a triple is left out: its inverse would make twentyfold noise of every reading's."""
@@ -130,7 +131,8 @@ def triples_of(session: CalibrationSession) -> Triples:
     fixed = {2, 3, 4 * second + 3}
     free = np.array([k for k in range(4 * m) if k not in fixed])
     if (m - 2) * R < len(free):
-        raise ScheduleError([Problem("table", f"{R} orientations give fewer equations than {len(free)} parameters")])
+        said = f"{few(R, 'orientation')}: fewer equations than {len(free)} parameters"
+        raise ScheduleError([Problem("table", said)])
     return Triples(measured(session)[0] / scale, gravity(session.site), scale, axes, frames, members, free)
 
 

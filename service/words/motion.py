@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from estimator.health.common_motion import AXES, SEPARATED, UNCLEAR, CommonMotion
+from estimator.wording import few
 from service.measures import deviation_measure, measured, number, signed
 
 SIGNIFICANT = 0.01
@@ -79,4 +80,4 @@ def _undivided(motion: CommonMotion, whose: str) -> str:
     judged = "every sensor is judged on its whole change"
     if motion.state == UNCLEAR:
         return f"The sensors do not agree on {turn}, and it cannot be told which of them moved: {judged}."
-    return f"{len(motion.sensors)} sensors are too few to tell {turn} from {one}: {judged}."
+    return f"{few(len(motion.sensors), 'sensor')} to tell {turn} from {one}: {judged}."

@@ -7,6 +7,7 @@ from estimator.applied_vector import gravity
 from estimator.errors import Problem, ScheduleError
 from estimator.forward import measured
 from estimator.session import ACCELEROMETER, CalibrationSession
+from estimator.wording import few
 
 Mask = NDArray[np.bool_]
 
@@ -46,7 +47,7 @@ def sorted_out(session: CalibrationSession) -> tuple[Mask, Mask, Mask]:
     if gyro.all():
         return np.zeros_like(gyro), np.zeros_like(gyro), gyro
     if R < FEWEST:
-        raise ScheduleError([Problem("table", f"{R} orientations are too few to estimate anything; {advice(R)}")])
+        raise ScheduleError([Problem("table", f"{few(R, 'orientation')} to estimate anything; {advice(R)}")])
     unit = gravity(session.site) * np.array([s.nominal_scale for s in session.sensors])
     swing = np.where(gyro, 0.0, (measured(session)[0] / unit).std(axis=0))
     if swing.max() < LEAST_TURN:

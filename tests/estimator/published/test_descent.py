@@ -99,7 +99,7 @@ def test_nine_orientations_determine_thirteen_and_two_planes_never_do():
 
 
 def test_too_few_orientations_are_refused():
-    with pytest.raises(ScheduleError, match="3 orientations give fewer equations than 13 parameters"):
+    with pytest.raises(ScheduleError, match="3 orientations are too few: fewer equations than 13 parameters"):
         triples_of(block(R=3)[1])
 
 
