@@ -28,7 +28,7 @@ class LeverArm(Cause):
     """What to do where the turns contradict a stated position."""
 
     def told(self, sensor: str, distance: str) -> str:
-        """The sentence with the size: ``A2 stands 4.1 ± 0.2 cm from the turn axis and feels the turns.``"""
+        """The sentence with the size: ``A2 stands 4.1 ± 0.4 cm from the turn axis and feels the turns.``"""
         return f"{sensor} stands {distance} from the turn axis and feels the turns."
 
     def contradicted(self, sensor: str, distance: str) -> str:

@@ -100,7 +100,7 @@ def _finding(arm: LeverArm, arms: LeverArms) -> Finding:
 
 
 def _centimetres(length: float, sigma: float) -> str:
-    """``4.1 ± 0.2 cm``: U = 2σ, with two digits of it at most."""
+    """``4.1 ± 0.4 cm``: U = 2σ, with two digits of it at most."""
     expanded = COVERAGE * sigma
     digits = 1 if expanded >= COARSE else 2
     return f"{length / CENTIMETRE:.{digits}f} ± {expanded / CENTIMETRE:.{digits}f} cm"

@@ -8,9 +8,12 @@ import numpy as np
 
 from estimator.results import Residuals
 from estimator.session import Array
+from service.measures import Measure, decimals, number
 
 HEIGHT = 130
 """Pixels: three rows of panels fit on a screen."""
+ROUNDING = 1e-12
+"""m/s² or rad/s: a ten-millionth of a µg (°/h) is what doubles leave of a fit that meets every reading."""
 RUNS = ("direct", "flipped")
 """Of a two-axis stand; a session without runs is drawn as the first."""
 BETA, ORDER = "beta", "order"
@@ -59,6 +62,13 @@ def zero_line() -> alt.Chart:
 
 
 def largest_edge(value: Array, *sigmas: Array) -> float:
-    """The largest |residual| or 2σ of some sensors, all (rows, sensors), m/s² or rad/s; 0 without any."""
+    """The largest |residual| or 2σ of some sensors, all (rows, sensors), m/s² or rad/s; 0 without any but rounding."""
     edges = np.abs(np.stack([value, *(2 * sigma for sigma in sigmas)]))
-    return float(np.max(edges, initial=0.0, where=np.isfinite(edges)))
+    found = float(np.max(edges, initial=0.0, where=np.isfinite(edges)))
+    return 0.0 if found < ROUNDING else found
+
+
+def scatter_in_words(size: float, measure: Measure) -> str:
+    """A root mean square, m/s² or rad/s, in a measure; 0 where it is rounding, as without degrees of freedom."""
+    shown = size * measure.factor
+    return "0" if size < ROUNDING else number(shown, decimals(shown))

@@ -19,11 +19,12 @@ from service.charts.across import (
     by_angle,
     in_order,
     largest_edge,
+    scatter_in_words,
     ticks,
     zero_line,
 )
 from service.charts.noise import Noise, edges
-from service.measures import THIN, Measure, decimals, deviation_measure, number
+from service.measures import THIN, Measure, deviation_measure
 
 MOST_PANELS = 9
 """Sensors that are drawn one way of looking, three rows of three; the page says how many are left out."""
@@ -90,8 +91,7 @@ def _panel(sides: Sides, column: int, across: Across, measure: Measure) -> Panel
 
 def _rms(side: Residuals, column: int, measure: Measure) -> str:
     value = side.value[:, column][np.isfinite(side.value[:, column])]
-    rms = float(np.sqrt(np.mean(value**2))) * measure.factor if len(value) else 0.0
-    return number(rms, decimals(rms))
+    return scatter_in_words(float(np.sqrt(np.mean(value**2))) if len(value) else 0.0, measure)
 
 
 def _points(sides: Sides, column: int, across: Across, measure: Measure) -> list[dict[str, Any]]:

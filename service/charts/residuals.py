@@ -19,11 +19,12 @@ from service.charts.across import (
     by_angle,
     in_order,
     largest_edge,
+    scatter_in_words,
     ticks,
     zero_line,
 )
 from service.charts.noise import Noise, edges, noise_of
-from service.measures import THIN, Measure, decimals, deviation_measure, number
+from service.measures import THIN, Measure, deviation_measure
 
 RESIDUAL, BAND = "{residual}", "{band}"
 """Blanks: the names of the tooltip's numbers, with their unit."""
@@ -72,10 +73,10 @@ def _panel(calibration: Calibration, column: int, across: Across, unit: Measure)
     noise = noise_of(residuals, calibration)
     value, sigma = residuals.value[:, column], noise.stated[:, column]
     outside = f", {np.sum(np.abs(value) > 2 * sigma)} of {len(value)} outside ±2σ" if np.isfinite(sigma).any() else ""
-    rms = float(np.sqrt(np.nanmean(value**2))) * unit.factor
+    rms = scatter_in_words(float(np.sqrt(np.nanmean(value**2))), unit)
     return Panel(
         title=calibration.sensors[column].name,
-        description=f"rms {number(rms, decimals(rms))}{THIN}{unit.label}{outside}",
+        description=f"rms {rms}{THIN}{unit.label}{outside}",
         condition=None,
         datasets={DATA_FORM: _rows(residuals, noise, column, across, unit)},
     )

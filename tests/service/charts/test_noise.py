@@ -59,3 +59,9 @@ def test_readings_outside_are_counted_against_the_stated_noise() -> None:
 def test_estimated_noise_is_not_called_stated() -> None:
     found = calibrate(read_session(arbitrary_orientations(se=None)))
     assert bands_in_words(found, None).startswith("The file does not state all noise")
+
+
+def test_what_rounding_leaves_of_a_fit_through_every_reading_is_nothing() -> None:
+    found = calibrate(read_session(arbitrary_orientations(3, orientations=9, se=None)))
+    (drawn,) = residual_charts(found)
+    assert {panel.description for panel in drawn.panels} == {"rms 0\u202fµg"}
