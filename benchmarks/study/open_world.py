@@ -1,13 +1,14 @@
-"""``python -m benchmarks.study.open_world --sessions 12 --seed 1`` writes docs/diagnosis/open-world.md.
+"""``python -m benchmarks.study.open_world --sessions 12 --seed 1 [PART…]`` writes docs/diagnosis/open-world.md.
 
 Beyond the catalogue and the assumptions: a cause left out, noise wrongly stated, probabilities as stated, few
-readings, blocks turned between sessions, parity checks of moving blocks.
+readings, blocks turned between sessions, parity checks of moving blocks. Of a page that exists, a part can be made anew
+by itself; each part says what made it.
 """
 
 import argparse
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from concurrent.futures import Executor, ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
@@ -39,35 +40,78 @@ def performed(pool: Executor, work: Iterable[Task], perform: Callable[[Task], An
     return answers
 
 
-def sections(sessions: int, seed: int, processes: int) -> Iterator[str]:
-    """Every part of the page; ``sessions`` of every kind that a part tells apart."""
-    with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
-        few = pool.submit(degrees_of_freedom.tables, 10 * sessions, seed)
-        turned = pool.submit(turns.tables, max(sessions // 3, 1), seed)
-        moving = pool.submit(parity_reach.tables, 5 * sessions, seed)
-        hidden = left_out.tasks(sessions * len(CATALOGUE), seed)
-        yield left_out.section(performed(pool, hidden, examine.perform))
-        yield stated_noise.section(performed(pool, stated_noise.wishes(sessions, seed + 1), stated_noise.perform))
-        yield reliability.section(performed(pool, examine.tasks(50 * sessions, seed + 2), examine.perform))
-        yield "## Few readings\n\n" + few.result()
-        yield turned.result()
-        yield "## Parity checks of moving blocks\n\n" + moving.result()
+def left_out_part(pool: Executor, sessions: int, seed: int) -> str:
+    """Every cause of the catalogue left out, so many times."""
+    return left_out.section(performed(pool, left_out.tasks(sessions * len(CATALOGUE), seed), examine.perform))
+
+
+def stated_noise_part(pool: Executor, sessions: int, seed: int) -> str:
+    """So many sessions of every factor."""
+    return stated_noise.section(performed(pool, stated_noise.wishes(sessions, seed + 1), stated_noise.perform))
+
+
+def reliability_part(pool: Executor, sessions: int, seed: int) -> str:
+    """Fifty times as many sessions."""
+    return reliability.section(performed(pool, examine.tasks(50 * sessions, seed + 2), examine.perform))
+
+
+def few_readings_part(pool: Executor, sessions: int, seed: int) -> str:
+    """Ten times as many sessions of every number of readings."""
+    return "## Few readings\n\n" + pool.submit(degrees_of_freedom.tables, 10 * sessions, seed).result()
+
+
+def turned_part(pool: Executor, sessions: int, seed: int) -> str:
+    """A third as many sessions of every programme and turn."""
+    return pool.submit(turns.tables, max(sessions // 3, 1), seed).result()
+
+
+def parity_part(pool: Executor, sessions: int, seed: int) -> str:
+    """Five times as many flights."""
+    return "## Parity checks of moving blocks\n\n" + pool.submit(parity_reach.tables, 5 * sessions, seed).result()
+
+
+PARTS: dict[str, Callable[[Executor, int, int], str]] = {
+    "left-out": left_out_part,
+    "stated-noise": stated_noise_part,
+    "reliability": reliability_part,
+    "few-readings": few_readings_part,
+    "turned": turned_part,
+    "parity": parity_part,
+}
+"""In the order of the page; each begins with its heading."""
+
+
+def with_command(part: str, command: str) -> str:
+    """The part with what made it below its heading."""
+    heading, rest = part.split("\n", 1)
+    return f"{heading}\n\nMade by `{command}`.\n{rest}"
+
+
+def parts_of(page: str) -> dict[str, str]:
+    """The parts of a page by their headings."""
+    found = ["## " + text.rstrip() for text in page.split("\n## ")[1:]]
+    return {part.split("\n", 1)[0]: part for part in found}
 
 
 def main() -> None:
-    """Run the study and write its page."""
+    """Run the study, or parts of it, and write its page."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.study.open_world", description=__doc__)
+    parser.add_argument("parts", nargs="*", metavar="PART", help="only these: " + ", ".join(PARTS))
     parser.add_argument("--sessions", type=int, default=12)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--out", type=Path, default=PAGE)
     options = parser.parse_args()
-    made = f"Made by `python -m benchmarks.study.open_world --sessions {options.sessions} --seed {options.seed}`."
-    parts = [f"# Beyond the catalogue\n\n{made} {INTRODUCTION}"]
-    for part in sections(options.sessions, options.seed, options.processes):
-        parts.append(part)
-        options.out.write_text("\n\n".join(parts) + "\n")
-    print(options.out.read_text())
+    if unknown := set(options.parts) - set(PARTS):
+        parser.error(f"no such part: {', '.join(sorted(unknown))}; choose from {', '.join(PARTS)}")
+    kept = parts_of(options.out.read_text()) if options.parts else {}
+    size = f"--sessions {options.sessions} --seed {options.seed}"
+    with ProcessPoolExecutor(options.processes, mp_context=get_context("spawn")) as pool:
+        for name in options.parts or PARTS:
+            made = PARTS[name](pool, options.sessions, options.seed)
+            part = with_command(made, f"python -m benchmarks.study.open_world {size} {name}")
+            kept[part.split("\n", 1)[0]] = part.rstrip()
+            options.out.write_text("\n\n".join([f"# Beyond the catalogue\n\n{INTRODUCTION}", *kept.values()]) + "\n")
 
 
 if __name__ == "__main__":
