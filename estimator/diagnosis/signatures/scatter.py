@@ -18,9 +18,6 @@ from estimator.session import ACCELEROMETER, Array
 FAINTEST_TAIL = 1e-280
 """Tail probability below which its logarithm is taken from the ratio itself; doubles end at 1e-308."""
 
-LEAST_DOUBT = 1e-12
-"""Relative variance of a noise that the readings tell: 10¹² degrees of freedom are as good as known."""
-
 
 @dataclass(frozen=True, eq=False)
 class ReadingScatter:
@@ -48,20 +45,19 @@ class ReadingScatter:
         unknown = sharing @ unstated > 0
         energy, freedom = np.full(len(shapes), np.nan), np.full(len(shapes), np.nan)
         if unknown.any():
-            left = self.of_sensors(basis[unknown], along[unknown], sharing[unknown])
+            left = self.of_sensors(basis[unknown], along[unknown])
             one = (sharing[unknown].sum(axis=-1) < m) | np.isinf(self.baseline.row_sigma).any()
-            both = np.where(one, self.shared(*left[:2], sharing[unknown]), self.pooled(*left))
+            both = np.where(one, self.shared(*left, sharing[unknown]), self.pooled(*left))
             energy[unknown], freedom[unknown] = both
         return energy, freedom
 
-    def of_sensors(self, basis: Array, along: Array, sharing: Array) -> tuple[Array, Array, Array]:
-        """(S, m) energy and (S, m) degrees of freedom that S signatures leave of each sensor, and (S, m) how much of
-        each lies there; as much in each of the ``sharing`` where none lies in readings."""
+    def of_sensors(self, basis: Array, along: Array) -> tuple[Array, Array]:
+        """(S, m) energy and (S, m) degrees of freedom that S signatures leave of each sensor."""
         N = len(self.residual)
         own = self.sensor_of_row[:, None] == np.arange(len(self.baseline.unstated))
         fitted = (basis @ along[..., None])[:, :N, 0]
         used = (basis[:, :N] ** 2).sum(axis=-1)
-        return (self.residual - fitted) ** 2 @ own, (self.freedom - used) @ own, used @ own + LEAST_DOUBT * sharing
+        return (self.residual - fitted) ** 2 @ own, (self.freedom - used) @ own
 
     def shared(self, energy: Array, freedom: Array, sharing: Array) -> tuple[Array, Array]:
         """(S,) of the scatter of sensors (S, m) that share the estimate of a row's direction, as of one."""
@@ -71,19 +67,18 @@ class ReadingScatter:
         alone = sharing.sum(axis=-1) == 1
         return with_the_others(one, free, np.where(alone, sharing @ self.baseline.expected_ratio, np.nan))
 
-    def pooled(self, energy: Array, freedom: Array, share: Array) -> tuple[Array, Array]:
-        """(S,) of the scatter along signatures that lie in ``share`` (S, m) on sensors.
+    def pooled(self, energy: Array, freedom: Array) -> tuple[Array, Array]:
+        """(S,) of the scatter that signatures common to all sensors (S, m) stand out of.
 
-        The variance along a signature is Σ wᵢsᵢ², w its shares, s² = E/f where a sensor's noise is unknown and 1 where
-        it is stated. Its degrees of freedom are Satterthwaite's, (Σ wᵢsᵢ²)² / Σ (wᵢsᵢ²)²/fᵢ over the unknown.
+        The variance is the mean of the sensors' s², E/f where a sensor's noise is unknown and 1 where it is stated; its
+        degrees of freedom are Satterthwaite's, (Σ sᵢ²)² / Σ sᵢ⁴/fᵢ over the unknown. Every sensor counts alike, so that
+        rivals are held against one scatter.
         """
         unstated = self.baseline.unstated
-        weight = share / share.sum(axis=-1, keepdims=True)
-        part = weight * np.where(unstated, energy / np.maximum(freedom, 1.0), 1.0)
-        variance = part.sum(axis=-1)
-        doubt = (np.where(unstated, part, 0.0) ** 2 / np.maximum(freedom, 1.0)).sum(axis=-1)
-        told = variance**2 / np.maximum(np.maximum(doubt, LEAST_DOUBT * variance**2), np.finfo(float).tiny)
-        return variance * told, told
+        each = np.where(unstated, energy / np.maximum(freedom, 1.0), 1.0)
+        doubt = (np.where(unstated, each, 0.0) ** 2 / np.maximum(freedom, 1.0)).sum(axis=-1)
+        told = each.sum(axis=-1) ** 2 / np.maximum(doubt, np.finfo(float).tiny)
+        return each.mean(axis=-1) * told, told
 
 
 def sharing_scatter(baseline: Baseline, sensors: tuple[int, ...]) -> list[int]:
