@@ -25,7 +25,7 @@ SERVICE_LAYERS = (
 )
 """A part imports only from parts of earlier lines, never from one beside it."""
 ESTIMATOR_LAYERS = (
-    {"errors"},
+    {"errors", "wording"},
     {"session"},
     {"arrays"},
     {"rotations"},
