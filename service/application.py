@@ -45,12 +45,15 @@ class Gate:
     def __init__(self, settings: Settings) -> None:
         self._settings, self._has_accounts = settings, False
 
+    @property
+    def may_be_open(self) -> bool:
+        """Whether there are times at which nobody needs to sign in."""
+        return self._settings.sign_in == "off" or (self._settings.sign_in == "auto" and self._settings.is_local)
+
     def is_open(self, storage: Storage) -> bool:
         """Asks the database until there is an account; accounts are never deleted."""
-        if self._settings.sign_in != "auto":
-            return self._settings.sign_in == "off"
-        if not self._settings.is_local:
-            return False
+        if not self.may_be_open or self._settings.sign_in == "off":
+            return self.may_be_open
         if not self._has_accounts:
             with storage.database.reading() as store:
                 self._has_accounts = store.accounts.any()

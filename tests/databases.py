@@ -30,7 +30,8 @@ one_engine = pytest.mark.parametrize("databases", ["sqlite"], indirect=True)
 
 def all_on_one_engine(metafunc: pytest.Metafunc) -> None:
     """For a file of such facts, under the name of the hook, `pytest_generate_tests`."""
-    if "databases" in metafunc.fixturenames:
+    chosen = any(mark.args[:1] == ("databases",) for mark in metafunc.definition.iter_markers("parametrize"))
+    if "databases" in metafunc.fixturenames and not chosen:
         metafunc.definition.add_marker(one_engine)
 
 

@@ -16,11 +16,12 @@ def describe(app: FastAPI) -> None:
     def description() -> dict[str, Any]:
         if app.openapi_schema is None:
             schema = get_openapi(title=app.title, version=app.version, description=app.description, routes=app.routes)
+            is_open = app.state.application.gate.may_be_open
             schema["components"]["securitySchemes"] = {"token": {"type": "http", "scheme": "bearer"}}
             for path, operations in schema["paths"].items():
                 for method, operation in operations.items():
                     _name_problems(operation["responses"])
-                    _name_role(operation, NEEDED.get((method.upper(), _as_routed(path))))
+                    _name_role(operation, NEEDED.get((method.upper(), _as_routed(path))), is_open=is_open)
             app.openapi_schema = schema
         return app.openapi_schema
 
@@ -32,11 +33,11 @@ def _as_routed(path: str) -> str:
     return next((route for _, route in NEEDED if route.replace(":path}", "}") == path), path)
 
 
-def _name_role(operation: dict[str, Any], needed: Role | None) -> None:
+def _name_role(operation: dict[str, Any], needed: Role | None, *, is_open: bool) -> None:
     """Who may call it, and what others are told."""
     if needed is None:
         return
-    operation["security"] = [{"token": []}]
+    operation["security"] = [{"token": []}, *([{}] if is_open else [])]
     operation["description"] = f"{operation.get('description', '')}\n\nNeeds the role {needed}.".strip()
     problem = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/ProblemDocument"}}}
     operation["responses"].setdefault("401", {"description": "Nobody signed in.", "content": problem})

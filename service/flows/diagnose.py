@@ -23,6 +23,7 @@ from service.judging.reservations import UNCHECKED
 from service.log import log
 from service.records.diagnosis import DiagnosisState, StoredDiagnosis, state_of
 from service.records.session import StoredSession
+from service.records.state import RecordState
 from service.settings import VERSION
 from service.storage import Files, Storage
 from service.storage.diagnosis_document import diagnosis_to_dict, inapplicable_to_dict, read_diagnosis, written
@@ -185,9 +186,12 @@ def _read(files: Files, stored: StoredSession) -> CalibrationSession:
 
 
 def _comparable(files: Files, task: Task, session: CalibrationSession) -> list[CalibrationSession]:
-    """Earlier sessions of the same sensors measured in the same way; a lost file is passed over."""
+    """Earlier sessions of the same sensors measured in the same way; a lost file is passed over.
+
+    One that is questioned is compared with none: it cannot be as it says, and everything about it would seem new.
+    """
     found = []
-    for past in task.earlier:
+    for past in () if task.session.state is RecordState.QUESTIONED else task.earlier:
         try:
             earlier = _read(files, past)
         except (*LOST, SessionError):

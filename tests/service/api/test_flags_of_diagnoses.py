@@ -6,6 +6,7 @@ import httpx
 import pytest
 
 from tests.conftest import Holding
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.diagnosed import (
     ECCENTRIC,
     TEMPERATURE,

@@ -6,6 +6,7 @@ import httpx
 import pytest
 
 from tests.conftest import SettingsHolding
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.databases import one_engine
 from tests.service.reports.documents import pages_of, text_of
 from tests.service.reports.laboratory import CUSTOMER, STAND, named, state_all

@@ -17,6 +17,7 @@ from service.flows.remove_webhook import remove_webhook
 from service.records.webhook import DeliveryState
 from service.settings import Settings
 from service.storage import Storage
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.receiver import Receiver, receiver
 from tests.service.sessions import FAILED, session_bytes
 from tests.serving import http_client

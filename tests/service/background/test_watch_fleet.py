@@ -15,6 +15,7 @@ from service.metrics import Metrics
 from service.records.flag import Matter
 from service.storage import Storage
 from service.storage.queries.flags import FlagQuery
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.sessions import session_bytes
 from tests.service.test_log import lines
 from tests.service.views.test_stands import measure

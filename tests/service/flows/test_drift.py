@@ -11,6 +11,7 @@ from service.records.outlook import Action, ParameterTrend, UnitOutlook
 from service.storage import Storage
 from service.storage.queries.flags import FlagQuery
 from service.views.outlook import outlook_of
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.sessions import MICRO_G, session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)

@@ -18,6 +18,7 @@ from service.records.flag import Matter
 from service.records.model import ModelRevision, Scope
 from service.storage import Storage
 from tests.conftest import Holding
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.diagnosed import TEMPERATURE, drawn
 from tests.service.recordings import recording_bytes
 from tests.service.sessions import session_bytes, session_id

@@ -15,6 +15,7 @@ from service.flows.identity.sign_in import sign_in
 from service.records.identity import Role
 from service.settings import Settings
 from service.storage import Storage
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.databases import one_engine
 from tests.service.identity.staff import NOW, PASSWORD, Staff, staffed, with_password
 from tests.service.sessions import session_bytes

@@ -13,6 +13,7 @@ from service.reports.fleet_workbook import MOST_HISTORY_ROWS, fleet_xlsx
 from service.storage import Storage
 from service.storage.store import Store
 from service.views.fleet_report import fleet_report
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.reports.documents import pages_of, text_of
 from tests.service.sessions import session_bytes
 from tests.service.views.test_queries import queries

@@ -14,6 +14,7 @@ from service.records.flag import Matter
 from service.storage import Storage
 from service.storage.queries.flags import FlagQuery
 from tests.builders import ARCSEC, TrueSensor, accelerometer_block, true_sensors
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.databases import one_engine
 
 NOW = datetime(2026, 10, 1, tzinfo=UTC)
