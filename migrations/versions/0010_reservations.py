@@ -16,7 +16,7 @@ def upgrade() -> None:
     """Diagnoses that are stored already bring no reservation. Reasons no longer claim more than a rule decides."""
     for table in ("sessions", "calibrations"):
         op.execute(
-            f"UPDATE {table} SET reason = REPLACE(reason, 'tolerance, beyond doubt;', 'tolerance by more than U;')"
+            f"UPDATE {table} SET reason = REPLACE(reason, 'tolerance, beyond doubt;', 'tolerance by more than U;')"  # noqa: S608 - our own tables
         )
     op.add_column("diagnoses", sa.Column("reservations", sa.JSON(), nullable=True))
 

@@ -1,0 +1,40 @@
+"""`python -m benchmarks.licences` writes docs/security/licences.md from what is installed."""
+
+import re
+from importlib.metadata import PackageNotFoundError, metadata
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs" / "security" / "licences.md"
+HEAD = """# What we depend on
+
+Made by `python -m benchmarks.licences` from `requirements.lock` and what the packages say of themselves. The tests' own
+tools are among them.
+
+| package | version | licence |
+| --- | --- | --- |
+"""
+NOT_HERE = "not installed on this kind of machine"
+
+
+def licence(name: str) -> str:
+    """As the package states it: an expression, else its classifiers, else the first line of the field."""
+    try:
+        found = metadata(name)
+    except PackageNotFoundError:
+        return NOT_HERE
+    classifiers = [c.split(" :: ")[-1] for c in found.get_all("Classifier") or () if c.startswith("License ::")]
+    text = (found.get("License") or "").strip().split("\n")[0]
+    stated = found.get("License-Expression") or ", ".join(classifiers) or text or "not stated"
+    return " ".join(str(stated).split())
+
+
+def main() -> None:
+    """Writes the page."""
+    pinned = re.findall(r"(?m)^([\w.-]+)==([^\s;]+)", (ROOT / "requirements.lock").read_text(encoding="utf-8"))
+    rows = [f"| {name} | {version} | {licence(name)} |" for name, version in pinned]
+    PAGE.write_text(HEAD + "\n".join(rows) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
