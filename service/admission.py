@@ -5,11 +5,11 @@ from typing import Annotated, Any
 from fastapi import Depends, Request
 from starlette.datastructures import UploadFile
 
-from service.application import Application, application_of
+from service.application import application_of
 from service.errors import ForbiddenError, SignInError
 from service.identity.access import API, METRICS, NEEDED, Route
 from service.identity.secret import csrf_of, is_same, stored_hash
-from service.records.identity import EVERYBODY, LOOKING, STRANGER, Person, Role
+from service.records.identity import EVERYBODY, LOOKING, RANKS, STRANGER, Person, Role
 from service.storage.queries.tokens import is_stale
 
 COOKIE = "imu-health"
@@ -17,6 +17,8 @@ COOKIE = "imu-health"
 CSRF = "csrf"
 """Field of every form that a signed-in browser sends; scripts send the header."""
 CSRF_HEADER = "X-CSRF-Token"
+FORWARDED = ("forwarded", "x-forwarded-for", "x-forwarded-host", "x-forwarded-proto", "x-real-ip", "via")
+"""Headers of requests that a proxy hands on (RFC 7239, RFC 9110, and what is usual)."""
 SAFE = ("GET", "HEAD", "OPTIONS")
 SIGN_IN_FIRST = "Sign in first, or send a token: `Authorization: Bearer …`."
 BAD_TOKEN = "This token is not known, or it has expired or was revoked."
@@ -33,7 +35,7 @@ def _person(request: Request) -> Person:
     """Who sends the request; a token that is none is an error, a cookie that is none is nobody."""
     person = STRANGER
     if NEEDED.get(route_of(request.scope)) is not None:
-        person = _by_token(request) or _by_cookie(request) or _unknown(application_of(request))
+        person = _by_token(request) or _by_cookie(request) or _unknown(request)
     request.state.person = person
     return person
 
@@ -62,7 +64,7 @@ def _by_token(request: Request) -> Person | None:
     if is_stale(token, now):
         with own.storage.database.writing() as store:
             store.tokens.used(token.id, now)
-    role = min(token.role, account.role, key=list(Role).index)
+    role = min(token.role, account.role, key=RANKS.__getitem__)
     return Person(account.login, account.name, role, token=token.label)
 
 
@@ -76,12 +78,18 @@ def _by_cookie(request: Request) -> Person | None:
     return None if account is None else Person(account.login, account.name, account.role, csrf=csrf_of(secret))
 
 
-def _unknown(own: Application) -> Person:
+def _unknown(request: Request) -> Person:
     """Somebody who shows nothing: everybody, where nobody needs to sign in; else a demonstration may be looked at."""
-    if own.gate.is_open(own.storage):
+    own = application_of(request)
+    if own.gate.is_open(own.storage) and (own.settings.sign_in == "off" or not _was_forwarded(request)):
         return EVERYBODY
     with own.storage.database.reading() as store:
         return LOOKING if store.sessions.all_simulated() else STRANGER
+
+
+def _was_forwarded(request: Request) -> bool:
+    """Whether a proxy on this machine says that somebody else asks: then to listen here only keeps nobody out."""
+    return any(name in request.headers for name in FORWARDED)
 
 
 async def _admitted(request: Request, person: PersonOf) -> None:

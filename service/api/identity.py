@@ -29,12 +29,10 @@ from service.errors import ConflictError, ForbiddenError
 from service.flows.identity.accounts import AccountChange, add_account, change_account
 from service.flows.identity.links import make_link
 from service.flows.identity.tokens import make_token, revoke_token
-from service.records.identity import Role
+from service.records.identity import UNNAMED, Role
 
 router = APIRouter(tags=["accounts"])
 NO_ACCOUNT = "A token acts for an account: make the first account, and sign in with it."
-OPEN = "whoever is at this machine"
-"""Who makes the first account, where nobody needed to sign in."""
 
 
 @router.get("/me", responses=errors())
@@ -52,7 +50,7 @@ def list_accounts(store: Reading) -> AccountList:
 @router.post("/accounts", status_code=201, responses=errors(400, 409, 422))
 def create_account(new: NewAccount, storage: StorageOf, now: Now, person: PersonOf) -> AccountSchema:
     """Make an account. A link lets its owner choose a password; from the first account on everybody must sign in."""
-    made = add_account(storage, new.login, new.name, new.role, now, who=person.signs(OPEN))
+    made = add_account(storage, new.login, new.name, new.role, now, who=person.signs(UNNAMED))
     return AccountSchema.model_validate(made)
 
 
@@ -62,13 +60,13 @@ def update_account(
 ) -> AccountSchema:
     """Another name or role, or the account may no longer sign in. Accounts are never deleted."""
     change = AccountChange(changes.name, changes.role, changes.is_active)
-    return AccountSchema.model_validate(change_account(storage, login, change, now, who=person.signs(OPEN)))
+    return AccountSchema.model_validate(change_account(storage, login, change, now, who=person.signs(UNNAMED)))
 
 
 @router.post("/accounts/{login}/link", status_code=201, responses=errors(404, 422))
 def create_link(login: Login, storage: StorageOf, now: Now, person: PersonOf) -> LinkSchema:
     """A link with which the account's owner chooses a password and is signed in, once, within an hour."""
-    return LinkSchema(path=f"/sign-in/{make_link(storage, login, now, person.signs(OPEN))}")
+    return LinkSchema(path=f"/sign-in/{make_link(storage, login, now, person.signs(UNNAMED))}")
 
 
 @router.get("/tokens", responses=errors())
@@ -95,7 +93,7 @@ def delete_token(id: Number, storage: StorageOf, store: Reading, now: Now, perso
     """Nobody gets in with the token any more; it stays listed. Others' tokens need an administrator."""
     if store.tokens.get(id).login != person.login and not person.may(Role.ADMIN):
         raise ForbiddenError("This token is another account's.")
-    revoke_token(storage, id, now, who=person.signs(OPEN))
+    revoke_token(storage, id, now, who=person.signs(UNNAMED))
 
 
 @router.get("/audit", responses=errors(422))

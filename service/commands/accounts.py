@@ -17,6 +17,7 @@ from service.flows.identity.tokens import make_token, revoke_token
 from service.records.identity import Role
 from service.settings import Settings
 from service.storage import Database, Files, Storage
+from service.storage.store import Store
 
 WHO = "command line"
 """As the audit trail names whoever reaches the database."""
@@ -33,6 +34,12 @@ def _opened(settings: Settings) -> Iterator[Storage]:
     storage.database.require_ready()
     yield storage
     storage.database.close()
+
+
+@contextmanager
+def _read(settings: Settings) -> Iterator[Store]:
+    with _opened(settings) as storage, storage.database.reading() as store:
+        yield store
 
 
 @user.command("add")
@@ -79,10 +86,7 @@ def change_user(
 @user.command("list")
 def list_users(database_url: DatabaseUrl = None, data_folder: DataFolder = None) -> None:
     """Print every account."""
-    with (
-        _opened(settings_from(database_url=database_url, data_folder=data_folder)) as storage,
-        storage.database.reading() as store,
-    ):
+    with _read(settings_from(database_url=database_url, data_folder=data_folder)) as store:
         accounts = store.accounts.every()
     table = Table("Login", "Name", "Role", "State")
     for one in accounts:
@@ -123,10 +127,7 @@ def take_token(
 @token.command("list")
 def list_tokens(database_url: DatabaseUrl = None, data_folder: DataFolder = None) -> None:
     """Print every token; secrets are not kept."""
-    with (
-        _opened(settings_from(database_url=database_url, data_folder=data_folder)) as storage,
-        storage.database.reading() as store,
-    ):
+    with _read(settings_from(database_url=database_url, data_folder=data_folder)) as store:
         tokens = store.tokens.every()
     table = Table("Token", "Login", "For", "Role", "Until", "Last used", "Revoked")
     for one in tokens:
@@ -144,10 +145,7 @@ def verify(
     data_folder: DataFolder = None,
 ) -> None:
     """Work out the chain of the whole trail again. Note the last hash elsewhere: it shows later that none was cut."""
-    with (
-        _opened(settings_from(database_url=database_url, data_folder=data_folder)) as storage,
-        storage.database.reading() as store,
-    ):
+    with _read(settings_from(database_url=database_url, data_folder=data_folder)) as store:
         check, is_there = store.audit.check(), not expect or store.audit.has(expect)
     if check.broken is not None:
         say(f"Line {check.broken} does not follow from the lines before it: the trail was changed there.")
@@ -166,10 +164,7 @@ def list_lines(
     data_folder: DataFolder = None,
 ) -> None:
     """Print who did what, the newest first."""
-    with (
-        _opened(settings_from(database_url=database_url, data_folder=data_folder)) as storage,
-        storage.database.reading() as store,
-    ):
+    with _read(settings_from(database_url=database_url, data_folder=data_folder)) as store:
         lines = store.audit.page(most, None, subject)
     table = Table("When", "Who", "Account", "What", "To")
     for line in lines:

@@ -14,6 +14,7 @@ from service.flows.identity.accounts import change_password
 from service.flows.identity.links import Chosen, link_of, use_link
 from service.flows.identity.sign_in import LASTS, sign_in, sign_out
 from service.flows.identity.tokens import make_token, revoke_token
+from service.identity.attempts import Attempts
 from service.identity.passwords import LONGEST, SHORTEST
 from service.pages.account import LinkPage, SignInPage, account_page
 from service.pages.forms import NO_NUL, SEE_OTHER, Number
@@ -45,7 +46,7 @@ def take_sign_in(
     next: Annotated[str, Form(max_length=2000)] = "/",
 ) -> Response:
     """Signs in, or says that it was wrong."""
-    attempts, address = application_of(request).attempts, request.client.host if request.client else ""
+    attempts, address = _attempts(request)
     attempts.require_few(login, address)
     try:
         secret = sign_in(storage, login, password, now)
@@ -92,9 +93,17 @@ def show_account(request: Request, store: Reading, person: PersonOf, now: Now) -
 
 
 @router.post("/account/password")
-def take_password(old: Password, new: Password, storage: StorageOf, person: PersonOf, now: Now) -> RedirectResponse:
-    """Another password; every browser of the account must sign in again."""
-    change_password(storage, person.login, old, new, now)
+def take_password(
+    request: Request, old: Password, new: Password, storage: StorageOf, person: PersonOf, now: Now
+) -> RedirectResponse:
+    """Another password; every browser of the account must sign in again. Whoever found one open may not guess."""
+    attempts, address = _attempts(request)
+    attempts.require_few(person.login, address)
+    try:
+        change_password(storage, person.login, old, new, now)
+    except SignInError:
+        attempts.wrong(person.login, address)
+        raise
     return RedirectResponse("/sign-in", SEE_OTHER)
 
 
@@ -125,6 +134,11 @@ def take_back(id: Number, storage: StorageOf, person: PersonOf, now: Now) -> Red
         raise ForbiddenError("This token is another account's.")
     revoke_token(storage, id, now, who=person.signs("admin"))
     return RedirectResponse("/account", SEE_OTHER)
+
+
+def _attempts(request: Request) -> tuple[Attempts, str]:
+    """Wrong attempts so far, and the address that this one comes from."""
+    return application_of(request).attempts, request.client.host if request.client else ""
 
 
 def _inside(address: str) -> str:

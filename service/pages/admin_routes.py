@@ -13,12 +13,11 @@ from service.flows.identity.links import make_link
 from service.pages.admin import AccountsPage, audit_page
 from service.pages.forms import NO_NUL, SEE_OTHER
 from service.pages.render import render
-from service.records.identity import Role
+from service.records.identity import UNNAMED, Role
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 AUDIT_LINES = 100
 """On a page."""
-OPEN = "whoever is at this machine"
 Login = Annotated[str, Path(max_length=60, pattern=NO_NUL)]
 Written = Annotated[str, Form(max_length=200, pattern=NO_NUL)]
 
@@ -40,8 +39,8 @@ def take_account(
     name: Written = "",
 ) -> HTMLResponse:
     """Makes an account and shows the link with which its owner chooses a password."""
-    made = add_account(storage, login, name, role, now, who=person.signs(OPEN))
-    return _with_link(request, storage, made.login, make_link(storage, made.login, now, person.signs(OPEN)))
+    made = add_account(storage, login, name, role, now, who=person.signs(UNNAMED))
+    return _with_link(request, storage, made.login, make_link(storage, made.login, now, person.signs(UNNAMED)))
 
 
 @router.post("/accounts/{login}")
@@ -55,14 +54,14 @@ def change(
     is_active: Annotated[bool, Form()] = False,
 ) -> RedirectResponse:
     """Another name or role, or the account may no longer sign in."""
-    change_account(storage, login, AccountChange(name, role, is_active), now, who=person.signs(OPEN))
+    change_account(storage, login, AccountChange(name, role, is_active), now, who=person.signs(UNNAMED))
     return RedirectResponse("/accounts", SEE_OTHER)
 
 
 @router.post("/accounts/{login}/link")
 def show_link(request: Request, login: Login, storage: StorageOf, person: PersonOf, now: Now) -> HTMLResponse:
     """Shows a new link for an account."""
-    return _with_link(request, storage, login, make_link(storage, login, now, person.signs(OPEN)))
+    return _with_link(request, storage, login, make_link(storage, login, now, person.signs(UNNAMED)))
 
 
 @router.get("/audit")

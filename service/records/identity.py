@@ -87,6 +87,8 @@ class Person:
         return f"{self.login}, token {self.token}" if self.token else self.login
 
 
+UNNAMED = "whoever is at this machine"
+"""Who administers, where nobody needs to sign in."""
 STRANGER = Person("", "", None)
 """Somebody who has not signed in."""
 LOOKING = Person("", "", Role.VIEWER)

@@ -31,7 +31,7 @@ class Database:
 
     @contextmanager
     def reading(self) -> Iterator[Store]:
-        """A consistent view; nothing of it is kept."""
+        """To read; nothing of it is kept. On PostgreSQL each question sees what was committed before it."""
         with database_faults(), Session(self.engine, autoflush=False) as session:
             yield Store(session)
 

@@ -53,12 +53,13 @@ def use_link(storage: Storage, secret: str, chosen: Chosen, now: datetime) -> st
         faults = [] if (fault := fault_of(chosen.password)) is None else [Problem("password", fault)]
         if faults:
             raise RefusedError("The password cannot be used.", tuple(faults))
-        login = _first(store, chosen, now) if owner is None else owner.login
         if not store.sign_ins.use_link(stored_hash(secret), now):
             raise SignInError(SPENT)
+        login = _first(store, chosen, now) if owner is None else owner.login
         store.accounts.put_password_hash(login, hashed(chosen.password))
         account = store.accounts.get(login)
         store.sign_ins.end_all(account)
+        store.sign_ins.end_links(account)
         store.audit.write(now, account.name, "password", login, {})
         return begin(store, account, now)
 
@@ -74,6 +75,7 @@ def _first(store: Store, chosen: Chosen, now: datetime) -> str:
     """The account of the one who set the service up."""
     login = require_login(chosen.login)
     name = chosen.name.strip() or login
-    store.accounts.add(login, name, Role.ADMIN, now)
+    if not store.accounts.add(login, name, Role.ADMIN, now):
+        raise SignInError(SPENT)  # another link made it at the same moment: its password is not ours to set
     store.audit.write(now, name, "add account", login, {"name": name, "role": Role.ADMIN})
     return login

@@ -11,7 +11,8 @@ from service.storage.backup.manifest import Manifest, TableContents, file_member
 from service.storage.files import content_hash
 
 UNREADABLE = (zipfile.BadZipFile, zlib.error, EOFError, KeyError, NotImplementedError)
-"""What reading a changed member ends in."""
+"""What reading a changed member ends in: a broken header, a broken stream, its end too soon, a member that is missing,
+and a way of packing that a changed byte made up."""
 
 
 def verified(file: Path) -> Manifest:

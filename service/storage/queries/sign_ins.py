@@ -38,6 +38,11 @@ class SignIns(Queries):
         key = None if account is None else account.id
         self._session.add(SignInLinkRow(account_id=key, hash=hashed, created_at=now, expires_at=until))
 
+    def end_links(self, account: Account) -> None:
+        """No other link of an account can be used any more."""
+        own = SignInLinkRow.account_id == account.id, SignInLinkRow.used_at.is_(None)
+        self._session.execute(delete(SignInLinkRow).where(*own))
+
     def link(self, hashed: str, now: datetime) -> tuple[bool, Account | None]:
         """Whether a link holds, and whom it signs in."""
         link = self._session.scalar(select(SignInLinkRow).where(*_holds(hashed, now)))

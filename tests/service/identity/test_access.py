@@ -83,6 +83,14 @@ def test_nobody_needs_to_sign_in_on_this_machine_until_there_is_an_account(setti
 
 
 @one_engine
+@pytest.mark.parametrize("header", ["X-Forwarded-For", "Forwarded", "X-Real-IP", "Via"])
+def test_somebody_behind_a_proxy_on_this_machine_is_not_at_it(settings: Settings, header: str) -> None:
+    with http_client(create_app(settings)) as client:
+        assert client.get("/api/v1/units", headers={header: "203.0.113.9"}).status_code == 401
+        assert client.get("/api/v1/units").status_code == 200
+
+
+@one_engine
 def test_beyond_this_machine_nobody_gets_in_unknown(settings: Settings) -> None:
     wide = settings.model_copy(update={"host": "0.0.0.0"})
     with http_client(create_app(wide)) as client:

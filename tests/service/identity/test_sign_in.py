@@ -153,6 +153,21 @@ def test_the_first_link_makes_the_first_account_and_no_second(settings: Settings
         use_link(storage, links[1], Chosen("mallory", "", PASSWORD), NOW)
 
 
+def test_a_password_that_was_chosen_ends_the_other_links(storage: Storage, staff: Staff) -> None:
+    links = [make_link(storage, "crew", NOW, "test") for _ in range(2)]
+    use_link(storage, links[0], Chosen("", "", PASSWORD), NOW)
+    with pytest.raises(SignInError, match="used already"):
+        use_link(storage, links[1], Chosen("", "", PASSWORD), NOW)
+
+
+def test_who_finds_a_browser_open_cannot_guess_its_password(http: httpx.Client) -> None:
+    enter(http)
+    proof = re.search(r'name="csrf" value="([0-9a-f]{64})"', http.get("/account").text)
+    assert proof is not None
+    guess = {"old": "a guess of many", "new": "another horse entirely", "csrf": proof[1]}
+    assert [http.post("/account/password", data=guess).status_code for _ in range(6)] == [401] * 5 + [429]
+
+
 def test_a_link_ends_after_an_hour(storage: Storage, staff: Staff) -> None:
     link = make_link(storage, "crew", NOW, "test")
     with pytest.raises(SignInError, match="its hour is over"):

@@ -24,7 +24,7 @@ print((held() - before) // 2**20)
 """
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="of glibc")
+@pytest.mark.skipif(sys.platform != "linux", reason="mallopt, which this sets, is an option of glibc alone")
 def test_large_blocks_are_given_back() -> None:
     command = [sys.executable, "-c", PROGRAM]
     run = subprocess.run(command, env={"PYTHONPATH": apart.ROOT}, capture_output=True, text=True)
