@@ -15,6 +15,8 @@ from service.words.motion import motions_in_words
 
 END_OF_TIME = datetime(9999, 1, 1, tzinfo=UTC)
 """After every break."""
+RULE = b"2"
+"""Version of what an outlook says of a history: those made by an earlier one are made again."""
 TypeHistories = dict[tuple[str, str], tuple[bytes, ...]]
 """What a type's units tell, by kind of sensor and parameter."""
 
@@ -27,12 +29,13 @@ def refresh_outlook(store: Store, serial: str) -> None:
     store.outlooks.put_histories(unit, told_of_type(known))
     told = of_type(store, unit)
     priors = {place: learn([one for row in rows for one in unpacked(row)]) for place, rows in told.items()}
-    last = store.outlooks.last_calibration(unit)
+    last, shown = store.outlooks.last_calibration(unit), store.outlooks.last_session(unit)
     past = Past(
         serial=serial,
         since=since,
         latest=None if last is None else store.sessions.get(last[0]),
         longest_days=store.unit_types.of_unit(serial).maximum_interval_days,
+        shown=None if shown is None else store.sessions.get(shown),
     )
     together = () if last is None else motions_in_words(store.sessions.motions(last[0]), COVERAGE)
     outlook = replace(forecast(past, known, priors), rests_on=digest(told))
@@ -46,7 +49,7 @@ def of_type(store: Store, unit: int) -> TypeHistories:
 
 def digest(told: TypeHistories) -> str:
     """64 hexadecimal digits, the same for the same histories."""
-    return sha256(b"".join(_bytes(told))).hexdigest()
+    return sha256(RULE + b"".join(_bytes(told))).hexdigest()
 
 
 def _bytes(told: TypeHistories) -> Iterable[bytes]:

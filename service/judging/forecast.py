@@ -45,6 +45,8 @@ class Past:
     """Its latest calibration; None before the first."""
     longest_days: float
     """From one calibration to the next, as the type allows."""
+    shown: StoredSession | None = None
+    """Its latest session of any programme: a recording in service tells no date, but may find it unfit."""
 
 
 def forecast(past: Past, known: Histories, priors: Mapping[tuple[str, str], Prior]) -> UnitOutlook:
@@ -122,18 +124,20 @@ def _decided(
 ) -> UnitOutlook:
     """The unit as a whole: it comes back before its risk passes the level, and never after the longest interval.
 
-    Found unfit it needs a hand and no date; undecided, or perhaps out of tolerance already, another session.
+    Found unfit, by a recording in service too, it needs a hand and no date; undecided, or perhaps out of tolerance
+    already, another session.
     """
     longest = last.started_at + timedelta(days=past.longest_days)
     first = min((t for t in trends if t.reach_90), key=lambda t: (t.reach_90, t.reach_50 or longest), default=None)
     risky = None if risk is None else _passes(risk)
-    action, due = _action(last, risky), longest if risky is None else min(longest, risky)
+    told = next((s for s in (past.shown, last) if s is not None and s.verdict in UNFIT), last)
+    action, due = _action(told, risky), longest if risky is None else min(longest, risky)
     reason = why_due(trends, first, last.started_at, past.longest_days, is_longest=due == longest)
     unit = UnitOutlook(
         serial=past.serial,
-        due=None if action is Action.NOW or due <= last.started_at else due,
+        due=due if action is Action.CALIBRATE else None,
         overdue=False,
-        reason=reason if action is Action.CALIBRATE else why_now(action, last, reason),
+        reason=reason if action is Action.CALIBRATE else why_now(action, told, reason),
         sensor=None if first is None else first.sensor,
         parameter=None if first is None else first.parameter,
         reach_50=None if first is None else first.reach_50,

@@ -78,7 +78,7 @@ def _against(
     due = report.summary.due
     if due is not None and due < now:
         yield words.OVERDUE.format(due=day_of(due))
-    elif due is None and session is not None:
+    elif due is None and session is not None and session.verdict in FIT:
         yield words.NO_DUE
 
 

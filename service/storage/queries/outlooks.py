@@ -81,13 +81,14 @@ class Outlooks(Queries):
 
     def last_calibration(self, unit: int) -> tuple[str, datetime] | None:
         """The session that last measured the unit, recordings in service apart, and when."""
-        newest = select(SessionRow.id, SessionRow.started_at).where(
-            SessionRow.unit_id == unit, SessionRow.programme != IN_SERVICE, IS_ACCEPTED
-        )
-        found = self._session.execute(
-            newest.order_by(SessionRow.started_at.desc(), SessionRow.id.desc()).limit(1)
-        ).one_or_none()
+        newest = _newest(unit).where(SessionRow.programme != IN_SERVICE)
+        found = self._session.execute(newest).one_or_none()
         return None if found is None else (found[0], found[1])
+
+    def last_session(self, unit: int) -> str | None:
+        """The unit's latest session, recordings in service too."""
+        found = self._session.execute(_newest(unit)).one_or_none()
+        return None if found is None else found[0]
 
     def put(self, unit: int, outlook: UnitOutlook) -> None:
         """Rewrites a unit's outlook."""
@@ -158,6 +159,12 @@ def _within(unit: int, since: datetime | None) -> list[ColumnElement[bool]]:
     """Sessions of a unit from a time on."""
     own = [SessionRow.unit_id == unit, IS_ACCEPTED]
     return own if since is None else [*own, SessionRow.started_at >= since]
+
+
+def _newest(unit: int) -> Select[str, datetime]:
+    """The latest session of a unit, and when."""
+    own = select(SessionRow.id, SessionRow.started_at).where(*_within(unit, None))
+    return own.order_by(SessionRow.started_at.desc(), SessionRow.id.desc()).limit(1)
 
 
 def _outlooks() -> Select[OutlookRow, str | None, str]:

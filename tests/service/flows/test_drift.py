@@ -12,6 +12,7 @@ from service.storage import Storage
 from service.storage.queries.flags import FlagQuery
 from service.views.outlook import outlook_of
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
+from tests.service.recordings import recording_bytes
 from tests.service.sessions import MICRO_G, session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
@@ -70,8 +71,16 @@ def test_an_undecided_session_is_repeated_with_what_to_measure(storage: Storage)
     coarse = {"id": "S-2", "alpha_deg": 40.0, "sigma_arcsec": sigmas}
     upload(storage, session_bytes(seed=2, month=2, stand=coarse), "b.json", NOW)
     found = outlook(storage)
-    assert found.action is Action.REPEAT
+    assert (found.action, found.due) == (Action.REPEAT, None)
     assert "measure" in found.reason
+
+
+def test_a_recording_in_service_that_finds_a_unit_unfit_leaves_it_no_date(storage: Storage) -> None:
+    measure(storage, {1: 0.0, 3: 0.0})
+    upload(storage, recording_bytes(a3_moved=130.0), "flight.json", NOW)
+    found = outlook(storage)
+    assert (found.action, found.due) == (Action.NOW, None)
+    assert found.reason.startswith("Found out of tolerance on 1 May 2026")
 
 
 def test_a_fleet_does_not_depend_on_the_order_in_which_its_sessions_came(storage: Storage) -> None:
