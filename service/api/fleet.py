@@ -9,9 +9,9 @@ from service.api.schemas.fields import Page, Window
 from service.api.schemas.problem import errors
 from service.api.schemas.units import FleetSchema, UnitPage, UnitSummarySchema
 from service.dependencies import Now, Reading
+from service.records.fleet import FleetQuery
 from service.reports.fleet_paper import fleet_pdf
 from service.reports.fleet_workbook import fleet_xlsx
-from service.storage.queries.fleet import FleetQuery
 from service.views.fleet_report import fleet_report
 
 router = APIRouter(prefix="/fleet", tags=["fleet"])

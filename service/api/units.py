@@ -7,7 +7,7 @@ from fastapi import APIRouter, Query, Request, Response
 from service.admission import PersonOf
 from service.api.exports import as_csv, as_parquet, history_table
 from service.api.flags import WantedState, flag_page
-from service.api.schemas.fields import Moment, Serial, WantedText, WantedVerdict, WindowOf
+from service.api.schemas.fields import Moment, Serial, Text, WantedText, WantedVerdict, WindowOf
 from service.api.schemas.flags import FlagPage
 from service.api.schemas.history import HistoryAsked, HistoryPage, HistoryPointSchema
 from service.api.schemas.models import RecalibratedSchema
@@ -24,13 +24,14 @@ from service.dependencies import CREW, Now, Reading, SettingsOf, StorageOf
 from service.flows.recalibrate import recalibrate
 from service.flows.set_customer import set_customer
 from service.flows.set_lot import set_lot
+from service.records.fleet import FleetQuery, Order
 from service.records.outlook import RiskPoint
 from service.records.paper import Customer
-from service.storage.queries.fleet import FleetQuery
 from service.views.outlook import outlook_of
 from service.views.unit_report import unit_report
 
 router = APIRouter(prefix="/units", tags=["units"])
+WORST_FIRST = Order.CONDITION
 TABLE = {"type": "string", "format": "binary"}
 """How OpenAPI describes a table."""
 HISTORY_FORMATS = {"text/csv": {"schema": TABLE}, "application/vnd.apache.parquet": {"schema": TABLE}}
@@ -43,9 +44,22 @@ def list_units(
     verdict: WantedVerdict = None,
     text: WantedText = None,
     reserved: Annotated[bool | None, Query(description="Only those whose verdict has a reservation, or none.")] = None,
+    *,
+    due_before: Annotated[Moment | None, Query(description="Only those whose next calibration is due before.")] = None,
+    unit_type: Annotated[Text | None, Query(description="Only those of this type.")] = None,
+    stand: Annotated[Text | None, Query(description="Only those last measured on this stand.")] = None,
+    lot: Annotated[Text | None, Query(description="Only those of this production lot.")] = None,
+    flagged: Annotated[bool, Query(description="Only those with an open flag.")] = False,
+    order: Annotated[Order, Query(description="By condition worst first, by due date, serial number …")] = WORST_FIRST,
+    backwards: Annotated[bool, Query(description="The same order, last first.")] = False,
 ) -> UnitPage:
-    """Units, worst first."""
-    found = store.fleet.units(FleetQuery(verdict, text, window.offset, window.limit, reserved))
+    """Units, worst first unless another order is asked for."""
+    wanted = FleetQuery(
+        verdict, text, window.offset, window.limit, reserved,
+        due_before=due_before, unit_type=unit_type, stand=stand, lot=lot, flagged=flagged,
+        order=order, backwards=backwards,
+    )  # fmt: skip
+    found = store.fleet.units(wanted)
     listed = [UnitSummarySchema.model_validate(unit) for unit in found]
     return UnitPage(units=listed, page=window.page, limit=window.limit, next_page=window.next_after(len(listed)))
 

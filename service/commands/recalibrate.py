@@ -8,8 +8,8 @@ import typer
 from service.commands.console import AsJson, print_json, progress, screen
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.flows.recalibrate import Recalibrated, recalibrate
+from service.records.fleet import FleetQuery
 from service.storage import Database, Files, Storage
-from service.storage.queries.fleet import FleetQuery
 
 PAGE = 1000
 """Serial numbers that one query brings."""

@@ -1,10 +1,11 @@
 """The fleet page: which units are fit, which are not, and which to look at first."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
-from urllib.parse import urlencode
 
+from service.pages.fleet_view import DUE, ORDERS, PAGE_SIZE, FleetView
+from service.records.fleet import FleetChoices
 from service.records.reservation import Reservations
 from service.records.stand import StandCondition
 from service.records.state import Questioned
@@ -13,27 +14,11 @@ from service.views.standouts import Standout
 from service.words.conditions import REFERENCE, UNDECIDED, Condition, condition_of
 from service.words.due import needed_now
 
-PAGE_SIZE = 50
-"""Units on a page: two screens."""
 MOST_STANDOUTS = 6
 """Lines above the list of units, so that the list stays in sight."""
+NO_CHOICES = FleetChoices()
 BAR_LIMIT = 150.0
 """The margin bar ends at one and a half tolerances, per cent."""
-
-
-@dataclass(frozen=True)
-class FleetView:
-    """What the visitor asked to see."""
-
-    text: str = ""
-    condition: str = ""
-    page: int = 1
-
-    def url(self, **changes: str | int) -> str:
-        """The address of this view with something changed."""
-        asked = {"q": self.text, "condition": self.condition, "page": self.page, **changes}
-        kept = {k: v for k, v in asked.items() if v and (k, v) != ("page", 1)}
-        return "/?" + urlencode(kept) if kept else "/"
 
 
 @dataclass(frozen=True)
@@ -102,6 +87,12 @@ class FleetPage:
     """Sessions that wait for an engineer, the latest first."""
     overdue: str
     """How many units are overdue, in words; empty where none is."""
+    choices: FleetChoices
+    """What the list can be narrowed to."""
+    dates: Mapping[str, str]
+    """Choices of the next calibration's date, in words."""
+    orders: Mapping[str, str]
+    """Of the list, in words."""
 
     @property
     def first(self) -> int:
@@ -124,8 +115,9 @@ def fleet_page(
     unlike: Sequence[Standout] = (),
     stands: Sequence[StandCondition] = (),
     questioned: Sequence[Questioned] = (),
+    choices: FleetChoices = NO_CHOICES,
 ) -> FleetPage:
-    """One page of units, worst first; one unit more than fit on it says that there is a next page."""
+    """One page of units; one unit more than fit on it says that there is a next page."""
     return FleetPage(
         view=view,
         tiles=tuple(
@@ -140,7 +132,10 @@ def fleet_page(
         stands=tuple(stand for stand in stands if stand.shifts),
         standouts=tuple(unlike[:MOST_STANDOUTS]),
         questioned=tuple(questioned),
-        overdue=f"{overdue} unit{'' if overdue == 1 else 's'} overdue for calibration." if overdue else "",
+        overdue=f"{overdue} unit{'' if overdue == 1 else 's'} overdue for calibration" if overdue else "",
+        choices=choices,
+        dates=DUE,
+        orders=ORDERS,
     )
 
 

@@ -8,17 +8,16 @@ from fastapi.responses import HTMLResponse
 from service.dependencies import Now, Reading, ReceptionOf, SettingsOf, StorageOf
 from service.flows.correct_session import correction_of
 from service.flows.receive import receive_all
-from service.pages.fleet import PAGE_SIZE, FleetView, fleet_page
+from service.pages.fleet import fleet_page
+from service.pages.fleet_view import FleetAsked, FleetView
 from service.pages.forms import Key
 from service.pages.received import FormFiles
 from service.pages.render import render
 from service.pages.session import session_page
 from service.pages.unit import unit_page
 from service.pages.upload import outcomes_of, upload_page
-from service.records.decision import Verdict
 from service.records.state import RecordState
 from service.storage.queries.flags import FlagQuery
-from service.storage.queries.fleet import FleetQuery
 from service.views.found_and_left import found_and_left
 from service.views.history import recent_history
 from service.views.outlook import own_outlook
@@ -27,7 +26,6 @@ from service.views.standouts import fleet_standouts
 from service.views.stands import stand_conditions
 from service.views.traceability import traceability_of
 from service.views.unit_report import unit_report
-from service.words.conditions import RESERVED
 
 MOST_QUESTIONED = 20
 """Sessions that the fleet page names; the latest."""
@@ -44,25 +42,20 @@ def show_fleet(
     request: Request,
     store: Reading,
     now: Now,
-    *,
-    q: Annotated[str, Query(max_length=200, pattern=r"^[^\x00]*$")] = "",
-    condition: str = "",
-    page: Annotated[int, Query(ge=1, le=1_000_000)] = 1,
+    asked: Annotated[FleetAsked, Query()],
 ) -> HTMLResponse:
-    """The fleet, worst unit first."""
-    verdict = Verdict(condition) if condition in set(Verdict) else None
-    reserved = True if condition == RESERVED.key else None
-    view = FleetView(q.strip(), condition if verdict or reserved else "", page)
-    wanted = FleetQuery(verdict, view.text or None, (page - 1) * PAGE_SIZE, PAGE_SIZE + 1, reserved)
+    """The fleet, worst unit first unless another order is asked for."""
+    view = FleetView.of(asked)
     shown = fleet_page(
         store.fleet.condition(),
-        store.fleet.units(wanted),
+        store.fleet.units(view.query(now)),
         view,
         now,
         overdue=store.outlooks.overdue(now),
         unlike=fleet_standouts(store),
         stands=stand_conditions(store),
         questioned=store.states.questioned(MOST_QUESTIONED),
+        choices=store.fleet.choices(),
     )
     return render(request, "fleet.html", shown)
 

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from datetime import datetime
 
+from service.records.fleet import FleetQuery
 from service.records.outlook import UnitOutlook
 from service.records.unit import FleetCondition, UnitSummary
 from service.settings import VERSION
-from service.storage.queries.fleet import FleetQuery
 from service.storage.store import Store
 from service.views.outlook import outlooks_of_fleet
 

@@ -2,15 +2,15 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Select, delete, func, select, update
+from sqlalchemy import delete, func, literal, select, union_all, update
 from sqlalchemy.orm import defer
 
 from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState
 from service.records.flag import FlagState
+from service.records.fleet import FleetChoices, FleetQuery
 from service.records.paper import Customer
 from service.records.reservation import Reservations
 from service.records.unit import FleetCondition, UnitSummary, UnitType
@@ -18,31 +18,21 @@ from service.storage.outlook_tables import OutlookRow
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
 from service.storage.queries.unit_types import unit_type_of
+from service.storage.queries.wanted_units import Summaries, matching
 from service.storage.reservation_document import reservations_from_list
 from service.storage.tables import (
     ConditionRow,
     DiagnosisRow,
     FlagRow,
     SessionRow,
+    StandRow,
     ToleranceRow,
     UnitRow,
     UnitTypeRow,
 )
 
-Summaries = Select[UnitRow, str, ConditionRow, SessionRow, DiagnosisRow, datetime | None]
-
-
-@dataclass(frozen=True)
-class FleetQuery:
-    """Which units are wanted."""
-
-    verdict: Verdict | None = None
-    text: str | None = None
-    """Part of the serial number or of the type's name, small and capital letters alike."""
-    offset: int = 0
-    limit: int = 100
-    reserved: bool | None = None
-    """Whether the verdict is said with a reservation; None where either will do."""
+CHOICES = ("types", "stands", "lots")
+"""Of `FleetChoices`."""
 
 
 @dataclass(frozen=True)
@@ -95,10 +85,16 @@ class Fleet(Queries):
 
     def units(self, wanted: FleetQuery) -> tuple[UnitSummary, ...]:
         """The wanted units, worst first, in one query."""
-        query = _matching(_summaries(), wanted).order_by(
-            ConditionRow.severity.desc(), ConditionRow.margin.asc().nulls_last(), UnitRow.serial
-        )
-        return tuple(_summary(row) for row in self._session.execute(query.offset(wanted.offset).limit(wanted.limit)))
+        query = matching(_summaries(), wanted).offset(wanted.offset).limit(wanted.limit)
+        return tuple(_summary(row) for row in self._session.execute(query))
+
+    def choices(self) -> FleetChoices:
+        """Types, stands and lots that there are, in one query."""
+        types = select(literal("types"), UnitTypeRow.name)
+        stands = select(literal("stands"), StandRow.name)
+        lots = select(literal("lots"), UnitRow.lot).where(UnitRow.lot.is_not(None)).distinct()
+        rows: Sequence[Any] = self._session.execute(union_all(types, stands, lots)).all()
+        return FleetChoices(**{of: tuple(sorted(n for place, n in rows if place == of)) for of in CHOICES})
 
     def unit(self, serial: str) -> UnitSummary | None:
         """One unit."""
@@ -147,20 +143,6 @@ def _summaries(*, measured: bool = True) -> Summaries:
         .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
         .outerjoin(OutlookRow, OutlookRow.unit_id == UnitRow.id)
     )
-
-
-def _matching(query: Summaries, wanted: FleetQuery) -> Summaries:
-    if wanted.verdict is not None:
-        query = query.where(ConditionRow.severity == wanted.verdict.severity)
-    if wanted.reserved is not None:
-        said_with = DiagnosisRow.reservations
-        query = query.where(said_with.is_not(None) if wanted.reserved else said_with.is_(None))
-    if wanted.text:
-        query = query.where(
-            UnitRow.serial.icontains(wanted.text, autoescape=True)
-            | UnitTypeRow.name.icontains(wanted.text, autoescape=True)
-        )
-    return query
 
 
 def _summary(row: Sequence[Any]) -> UnitSummary:

@@ -14,13 +14,13 @@ from playwright.sync_api import Browser
 from service.demo.fill import fill
 from service.flows.diagnose import diagnose
 from service.flows.issue_certificate import issue_certificate
+from service.records.fleet import FleetQuery
 from service.records.paper import Laboratory
 from service.reports.certificate import drawn_certificate
 from service.reports.certificate.content import statement_of
 from service.reports.printable import printable_data
 from service.reports.typeset import TEMPLATES
 from service.settings import Settings
-from service.storage.queries.fleet import FleetQuery
 from service.views.certificate import certified_session
 from tests.databases import Databases
 from tests.end_to_end.browser.conftest import draw_all, opened

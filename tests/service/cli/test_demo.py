@@ -13,10 +13,10 @@ from service.demo.fill import FILES, fill, is_wanted
 from service.demo.history import files_of
 from service.flows.receive import upload
 from service.records.decision import Verdict
+from service.records.fleet import FleetQuery
 from service.settings import Settings
 from service.storage import Storage
 from service.storage.queries.flags import FlagQuery
-from service.storage.queries.fleet import FleetQuery
 from service.storage.schema import upgrade
 from service.views.outlook import outlooks_of_fleet
 from service.views.stands import stand_conditions

@@ -1,6 +1,7 @@
 """The fleet page's context."""
 
-from service.pages.fleet import PAGE_SIZE, FleetView, fleet_page, margin_of
+from service.pages.fleet import fleet_page, margin_of
+from service.pages.fleet_view import PAGE_SIZE, FleetView
 from service.records.decision import Verdict
 from service.records.unit import FleetCondition
 from tests.service.pages.records import NOON, unit_summary

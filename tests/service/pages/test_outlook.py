@@ -7,7 +7,8 @@ import pytest
 
 from service.charts.history import history_charts
 from service.charts.tracks import tracks_of
-from service.pages.fleet import FleetView, fleet_page
+from service.pages.fleet import fleet_page
+from service.pages.fleet_view import FleetView
 from service.records.decision import Verdict
 from service.records.outlook import (
     Action,
@@ -110,7 +111,7 @@ def test_the_fleet_page_marks_what_is_overdue() -> None:
     units = [replace(unit_summary("U1"), due=NOON - YEAR), replace(unit_summary("U2"), due=NOON + YEAR)]
     page = fleet_page(condition, units, FleetView(), NOON, overdue=1)
     assert [row.overdue for row in page.rows] == [True, False]
-    assert page.overdue == "1 unit overdue for calibration."
+    assert page.overdue == "1 unit overdue for calibration"
 
 
 def rates_of(units: int) -> list[Rate]:

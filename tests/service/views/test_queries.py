@@ -8,9 +8,9 @@ import pytest
 from sqlalchemy import event
 
 from service.flows.receive import upload
+from service.records.fleet import FleetQuery
 from service.storage import Storage
 from service.storage.queries.flags import FlagQuery
-from service.storage.queries.fleet import FleetQuery
 from service.storage.queries.history import HistoryQuery
 from service.storage.store import Store
 from service.views.outlook import outlook_of, outlooks_of_fleet

@@ -1,0 +1,131 @@
+"""What a visitor of the fleet page asked to see: it stands in the address, so that it can be kept and sent on."""
+
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from typing import Annotated
+from urllib.parse import urlencode
+
+from pydantic import BaseModel, Field
+
+from service.pages.forms import NO_NUL
+from service.records.decision import Verdict
+from service.records.fleet import FleetQuery, Order
+from service.words.conditions import RESERVED
+
+PAGE_SIZE = 50
+"""Units on a page: two screens."""
+DUE = {"overdue": "Overdue", "30": "Due within 30 days", "90": "Due within 90 days", "now": "Act now or repeat"}
+"""Choices of the next calibration's date, in words."""
+ORDERS: dict[str, str] = {
+    Order.CONDITION.value: "by condition, least margin to tolerance first",
+    Order.DUE.value: "by next calibration",
+    Order.SERIAL.value: "by serial number",
+    Order.TYPE.value: "by type",
+    Order.LAST.value: "by last session",
+}
+
+
+Asked = Annotated[str, Field(max_length=200, pattern=NO_NUL)]
+
+
+class FleetAsked(BaseModel):
+    """An address as it came."""
+
+    q: Asked = ""
+    condition: Asked = ""
+    due: Asked = ""
+    type: Asked = ""
+    stand: Asked = ""
+    lot: Asked = ""
+    flagged: Asked = ""
+    sort: Asked = ""
+    page: Annotated[int, Field(ge=1, le=1_000_000)] = 1
+
+
+@dataclass(frozen=True)
+class FleetView:
+    """Empty where nothing is asked."""
+
+    text: str = ""
+    condition: str = ""
+    due: str = ""
+    unit_type: str = ""
+    stand: str = ""
+    lot: str = ""
+    flagged: str = ""
+    sort: str = Order.CONDITION.value
+    """Of `Order`, with ``-`` before it where backwards."""
+    page: int = 1
+
+    @classmethod
+    def of(cls, asked: FleetAsked) -> "FleetView":
+        """The view of an address; what it asks that nobody knows is left out."""
+        return cls(
+            text=asked.q.strip(),
+            condition=asked.condition if asked.condition in {*Verdict, RESERVED.key} else "",
+            due=asked.due if asked.due in DUE else "",
+            unit_type=asked.type,
+            stand=asked.stand,
+            lot=asked.lot,
+            flagged=asked.flagged,
+            sort=asked.sort if asked.sort.removeprefix("-") in set(Order) else Order.CONDITION.value,
+            page=asked.page,
+        )
+
+    @property
+    def order(self) -> Order:
+        """What the list is ordered by."""
+        return Order(self.sort.removeprefix("-"))
+
+    @property
+    def backwards(self) -> bool:
+        """Whether the last comes first."""
+        return self.sort.startswith("-")
+
+    @property
+    def narrows(self) -> bool:
+        """Whether it leaves units out."""
+        return any((self.text, self.condition, self.due, self.unit_type, self.stand, self.lot, self.flagged))
+
+    @property
+    def order_in_words(self) -> str:
+        """``by condition, least margin to tolerance first``."""
+        return ORDERS[self.order.value] + (", backwards" if self.backwards else "")
+
+    def url(self, **changes: str | int) -> str:
+        """The address of this view with something changed."""
+        asked = {name: {**vars(self), **changes}[field] for field, name in NAMES.items()}
+        kept = {k: v for k, v in asked.items() if v and (k, v) not in PLAIN}
+        return "/?" + urlencode(kept) if kept else "/"
+
+    def sorted_by(self, order: str) -> str:
+        """The address of the list in another order, or backwards where it has this one."""
+        return self.url(sort=f"-{order}" if self.sort == order else order, page=1)
+
+    def query(self, now: datetime) -> FleetQuery:
+        """What the store is asked: one unit more than fit on the page, which says whether there is a next one."""
+        until = {"overdue": now, "30": now + timedelta(days=30), "90": now + timedelta(days=90)}
+        return FleetQuery(
+            verdict=Verdict(self.condition) if self.condition in set(Verdict) else None,
+            text=self.text or None,
+            offset=(self.page - 1) * PAGE_SIZE,
+            limit=PAGE_SIZE + 1,
+            reserved=True if self.condition == RESERVED.key else None,
+            due_before=until.get(self.due),
+            undated=self.due == "now",
+            unit_type=self.unit_type or None,
+            stand=self.stand or None,
+            lot=self.lot or None,
+            flagged=bool(self.flagged),
+            order=self.order,
+            backwards=self.backwards,
+        )
+
+
+NAMES = {
+    "text": "q", "condition": "condition", "due": "due", "unit_type": "type", "stand": "stand", "lot": "lot",
+    "flagged": "flagged", "sort": "sort", "page": "page",
+}  # fmt: skip
+"""Fields of a view as they are called in an address."""
+PLAIN = (("page", 1), ("sort", Order.CONDITION.value))
+"""What an address need not say."""
