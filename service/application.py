@@ -9,7 +9,6 @@ from fastapi import Request
 
 from service.errors import BusyError
 from service.flows.diagnose import InProgress
-from service.identity.attempts import Attempts
 from service.metrics import Metrics
 from service.settings import Settings
 from service.storage import Storage
@@ -71,7 +70,6 @@ class Application:
     diagnosing: InProgress = field(default_factory=InProgress)
     metrics: Metrics = field(default_factory=Metrics)
     places: Places = field(default_factory=Places)
-    attempts: Attempts = field(default_factory=Attempts)
 
 
 def application_of(request: Request) -> Application:

@@ -92,6 +92,11 @@ def _reception(request: Request, storage: StorageOf, person: PersonOf, after_the
     return Reception(storage, own.settings.coverage_factor, own.metrics, later, person.signs(CREW))
 
 
+def address_of(request: Request) -> str:
+    """The address that a request came from."""
+    return request.client.host if request.client else ""
+
+
 def limited(request: Request, most: int, *, is_form: bool) -> Request:
     """The same request, but a body that grows beyond ``most`` bytes is stopped, whatever it announced."""
     longest = most + (ENVELOPE if is_form else 0)

@@ -7,14 +7,13 @@ from fastapi import APIRouter, Form, Path, Query, Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
 from service.admission import COOKIE, PersonOf
-from service.application import application_of
-from service.dependencies import Now, Reading, SettingsOf, StorageOf
+from service.dependencies import Now, Reading, SettingsOf, StorageOf, address_of
 from service.errors import ForbiddenError, SignInError
 from service.flows.identity.accounts import change_password
+from service.flows.identity.attempts import Attempt, attempting
 from service.flows.identity.links import Chosen, link_of, use_link
 from service.flows.identity.sign_in import LASTS, sign_in, sign_out
 from service.flows.identity.tokens import make_token, revoke_token
-from service.identity.attempts import Attempts
 from service.identity.passwords import LONGEST, SHORTEST
 from service.pages.account import LinkPage, SignInPage, account_page
 from service.pages.forms import NO_NUL, SEE_OTHER, Number
@@ -46,12 +45,10 @@ def take_sign_in(
     next: Annotated[str, Form(max_length=2000)] = "/",
 ) -> Response:
     """Signs in, or says that it was wrong."""
-    attempts, address = _attempts(request)
-    attempts.require_few(login, address)
     try:
-        secret = sign_in(storage, login, password, now)
+        with attempting(storage, Attempt(login, address_of(request)), now):
+            secret = sign_in(storage, login, password, now)
     except SignInError as wrong:
-        attempts.wrong(login, address)
         return render(request, "sign_in.html", SignInPage(_inside(next), wrong.detail), wrong.status)
     return _signed_in(request, settings, secret, _inside(next))
 
@@ -97,13 +94,8 @@ def take_password(
     request: Request, old: Password, new: Password, storage: StorageOf, person: PersonOf, now: Now
 ) -> RedirectResponse:
     """Another password; every browser of the account must sign in again. Whoever found one open may not guess."""
-    attempts, address = _attempts(request)
-    attempts.require_few(person.login, address)
-    try:
+    with attempting(storage, Attempt(person.login, address_of(request)), now):
         change_password(storage, person.login, old, new, now)
-    except SignInError:
-        attempts.wrong(person.login, address)
-        raise
     return RedirectResponse("/sign-in", SEE_OTHER)
 
 
@@ -134,11 +126,6 @@ def take_back(id: Number, storage: StorageOf, person: PersonOf, now: Now) -> Red
         raise ForbiddenError("This token is another account's.")
     revoke_token(storage, id, now, who=person.signs("admin"))
     return RedirectResponse("/account", SEE_OTHER)
-
-
-def _attempts(request: Request) -> tuple[Attempts, str]:
-    """Wrong attempts so far, and the address that this one comes from."""
-    return application_of(request).attempts, request.client.host if request.client else ""
 
 
 def _inside(address: str) -> str:

@@ -5,6 +5,7 @@ from functools import cached_property
 from sqlalchemy.orm import Session
 
 from service.storage.queries.accounts import Accounts
+from service.storage.queries.attempts import Attempts
 from service.storage.queries.audit import Audit
 from service.storage.queries.calibrations import Calibrations
 from service.storage.queries.certificates import Certificates
@@ -161,3 +162,8 @@ class Store:
     def sign_ins(self) -> SignIns:
         """Signed-in browsers, and links that sign somebody in once."""
         return SignIns(self._session)
+
+    @cached_property
+    def attempts(self) -> Attempts:
+        """How often somebody tried to sign in."""
+        return Attempts(self._session)

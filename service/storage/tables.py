@@ -17,9 +17,12 @@ unit_types ──< tolerance_revisions          stands ──< stand_certificate
                    ├──1 diagnoses
                    ├──< reference_choices     record_states   what became of sessions and services, append-only
                    ├──< certificates          numbers of the papers that were issued, append-only
+                   │        └──< certificate_signatures, certificate_files   who signed them, and what was approved
                    └──< model_revisions       causes that engineers accepted, numbered through
 
 accounts ──< tokens, sign_ins, sign_in_links  who may sign in, and what programs and browsers show for it
+         ──< identities                       who they are to a provider that signs people in
+attempts                                      how often somebody tried to sign in
 """
 
 from datetime import datetime
