@@ -18,6 +18,7 @@ from service.background.watch_fleet import watch_fleet
 from service.boundary import guard
 from service.ingest import limits
 from service.metrics import Metrics
+from service.reports.sealing import seal_of
 from service.settings import VERSION, Settings
 from service.storage import Database, Files, Storage
 from service.storage.waits import Waits
@@ -62,7 +63,8 @@ def _application(settings: Settings, clock: Callable[[], datetime]) -> Applicati
         settings.database_lock_seconds, settings.database_statement_seconds, settings.database_connect_seconds
     )
     storage = Storage(Database(settings.database, waits), Files(settings.files, metrics.count_file_fault))
-    return Application(settings, storage, clock, Gate(settings), metrics=metrics)
+    seal = seal_of(settings.seal_key_file, settings.seal_password_file)
+    return Application(settings, storage, clock, Gate(settings), seal, metrics=metrics)
 
 
 def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncContextManager[None]]:

@@ -10,6 +10,7 @@ from fastapi import Request
 from service.errors import BusyError
 from service.flows.diagnose import InProgress
 from service.metrics import Metrics
+from service.reports.sealing import Seal
 from service.settings import Settings
 from service.storage import Storage
 
@@ -67,6 +68,7 @@ class Application:
     storage: Storage
     clock: Callable[[], datetime]
     gate: Gate
+    seal: Seal | None = None
     diagnosing: InProgress = field(default_factory=InProgress)
     metrics: Metrics = field(default_factory=Metrics)
     places: Places = field(default_factory=Places)

@@ -29,6 +29,8 @@ COMMANDS = {
     "withdraw-service": "records.withdraw_service",
     "note": "events.write_note",
     "certificate": "certificate.certificate",
+    "sign": "sign.sign",
+    "seal": "sign.seal",
     "customer": "papers.customer",
     "stand-certificate": "papers.stand_certificate",
     "correction": "certificate.correction",

@@ -14,12 +14,15 @@ from service.background.diagnose_pending import diagnose_quietly
 from service.errors import TooLargeError
 from service.flows.diagnose import diagnose_now_or_later
 from service.flows.receive import Reception
+from service.flows.sign_certificate import Rules
 from service.metrics import Metrics
 from service.records.diagnosis import StoredDiagnosis
 from service.records.identity import Person
+from service.reports.desk import Desk
 from service.settings import Settings
 from service.storage import Storage
 from service.storage.store import Store
+from service.views.certificate import laboratory_of
 
 CREW = "crew"
 """Who uploads, where nobody says who they are."""
@@ -92,6 +95,11 @@ def _reception(request: Request, storage: StorageOf, person: PersonOf, after_the
     return Reception(storage, own.settings.coverage_factor, own.metrics, later, person.signs(CREW))
 
 
+def _desk(request: Request, storage: StorageOf) -> Desk:
+    own = application_of(request)
+    return Desk(storage, laboratory_of(own.settings), Rules(own.settings.four_eyes), own.seal)
+
+
 def address_of(request: Request) -> str:
     """The address that a request came from."""
     return request.client.host if request.client else ""
@@ -125,6 +133,8 @@ DiagnoserOf = Annotated[Diagnoser, Depends(_diagnoser)]
 """What makes diagnoses."""
 ReceptionOf = Annotated[Reception, Depends(_reception)]
 """What takes in uploads."""
+DeskOf = Annotated[Desk, Depends(_desk)]
+"""Where certificates are handed out and signed."""
 Now = Annotated[datetime, Depends(_now)]
 """The time of the request, UTC."""
 Reading = Annotated[Store, Depends(_reading, scope="function")]

@@ -121,6 +121,15 @@ class Settings(BaseSettings):
     laboratory_place: str = Field(
         default="", max_length=2000, description="Where it measures, if that is not at its address."
     )
+    four_eyes: bool = Field(
+        default=True, description="Whether a certificate must be approved by somebody else than who reviewed it."
+    )
+    seal_key_file: Path | None = Field(
+        default=None,
+        description="Key and certificate of the laboratory's electronic seal, PEM or PKCS#12; approved certificates "
+        "carry it.",
+    )
+    seal_password_file: Path | None = Field(default=None, description="File with the password of that key.")
     public_url: str = Field(
         default="",
         pattern=r"^(https?://\S+)?$",

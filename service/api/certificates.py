@@ -1,23 +1,21 @@
 """What is handed on of a session: its certificate, for people, and its correction, for firmware."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Query, Response
+from fastapi import APIRouter, Path, Query, Request, Response
 
 from service.admission import PersonOf
 from service.api.exports import as_file
 from service.api.schemas.corrections import CorrectionDocument
-from service.api.schemas.fields import SessionId, Text
-from service.api.schemas.papers import IssueList, IssueSchema
+from service.api.schemas.fields import TEXT, SessionId, Text
+from service.api.schemas.papers import IssueList, IssueSchema, NewSignature, SignatureSchema
 from service.api.schemas.problem import errors
-from service.dependencies import Now, Reading, SettingsOf, StorageOf
-from service.flows.diagnose import diagnose
-from service.flows.issue_certificate import issue_certificate
+from service.dependencies import DeskOf, Now, StorageOf, address_of
+from service.flows.identity.attempts import Attempt
+from service.flows.sign_certificate import Signing
 from service.records.paper import NOT_STATED
-from service.reports.certificate import certificate_pdf
-from service.reports.certificate.content import statement_of
-from service.reports.dcc import certificate_dcc
-from service.views.certificate import certified_session, laboratory_of
+from service.reports.desk import HandedOut, hand_out, hand_out_approved, sign
+from service.reports.signatures import papers_of
 from service.views.correction import correction_document
 
 router = APIRouter(prefix="/sessions", tags=["handing on"])
@@ -25,23 +23,28 @@ PDF, XML = "application/pdf", "application/xml"
 """Media types of the two forms."""
 BYTES = {"schema": {"type": "string", "format": "binary"}}
 """How OpenAPI describes a file."""
+FILES: dict[int | str, dict[str, Any]] = {200: {"content": {PDF: BYTES, XML: {"schema": {"type": "string"}}}}}
+Format = Annotated[
+    Literal["pdf", "dcc"], Query(description="For people, or as a Digital Calibration Certificate for programs.")
+]
+CertificateNumber = Annotated[
+    str,
+    Path(pattern=TEXT, max_length=60, description="Number of the certificate.", examples=["3f9a0c5be1d24786aa10-0-1"]),
+]
 
 
 @router.get(
     "/{id}/certificate",
-    responses={200: {"content": {PDF: BYTES, XML: {"schema": {"type": "string"}}}}, **errors(404, 409, 422, 507)},
+    responses={**FILES, **errors(404, 409, 422, 507)},
     response_class=Response,
 )
 def read_certificate(
     id: SessionId,
-    storage: StorageOf,
-    settings: SettingsOf,
+    desk: DeskOf,
     now: Now,
     person: PersonOf,
     *,
-    format: Annotated[
-        Literal["pdf", "dcc"], Query(description="For people, or as a Digital Calibration Certificate for programs.")
-    ] = "pdf",
+    format: Format = "pdf",
     by: Annotated[Text, Query(description="Who issues it; kept with its number.")] = "",
 ) -> Response:
     """The session's certificate, for people to sign or as XML.
@@ -50,19 +53,50 @@ def read_certificate(
     the same bytes; when what it states has changed, it has a new number and names the one it replaces.
     A session that is not accepted has none.
     """
-    found = certified_session(storage, diagnose(storage, id, now), laboratory_of(settings))
-    issue = issue_certificate(storage, statement_of(found), now, who=person.signs(by.strip()) or NOT_STATED)
-    name = f"{found.report.session.unit}-{issue.number}-certificate"
-    if format == "dcc":
-        return as_file(certificate_dcc(found, issue), XML, f"{name}.xml")
-    return as_file(certificate_pdf(found, issue), PDF, f"{name}.pdf")
+    paper = hand_out(desk, id, format, now, who=person.signs(by.strip()) or NOT_STATED)
+    return _file(paper, format)
 
 
 @router.get("/{id}/certificates", responses=errors(404, 422))
-def list_certificates(id: SessionId, store: Reading) -> IssueList:
-    """The numbers under which the session's certificate was issued, the first one first; the last one holds."""
-    store.sessions.get(id)
-    return IssueList(certificates=[IssueSchema.model_validate(issue) for issue in store.certificates.of_session(id)])
+def list_certificates(id: SessionId, desk: DeskOf, now: Now) -> IssueList:
+    """The numbers under which the session's certificate was issued, the first one first, with who signed them.
+
+    The last one holds. What it rests on is worked out again and compared, and `concerns` says what has changed.
+    """
+    papers = papers_of(desk, id, now)
+    listed = [
+        IssueSchema.model_validate({**vars(one.issue), "signatures": [vars(s) for s in one.signatures]})
+        for one in papers.issues
+    ]
+    return IssueList(certificates=listed, is_current=papers.is_current, concerns=list(papers.concerns))
+
+
+@router.get("/{id}/certificates/{number}", responses={**FILES, **errors(404, 422)}, response_class=Response)
+def read_approved_certificate(
+    id: SessionId, number: CertificateNumber, desk: DeskOf, format: Format = "pdf"
+) -> Response:
+    """An approved certificate as it was approved, byte by byte, whatever has changed since."""
+    return _file(hand_out_approved(desk, id, number, format), format)
+
+
+@router.post("/{id}/certificate/signatures", status_code=201, responses=errors(400, 401, 403, 404, 409, 422, 429, 507))
+def sign_certificate(
+    id: SessionId, new: NewSignature, desk: DeskOf, person: PersonOf, now: Now, request: Request
+) -> SignatureSchema:
+    """Sign the session's certificate: that you reviewed it, or that it is approved.
+
+    Asks for the password of your account again. A certificate is reviewed first and approved by somebody else; both
+    need the role engineer. An approved certificate is kept as it is, with the laboratory's electronic seal if it has
+    one, and the same bytes are handed out from then on.
+    """
+    signing = Signing(id, new.number, new.meaning, person.login, new.password)
+    signature = sign(desk, signing, Attempt(person.login, address_of(request)), now)
+    return SignatureSchema.model_validate(signature)
+
+
+def _file(paper: HandedOut, format: str) -> Response:
+    media, ending = (XML, "xml") if format == "dcc" else (PDF, "pdf")
+    return as_file(paper.content, media, f"{paper.name}.{ending}")
 
 
 @router.get("/{id}/correction", responses=errors(404, 422))

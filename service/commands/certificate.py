@@ -26,12 +26,16 @@ def certificate(
     server: Server = DEFAULT_SERVER,
     format: Annotated[Form, typer.Option("--format", help="pdf, to sign, or dcc: XML for programs.")] = Form.PDF,
     by: Annotated[str, typer.Option("--by", help="Your name, kept with the certificate's number.")] = "",
+    number: Annotated[
+        str, typer.Option(help="Of an approved one, as it was approved.", show_default="the latest")
+    ] = "",
     out: Out = None,
 ) -> None:
     """Write the certificate of a session."""
-    path = f"/sessions/{quote(session, safe='')}/certificate"
+    own = f"/sessions/{quote(session, safe='')}"
+    path = f"{own}/certificates/{quote(number, safe='')}" if number else f"{own}/certificate"
     with connected(server) as client:
-        deliver(client.get(path, format=format.value, by=by).content, out)
+        deliver(client.get(path, format=format.value, **({} if number else {"by": by})).content, out)
 
 
 def correction(session: Session, server: Server = DEFAULT_SERVER, out: Out = None) -> None:

@@ -27,6 +27,7 @@ GET /
 GET /units/{{serial:path}}
 GET /sessions/{{id}}
 GET /sessions/{{id}}/diagnosis
+GET /sessions/{{id}}/certificate
 GET /flags
 GET /stand-certificates
 GET /plan
@@ -40,6 +41,7 @@ GET {SESSION}/calibration
 GET {SESSION}/file
 GET {SESSION}/states
 GET {SESSION}/certificates
+GET {SESSION}/certificates/{{number}}
 GET {SESSION}/correction
 GET {SESSION}/diagnosis
 GET {API}/units
@@ -96,12 +98,14 @@ POST /units/{{serial:path}}/recalibrate
 POST /flags/{{id}}/acknowledge
 POST /flags/{{id}}/resolve
 POST /sessions/{{id}}/withdraw
+POST /sessions/{{id}}/certificate/signatures
 POST /sessions/{{id}}/accept
 POST /sessions/{{id}}/correct
 POST /sessions/{{id}}/reference
 POST /services/{{id}}/withdraw
 POST /stand-certificates
 POST {SESSION}/withdraw
+POST {SESSION}/certificate/signatures
 POST {SESSION}/accept
 POST {SESSION}/correct
 POST {SESSION}/supersede

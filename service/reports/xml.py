@@ -15,3 +15,9 @@ def document(root: Element) -> bytes:
     """The file: the same tree gives the same bytes."""
     written: bytes = tostring(root, encoding="utf-8", xml_declaration=True, pretty_print=True)
     return written
+
+
+def sealed_document(root: Element) -> bytes:
+    """The file of a tree that is signed as it stands: not a space is added."""
+    written: bytes = tostring(root, encoding="utf-8", xml_declaration=True)
+    return written

@@ -60,7 +60,7 @@ class SignInLinkRow(Base):
 
 
 class AttemptRow(Base):
-    """How often somebody tried to sign in within a minute, by what they tried; a row is removed when it is a day old."""
+    """How often somebody tried to sign in within a minute, by what they tried; kept for a day."""
 
     __tablename__ = "attempts"
     key: Mapped[str] = mapped_column(String(64), primary_key=True)

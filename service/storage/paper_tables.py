@@ -1,4 +1,4 @@
-"""The tables of papers: certificates of stands, numbers of certificates, their signatures and files. All append-only."""
+"""The tables of papers: certificates of stands, certificates issued, their signatures and files. All append-only."""
 
 from datetime import date, datetime
 

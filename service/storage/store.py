@@ -23,6 +23,7 @@ from service.storage.queries.outlooks import Outlooks
 from service.storage.queries.services import Services
 from service.storage.queries.sessions import Sessions
 from service.storage.queries.sign_ins import SignIns
+from service.storage.queries.signatures import Signatures
 from service.storage.queries.stand_certificates import StandCertificates
 from service.storage.queries.stands import Stands
 from service.storage.queries.states import States
@@ -117,6 +118,11 @@ class Store:
     def certificates(self) -> Certificates:
         """Numbers of the certificates that were issued."""
         return Certificates(self._session)
+
+    @cached_property
+    def signatures(self) -> Signatures:
+        """Who put their name under certificates, and what was approved."""
+        return Signatures(self._session)
 
     @cached_property
     def outlooks(self) -> Outlooks:

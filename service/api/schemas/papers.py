@@ -4,8 +4,9 @@ from datetime import date, datetime
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from service.api.schemas.fields import Day, LongText, Said, Text
+from service.api.schemas.fields import TEXT, Day, LongText, Said, Text
 from service.records.paper import TraceState
+from service.records.signature import Meaning
 
 
 class CustomerSchema(BaseModel):
@@ -68,6 +69,29 @@ class TraceabilitySchema(BaseModel):
     )
 
 
+class SignatureSchema(BaseModel):
+    """One signature under a certificate."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    certificate: str = Field(description="Number of the certificate.")
+    meaning: Meaning = Field(description="What it says.")
+    login: str = Field(description="Account that signed, with its password.")
+    name: str = Field(description="As it is printed.")
+    signed_at: datetime = Field(description="UTC.")
+    content_hash: str = Field(description="SHA-256 of all that the certificate stated when it was signed.")
+
+
+class NewSignature(BaseModel):
+    """A name that is to stand under a certificate."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    number: Said = Field(description="Of the certificate that you read; one that is not the latest is refused.")
+    meaning: Meaning = Field(description="A certificate is reviewed first, and approved by somebody else.")
+    password: str = Field(max_length=1000, pattern=TEXT, description="Of your account, asked again.")
+
+
 class IssueSchema(BaseModel):
     """One issue of a session's certificate."""
 
@@ -80,9 +104,14 @@ class IssueSchema(BaseModel):
     who: str = Field(description="Who issued it.")
     replaces: str | None = Field(description="Number of the certificate that it takes the place of.")
     content_hash: str = Field(description="SHA-256 of all that it states.")
+    signatures: list[SignatureSchema] = Field(default=[], description="Who signed it, in their order.")
 
 
 class IssueList(BaseModel):
     """Every issue of a session's certificate."""
 
     certificates: list[IssueSchema] = Field(description="The first one first; the last one holds.")
+    is_current: bool = Field(
+        default=False, description="Whether the last one states what is stored now; another number is due if not."
+    )
+    concerns: list[str] = Field(default=[], description="What speaks against using the last one, in words.")

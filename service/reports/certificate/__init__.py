@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from service.records.paper import Issue
 from service.reports.certificate.drawings import Drawing, histories_of, residuals_of
+from service.reports.certificate.signed import UNSIGNED, SignatureLine, Signed, lines_of
 from service.reports.certificate.words import Certificate, certificate
 from service.reports.typeset import typeset
 from service.views.certificate import CertifiedSession
@@ -16,13 +17,18 @@ class DrawnCertificate:
     words: Certificate
     histories: tuple[Drawing, ...]
     residuals: tuple[Drawing, ...]
+    signatures: tuple[SignatureLine, ...]
+    sealed_by: str
+    """Whose electronic seal the file carries; empty where it has none."""
 
 
-def certificate_pdf(found: CertifiedSession, issue: Issue) -> bytes:
+def certificate_pdf(found: CertifiedSession, issue: Issue, signed: Signed = UNSIGNED) -> bytes:
     """The certificate as PDF; it carries the date of issue, so that one issue gives the same bytes every time."""
-    return typeset("certificate.typ", drawn_certificate(found, issue), issue.issued_at)
+    return typeset("certificate.typ", drawn_certificate(found, issue, signed), issue.issued_at)
 
 
-def drawn_certificate(found: CertifiedSession, issue: Issue) -> DrawnCertificate:
+def drawn_certificate(found: CertifiedSession, issue: Issue, signed: Signed = UNSIGNED) -> DrawnCertificate:
     """All that the typesetter is given."""
-    return DrawnCertificate(certificate(found, issue), histories_of(found), residuals_of(found))
+    return DrawnCertificate(
+        certificate(found, issue), histories_of(found), residuals_of(found), lines_of(signed), signed.sealed_by
+    )

@@ -1,6 +1,7 @@
 """The certificate for programs: a PTB Digital Calibration Certificate, release 3.3.0 with D-SI 2.2.1. SI throughout."""
 
 from service.records.paper import Issue
+from service.reports.certificate.signed import UNSIGNED, Signed
 from service.reports.dcc.administrative import administrative
 from service.reports.dcc.elements import DCC, NAMESPACES
 from service.reports.dcc.measurement import measurement
@@ -14,11 +15,11 @@ LOCATIONS = "{dcc} {dcc}/v{schema}/dcc.xsd {si} {si}/v2.2.1/SI_Format.xsd".forma
 """The attribute that names, and the text that holds, where the schema of each namespace is found."""
 
 
-def certificate_dcc(found: CertifiedSession, issue: Issue) -> bytes:
+def certificate_dcc(found: CertifiedSession, issue: Issue, signed: Signed = UNSIGNED) -> bytes:
     """The certificate as XML; one issue gives the same bytes every time."""
     root = DCC.digitalCalibrationCertificate(
         {"schemaVersion": SCHEMA, LOCATION: LOCATIONS},
-        administrative(found, issue),
+        administrative(found, issue, signed),
         DCC.measurementResults(measurement(found)),
     )
     return document(root)

@@ -3,16 +3,22 @@
 from collections.abc import Iterator
 
 from service.records.paper import NOT_STATED, Issue
+from service.records.signature import Meaning, Signature
+from service.reports.certificate.signed import Signed
 from service.reports.dcc.elements import DCC, english, plain, software
 from service.reports.dcc.statements import statements
 from service.reports.xml import Element
 from service.views.certificate import CertifiedSession
+from service.words.signature import BOUND, STATES, moment_of
 
 UNKNOWN_COUNTRY = "ZZ"
 """User-assigned in ISO 3166-1: nobody set the laboratory's country. PTB's rules refuse it, as they should a draft."""
 
+ROLES = {Meaning.REVIEWED: "reviewer", Meaning.APPROVED: "approver"}
+"""Of whoever signed, by what their signature means."""
 
-def administrative(found: CertifiedSession, issue: Issue) -> Element:
+
+def administrative(found: CertifiedSession, issue: Issue, signed: Signed) -> Element:
     """Everything but the results."""
     own, customer = found.laboratory, found.customer
     return DCC.administrativeData(
@@ -20,18 +26,36 @@ def administrative(found: CertifiedSession, issue: Issue) -> Element:
         _core(found, issue),
         DCC.items(_item(found)),
         DCC.calibrationLaboratory(_contact("contact", own.name, own.address, own.country)),
-        DCC.respPersons(DCC.respPerson(*_operator(found.report.session.operator))),
+        DCC.respPersons(*_people(found.report.session.operator, signed)),
         _contact("customer", customer.name, customer.address, ""),
         DCC.statements(*statements(found)),
     )
 
 
-def _operator(name: str) -> Iterator[Element]:
+def _people(operator: str, signed: Signed) -> Iterator[Element]:
+    """Who measured, and who signed; the main signer is who approved it."""
+    approved = any(signature.meaning is Meaning.APPROVED for signature in signed.signatures)
+    yield DCC.respPerson(*_operator(operator, signs=not approved))
+    for signature in signed.signatures:
+        yield DCC.respPerson(*_signer(signature, signed.sealed_by))
+
+
+def _operator(name: str, *, signs: bool) -> Iterator[Element]:
     """Nobody whose name is not known signs anything."""
     yield DCC.person(english("name", name))
     yield DCC.role("operator")
-    if plain(name) != NOT_STATED:
+    if signs and plain(name) != NOT_STATED:
         yield DCC.mainSigner("true")
+
+
+def _signer(signature: Signature, sealed_by: str) -> Iterator[Element]:
+    said = f"{STATES[signature.meaning]} {moment_of(signature.signed_at)}. "
+    yield DCC.person(english("name", signature.name))
+    yield DCC.description(DCC.content(said + BOUND.format(hash=signature.content_hash), lang="en"))
+    yield DCC.role(ROLES[signature.meaning])
+    if signature.meaning is Meaning.APPROVED:
+        yield DCC.mainSigner("true")
+        yield DCC.cryptElectronicSeal("true" if sealed_by else "false")
 
 
 def _core(found: CertifiedSession, issue: Issue) -> Element:

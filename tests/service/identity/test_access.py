@@ -23,7 +23,7 @@ WHO: tuple[Role | None, ...] = (None, *Role)
 OPENAPI = ("GET", "/openapi.json")
 """FastAPI's own; it tells nothing that the source does not."""
 FILLED = {"{serial:path}": "BA-017", "{name:path}": "hex", "{id}": "99", "{revision}": "1", "{login}": "viewer",
-          "{name}": "style.css", "{secret}": "x"}  # fmt: skip
+          "{name}": "style.css", "{secret}": "x", "{number}": "x-0-1"}  # fmt: skip
 
 
 @pytest.fixture

@@ -26,7 +26,7 @@ STAND = {
 
 
 @contextmanager
-def named(settings: Settings, **changes: str) -> Iterator[httpx.Client]:
+def named(settings: Settings, **changes: object) -> Iterator[httpx.Client]:
     """HTTP to a service of a laboratory that states everything; ``changes`` are other settings."""
     with http_client(create_app(settings.model_copy(update=LABORATORY | changes))) as client:
         yield client

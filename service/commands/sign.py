@@ -1,0 +1,55 @@
+"""`imu-health sign` puts a name under a certificate; `imu-health seal` makes a key to try electronic seals with."""
+
+import os
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Annotated
+from urllib.parse import quote
+
+import typer
+from rich.markup import escape
+
+from service.commands.certificate import Session
+from service.commands.client import connected
+from service.commands.console import DEFAULT_SERVER, Server, say, screen
+from service.errors import ConflictError
+from service.flows.sign_certificate import NOT_ISSUED
+from service.records.signature import Meaning
+from service.reports.sealing import seal_room
+from service.settings import Settings
+from service.words.signature import STATES
+
+OWN_EYES_ONLY = 0o600
+"""Of a file with a key."""
+seal = typer.Typer(name="seal", add_completion=False, no_args_is_help=True, help="The laboratory's electronic seal.")
+
+
+def sign(
+    session: Session,
+    meaning: Annotated[Meaning, typer.Option(help="What your signature says.", show_default=False)],
+    number: Annotated[str, typer.Option(help="Of the certificate that you read.", show_default="the latest")] = "",
+    server: Server = DEFAULT_SERVER,
+) -> None:
+    """Sign the certificate of a session: reviewed, then approved by somebody else. Asks for your password."""
+    path = f"/sessions/{quote(session, safe='')}/certificate"
+    with connected(server) as client:
+        issued = client.get(f"{path}s").json()["certificates"]
+        if not issued:
+            raise ConflictError(NOT_ISSUED)
+        read = number or issued[-1]["number"]
+        say(f"Certificate {read}: {STATES[meaning]}")
+        password = typer.prompt("Your password", hide_input=True, err=True)
+        given = client.post(f"{path}/signatures", {"number": read, "meaning": meaning, "password": password})
+    screen().print(f"[bold]{escape(given['certificate'])}[/]  {meaning} by {escape(given['name'])}")
+
+
+@seal.command("trial")
+def make_trial(
+    out: Annotated[Path, typer.Option(help="File to write; one that is there stays as it is.", show_default=False)],
+) -> None:
+    """Make a key that nobody trusts, to try seals with: it says so in its name, and holds for ninety days."""
+    made: bytes = seal_room().make_trial_key(Settings().laboratory_name, datetime.now(UTC))
+    file = os.open(out, os.O_WRONLY | os.O_CREAT | os.O_EXCL, OWN_EYES_ONLY)
+    with os.fdopen(file, "wb") as opened:
+        opened.write(made)
+    say(f"{out}: a key for trial. Start the service with IMU_HEALTH_SEAL_KEY_FILE={out}.")

@@ -1,0 +1,47 @@
+"""The addresses of a session's certificate: the page with its signatures, and the form that signs it."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Form, Request
+from fastapi.responses import HTMLResponse, RedirectResponse
+
+from service.admission import PersonOf
+from service.dependencies import DeskOf, Now, Reading, address_of
+from service.flows.identity.attempts import Attempt
+from service.flows.sign_certificate import Signing
+from service.identity.passwords import LONGEST
+from service.pages.certificate import certificate_page
+from service.pages.forms import NO_NUL, SAYS_SOMETHING, SEE_OTHER, Key
+from service.pages.render import render
+from service.records.signature import Meaning
+from service.reports.desk import sign
+from service.reports.signatures import papers_of
+
+router = APIRouter(include_in_schema=False)
+
+
+@router.get("/sessions/{id}/certificate")
+def show_certificate(
+    request: Request, id: Key, store: Reading, desk: DeskOf, person: PersonOf, now: Now
+) -> HTMLResponse:
+    """Every issue of the session's certificate, and who signed it."""
+    page = certificate_page(store.sessions.get(id), papers_of(desk, id, now), person)
+    return render(request, "certificate.html", page)
+
+
+@router.post("/sessions/{id}/certificate/signatures")
+def take_signature(
+    request: Request,
+    id: Key,
+    number: Annotated[str, Form(max_length=60, pattern=SAYS_SOMETHING)],
+    meaning: Annotated[Meaning, Form()],
+    password: Annotated[str, Form(max_length=LONGEST, pattern=NO_NUL)],
+    *,
+    desk: DeskOf,
+    person: PersonOf,
+    now: Now,
+) -> RedirectResponse:
+    """Puts a name under the certificate."""
+    signing = Signing(id, number, meaning, person.login, password)
+    sign(desk, signing, Attempt(person.login, address_of(request)), now)
+    return RedirectResponse(f"/sessions/{id}/certificate", SEE_OTHER)

@@ -1,0 +1,113 @@
+"""Where certificates are handed out and signed: a new one is made of what is stored, an approved one is kept."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from hashlib import sha256
+
+from service.errors import DamagedError, NotFoundError
+from service.flows.diagnose import diagnose
+from service.flows.identity.attempts import Attempt, attempting
+from service.flows.issue_certificate import Statement, issue_certificate
+from service.flows.sign_certificate import Rules, Signing, require_signer, sign_certificate, signature_of
+from service.records.paper import Issue, Laboratory
+from service.records.signature import CertificateFile, Meaning, Signature
+from service.reports.certificate import certificate_pdf
+from service.reports.certificate.content import statement_of
+from service.reports.certificate.signed import Signed
+from service.reports.dcc import certificate_dcc
+from service.reports.sealing import Seal
+from service.storage import Storage
+from service.views.certificate import CertifiedSession, certified_session
+
+FORMATS = {"pdf": certificate_pdf, "dcc": certificate_dcc}
+"""How a certificate can be written."""
+DAMAGED = "The approved certificate {number} is not what was kept, and is not given out: the database was changed."
+NOT_KEPT = "There is no approved certificate {number!r} of this session."
+
+
+@dataclass(frozen=True)
+class Desk:
+    """What certificates are made from."""
+
+    storage: Storage
+    laboratory: Laboratory
+    rules: Rules
+    seal: Seal | None
+
+
+@dataclass(frozen=True)
+class HandedOut:
+    """A certificate as a file."""
+
+    name: str
+    """Without its ending."""
+    content: bytes
+
+
+def certified(desk: Desk, id: str, now: datetime) -> tuple[CertifiedSession, Statement]:
+    """What a certificate of the session would state now; ConflictError where the session does not count."""
+    found = certified_session(desk.storage, diagnose(desk.storage, id, now), desk.laboratory)
+    return found, statement_of(found)
+
+
+def hand_out(desk: Desk, id: str, format: str, now: datetime, *, who: str) -> HandedOut:
+    """The certificate that holds, under a new number where it states something new."""
+    found, statement = certified(desk, id, now)
+    issue = issue_certificate(desk.storage, statement, now, who=who)
+    with desk.storage.database.reading() as store:
+        kept = store.signatures.kept(issue.number, format)
+        signatures = store.signatures.of_certificate(issue.number)
+    content = FORMATS[format](found, issue, Signed(signatures)) if kept is None else _intact(kept, issue.number)
+    return HandedOut(_name(found.report.session.unit, issue.number), content)
+
+
+def hand_out_approved(desk: Desk, id: str, number: str, format: str) -> HandedOut:
+    """An approved certificate as it was approved, whatever has changed since."""
+    with desk.storage.database.reading() as store:
+        unit = store.sessions.get(id).unit
+        of_session = any(issue.number == number for issue in store.certificates.of_session(id))
+        kept = store.signatures.kept(number, format) if of_session else None
+    if kept is None:
+        raise NotFoundError(NOT_KEPT.format(number=number))
+    return HandedOut(_name(unit, number), _intact(kept, number))
+
+
+def sign(desk: Desk, signing: Signing, attempt: Attempt, now: datetime) -> Signature:
+    """Puts a name under the certificate that somebody read, once their password is right."""
+    with attempting(desk.storage, attempt, now):
+        require_signer(desk.storage, signing)
+    found, statement = certified(desk, signing.session, now)
+    with desk.storage.database.reading() as store:
+        signature = signature_of(store, signing, statement, desk.rules, now)
+        given = store.signatures.of_certificate(signing.number)
+        issue = store.certificates.of_session(signing.session)[-1]
+    files = _files(desk, found, issue, (*given, signature)) if signature.meaning is Meaning.APPROVED else ()
+    return sign_certificate(desk.storage, signing, statement, desk.rules, signature, files=files)
+
+
+def _files(
+    desk: Desk, found: CertifiedSession, issue: Issue, signatures: tuple[Signature, ...]
+) -> tuple[CertificateFile, ...]:
+    """An approved certificate in every format, sealed where the laboratory has a key."""
+    seal, sealed_by = desk.seal, ""
+    if seal is not None:
+        seal.require_valid(signatures[-1].signed_at)
+        sealed_by = seal.subject
+    signed = Signed(signatures, sealed_by)
+    pdf, dcc = (make(found, issue, signed) for make in (certificate_pdf, certificate_dcc))
+    if seal is not None:
+        pdf, dcc = seal.pdf(pdf), seal.xml(dcc)
+    return tuple(
+        CertificateFile(format, content, sha256(content).hexdigest(), sealed_by)
+        for format, content in (("pdf", pdf), ("dcc", dcc))
+    )
+
+
+def _intact(kept: CertificateFile, number: str) -> bytes:
+    if sha256(kept.content).hexdigest() != kept.sha256:
+        raise DamagedError(DAMAGED.format(number=number))
+    return kept.content
+
+
+def _name(unit: str, number: str) -> str:
+    return f"{unit}-{number}-certificate"

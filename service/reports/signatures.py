@@ -1,0 +1,68 @@
+"""How the certificates of a session stand: who signed them, and whether they still state what is stored."""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from service.errors import ConflictError
+from service.records.paper import Issue
+from service.records.signature import Meaning, Signature
+from service.reports.desk import Desk, certified
+from service.words.signature import CHANGED_HASH, NO_LONGER, NOT_COUNTED
+
+
+@dataclass(frozen=True)
+class SignedIssue:
+    """One issue with the names under it."""
+
+    issue: Issue
+    signatures: tuple[Signature, ...]
+
+    @property
+    def is_approved(self) -> bool:
+        """Whether it is released."""
+        return any(signature.meaning is Meaning.APPROVED for signature in self.signatures)
+
+
+@dataclass(frozen=True)
+class Papers:
+    """All issues of a session's certificate."""
+
+    issues: tuple[SignedIssue, ...]
+    """The first one first."""
+    is_current: bool
+    """Whether the latest one states what is stored now."""
+    concerns: tuple[str, ...]
+    """What speaks against using the latest one, in words."""
+
+
+def papers_of(desk: Desk, id: str, now: datetime) -> Papers:
+    """Every issue; of the latest one what it rests on is worked out again and compared."""
+    with desk.storage.database.reading() as store:
+        store.sessions.get(id)
+        issued, signatures = store.certificates.of_session(id), store.signatures.of_session(id)
+    issues = tuple(SignedIssue(one, tuple(s for s in signatures if s.certificate == one.number)) for one in issued)
+    if not issues:
+        return Papers((), is_current=False, concerns=())
+    latest = issues[-1]
+    counts, is_current = _compared(desk, id, latest.issue, now)
+    told = ((CHANGED_HASH, _is_other(latest)), (NOT_COUNTED, not counts), (NO_LONGER, counts and not is_current))
+    concerns = (words.format(number=latest.issue.number, done=_done(latest)) for words, holds in told if holds)
+    return Papers(issues, is_current=is_current, concerns=tuple(concerns))
+
+
+def _compared(desk: Desk, id: str, issue: Issue, now: datetime) -> tuple[bool, bool]:
+    """Whether the session counts, and whether its certificate would state the same today."""
+    try:
+        _, statement = certified(desk, id, now)
+    except ConflictError:
+        return False, False
+    return True, statement.content_hash == issue.content_hash
+
+
+def _is_other(latest: SignedIssue) -> bool:
+    """Whether something else was signed than is on record."""
+    return any(signature.content_hash != latest.issue.content_hash for signature in latest.signatures)
+
+
+def _done(latest: SignedIssue) -> str:
+    return latest.signatures[-1].meaning if latest.signatures else "issued"
