@@ -16,6 +16,7 @@ from service.background.derive_pending import derive_pending
 from service.background.diagnose_pending import diagnose_pending
 from service.background.watch_fleet import watch_fleet
 from service.boundary import guard
+from service.identity.elsewhere import provider_of
 from service.ingest import limits
 from service.metrics import Metrics
 from service.reports.sealing import seal_of
@@ -64,7 +65,7 @@ def _application(settings: Settings, clock: Callable[[], datetime]) -> Applicati
     )
     storage = Storage(Database(settings.database, waits), Files(settings.files, metrics.count_file_fault))
     seal = seal_of(settings.seal_key_file, settings.seal_password_file)
-    return Application(settings, storage, clock, Gate(settings), seal, metrics=metrics)
+    return Application(settings, storage, clock, Gate(settings), seal, provider_of(settings), metrics=metrics)
 
 
 def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncContextManager[None]]:

@@ -9,6 +9,7 @@ from fastapi import Request
 
 from service.errors import BusyError
 from service.flows.diagnose import InProgress
+from service.identity.elsewhere import Provider
 from service.metrics import Metrics
 from service.reports.sealing import Seal
 from service.settings import Settings
@@ -69,6 +70,7 @@ class Application:
     clock: Callable[[], datetime]
     gate: Gate
     seal: Seal | None = None
+    provider: Provider | None = None
     diagnosing: InProgress = field(default_factory=InProgress)
     metrics: Metrics = field(default_factory=Metrics)
     places: Places = field(default_factory=Places)

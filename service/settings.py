@@ -10,6 +10,8 @@ from platformdirs import user_data_dir
 from pydantic import Field, field_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
+from service.records.identity import Role
+
 VERSION = version("imu-health")
 """Of the program."""
 
@@ -54,6 +56,28 @@ class Settings(BaseSettings):
         pattern="^([!-~]{16,})?$",
         repr=False,
         description="Bearer token that opens /metrics and nothing else, 16 characters or more.",
+    )
+    oidc_issuer: str = Field(
+        default="",
+        pattern=r"^(https?://[^\s?#]+)?$",
+        description="OpenID provider that people may sign in at, as it names itself: https://login.example.org.",
+    )
+    oidc_name: str = Field(default="", max_length=100, description="What its button is called; default: its host.")
+    oidc_client_id: str = Field(default="", max_length=500, description="As the provider knows this service.")
+    oidc_client_secret_file: Path | None = Field(default=None, description="File with the secret of that client.")
+    oidc_hosts: Annotated[tuple[str, ...], NoDecode] = Field(
+        default=(), description="More hosts that the provider's own description may name, separated by commas."
+    )
+    oidc_role_claim: str = Field(
+        default="", max_length=200, description="Claim that gives roles, such as groups; none: an admin gives them."
+    )
+    oidc_roles: Annotated[tuple[tuple[str, Role], ...], NoDecode] = Field(
+        default=(), description="Role of each value of that claim: imu-crew=crew,imu-leads=engineer."
+    )
+    oidc_new_accounts: Literal["nobody", "with-role", "everybody"] = Field(
+        default="with-role",
+        description="Of whom the provider's sign-in makes an account: whom the claim gives a role; everybody that the "
+        "provider knows, as viewer unless the claim says more; nobody: an admin makes it.",
     )
     allowed_hosts: Annotated[tuple[str, ...], NoDecode] = Field(
         default=(),
@@ -136,7 +160,15 @@ class Settings(BaseSettings):
         description="Address under which people reach the pages, for labels; default: that of the request.",
     )
 
-    @field_validator("webhook_hosts", "allowed_hosts", mode="before")
+    @field_validator("oidc_roles", mode="before")
+    @classmethod
+    def _pairs(cls, given: object) -> object:
+        if not isinstance(given, str):
+            return given
+        pairs = (part.rpartition("=") for part in given.split(",") if part.strip())
+        return tuple((value.strip(), role.strip()) for value, _, role in pairs)
+
+    @field_validator("webhook_hosts", "allowed_hosts", "oidc_hosts", mode="before")
     @classmethod
     def _split(cls, given: object) -> object:
         return tuple(filter(None, (h.strip() for h in given.split(",")))) if isinstance(given, str) else given

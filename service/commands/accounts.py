@@ -11,8 +11,10 @@ from rich.table import Table
 
 from service.commands.console import FAILED, say, screen
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
+from service.errors import ConflictError
 from service.flows.identity.accounts import AccountChange, add_account, change_account
 from service.flows.identity.links import make_link
+from service.flows.identity.sign_in_elsewhere import connect
 from service.flows.identity.tokens import make_token, revoke_token
 from service.records.identity import Role
 from service.settings import Settings
@@ -63,6 +65,22 @@ def link_user(login: Login, database_url: DatabaseUrl = None, data_folder: DataF
     settings = settings_from(database_url=database_url, data_folder=data_folder)
     with _opened(settings) as storage:
         _print_link(settings, login, make_link(storage, login, _now(), WHO))
+
+
+@user.command("connect")
+def connect_user(
+    login: Login,
+    subject: Annotated[str, typer.Argument(metavar="SUBJECT", help="As the provider knows them.", show_default=False)],
+    database_url: DatabaseUrl = None,
+    data_folder: DataFolder = None,
+) -> None:
+    """Connect an account with somebody at the provider that is set, so that they sign in to it there."""
+    settings = settings_from(database_url=database_url, data_folder=data_folder)
+    if not settings.oidc_issuer:
+        raise ConflictError("No provider is set: IMU_HEALTH_OIDC_ISSUER.")
+    with _opened(settings) as storage:
+        found = connect(storage, login, settings.oidc_issuer, subject, _now(), who=WHO)
+    screen().print(f"[bold]{escape(found.login)}[/] signs in at {escape(settings.oidc_issuer)}.")
 
 
 @user.command("change")

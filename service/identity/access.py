@@ -19,6 +19,8 @@ POST /sign-in
 GET /sign-in/{secret}
 POST /sign-in/{secret}
 POST /sign-out
+GET /oidc/start
+GET /oidc/callback
 """
 """What somebody may who has not signed in."""
 

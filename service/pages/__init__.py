@@ -17,6 +17,7 @@ from service.pages import (
     diagnosis_routes,
     event_routes,
     flag_routes,
+    oidc_routes,
     paper_routes,
     plan_routes,
     record_routes,
@@ -36,6 +37,7 @@ PARTS = (
     record_routes,
     paper_routes,
     plan_routes,
+    oidc_routes,
     assets,
 )
 """Every file of addresses."""

@@ -15,6 +15,8 @@ class SignInPage:
     """Where it leads, an address of this service."""
     wrong: str
     """What was wrong the last time; empty the first time."""
+    provider: str
+    """What the provider that people may sign in at is called; empty where none is set."""
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from fastapi import APIRouter, Form, Path, Query, Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
 from service.admission import COOKIE, PersonOf
+from service.application import application_of
 from service.dependencies import Now, Reading, SettingsOf, StorageOf, address_of
 from service.errors import ForbiddenError, SignInError
 from service.flows.identity.accounts import change_password
@@ -31,7 +32,7 @@ Label = Annotated[str, Form(min_length=1, max_length=200, pattern=NO_NUL)]
 @router.get("/sign-in")
 def show_sign_in(request: Request, next: Annotated[str, Query(max_length=2000)] = "/") -> HTMLResponse:
     """Login and password."""
-    return render(request, "sign_in.html", SignInPage(_inside(next), ""))
+    return render(request, "sign_in.html", SignInPage(inside(next), "", _provider(request)))
 
 
 @router.post("/sign-in")
@@ -49,8 +50,8 @@ def take_sign_in(
         with attempting(storage, Attempt(login, address_of(request)), now):
             secret = sign_in(storage, login, password, now)
     except SignInError as wrong:
-        return render(request, "sign_in.html", SignInPage(_inside(next), wrong.detail), wrong.status)
-    return _signed_in(request, settings, secret, _inside(next))
+        return render(request, "sign_in.html", SignInPage(inside(next), wrong.detail, _provider(request)), wrong.status)
+    return signed_in(request, settings, secret, inside(next))
 
 
 @router.get("/sign-in/{secret}")
@@ -71,13 +72,13 @@ def take_link(
     name: Login = "",
 ) -> Response:
     """Sets the password and signs in."""
-    return _signed_in(request, settings, use_link(storage, secret, Chosen(login, name, password), now), "/")
+    return signed_in(request, settings, use_link(storage, secret, Chosen(login, name, password), now), "/")
 
 
 @router.post("/sign-out")
-def take_sign_out(request: Request, storage: StorageOf) -> RedirectResponse:
+def take_sign_out(request: Request, storage: StorageOf, now: Now) -> RedirectResponse:
     """The browser is nobody's any more."""
-    sign_out(storage, request.cookies.get(COOKIE, ""))
+    sign_out(storage, request.cookies.get(COOKIE, ""), now)
     answer = RedirectResponse("/sign-in", SEE_OTHER)
     answer.delete_cookie(COOKIE)
     return answer
@@ -128,14 +129,25 @@ def take_back(id: Number, storage: StorageOf, person: PersonOf, now: Now) -> Red
     return RedirectResponse("/account", SEE_OTHER)
 
 
-def _inside(address: str) -> str:
+def _provider(request: Request) -> str:
+    """What the provider that people may sign in at is called."""
+    provider = application_of(request).provider
+    return provider.name if provider else ""
+
+
+def inside(address: str) -> str:
     """An address of this service; any other is the fleet's, so that no link to the sign-in leads elsewhere."""
     return address if address.startswith("/") and not address.startswith(("//", "/\\")) else "/"
 
 
-def _signed_in(request: Request, settings: Settings, secret: str, to: str) -> RedirectResponse:
+def signed_in(request: Request, settings: Settings, secret: str, to: str) -> RedirectResponse:
+    """The browser is somebody's from now on."""
     answer = RedirectResponse(to, SEE_OTHER)
-    is_secure = request.url.scheme == "https" or settings.public_url.startswith("https:")
     age = int(LASTS.total_seconds())
-    answer.set_cookie(COOKIE, secret, max_age=age, httponly=True, samesite="lax", secure=is_secure)
+    answer.set_cookie(COOKIE, secret, max_age=age, httponly=True, samesite="lax", secure=is_secure(request, settings))
     return answer
+
+
+def is_secure(request: Request, settings: Settings) -> bool:
+    """Whether browsers reach the service by https, so that cookies need never go otherwise."""
+    return request.url.scheme == "https" or settings.public_url.startswith("https:")

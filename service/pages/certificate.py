@@ -55,9 +55,16 @@ class CertificatePage:
     by: str
     is_account: bool
     """Whether the one who looks has an account to sign with."""
+    four_eyes: bool
+    is_own: bool
+    """Whether the one who looks has reviewed it, and somebody else must approve."""
+    wrong: str
+    """What was wrong with the last try to sign; empty where nothing was."""
 
 
-def certificate_page(session: StoredSession, papers: Papers, person: Person) -> CertificatePage:
+def certificate_page(
+    session: StoredSession, papers: Papers, person: Person, *, four_eyes: bool, wrong: str = ""
+) -> CertificatePage:
     """The page of a session's certificate as somebody sees it."""
     rows = tuple(_issue(one) for one in papers.issues)
     signs = _next(papers)
@@ -71,6 +78,9 @@ def certificate_page(session: StoredSession, papers: Papers, person: Person) -> 
         states="" if signs is None else STATES[signs],
         by="" if signs is None else done_by(signs),
         is_account=bool(person.login),
+        four_eyes=four_eyes,
+        is_own=four_eyes and signs is Meaning.APPROVED and rows[-1].signatures[0].login == person.login,
+        wrong=wrong,
     )
 
 

@@ -2,11 +2,12 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Form, Request
+from fastapi import APIRouter, Form, Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
 from service.admission import PersonOf
 from service.dependencies import DeskOf, Now, Reading, address_of
+from service.errors import SignInError
 from service.flows.identity.attempts import Attempt
 from service.flows.sign_certificate import Signing
 from service.identity.passwords import LONGEST
@@ -25,7 +26,8 @@ def show_certificate(
     request: Request, id: Key, store: Reading, desk: DeskOf, person: PersonOf, now: Now
 ) -> HTMLResponse:
     """Every issue of the session's certificate, and who signed it."""
-    page = certificate_page(store.sessions.get(id), papers_of(desk, id, now), person)
+    four_eyes = desk.rules.four_eyes
+    page = certificate_page(store.sessions.get(id), papers_of(desk, id, now), person, four_eyes=four_eyes)
     return render(request, "certificate.html", page)
 
 
@@ -40,8 +42,15 @@ def take_signature(
     desk: DeskOf,
     person: PersonOf,
     now: Now,
-) -> RedirectResponse:
-    """Puts a name under the certificate."""
+) -> Response:
+    """Puts a name under the certificate; the page again where the password is wrong."""
     signing = Signing(id, number, meaning, person.login, password)
-    sign(desk, signing, Attempt(person.login, address_of(request)), now)
+    try:
+        sign(desk, signing, Attempt(person.login, address_of(request)), now)
+    except SignInError as wrong:
+        papers, four_eyes = papers_of(desk, id, now), desk.rules.four_eyes
+        with desk.storage.database.reading() as store:
+            session = store.sessions.get(id)
+        page = certificate_page(session, papers, person, four_eyes=four_eyes, wrong=wrong.detail)
+        return render(request, "certificate.html", page, wrong.status)
     return RedirectResponse(f"/sessions/{id}/certificate", SEE_OTHER)

@@ -15,6 +15,7 @@ from service.storage.queries.flags import Flags
 from service.storage.queries.fleet import Fleet
 from service.storage.queries.fleet_rows import FleetRows
 from service.storage.queries.history import History
+from service.storage.queries.identities import Identities
 from service.storage.queries.log import Log
 from service.storage.queries.models import Models
 from service.storage.queries.notes import Notes
@@ -173,3 +174,8 @@ class Store:
     def attempts(self) -> Attempts:
         """How often somebody tried to sign in."""
         return Attempts(self._session)
+
+    @cached_property
+    def identities(self) -> Identities:
+        """Who accounts are to a provider that signs people in."""
+        return Identities(self._session)

@@ -25,15 +25,18 @@ def sign_in(storage: Storage, login: str, password: str, now: datetime) -> str:
         return begin(store, store.accounts.get(login), now)
 
 
-def begin(store: Store, account: Account, now: datetime) -> str:
-    """Signs a browser in, within the transaction that let somebody in."""
+def begin(store: Store, account: Account, now: datetime, elsewhere: str = "") -> str:
+    """Signs a browser in, within the transaction that let somebody in; ``elsewhere``: the provider that did."""
     secret = new_secret()
     store.sign_ins.add(account, stored_hash(secret), now, now + LASTS)
-    store.audit.write(now, account.name, "sign in", account.login, {})
+    store.audit.write(now, account.name, "sign in", account.login, {"issuer": elsewhere} if elsewhere else {})
     return secret
 
 
-def sign_out(storage: Storage, secret: str) -> None:
+def sign_out(storage: Storage, secret: str, now: datetime) -> None:
     """The secret is worth nothing from now on."""
     with storage.database.writing() as store:
+        account = store.sign_ins.shown(stored_hash(secret), now)
+        if account is not None:
+            store.audit.write(now, account.name, "sign out", account.login, {})
         store.sign_ins.end(stored_hash(secret))

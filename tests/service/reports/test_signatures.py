@@ -235,6 +235,10 @@ def test_the_page_offers_what_comes_next_and_to_whom(http: httpx.Client, staff: 
     assert "Sign: reviewed" in http.get(page, headers=staff.headers(Role.ENGINEER)).text
     body = {"number": f"{ID}-0-1", "meaning": "reviewed", "password": PASSWORD}
     assert http.post(f"{page}/signatures", data=body, headers=staff.headers(Role.ENGINEER)).status_code == 303
+    assert "somebody else must approve" in http.get(page, headers=staff.headers(Role.ENGINEER)).text
+    wrong = body | {"meaning": "approved", "password": "a guess of many"}
+    again = http.post(f"{page}/signatures", data=wrong, headers=staff.headers(Role.ADMIN))
+    assert (again.status_code, "password is wrong" in again.text, "Sign: approved" in again.text) == (401, True, True)
     shown = http.get(page, headers=staff.headers(Role.ADMIN)).text
     assert "Reviewed by Engineer" in shown
     assert "Sign: approved" in shown

@@ -1,0 +1,80 @@
+"""Flow: somebody signs in at a provider. Their account is found by issuer and subject, never by a name or an address,
+which change hands; or it is made, where the operator lets it be."""
+
+import re
+from collections.abc import Iterator
+from datetime import datetime
+from itertools import count
+
+from service.errors import ConflictError, ForbiddenError, SignInError
+from service.flows.identity.accounts import LAST_ADMIN, LOGIN
+from service.flows.identity.sign_in import WRONG, begin
+from service.identity.elsewhere import Claims, Joining
+from service.records.identity import Account, Role
+from service.storage import Storage
+from service.storage.store import Store
+
+FIRST = "There is no account yet, and the first one must be an admin's: make it with a link, or by the provider's role."
+NO_ROLE = "The provider knows you, but gives you no role here. Ask an administrator."
+NOT_INVITED = "The provider knows you, but there is no account for you here. Ask an administrator."
+LONGEST_LOGIN = 50
+"""Characters of a login that is made of a claim; a number may come behind it."""
+
+
+def sign_in_elsewhere(storage: Storage, claims: Claims, joining: Joining, now: datetime) -> str:
+    """The secret that the browser shows from now on."""
+    role = joining.role_of(claims.groups) if joining.by_claim else None
+    if joining.by_claim and role is None:
+        raise ForbiddenError(NO_ROLE)
+    with storage.database.writing() as store:
+        account = store.identities.account(claims.issuer, claims.subject) or _made(store, claims, joining, role, now)
+        if not account.is_active:
+            raise SignInError(WRONG)
+        if role is not None and role is not account.role:
+            account = _with_role(store, account, role, claims, now)
+        return begin(store, account, now, elsewhere=claims.issuer)
+
+
+def connect(storage: Storage, login: str, issuer: str, subject: str, now: datetime, *, who: str) -> Account:
+    """An account that is here already is somebody's at the provider."""
+    with storage.database.writing() as store:
+        account = store.accounts.get(login)
+        if not store.identities.add(account, issuer, subject, now):
+            raise ConflictError("Somebody's account is connected with that one already.")
+        store.audit.write(now, who, "connect account", account.login, {"issuer": issuer, "subject": subject})
+        return account
+
+
+def _made(store: Store, claims: Claims, joining: Joining, role: Role | None, now: datetime) -> Account:
+    """A new account."""
+    if joining.new == "nobody" or (joining.new == "with-role" and role is None):
+        raise ForbiddenError(NOT_INVITED)
+    own = role or Role.VIEWER
+    if not store.accounts.any() and own is not Role.ADMIN:
+        raise ConflictError(FIRST)
+    login = next(one for one in _logins(claims.login) if store.accounts.add(one, claims.name or one, own, now))
+    account = store.accounts.get(login)
+    if not store.identities.add(account, claims.issuer, claims.subject, now):
+        raise ConflictError("You are signing in twice at once. Try again.")
+    details = {"name": account.name, "role": own, "issuer": claims.issuer, "subject": claims.subject}
+    store.audit.write(now, account.name, "add account", login, details)
+    return account
+
+
+def _logins(claimed: str) -> Iterator[str]:
+    """What the claim makes as a login, then the same with numbers: one that is taken is another person's."""
+    plain = re.sub(r"[^a-z0-9._@-]+", "-", claimed.lower()).lstrip("._@-")[:LONGEST_LOGIN]
+    own = plain if LOGIN.fullmatch(plain) else "user"
+    yield own
+    for number in count(2):
+        yield f"{own}-{number}"
+
+
+def _with_role(store: Store, account: Account, role: Role, claims: Claims, now: datetime) -> Account:
+    """The role that the provider gives today."""
+    if account.role is Role.ADMIN and store.accounts.admins() == 1:
+        raise ConflictError(LAST_ADMIN)
+    store.accounts.put(account.login, name=account.name, role=role, is_active=True)
+    details = {"before": {"role": account.role}, "after": {"role": role}, "why": f"said by {claims.issuer}"}
+    store.audit.write(now, account.name, "change account", account.login, details)
+    return store.accounts.get(account.login)
