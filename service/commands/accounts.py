@@ -16,13 +16,12 @@ from service.flows.identity.accounts import AccountChange, add_account, change_a
 from service.flows.identity.links import make_link
 from service.flows.identity.sign_in_elsewhere import connect
 from service.flows.identity.tokens import make_token, revoke_token
+from service.records.identity import COMMAND_LINE as WHO
 from service.records.identity import Role
 from service.settings import Settings
 from service.storage import Database, Files, Storage
 from service.storage.store import Store
 
-WHO = "command line"
-"""As the audit trail names whoever reaches the database."""
 user = typer.Typer(name="user", add_completion=False, no_args_is_help=True, help="Make and change accounts.")
 token = typer.Typer(name="token", add_completion=False, no_args_is_help=True, help="Make and revoke tokens.")
 audit = typer.Typer(name="audit", add_completion=False, no_args_is_help=True, help="Read and check the audit trail.")

@@ -9,9 +9,12 @@ from typer.core import TyperGroup
 
 from service.commands.console import FAILED, say
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
-from service.storage import Files
-from service.storage.backup import restore, verified, write_backup
+from service.records.identity import COMMAND_LINE as WHO
+from service.storage import Database, Files
+from service.storage.backup import Restored, restore, verified, write_backup
+from service.storage.backup.doors import Doors
 from service.storage.backup.manifest import Manifest
+from service.storage.schema import head_revision
 
 File = Annotated[Path, typer.Argument(metavar="FILE", help="The backup.", show_default=False)]
 
@@ -53,11 +56,44 @@ def verify(file: File) -> None:
     typer.echo(f"{file} is whole: {_told(manifest)}, made {manifest.made_at:%Y-%m-%d %H:%M} UTC.")
 
 
-def restore_backup(file: File, database_url: DatabaseUrl = None, data_folder: DataFolder = None) -> None:
-    """Put a backup into an empty database, of either kind, and an empty data folder."""
+def restore_backup(
+    file: File,
+    revoke_tokens: Annotated[
+        bool, typer.Option("--revoke-tokens", help="Let no token in that the backup brings back.")
+    ] = False,
+    database_url: DatabaseUrl = None,
+    data_folder: DataFolder = None,
+) -> None:
+    """Put a backup into an empty database, of either kind, and an empty data folder. Everybody must sign in again."""
     settings = settings_from(database_url=database_url, data_folder=data_folder)
-    manifest = restore(file, settings.database, settings.files)
-    typer.echo(f"Restored {_told(manifest)}.")
+    now = datetime.now(UTC)
+    restored = restore(file, settings.database, settings.files, now, revoke_tokens=revoke_tokens)
+    _write_down(settings.database, restored, now)
+    typer.echo(f"Restored {_told(restored.manifest)}.")
+    _say_who_is_in(restored.doors)
+
+
+def _write_down(url: str, restored: Restored, now: datetime) -> None:
+    """In the audit trail, which a schema of an earlier version may not have room for yet."""
+    if restored.manifest.revision != head_revision():
+        return
+    database = Database(url)
+    with database.writing() as store:
+        details = {"made_at": restored.manifest.made_at.isoformat(), **vars(restored.doors)}
+        store.audit.write(now, WHO, "restore", "backup", details)
+    database.close()
+
+
+def _say_who_is_in(doors: Doors) -> None:
+    if doors.browsers:
+        say(f"{doors.browsers} signed-in browsers were signed out.")
+    if doors.tokens and doors.revoked:
+        say(f"{doors.tokens} tokens were revoked: make new ones.")
+    elif doors.tokens:
+        say(
+            f"{doors.tokens} tokens hold again, also those that were revoked since the backup: look at `imu-health "
+            "token list`. --revoke-tokens would have revoked them all."
+        )
 
 
 def _told(manifest: Manifest) -> str:

@@ -43,6 +43,11 @@ def sign(
     screen().print(f"[bold]{escape(given['certificate'])}[/]  {meaning} by {escape(given['name'])}")
 
 
+@seal.callback()
+def _group() -> None:
+    """The laboratory's electronic seal."""
+
+
 @seal.command("trial")
 def make_trial(
     out: Annotated[Path, typer.Option(help="File to write; one that is there stays as it is.", show_default=False)],

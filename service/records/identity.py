@@ -89,6 +89,8 @@ class Person:
 
 UNNAMED = "whoever is at this machine"
 """Who administers, where nobody needs to sign in."""
+COMMAND_LINE = "command line"
+"""As the audit trail names whoever reaches the database."""
 STRANGER = Person("", "", None)
 """Somebody who has not signed in."""
 LOOKING = Person("", "", Role.VIEWER)

@@ -37,6 +37,6 @@ def _signer(pair: KeyPair) -> SimpleSigner:
     key = pair.key.private_bytes(Encoding.DER, PrivateFormat.PKCS8, NoEncryption())
     certificates = (Certificate.load(one.public_bytes(Encoding.DER)) for one in (pair.certificate, *pair.chain))
     own, *chain = certificates
-    store = SimpleCertificateStore()
+    store = SimpleCertificateStore()  # type: ignore[no-untyped-call]
     store.register_multiple(chain)
     return SimpleSigner(own, PrivateKeyInfo.load(key), store)

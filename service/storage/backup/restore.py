@@ -4,12 +4,15 @@ until all are there. Whatever interrupts it leaves a database without a schema, 
 import os
 import shutil
 import zipfile
+from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 
 from sqlalchemy import Connection, inspect
 from sqlalchemy.exc import DataError, IntegrityError
 
 from service.errors import ConflictError, ServiceError
+from service.storage.backup.doors import Doors, close_doors
 from service.storage.backup.manifest import Manifest, file_member, opened
 from service.storage.backup.rows import continue_numbers, put_lines, tables_of
 from service.storage.backup.verify import verified
@@ -23,7 +26,15 @@ STAGING = ".restoring"
 """Ends the name of the folder of files while they are put there."""
 
 
-def restore(backup: Path, url: str, folder: Path) -> Manifest:
+@dataclass(frozen=True)
+class Restored:
+    """What was put back."""
+
+    manifest: Manifest
+    doors: Doors
+
+
+def restore(backup: Path, url: str, folder: Path, now: datetime, *, revoke_tokens: bool = False) -> Restored:
     """Restores a backup; ConflictError where the database or the folder of files is not empty."""
     manifest = verified(backup)
     if not is_known(manifest.revision):
@@ -34,11 +45,12 @@ def restore(backup: Path, url: str, folder: Path) -> Manifest:
         _require_empty(connection, folder, manifest)
         staging = _put_files(archive, manifest, folder)
         _put_rows(archive, manifest, connection)
+        doors = close_doors(connection, now, revoke=revoke_tokens)
         if folder.exists():
             shutil.rmtree(folder)
         os.replace(staging, folder)
         sync_folder(folder.parent)
-    return manifest
+    return Restored(manifest, doors)
 
 
 def _require_empty(connection: Connection, folder: Path, manifest: Manifest) -> None:

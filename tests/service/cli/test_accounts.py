@@ -1,17 +1,22 @@
 """`imu-health user`, `token` and `audit` on a database."""
 
 import re
+from datetime import UTC, datetime
 from pathlib import Path
 
 import httpx
 import pytest
 
+from service.records.identity import Role
+from service.reports.sealing import seal_of
 from service.settings import Settings
 from service.storage import Storage
 from tests.conftest import StockOf
 from tests.databases import Databases
 from tests.service.cli.conftest import Run
+from tests.service.identity.staff import PASSWORD, staffed, with_password
 from tests.service.identity.test_audit import tampered
+from tests.service.sessions import FAILED, session_id
 from tests.serving import serving
 from tests.stock import stores
 
@@ -68,3 +73,43 @@ def test_the_trail_is_verified(run: Run, settings: Settings, storage: Storage) -
     tampered(storage, "UPDATE audit SET who = 'nobody' WHERE id = 1")
     found = run("audit", "verify", *own)
     assert (found.code, "Line 1 does not follow" in found.err) == (1, True)
+
+
+def test_a_certificate_is_signed_at_the_terminal(
+    run: Run, sqlite: Databases, stock_of: StockOf, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with stock_of(sqlite).holding(*FAILED) as settings, stores(settings) as storage:
+        staff = staffed(storage, datetime.now(UTC))
+        with_password(storage, "engineer", datetime.now(UTC))
+        monkeypatch.setenv("IMU_HEALTH_TOKEN", staff.tokens[Role.ENGINEER])
+        id = session_id(FAILED[-1])
+        with serving(settings) as address:
+            own = ("--server", address)
+            wanted = ("sign", id, "--meaning", "reviewed", *own)
+            assert "ask for it, read it" in run(*wanted).err
+            assert run("certificate", id, "--out", tmp_path / "c.pdf", *own).code == 0
+            monkeypatch.setattr("getpass.getpass", lambda *_, **__: PASSWORD)
+            ran = run(*wanted)
+            assert (ran.code, ran.out.strip()) == (0, f"{id}-0-1  reviewed by Engineer")
+            assert "reviewed already, by Engineer" in run(*wanted).err
+
+
+def test_a_trial_key_is_made_once_and_says_what_it_is(run: Run, tmp_path: Path) -> None:
+    file = tmp_path / "seal.pem"
+    assert "a key for trial" in run("seal", "trial", "--out", file).err
+    assert (file.stat().st_mode & 0o777, b"BEGIN CERTIFICATE" in file.read_bytes()) == (0o600, True)
+    assert run("seal", "trial", "--out", file).code == 1
+    seal = seal_of(file, None)
+    assert seal is not None
+    assert "TRIAL (not trusted)" in seal.subject
+
+
+def test_an_account_is_connected_with_somebody_elsewhere(
+    run: Run, settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = ("--database-url", settings.database)
+    run("user", "add", "k.ito", "--role", "admin", *own)
+    assert "No provider is set" in run("user", "connect", "k.ito", "4711", *own).err
+    monkeypatch.setenv("IMU_HEALTH_OIDC_ISSUER", "https://login.example.org")
+    assert "k.ito signs in at https://login.example.org" in run("user", "connect", "k.ito", "4711", *own).out
+    assert "connected with that one already" in run("user", "connect", "k.ito", "4711", *own).err

@@ -43,7 +43,10 @@ def test_backup_verify_and_restore(run: Run, full: Settings, databases: Database
     assert run("backup", *where(full), file).out.startswith(f"{file}: ")
     assert "2 files" in run("backup", "verify", file).out
     assert run("restore", file, *where(new)).code == 0
-    assert (rows(new.database), files(new.files)) == (rows(full.database), files(full.files))
+    after = rows(new.database)
+    assert after["audit"].pop()[4:6] == ("restore", "backup")
+    assert (after, files(new.files)) == (rows(full.database), files(full.files))
+    assert "follow from one another" in run("audit", "verify", *where(new)).out
 
 
 @one_engine
@@ -79,7 +82,8 @@ def test_a_downgrade_that_is_confirmed_writes_a_backup_that_brings_all_back(
     (backup,) = full.data_folder.glob("*.backup")
     new = Settings(database_url=databases.empty(), data_folder=tmp_path / "new")
     assert run("restore", backup, *where(new)).code == 0
-    assert rows(new.database) == before
+    after = rows(new.database)
+    assert (after["audit"].pop()[4], after) == ("restore", before)
 
 
 @one_engine

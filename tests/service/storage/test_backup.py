@@ -15,12 +15,16 @@ from sqlalchemy import text
 
 from service.app import create_app
 from service.errors import ConflictError, DamagedError, ServiceError
+from service.flows.identity.links import make_link
+from service.flows.identity.sign_in import sign_in
+from service.records.identity import Role
 from service.settings import Settings
-from service.storage import Database, Files
+from service.storage import Database, Files, Storage
 from service.storage.backup import restore, verified, write_backup
 from service.storage.schema import upgrade
 from tests.conftest import SettingsHolding
 from tests.databases import ENGINES, Databases, one_engine
+from tests.service.identity.staff import PASSWORD, staffed, with_password
 from tests.service.sessions import FAILED, session_bytes
 from tests.service.storage.whole import files, rows
 from tests.serving import http_client
@@ -59,14 +63,14 @@ def backup_of(settings: Settings, folder: Path) -> Path:
 
 def test_a_backup_restores_everything_into_either_engine(full: Settings, other: Databases, tmp_path: Path) -> None:
     url = other.empty()
-    restore(backup_of(full, tmp_path), url, tmp_path / "new" / "files")
+    restore(backup_of(full, tmp_path), url, tmp_path / "new" / "files", NOW)
     assert rows(url) == rows(full.database)
     assert files(tmp_path / "new") == files(full.files) != {}
 
 
 def test_a_restored_service_goes_on(full: Settings, other: Databases, tmp_path: Path) -> None:
     new = Settings(database_url=other.empty(), data_folder=tmp_path / "new")
-    restore(backup_of(full, tmp_path), new.database, new.files)
+    restore(backup_of(full, tmp_path), new.database, new.files, NOW)
     with http_client(create_app(new)) as client:
         note(client, "after restoring")
         assert client.post("/api/v1/sessions", content=FAILED[0]).status_code == 200
@@ -77,7 +81,7 @@ def test_a_backup_of_an_earlier_schema_is_restored_as_it_was(databases: Database
     old, new = databases.empty(), databases.empty()
     upgrade(old, "0003")
     write_backup(old, Files(tmp_path / "files"), tmp_path / "old", NOW)
-    assert restore(tmp_path / "old", new, tmp_path / "new").revision == "0003"
+    assert restore(tmp_path / "old", new, tmp_path / "new", NOW).manifest.revision == "0003"
     upgrade(new)
     assert rows(new) == {name: [] for name in rows(new)}
 
@@ -99,12 +103,12 @@ def test_what_is_uploaded_meanwhile_is_wholly_in_it_or_not_at_all(full: Settings
 def test_nothing_is_restored_over_what_is_there(full: Settings, databases: Databases, tmp_path: Path) -> None:
     backup, before = backup_of(full, tmp_path), rows(full.database)
     with pytest.raises(ConflictError, match="database is not empty"):
-        restore(backup, full.database, tmp_path / "new")
+        restore(backup, full.database, tmp_path / "new", NOW)
     with pytest.raises(ConflictError, match="never written over"):
         backup_of(full, tmp_path)
     Files(tmp_path / "held").keep(b"something else")
     with pytest.raises(ConflictError, match="held is not empty"):
-        restore(backup, databases.empty(), tmp_path / "held")
+        restore(backup, databases.empty(), tmp_path / "held", NOW)
     assert rows(full.database) == before
 
 
@@ -149,7 +153,7 @@ def test_a_restore_that_fails_leaves_a_database_without_a_schema(
     url, backup = databases.empty(), backup_of(full, tmp_path)
     (tmp_path / "place").write_text("no folder can be here")
     with pytest.raises(ServiceError):
-        restore(backup, url, tmp_path / "place" / "files")
+        restore(backup, url, tmp_path / "place" / "files", NOW)
     database = Database(url)
     with pytest.raises(ServiceError, match="is at nothing"):
         database.require_ready()
@@ -174,7 +178,7 @@ sys.setprofile(look)
 if sys.argv[2] == "backup":
     write_backup(sys.argv[3], Files(Path(sys.argv[4])), Path(sys.argv[5]), datetime.now(UTC))
 else:
-    restore(Path(sys.argv[5]), sys.argv[3], Path(sys.argv[4]))
+    restore(Path(sys.argv[5]), sys.argv[3], Path(sys.argv[4]), datetime.now(UTC))
 """
 """Ends itself as `kill -9` does, at the n-th call of a function of the backup."""
 
@@ -210,7 +214,7 @@ def test_a_restore_that_is_killed_leaves_no_schema_and_can_be_started_again(
         with database.engine.connect() as connection:
             assert connection.dialect.get_table_names(connection) == []
         database.close()
-        restore(backup, url, folder)
+        restore(backup, url, folder, NOW)
     assert rows(url) == rows(full.database)
     assert files(folder) == files(full.files)
 
@@ -221,9 +225,33 @@ def test_a_new_schema_holds_no_rows_that_a_restore_would_meet(databases: Databas
 
 def test_numbers_go_on_after_the_largest(full: Settings, other: Databases, tmp_path: Path) -> None:
     url = other.empty()
-    restore(backup_of(full, tmp_path), url, tmp_path / "new")
+    restore(backup_of(full, tmp_path), url, tmp_path / "new", NOW)
     database = Database(url)
     with database.engine.begin() as connection:
         insert = "INSERT INTO audit (at, who, action, subject, details) VALUES (:at, 'a', 'b', 'c', '{}') RETURNING id"
         assert connection.scalar(text(insert), {"at": "2026-01-01 00:00:00"}) == len(rows(full.database)["audit"]) + 1
     database.close()
+
+
+def test_nobody_is_signed_in_after_a_restore_and_tokens_are_told(
+    settings: Settings, storage: Storage, other: Databases, tmp_path: Path
+) -> None:
+    staff = staffed(storage, NOW)
+    with_password(storage, "crew", NOW)
+    secret, link = sign_in(storage, "crew", PASSWORD, NOW), make_link(storage, "viewer", NOW, "test")
+    for revoke, status in ((False, 200), (True, 401)):
+        new = Settings(database_url=other.empty(), data_folder=tmp_path / str(revoke), sign_in="required")
+        doors = restore(
+            _backup(settings, tmp_path, str(revoke)), new.database, new.files, NOW, revoke_tokens=revoke
+        ).doors
+        assert (doors.browsers, doors.tokens, doors.revoked) == (2, 4, revoke)
+        with http_client(create_app(new, clock=lambda: NOW)) as client:
+            units = "/api/v1/units"
+            assert client.get(units, headers=staff.headers(Role.VIEWER)).status_code == status
+            assert client.get(units, headers={"Cookie": f"imu-health={secret}"}).status_code == 401
+            assert client.get(f"/sign-in/{link}").status_code == 401
+
+
+def _backup(settings: Settings, folder: Path, name: str) -> Path:
+    write_backup(settings.database, Files(settings.files), folder / f"{name}.backup", NOW)
+    return folder / f"{name}.backup"
