@@ -10,8 +10,6 @@ from platformdirs import user_data_dir
 from pydantic import Field, field_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
-from service.records.identity import Role
-
 VERSION = version("imu-health")
 """Of the program."""
 
@@ -71,7 +69,7 @@ class Settings(BaseSettings):
     oidc_role_claim: str = Field(
         default="", max_length=200, description="Claim that gives roles, such as groups; none: an admin gives them."
     )
-    oidc_roles: Annotated[tuple[tuple[str, Role], ...], NoDecode] = Field(
+    oidc_roles: Annotated[tuple[tuple[str, Literal["viewer", "crew", "engineer", "admin"]], ...], NoDecode] = Field(
         default=(), description="Role of each value of that claim: imu-crew=crew,imu-leads=engineer."
     )
     oidc_new_accounts: Literal["nobody", "with-role", "everybody"] = Field(

@@ -120,7 +120,11 @@ class Joining:
 
 def joining_of(settings: Settings) -> Joining:
     """As the operator set it."""
-    return Joining(settings.oidc_new_accounts, bool(settings.oidc_role_claim), dict(settings.oidc_roles))
+    return Joining(
+        settings.oidc_new_accounts,
+        bool(settings.oidc_role_claim),
+        {value: Role(role) for value, role in settings.oidc_roles},
+    )
 
 
 def provider_of(settings: Settings) -> Provider | None:

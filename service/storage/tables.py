@@ -16,13 +16,10 @@ unit_types ──< tolerance_revisions          stands ──< stand_certificate
                    ├──< common_motions
                    ├──1 diagnoses
                    ├──< reference_choices     record_states   what became of sessions and services, append-only
-                   ├──< certificates          numbers of the papers that were issued, append-only
-                   │        └──< certificate_signatures, certificate_files   who signed them, and what was approved
+                   ├──< certificates ──< certificate_signatures, certificate_files   papers issued, append-only
                    └──< model_revisions       causes that engineers accepted, numbered through
 
-accounts ──< tokens, sign_ins, sign_in_links  who may sign in, and what programs and browsers show for it
-         ──< identities                       who they are to a provider that signs people in
-attempts                                      how often somebody tried to sign in
+accounts ──< tokens, sign_ins, sign_in_links, identities   who may sign in, and what they show for it; attempts
 """
 
 from datetime import datetime

@@ -11,7 +11,13 @@ from service.settings import Settings
 from tests.databases import one_engine
 from tests.serving import http_client
 
-EXAMPLES = {"serial": "BA-017", "id": "3f9a0c5be1d24786aa10", "name": "hex", "login": "k.ito"}
+EXAMPLES = {
+    "serial": "BA-017",
+    "id": "3f9a0c5be1d24786aa10",
+    "name": "hex",
+    "login": "k.ito",
+    "number": "3f9a0c5be1d24786aa10-0-1",
+}
 NUMBERED = (
     "/api/v1/flags/",
     "/api/v1/models/",
@@ -29,6 +35,7 @@ BODIES: dict[str, Any] = {
     "/api/v1/models/{id}/withdraw": {"by": "K. Ito", "why": "seen in error"},
     "/api/v1/units/{serial}/services": {"kind": "repair"},
     "/api/v1/sessions/{id}/withdraw": {"by": "K. Ito", "why": "wrong unit"},
+    "/api/v1/sessions/{id}/certificate/signatures": {"number": "1", "meaning": "reviewed", "password": "x" * 12},
     "/api/v1/sessions/{id}/accept": {"by": "K. Ito", "why": "right after all"},
     "/api/v1/sessions/{id}/correct": {"by": "K. Ito"},
     "/api/v1/sessions/{id}/supersede": {"by": "K. Ito", "why": "typing error", "superseded_by": "3f9a0c5be1d24786aa10"},

@@ -59,6 +59,10 @@ HOMES = {
         "service.app",
     ),
     "typer": ("service.cli", "service.commands"),
+    "pyhanko": ("service.reports.seal",),
+    "signxml": ("service.reports.seal",),
+    "cryptography": ("service.reports.seal",),
+    "joserfc": ("service.identity.oidc",),
     "structlog": ("service.log", "service.api.measured"),
 }
 ALL = modules(*PACKAGES)
