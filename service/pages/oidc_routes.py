@@ -24,7 +24,7 @@ COOKIE, PATH = "imu-health-oidc", "/oidc"
 LASTS = 600
 """Seconds of a journey: somebody may have to find their second factor."""
 NOT_SET = "Nobody signs in elsewhere here: no provider is set."
-NOT_BEGUN = "This sign-in was not begun in this browser, or ten minutes ago. Try again."
+NOT_BEGUN = "This sign-in was not begun in this browser, or more than ten minutes ago. Try again."
 DECLINED = "The provider did not sign you in. Try again, or ask an administrator."
 Brought = Annotated[str, Query(max_length=4000, pattern=NO_NUL)]
 

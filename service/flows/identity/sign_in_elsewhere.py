@@ -23,9 +23,7 @@ LONGEST_LOGIN = 50
 
 def sign_in_elsewhere(storage: Storage, claims: Claims, joining: Joining, now: datetime) -> str:
     """The secret that the browser shows from now on."""
-    role = joining.role_of(claims.groups) if joining.by_claim else None
-    if joining.by_claim and role is None:
-        raise ForbiddenError(NO_ROLE)
+    role = _claimed(claims, joining)
     with storage.database.writing() as store:
         account = store.identities.account(claims.issuer, claims.subject) or _made(store, claims, joining, role, now)
         if not account.is_active:
@@ -33,6 +31,16 @@ def sign_in_elsewhere(storage: Storage, claims: Claims, joining: Joining, now: d
         if role is not None and role is not account.role:
             account = _with_role(store, account, role, claims, now)
         return begin(store, account, now, elsewhere=claims.issuer)
+
+
+def _claimed(claims: Claims, joining: Joining) -> Role | None:
+    """The role that the provider gives; None where that is not its to say."""
+    if not joining.by_claim:
+        return None
+    role = joining.role_of(claims.groups)
+    if role is None and joining.new != "everybody":
+        raise ForbiddenError(NO_ROLE)
+    return role or Role.VIEWER
 
 
 def connect(storage: Storage, login: str, issuer: str, subject: str, now: datetime, *, who: str) -> Account:

@@ -248,6 +248,16 @@ def test_the_provider_s_groups_give_the_role_at_every_sign_in(
         assert store.audit.page(2)[1].details["before"] == {"role": "engineer"}
 
 
+def test_where_everybody_may_have_an_account_one_without_a_role_is_a_viewer(
+    known: Settings, staff: Staff, openid: OpenId
+) -> None:
+    with http_client(create_app(by_claim(known, oidc_new_accounts="everybody"), clock=lambda: NOW)) as http:
+        for groups, role in ((["imu-crew"], "crew"), ([], "viewer")):
+            openid.person["groups"] = groups
+            assert entered(http).status_code == 303
+            assert me(http)["role"] == role
+
+
 def test_nobody_is_made_whom_the_operator_did_not_let_in(known: Settings, staff: Staff, storage: Storage) -> None:
     own = known.model_copy(update={"oidc_new_accounts": "nobody"})
     with http_client(create_app(own, clock=lambda: NOW)) as http:
