@@ -25,9 +25,12 @@ Never less than the sd of samples over √n.
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import dct
 
 from estimator.session import Array
+
+Indices = NDArray[np.intp]
 
 BLOCKS = 16
 """Blocks of a rest: five octaves of correlation times."""
@@ -55,22 +58,34 @@ class Energies:
     """(n, m) variance of the mean if the samples were independent, unit of the readings squared."""
 
 
-def energies(readings: Array, start: Array, stop: Array) -> Energies | None:
+def block_count(samples: Indices) -> int | None:
+    """B of rests of ``samples`` (n,), without unit: as many as the shortest has; None where all are single samples."""
+    return None if samples.max() < 2 else int(np.clip(samples[samples > 1].min(), 2, BLOCKS))
+
+
+def energies(readings: Array, start: Indices, stop: Indices) -> Energies | None:
     """Of readings (R, m), any unit, in rests from ``start`` to ``stop`` (n,), without unit; None where all are too
     short to have a scatter."""
     samples = stop - start
-    if samples.max() < 2:
+    count = block_count(samples)
+    if count is None:
         return None
-    count = int(np.clip(samples[samples > 1].min(), 2, BLOCKS))
-    value = np.full((len(start), count - 1, readings.shape[1]), np.nan)
-    least = np.full((len(start), readings.shape[1]), np.nan)
+    means = np.full((len(start), count, readings.shape[1]), np.nan)
+    variance = np.full((len(start), readings.shape[1]), np.nan)
     for i in np.flatnonzero(samples > 1):
         rest = readings[start[i] : stop[i]]
         length = samples[i] // count
-        means = rest[: length * count].reshape(count, length, -1).mean(axis=1)
-        value[i] = dct(means, norm="ortho", axis=0)[1:] ** 2
-        least[i] = rest.var(axis=0, ddof=1) / samples[i]
-    return Energies(value, samples, least)
+        means[i] = rest[: length * count].reshape(count, length, -1).mean(axis=1)
+        variance[i] = rest.var(axis=0, ddof=1)
+    return energies_of(means, variance, samples)
+
+
+def energies_of(means: Array, variance: Array, samples: Indices) -> Energies:
+    """Of block means (n, B, m), variances (n, m) of one sample, units of the readings (squared), and ``samples`` (n,).
+
+    NaN where a rest is a single sample.
+    """
+    return Energies(dct(means, norm="ortho", axis=1)[:, 1:] ** 2, samples, variance / samples[:, None])
 
 
 def mixture(samples: Array, count: int) -> tuple[Array, Array]:

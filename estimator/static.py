@@ -17,10 +17,8 @@ from numpy.typing import NDArray
 
 from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.errors import Problem, ScheduleError
-from estimator.rest_noise import energies, mean_variance
-from estimator.session import ACCELEROMETER, Array, CalibrationSession
-
-Indices = NDArray[np.intp]
+from estimator.rest_noise import Indices, energies, mean_variance
+from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor
 
 WINDOW = 1.0
 """s over which the variance is taken: long beside the samples, short beside a rest of some seconds."""
@@ -122,7 +120,11 @@ def labelled(position: NDArray[np.int64]) -> Intervals:
     start = np.concatenate([[0], change])
     stop = np.concatenate([change, [len(position)]])
     named = position[start] >= 0
-    start, stop = start[named], stop[named]
+    return trimmed(start[named], stop[named])
+
+
+def trimmed(start: Indices, stop: Indices) -> Intervals:
+    """Labelled stretches from ``start`` to ``stop`` (n,), cut at both ends; ScheduleError where there is none."""
     if not len(start):
         raise ScheduleError([Problem("position", "no sample belongs to a position; label the still stretches 0, 1, …")])
     trim = (TRIM * (stop - start)).astype(np.intp)
@@ -131,7 +133,11 @@ def labelled(position: NDArray[np.int64]) -> Intervals:
 
 def at_rest(session: CalibrationSession, found: Intervals) -> Intervals:
     """The labelled stretches; ScheduleError where the block moves in most of them."""
-    moves = moving(session, found)
+    return unless_moving(found, moving(session, found))
+
+
+def unless_moving(found: Intervals, moves: NDArray[np.bool_]) -> Intervals:
+    """The same, told in which of them the block ``moves`` (n,)."""
     if 2 * np.count_nonzero(moves) <= len(found):
         return found
     rows = ", ".join(f"{a + 1} to {b}" for a, b in zip(found.start[moves][:3], found.stop[moves][:3], strict=True))
@@ -152,7 +158,7 @@ def moving(session: CalibrationSession, found: Intervals) -> NDArray[np.bool_]:
     A slow turn is as quiet as rest to a short window; over a whole stretch it is not.
     """
     moves = np.zeros(len(found), dtype=bool)
-    if not len(found) or found.samples.min() < 2 * PIECES:
+    if not long_enough_to_move(found):
         return moves
     quarter = found.samples // PIECES
     pieces = [Intervals(found.start + k * quarter, found.start + (k + 1) * quarter) for k in range(PIECES)]
@@ -160,11 +166,25 @@ def moving(session: CalibrationSession, found: Intervals) -> NDArray[np.bool_]:
         if sensor.kind == ACCELEROMETER:
             values = session.readings[:, i]
             drift = np.ptp([piece.means(values) for piece in pieces], axis=0)
-            far = drift > MOTION * STANDARD_GRAVITY * sensor.nominal_scale
-            if far.any():
+            if (drift > far_turn(sensor)).any():
                 jitter = found.sums(np.diff(values, append=values[-1]) ** 2) / (2 * found.samples)
-                moves |= far & (drift > DISTINCT * np.sqrt(jitter / quarter))
+                moves |= turned(sensor, drift, jitter / quarter)
     return moves
+
+
+def long_enough_to_move(found: Intervals) -> bool:
+    """Whether the stretches are long enough to look at their quarters."""
+    return len(found) > 0 and bool(found.samples.min() >= 2 * PIECES)
+
+
+def far_turn(sensor: Sensor) -> float:
+    """Change of an accelerometer's reading, reading units, that is taken for a turn where it is distinct."""
+    return MOTION * STANDARD_GRAVITY * sensor.nominal_scale
+
+
+def turned(sensor: Sensor, drift: Array, variance: Array) -> NDArray[np.bool_]:
+    """(n,) whether a ``drift`` (n,) over the quarters is a turn, the noise of whose means has a ``variance`` (n,)."""
+    return (drift > far_turn(sensor)) & (drift > DISTINCT * np.sqrt(variance))
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,31 +199,50 @@ class Quietness:
 
 def quietness(readings: Array, rate: float) -> Quietness:
     """Variance of every window of readings (R, m), any unit, sampled at ``rate`` Hz, in noise floors."""
-    block = max(round(WINDOW * rate / BLOCKS), 2)
+    block = block_length(rate)
+    return quietness_of(block, *moments(readings, block), smallest_steps(readings))
+
+
+def block_length(rate: float) -> int:
+    """Samples a block at ``rate`` Hz."""
+    return max(round(WINDOW * rate / BLOCKS), 2)
+
+
+def moments(readings: Array, block: int) -> tuple[Array, Array]:
+    """(blocks, m) mean and variance of every whole block of readings (R, m), their unit (squared)."""
     count = len(readings) // block
+    mean, within = np.empty((count, readings.shape[1])), np.empty((count, readings.shape[1]))
+    for i, channel in enumerate(readings[: count * block].T):
+        blocks = channel.reshape(count, block)
+        mean[:, i], within[:, i] = blocks.mean(axis=1), blocks.var(axis=1)
+    return mean, within
+
+
+def smallest_steps(readings: Array) -> Array:
+    """(m,) least change, above zero, from sample to sample of readings (R, m), their unit; infinite where none is."""
+    steps = [np.abs(np.diff(channel)) for channel in readings.T]
+    return np.array([own.min(where=own > 0, initial=np.inf) for own in steps])
+
+
+def quietness_of(block: int, mean: Array, within: Array, steps: Array) -> Quietness:
+    """From the `moments` (blocks, m) of blocks of so many samples, and the `smallest_steps` (m,), reading units."""
+    count, m = mean.shape
     if count < BLOCKS:
         return Quietness(block, np.empty(0))
     total = np.zeros(count - BLOCKS + 1)
-    for channel in readings[: count * block].T:
-        blocks = channel.reshape(count, block)
-        mean = blocks.mean(axis=1)
-        within = blocks.var(axis=1)
+    for i in range(m):
         view = np.lib.stride_tricks.sliding_window_view
-        variance = view(within, BLOCKS).mean(axis=1) + view(mean, BLOCKS).var(axis=1)
-        total += variance / noise_floor(variance, channel)
-    return Quietness(block, total / readings.shape[1])
+        variance = view(within[:, i], BLOCKS).mean(axis=1) + view(mean[:, i], BLOCKS).var(axis=1)
+        total += variance / noise_floor(variance, float(steps[i]))
+    return Quietness(block, total / m)
 
 
-def noise_floor(variance: Array, channel: Array) -> float:
+def noise_floor(variance: Array, step: float) -> float:
     """Variance of a channel at rest, its unit squared: that of its stillest windows, and not below its quantisation.
 
-    variance : (W,) of its windows; channel : (R,) readings, reading units.
+    variance : (W,) of its windows; step : its smallest, reading units; infinite where it never changes.
     """
-    steps = np.abs(np.diff(channel))
-    steps = steps[steps > 0]
-    if not len(steps):
-        return 1.0
-    return max(float(np.quantile(variance, FLOOR)), float(steps.min()) ** 2 / 12)
+    return max(float(np.quantile(variance, FLOOR)), step**2 / 12) if np.isfinite(step) else 1.0
 
 
 def still(quiet: Quietness, threshold: float, rate: float) -> Intervals:
@@ -225,9 +264,7 @@ def still(quiet: Quietness, threshold: float, rate: float) -> Intervals:
 def chosen(session: CalibrationSession, residual: Callable[[CalibrationSession], float]) -> CalibrationSession:
     """The averaged session under the threshold that calibrates best; ScheduleError where none finds enough rests."""
     assert session.sample_rate is not None
-    watched = [s.kind == ACCELEROMETER for s in session.sensors]
-    readings = session.readings[:, watched] if any(watched) else session.readings
-    quiet = quietness(readings, session.sample_rate)
+    quiet = quietness(session.readings[:, watched_for_rest(session)], session.sample_rate)
     tried: dict[tuple[int, ...], tuple[float, CalibrationSession]] = {}
     for threshold in THRESHOLDS:
         found = still(quiet, threshold, session.sample_rate)
@@ -237,14 +274,20 @@ def chosen(session: CalibrationSession, residual: Callable[[CalibrationSession],
             candidate = averaged(session, found)
             tried[key] = (residual(candidate), candidate)
     if not tried:
-        raise ScheduleError([Problem("table", none_found(session))])
+        raise ScheduleError([Problem("table", none_found(len(session.readings)))])
     return min(tried.values(), key=lambda pair: pair[0])[1]
 
 
-def none_found(session: CalibrationSession) -> str:
+def watched_for_rest(session: CalibrationSession) -> NDArray[np.bool_]:
+    """(m,) the channels that tell whether the block stands still: accelerometers, or all where there is none."""
+    accelerometers = np.array([s.kind == ACCELEROMETER for s in session.sensors])
+    return accelerometers if accelerometers.any() else ~accelerometers
+
+
+def none_found(samples: int) -> str:
     """What to tell the person whose log never stands still."""
     return (
-        f"found fewer than {FEWEST} stretches in {len(session.readings)} samples in which the block stands still for "
+        f"found fewer than {FEWEST} stretches in {samples} samples in which the block stands still for "
         f"{WINDOW + SHORTEST:g} s; rest longer in each orientation, check sample_rate_hz, or label the still samples "
         "in a position column"
     )
@@ -299,10 +342,13 @@ def mean_errors(readings: Array, found: Intervals) -> Array:
     return np.full((len(found), readings.shape[1]), np.nan) if shown is None else np.sqrt(mean_variance(shown))
 
 
+def by_kind(session: CalibrationSession, errors: Callable[[list[int]], Array]) -> Array:
+    """(n, m) standard errors, reading units: those of the channels of every kind, told by their numbers."""
+    kinds = [s.kind for s in session.sensors]
+    alike = [[i for i, other in enumerate(kinds) if other == kind] for kind in sorted(set(kinds))]
+    return np.concatenate([errors(own) for own in alike], axis=1)[:, np.argsort([i for own in alike for i in own])]
+
+
 def errors_by_kind(session: CalibrationSession, found: Intervals) -> Array:
     """(n, m) standard errors of the means over the intervals, reading units."""
-    kinds, errors = [s.kind for s in session.sensors], np.empty((len(found), len(session.sensors)))
-    for kind in set(kinds):
-        own = [i for i, other in enumerate(kinds) if other == kind]
-        errors[:, own] = mean_errors(session.readings[:, own], found)
-    return errors
+    return by_kind(session, lambda own: mean_errors(session.readings[:, own], found))

@@ -11,7 +11,11 @@ from estimator.session import (
     RATE_TABLE,
     ROTATION_ALIGNMENT,
     TWO_AXIS_STAND,
+    CalibrationSession,
 )
+
+Rows = Table | CalibrationSession
+"""The table of a file, or the positions that were averaged of a log."""
 
 FEWEST_POSITIONS = 2
 """A single one tells nothing of any programme; whether more are enough is a result."""
@@ -20,7 +24,7 @@ NEEDED_KINDS = {ROTATION_ALIGNMENT: (ACCELEROMETER, GYROSCOPE), RATE_TABLE: (GYR
 """Sensors that a programme on a turntable works with."""
 
 
-def check_schedule(programme: str, table: Table, kinds: set[str], *, raw: bool, problems: Problems) -> None:
+def check_schedule(programme: str, table: Rows, kinds: set[str], *, raw: bool, problems: Problems) -> None:
     """Record schedules that cannot be calibrated from whatever is read; what is hard to observe is a result instead."""
     if programme == TWO_AXIS_STAND:
         _check_beta(table, problems)
@@ -30,7 +34,7 @@ def check_schedule(programme: str, table: Table, kinds: set[str], *, raw: bool, 
         _check_turning(programme, table, kinds, raw, problems)
 
 
-def _check_turning(programme: str, table: Table, kinds: set[str], raw: bool, problems: Problems) -> None:
+def _check_turning(programme: str, table: Rows, kinds: set[str], raw: bool, problems: Problems) -> None:
     """A time series on a turntable: it needs times, and the sensors that the programme works with."""
     for kind in NEEDED_KINDS[programme]:
         if kind not in kinds:
@@ -39,14 +43,14 @@ def _check_turning(programme: str, table: Table, kinds: set[str], raw: bool, pro
         problems.add("time_s", f"the column is missing; {programme} needs it, or sample_rate_hz for a raw log")
 
 
-def _check_beta(table: Table, problems: Problems) -> None:
+def _check_beta(table: Rows, problems: Problems) -> None:
     if table.beta is None or np.isnan(table.beta).any():
         return
     if np.unique(np.exp(1j * table.beta).round(9)).size < FEWEST_POSITIONS:
         problems.add_to_schedule("beta_deg", "all rows stand at a single position; turn the head and read at several β")
 
 
-def _check_positions(table: Table, raw: bool, problems: Problems) -> None:
+def _check_positions(table: Rows, raw: bool, problems: Problems) -> None:
     if table.position is not None:
         labels = np.unique(table.position[table.position >= 0])
         if labels.size < FEWEST_POSITIONS:

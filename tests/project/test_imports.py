@@ -31,7 +31,7 @@ ESTIMATOR_LAYERS = (
     {"rotations"},
     {"applied_vector", "coverage", "parameters", "reading", "rest_noise"},
     {"results", "static"},
-    {"forward", "writing"},
+    {"forward", "long_logs", "writing"},
     {"causes"},
     {"simulate", "calibration", "alignment", "parity"},
     {"correction", "diagnosis", "health", "programmes"},

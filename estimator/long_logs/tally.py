@@ -1,0 +1,168 @@
+"""Sums over the rests of a log, taken part by part.
+
+Everything is summed as its difference from the first sample of its rest, so that no digits are lost. With x the n
+samples of a rest, s₁ = Σx and s₂ = Σx², the variance of a sample is (s₂ − s₁²/n)/(n − 1).
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from estimator.errors import FormatError, Problem
+from estimator.rest_noise import block_count, energies_of, mean_variance
+from estimator.session import ACCELEROMETER, Array, CalibrationSession, Sensor
+from estimator.static import PIECES, Intervals, by_kind, contiguous, far_turn, long_enough_to_move, turned
+
+SET = ("flipped", "beta", "directions", "position")
+"""What is set rather than read: taken from the first sample of a rest."""
+AVERAGED = ("time", "temperature")
+"""What is averaged beside the readings."""
+
+
+class Tally:
+    """The sums over the rests of one log, n of them, and what follows from them. m sensors, c columns."""
+
+    def __init__(self, head: CalibrationSession, found: Intervals) -> None:
+        self.head, self.found = head, found
+        self.blocks = block_count(found.samples) or 1
+        n, m = len(found), len(head.sensors)
+        self._beside = [name for name in AVERAGED if getattr(head, name) is not None]
+        self._edges, self._rank = edges(found, self.blocks)
+        self._first = np.zeros((n, m + len(self._beside)))
+        self._sums = np.zeros((n, self._edges.shape[1] - 1, m + len(self._beside)))
+        self._squares = np.zeros((n, m))
+        self._ends = np.zeros((n, m, 2))
+        self._range = np.array([[-np.inf, np.inf]]).repeat(m, axis=0)
+        named = [name for name in SET if getattr(head, name) is not None]
+        self._set = {name: np.zeros((n, *getattr(head, name).shape[1:]), getattr(head, name).dtype) for name in named}
+
+    def add(self, part: CalibrationSession, at: int) -> None:
+        """The rows from ``at`` on."""
+        values = np.column_stack([part.readings, *(getattr(part, name) for name in self._beside)])
+        self._note_range(part.readings)
+        begin = int(np.searchsorted(self.found.stop, at, "right"))
+        end = int(np.searchsorted(self.found.start, at + len(values), "left"))
+        for i in range(begin, end):
+            if self.found.start[i] >= at:
+                self._begin(i, part, int(self.found.start[i]) - at, values)
+            self._add(i, values, at)
+
+    def _note_range(self, readings: Array) -> None:
+        """A new end of a channel's range: no rest was there before."""
+        seen = np.column_stack([readings.max(axis=0), readings.min(axis=0)])
+        farther = np.column_stack([seen[:, 0] > self._range[:, 0], seen[:, 1] < self._range[:, 1]])
+        self._ends[:, farther] = 0
+        self._range[farther] = seen[farther]
+
+    def _begin(self, i: int, part: CalibrationSession, row: int, values: Array) -> None:
+        self._first[i] = values[row]
+        for name, kept in self._set.items():
+            kept[i] = getattr(part, name)[row]
+
+    def _add(self, i: int, values: Array, at: int) -> None:
+        """The rows of rest i that are in this part."""
+        inside = np.clip(self._edges[i] - at, 0, len(values))
+        own = values[inside[0] : inside[-1]]
+        starts = np.flatnonzero(np.diff(inside))
+        away = own - self._first[i]
+        self._sums[i, starts] += np.add.reduceat(away, inside[starts] - inside[0], axis=0)
+        m = self._squares.shape[1]
+        self._squares[i] += np.einsum("rj,rj->j", away[:, :m], away[:, :m])
+        reached = np.column_stack([own[:, :m].max(axis=0), own[:, :m].min(axis=0)]) == self._range
+        for channel, side in np.argwhere(reached):
+            self._ends[i, channel, side] += np.count_nonzero(own[:, channel] == self._range[channel, side])
+
+    def at(self, chosen: NDArray[np.bool_]) -> "Tally":
+        """Of those of the rests that are ``chosen`` (n,)."""
+        other = Tally(self.head, self.found.at(chosen))
+        for name in ("_first", "_sums", "_squares", "_ends"):
+            setattr(other, name, getattr(self, name)[chosen])
+        other._range = self._range
+        other._set = {name: kept[chosen] for name, kept in self._set.items()}
+        return other
+
+    def _between(self) -> Array:
+        """(n, edges, c) sums from the start of a rest to each of its edges, in the order of `edges`."""
+        up_to = np.concatenate([np.zeros_like(self._sums[:, :1]), np.cumsum(self._sums, axis=1)], axis=1)
+        return np.take_along_axis(up_to, self._rank[..., None], axis=1)
+
+    def drift(self) -> Array:
+        """(n, m) range of the means of the quarters, reading units."""
+        m = self._squares.shape[1]
+        quarters = np.diff(self._between()[:, self.blocks + 1 : -1, :m], axis=1)
+        return np.asarray(np.ptp(quarters / (self.found.samples // PIECES)[:, None, None], axis=1))
+
+    def may_move(self) -> bool:
+        """Whether a quarter differs so far that the noise from sample to sample must be known."""
+        if not long_enough_to_move(self.found):
+            return False
+        drift = self.drift()
+        return any((drift[:, i] > far_turn(sensor)).any() for i, sensor in self._accelerometers())
+
+    def moving(self, jitter: Array) -> NDArray[np.bool_]:
+        """(n,) as `estimator.static.moving`; ``jitter`` (n, m) sums of the squared changes, reading units squared."""
+        moves = np.zeros(len(self.found), dtype=bool)
+        noise = jitter / (2 * self.found.samples * (self.found.samples // PIECES))[:, None]
+        drift = self.drift()
+        for i, sensor in self._accelerometers():
+            moves |= turned(sensor, drift[:, i], noise[:, i])
+        return moves
+
+    def _accelerometers(self) -> list[tuple[int, Sensor]]:
+        return [(i, sensor) for i, sensor in enumerate(self.head.sensors) if sensor.kind == ACCELEROMETER]
+
+    def session(self) -> CalibrationSession:
+        """One row a rest, as `estimator.static.averaged`."""
+        head, samples, m = self.head, self.found.samples, len(self.head.sensors)
+        assert head.sample_rate is not None
+        sums = self._sums.sum(axis=1)
+        means = self._first + sums / samples[:, None]
+        scale = np.array([sensor.nominal_scale for sensor in head.sensors])
+        spread = np.maximum(self._squares - sums[:, :m] ** 2 / samples[:, None], 0.0)
+        beside = dict(zip(self._beside, means[:, m:].T, strict=True))
+        middle = (self.found.start + self.found.stop - 1) / 2 / head.sample_rate
+        return replace(
+            head,
+            readings=means[:, :m],
+            standard_errors=by_kind(head, lambda own: self._errors(own, spread[:, own])),
+            at_ends=self._ends / samples[:, None, None],
+            vibration=spread / samples[:, None] / scale**2,
+            time=beside.get("time", middle),
+            temperature=beside.get("temperature"),
+            **self._set,
+            turn_angle=None,
+            turn_rate=None,
+            sample_rate=None,
+            counts_averaged=samples.astype(float) if contiguous(head) else None,
+        )
+
+    def _errors(self, own: list[int], spread: Array) -> Array:
+        """(n, own) standard errors of the means of some channels, from their sums of squares about the mean."""
+        samples = self.found.samples
+        if samples.max() < 2:
+            return np.full((len(samples), len(own)), np.nan)
+        single = samples < 2
+        length = np.maximum(samples // self.blocks, 1)
+        means = np.diff(self._between()[:, : self.blocks + 1, own], axis=1) / length[:, None, None]
+        variance = spread / np.maximum(samples - 1, 1)[:, None]
+        means[single], variance[single] = np.nan, np.nan
+        return np.sqrt(mean_variance(energies_of(means, variance, samples)))
+
+
+def edges(found: Intervals, blocks: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """(n, e) ends of the blocks, of the quarters, and of the rest, sorted; and the place of each among them."""
+    samples, start = found.samples[:, None], found.start[:, None]
+    cut = start + np.arange(blocks + 1) * (samples // blocks)
+    quarters = start + np.arange(PIECES + 1) * (samples // PIECES)
+    all_edges = np.column_stack([cut, quarters, found.stop])
+    order = np.argsort(all_edges, axis=1, kind="stable")
+    return np.take_along_axis(all_edges, order, axis=1), np.argsort(order, axis=1, kind="stable")
+
+
+def check_alike(head: CalibrationSession, part: CalibrationSession, at: int) -> None:
+    """FormatError where a column is empty in some parts only."""
+    for name in (*SET, *AVERAGED):
+        if (getattr(head, name) is None) != (getattr(part, name) is None):
+            rows = f"rows {at + 1} to {at + len(part.readings)}"
+            raise FormatError([Problem(name, f"is stated in some parts of the log and not in {rows}, or only there")])
