@@ -82,7 +82,15 @@ class Settings(BaseSettings):
         description="Names that requests may call the service by, beside this machine's own and that of public_url, "
         "separated by commas: imu.example.org, or imu.example.org:8443 for that port only; * allows any.",
     )
-    max_upload_bytes: int = Field(default=64 * 1024 * 1024, gt=0, description="Largest upload that is accepted, bytes.")
+    max_upload_bytes: int = Field(
+        default=64 * 1024 * 1024, gt=0, description="Largest upload that is accepted, but for raw logs, bytes."
+    )
+    max_log_bytes: int = Field(
+        default=2 * 1024**3,
+        gt=0,
+        description="Largest upload of CSV or Parquet, bytes: beyond max_upload_bytes it must be a raw log, which is "
+        "averaged while it is scanned.",
+    )
     max_body_bytes: int = Field(
         default=256 * 1024, gt=0, description="Largest body of any other request, such as a note or a form, bytes."
     )
@@ -107,6 +115,9 @@ class Settings(BaseSettings):
         default=2_000_000,
         gt=0,
         description="Most cells of an uploaded table, rows × columns. More need more memory: see max_read_bytes.",
+    )
+    max_log_cells: int = Field(
+        default=500_000_000, gt=0, description="Most cells of a raw log that is averaged while it is scanned."
     )
     max_nesting: int = Field(default=32, gt=3, description="Most lists and objects within each other in a JSON file.")
     max_unpacked_bytes: int = Field(

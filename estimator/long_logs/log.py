@@ -40,7 +40,7 @@ def labelled_rests(log: LongLog, *, positions: bool) -> Intervals:
     stop = np.append(start[1:], at)
     named = np.concatenate(values) >= 0 if positions else np.ones(len(start), dtype=bool)
     if np.count_nonzero(named) > MOST_RESTS:
-        raise ScheduleError([Problem("position", too_many(np.count_nonzero(named)))])
+        raise ScheduleError([Problem("position", too_many(int(np.count_nonzero(named))))])
     return trimmed(start[named], stop[named])
 
 

@@ -21,7 +21,10 @@ AVERAGED = ("time", "temperature")
 
 
 class Tally:
-    """The sums over the rests of one log, n of them, and what follows from them. m sensors, c columns."""
+    """The sums over the rests of one log, n of them, and what follows from them. m sensors, c columns.
+
+    Columns come first while they are summed: (c, r) of the r rows of a part, because each then lies in one piece.
+    """
 
     def __init__(self, head: CalibrationSession, found: Intervals) -> None:
         self.head, self.found = head, found
@@ -34,15 +37,18 @@ class Tally:
         self._squares = np.zeros((n, m))
         self._ends = np.zeros((n, m, 2))
         self._range = np.array([[-np.inf, np.inf]]).repeat(m, axis=0)
+        self._reached = np.empty((0, 2), np.intp)  # channels and ends that this part comes to
         named = [name for name in SET if getattr(head, name) is not None]
-        self._set = {name: np.zeros((n, *getattr(head, name).shape[1:]), getattr(head, name).dtype) for name in named}
+        self._set: dict[str, Array] = {
+            name: np.zeros((n, *getattr(head, name).shape[1:]), getattr(head, name).dtype) for name in named
+        }
 
     def add(self, part: CalibrationSession, at: int) -> None:
         """The rows from ``at`` on."""
-        values = np.column_stack([part.readings, *(getattr(part, name) for name in self._beside)])
-        self._note_range(part.readings)
+        values = np.vstack([part.readings.T, *(getattr(part, name) for name in self._beside)])
+        self._note_range(values[: len(self._range)])
         begin = int(np.searchsorted(self.found.stop, at, "right"))
-        end = int(np.searchsorted(self.found.start, at + len(values), "left"))
+        end = int(np.searchsorted(self.found.start, at + values.shape[1], "left"))
         for i in range(begin, end):
             if self.found.start[i] >= at:
                 self._begin(i, part, int(self.found.start[i]) - at, values)
@@ -50,28 +56,28 @@ class Tally:
 
     def _note_range(self, readings: Array) -> None:
         """A new end of a channel's range: no rest was there before."""
-        seen = np.column_stack([readings.max(axis=0), readings.min(axis=0)])
+        seen = np.column_stack([readings.max(axis=1), readings.min(axis=1)])
         farther = np.column_stack([seen[:, 0] > self._range[:, 0], seen[:, 1] < self._range[:, 1]])
         self._ends[:, farther] = 0
         self._range[farther] = seen[farther]
+        self._reached = np.argwhere(seen == self._range)
 
     def _begin(self, i: int, part: CalibrationSession, row: int, values: Array) -> None:
-        self._first[i] = values[row]
+        self._first[i] = values[:, row]
         for name, kept in self._set.items():
             kept[i] = getattr(part, name)[row]
 
     def _add(self, i: int, values: Array, at: int) -> None:
         """The rows of rest i that are in this part."""
-        inside = np.clip(self._edges[i] - at, 0, len(values))
-        own = values[inside[0] : inside[-1]]
+        inside = np.clip(self._edges[i] - at, 0, values.shape[1])
+        own = values[:, inside[0] : inside[-1]]
         starts = np.flatnonzero(np.diff(inside))
-        away = own - self._first[i]
-        self._sums[i, starts] += np.add.reduceat(away, inside[starts] - inside[0], axis=0)
-        m = self._squares.shape[1]
-        self._squares[i] += np.einsum("rj,rj->j", away[:, :m], away[:, :m])
-        reached = np.column_stack([own[:, :m].max(axis=0), own[:, :m].min(axis=0)]) == self._range
-        for channel, side in np.argwhere(reached):
-            self._ends[i, channel, side] += np.count_nonzero(own[:, channel] == self._range[channel, side])
+        away = own - self._first[i, :, None]
+        self._sums[i, starts] += np.add.reduceat(away, inside[starts] - inside[0], axis=1).T
+        m = len(self._range)
+        self._squares[i] += np.einsum("jr,jr->j", away[:m], away[:m])
+        for channel, side in self._reached:
+            self._ends[i, channel, side] += np.count_nonzero(own[channel] == self._range[channel, side])
 
     def at(self, chosen: NDArray[np.bool_]) -> "Tally":
         """Of those of the rests that are ``chosen`` (n,)."""
@@ -130,7 +136,10 @@ class Tally:
             vibration=spread / samples[:, None] / scale**2,
             time=beside.get("time", middle),
             temperature=beside.get("temperature"),
-            **self._set,
+            flipped=self._set.get("flipped"),
+            beta=self._set.get("beta"),
+            directions=self._set.get("directions"),
+            position=self._set.get("position"),
             turn_angle=None,
             turn_rate=None,
             sample_rate=None,

@@ -20,7 +20,11 @@ COUNT_TIME = Interval(0, 1e6, "s", above=True)
 
 
 def read_session(
-    source: str | Path | Mapping[str, object] | bytes, *, name: str | None = None, most: Extent | None = None
+    source: str | Path | Mapping[str, object] | bytes,
+    *,
+    name: str | None = None,
+    most: Extent | None = None,
+    part: bool = False,
 ) -> CalibrationSession:
     """Read and check one calibration session.
 
@@ -29,6 +33,7 @@ def read_session(
     source : a path (.json, or .csv with its metadata), a dict with the content of a JSON file, or a file's bytes.
     name : what messages call the source; the path unless given.
     most : how much it may hold; `Extent()` unless given.
+    part : whether these are some rows of a longer log, which need not support the programme by themselves.
 
     Returns
     -------
@@ -40,10 +45,10 @@ def read_session(
     ScheduleError : every field is right, but the rows cannot support the programme.
     """
     problems = Problems(name or display_name(source), most)
-    return _assemble(Fields(load(source, problems), "", problems))
+    return _assemble(Fields(load(source, problems), "", problems), part=part)
 
 
-def _assemble(document: Fields) -> CalibrationSession:
+def _assemble(document: Fields, *, part: bool) -> CalibrationSession:
     """All parts of the session; raises what any of them recorded."""
     problems = document.problems
     _check_format(document)
@@ -64,7 +69,7 @@ def _assemble(document: Fields) -> CalibrationSession:
     stage = document.choice("stage", STAGES) if document.has("stage") else None
     texts = {key: document.optional_text(key) for key in ("unit_type", "operator", "notes")}
     table = read_table(document, programme, sensors)
-    if table is not None:
+    if table is not None and not part:
         check_schedule(programme, table, kinds, raw=document.has("sample_rate_hz"), problems=problems)
     problems.raise_if_any()
     assert table is not None, "a session without a table has problems"

@@ -5,17 +5,15 @@ from dataclasses import replace
 from typing import Annotated, Any
 
 from fastapi import Depends, Query, Request
-from starlette.datastructures import UploadFile
 
 from estimator.errors import Problem
 from service.admission import PersonOf
+from service.api.arriving import Arriving, ArrivingOf, LandedFile
 from service.api.schemas.fields import LongText, Text
 from service.api.schemas.sessions import SessionFile
-from service.dependencies import PlaceOf, SettingsOf, limited
 from service.errors import ForbiddenError, RefusedError
 from service.records.identity import Role
 from service.records.received import Replaced, SentFile
-from service.settings import Settings
 
 NEEDED = "is missing; a session is replaced by somebody and for a reason"
 LONGEST_WHY = 2000
@@ -35,16 +33,15 @@ FIELDS = ("supersedes", "by", "why")
 
 async def _received(
     request: Request,
-    settings: SettingsOf,
+    arriving: ArrivingOf,
     person: PersonOf,
-    _: PlaceOf,
     *,
     supersedes: Supersedes = None,
     by: By = None,
     why: Why = None,
 ) -> SentFile:
     """The file, from the body or from the part `file` of a form."""
-    sent = await _sent(request, settings, {"supersedes": supersedes, "by": person.signs(by or ""), "why": why})
+    sent = await _sent(request, arriving, {"supersedes": supersedes, "by": person.signs(by or ""), "why": why})
     if sent.replaces is None:
         return sent
     if not person.may(Role.ENGINEER):
@@ -52,23 +49,21 @@ async def _received(
     return replace(sent, replaces=replace(sent.replaces, who=person.signs(sent.replaces.who)))
 
 
-async def _sent(request: Request, settings: Settings, stated: dict[str, str | None]) -> SentFile:
+async def _sent(request: Request, arriving: Arriving, stated: dict[str, str | None]) -> SentFile:
     content_type = request.headers.get("content-type", "").lower()
-    is_form = content_type.startswith("multipart/form-data")
-    body = limited(request, settings.max_upload_bytes, is_form=is_form)
-    if is_form:
-        return await _from_form(body, stated)
+    if content_type.startswith("multipart/form-data"):
+        return await _from_form(arriving, stated)
     name = "upload.csv" if "csv" in content_type else "upload.json"
-    return SentFile(name, await body.body(), _replaced(stated))
+    return SentFile(name, await arriving.body(), _replaced(stated))
 
 
-async def _from_form(request: Request, stated: dict[str, str | None]) -> SentFile:
-    async with request.form(max_files=1, max_fields=10) as form:
-        file = form.get("file")
-        if not isinstance(file, UploadFile):
-            raise RefusedError(NO_FILE, (Problem("file", "is missing from the form"),))
-        own = {name: text for name in FIELDS if isinstance(text := form.get(name), str)}
-        return SentFile(file.filename or "upload", await file.read(), _replaced(stated | own))
+async def _from_form(arriving: Arriving, stated: dict[str, str | None]) -> SentFile:
+    form = await arriving.form(most_files=1)
+    file = form.get("file")
+    if not isinstance(file, LandedFile):
+        raise RefusedError(NO_FILE, (Problem("file", "is missing from the form"),))
+    own = {name: text for name in FIELDS if isinstance(text := form.get(name), str)}
+    return SentFile(file.filename or "upload", await file.content(), _replaced(stated | own))
 
 
 def _replaced(stated: Mapping[str, str | None]) -> Replaced | None:

@@ -3,6 +3,7 @@
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
+from fastapi.responses import FileResponse
 
 from service.admission import PersonOf
 from service.api.received import REQUEST_BODY, FileOf
@@ -25,7 +26,8 @@ from service.flows.set_stage import set_stage
 from service.views.traceability import traceability_of
 
 router = APIRouter(prefix="/sessions", tags=["sessions"])
-ANY_BYTES = {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}}
+BYTES = "application/octet-stream"
+ANY_BYTES = {BYTES: {"schema": {"type": "string", "format": "binary"}}}
 """How OpenAPI describes a file."""
 
 
@@ -93,9 +95,8 @@ def mark_session(id: SessionId, new: NewStage, storage: StorageOf, now: Now, per
 @router.get("/{id}/file", responses={200: {"content": ANY_BYTES}, **errors(404, 422, 500)}, response_class=Response)
 def read_file(id: SessionId, store: Reading, storage: StorageOf) -> Response:
     """The uploaded bytes, unchanged."""
-    session = store.sessions.get(id)
-    return Response(
-        storage.files.read(session.sha256),
-        media_type="application/octet-stream",
-        headers={"Content-Disposition": f'attachment; filename="{id}"', "X-Content-Type-Options": "nosniff"},
-    )
+    content = storage.files.content(store.sessions.get(id).sha256)
+    headers = {"Content-Disposition": f'attachment; filename="{id}"', "X-Content-Type-Options": "nosniff"}
+    if isinstance(content, bytes):
+        return Response(content, media_type=BYTES, headers=headers)
+    return FileResponse(content, media_type=BYTES, headers=headers)

@@ -1,9 +1,9 @@
 """Uploads are refused while there is still room, so that the database never meets a full disk."""
 
-from functools import partial
 from pathlib import Path
 
 from starlette.concurrency import run_in_threadpool
+from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from service.api.problems import problem
@@ -19,14 +19,15 @@ class RoomForUploads:
 
     def __init__(self, app: ASGIApp, folder: Path, least: int) -> None:
         self.app = app
-        self.space = partial(space_at, folder, least)
+        self.folder, self.least = folder, least
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Passes everything but uploads that there is no room for."""
         if scope["type"] != "http" or scope["method"] != "POST" or scope["path"] not in UPLOADS:
             await self.app(scope, receive, send)
             return
-        space = await run_in_threadpool(self.space)
+        announced = int(Headers(scope=scope).get("content-length", "0"))
+        space = await run_in_threadpool(space_at, self.folder, self.least + announced)
         if space.too_little is None:
             await self.app(scope, receive, send)
             return

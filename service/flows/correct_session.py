@@ -52,7 +52,7 @@ def _corrections(storage: Storage, id: str) -> tuple[CalibrationSession, tuple[C
         stored, calibration = store.sessions.get(id), store.calibrations.get(id)
         if stored.state is not RecordState.QUESTIONED:
             raise ConflictError(f"Session {id} is not questioned, so there is nothing to correct.")
-        source = read_upload(storage.files.read(stored.sha256), stored.filename)
+        source = read_upload(storage.files.content(stored.sha256), stored.filename)
         found = doubts(store, as_checked(source, stored.started_at), calibration)
     return source, tuple(doubt.correction for doubt in found if doubt.correction is not None)
 

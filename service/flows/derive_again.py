@@ -153,7 +153,7 @@ def _recording(store: Store, way: Deriving, session: StoredSession, place: Place
     if place.reference is None:
         return Judged(known.get(session.id), (), NOTHING_TO_COMPARE, is_reference=False)
     try:
-        source = read_upload(way.files.read(session.sha256), session.filename)
+        source = read_upload(way.files.content(session.sha256), session.filename)
     except (*LOST, SessionError) as lost:
         return Judged(known.get(session.id), (), f"It cannot be compared: {lost}", is_reference=False)
     reference = known.get(place.reference.id)

@@ -182,7 +182,7 @@ def _nothing_found(task: Task, state: DiagnosisState, summary: str, now: datetim
 
 
 def _read(files: Files, stored: StoredSession) -> CalibrationSession:
-    return read_upload(files.read(stored.sha256), stored.filename)
+    return read_upload(files.content(stored.sha256), stored.filename)
 
 
 def _comparable(files: Files, task: Task, session: CalibrationSession) -> list[CalibrationSession]:

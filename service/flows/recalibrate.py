@@ -80,7 +80,7 @@ def _recalibrated(storage: Storage, stored: StoredSession) -> _Made | str:
     if known is not None:
         return _Made(stored, model, known)
     try:
-        session = read_upload(storage.files.read(stored.sha256), stored.filename)
+        session = read_upload(storage.files.content(stored.sha256), stored.filename)
         return _Made(stored, model, calibrate(as_checked(session, stored.started_at), Basis(model, None)).calibration)
     except SessionError:
         return LEFT

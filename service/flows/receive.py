@@ -25,7 +25,7 @@ from service.judging.tolerances import type_of
 from service.log import log
 from service.metrics import Metrics
 from service.records.decision import Verdict
-from service.records.received import Received, Replaced, SentFile
+from service.records.received import Content, Received, Replaced, SentFile, where
 from service.records.session import Receipt, StoredSession
 from service.storage import Storage
 from service.storage.files import content_hash
@@ -97,7 +97,7 @@ def ask_again(reception: Reception, ids: Iterable[str]) -> None:
 def _stored_or_refused(reception: Reception, file: SentFile, now: datetime) -> Receipt | RefusedError:
     k = reception.coverage_factor
     try:
-        with in_turn(file.content):
+        with in_turn(where(file.content)):
             return upload(
                 reception.storage, file.content, file.filename, now,
                 coverage_factor=k, who=reception.who, replaces=file.replaces,
@@ -116,7 +116,7 @@ def _diagnose(reception: Reception, id: str, now: datetime, *, wait: bool) -> No
 
 def upload(
     storage: Storage,
-    content: bytes,
+    content: Content,
     filename: str,
     now: datetime,
     *,
@@ -132,7 +132,7 @@ def upload(
     every problem when the file cannot be used; then only the refusal is recorded. Without ``outlook`` the unit's dates
     stay as they were: another file of it follows.
     """
-    received = Received(content, content_hash(content), plain_filename(filename), now, who, simulated)
+    received = Received(len(content), content_hash(content), plain_filename(filename), now, who, simulated)
     way = Deriving(storage.files, coverage_factor, now, outlook=outlook)
     with storage.database.reading() as store:
         if replaces is not None:
@@ -142,7 +142,7 @@ def upload(
         storage.files.put_back(content)
         return _known(storage, way, known, replaces)
     try:
-        calibrated = _calibrated(storage, check(content, received.filename, now))
+        calibrated = _calibrated(storage, check(where(content), received.filename, now))
     except SessionError as fault:
         raise refuse(storage, received, fault.problems) from fault
     storage.files.keep(content)
@@ -212,7 +212,7 @@ def _record(received: Received, new: Calibrated) -> StoredSession:
         unit=session.unit,
         sha256=received.sha256,
         filename=received.filename,
-        size=len(received.content),
+        size=received.size,
         programme=session.programme,
         stand=new.checked.stand,
         operator=session.operator,

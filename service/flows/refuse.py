@@ -16,7 +16,7 @@ def refuse(storage: Storage, received: Received, problems: Sequence[Problem]) ->
     name, digest = received.filename, received.sha256
     listed = tuple(Problem(_text(p.field), _text(p.message), p.row) for p in problems)
     with storage.database.writing() as store:
-        store.log.refusal(received.at, name, digest, len(received.content), listed)
+        store.log.refusal(received.at, name, digest, received.size, listed)
         store.audit.write(received.at, received.who, "refuse", digest, {"filename": name, "problems": len(listed)})
     count = "one problem" if len(listed) == 1 else f"{len(listed)} problems"
     return RefusedError(f"{name} cannot be used: {count}. Nothing was stored.", listed)

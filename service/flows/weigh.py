@@ -89,7 +89,7 @@ def weigh_again(store: Store, files: Files, id: str) -> None:
     if made is None or made.found is None:
         return
     try:
-        source = read_upload(files.read(session.sha256), session.filename)
+        source = read_upload(files.content(session.sha256), session.filename)
     except (*LOST, SessionError):
         store.diagnoses.put_reservations(id, UNCHECKED)
         return

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from estimator.reading import read_session
+from estimator.reading.source import LARGEST_FILE
 from estimator.session import CalibrationSession
 from service.ingest.apart import read_apart, turn
 from service.ingest.formats import BINARY, is_binary
@@ -17,17 +18,20 @@ LONG = 1024 * 1024
 """Bytes of text that are read here: a tenth of a second at most, and 40 MB. A session of positions has a hundredth."""
 
 
-def read_upload(content: bytes, filename: str) -> CalibrationSession:
-    """The session that the content holds; raises SessionError with every problem, named after the file."""
-    if _is_apart(content):
+def read_upload(content: bytes | Path, filename: str) -> CalibrationSession:
+    """The session that the content, or a file, holds; raises SessionError with every problem, named after the file.
+
+    A raw log of more cells than may be held comes as its averaged positions.
+    """
+    if isinstance(content, Path) or _is_apart(content):
         return apart_session(content, filename)
     return read_session(content, name=filename, most=in_force().extent)
 
 
 @contextmanager
-def in_turn(content: bytes) -> Iterator[None]:
+def in_turn(content: bytes | Path) -> Iterator[None]:
     """Around all that is done with an upload: only so many that are read apart are held in memory at once."""
-    if _is_apart(content):
+    if isinstance(content, Path) or _is_apart(content):
         with turn():
             yield
     else:
@@ -38,7 +42,7 @@ def _is_apart(content: bytes) -> bool:
     return is_binary(content) or len(content) > LONG
 
 
-def apart_session(content: bytes, filename: str) -> CalibrationSession:
+def apart_session(content: bytes | Path, filename: str) -> CalibrationSession:
     """The same, by a process of its own."""
     session = read_apart("session", content, filename)
     assert isinstance(session, CalibrationSession)
@@ -49,4 +53,5 @@ def read_file(path: Path) -> CalibrationSession:
     """The same for a file on this machine, where the metadata of a CSV table may stand in a JSON file beside it."""
     with path.open("rb") as file:
         start = file.read(max(map(len, BINARY)))
-    return apart_session(path.read_bytes(), str(path)) if is_binary(start) else read_session(path)
+    is_long = path.stat().st_size > LARGEST_FILE
+    return apart_session(path, str(path)) if is_binary(start) or is_long else read_session(path)

@@ -14,7 +14,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from threading import Condition, Lock, local
 from typing import Any
@@ -34,6 +34,8 @@ FRUGAL = {"POLARS_MAX_THREADS": "1", "MALLOC_ARENA_MAX": "1"}
 """One thread: more take address space, and several files are read at once already."""
 WAITING = 3
 """Times the computing time that reading may last: the machine may be busy with other things."""
+PACE = 20_000_000
+"""Bytes of a file for which reading may take a second more: a fifth of what a CSV is read at."""
 GRACE = 5.0
 """Seconds beyond that before the process is taken for lost, which ends itself at its time."""
 PATIENCE = 10.0
@@ -50,9 +52,11 @@ FELL = (OSError, EOFError, *DAMAGED)
 """What a fork that ends before its answer is seen as."""
 
 
-def read_apart(job: str, content: bytes, filename: str) -> Any:
+def read_apart(job: str, content: bytes | Path, filename: str) -> Any:
     """What the job makes of the content; a SessionError where it cannot be used, BusyError where it must wait."""
     most = limits.in_force()
+    if isinstance(content, Path):
+        most = replace(most, seconds=most.seconds + content.stat().st_size // PACE)
     with turn():
         try:
             return _asked_again_if_ended(job, content, filename, most)
@@ -73,7 +77,7 @@ def turn() -> Iterator[None]:
         yield
 
 
-def _asked_again_if_ended(job: str, content: bytes, filename: str, most: Limits) -> Any:
+def _asked_again_if_ended(job: str, content: bytes | Path, filename: str, most: Limits) -> Any:
     """A file is not to blame where the process that forks was ended from outside: it is read once more."""
     try:
         return _asked(job, content, filename, most)
@@ -83,16 +87,23 @@ def _asked_again_if_ended(job: str, content: bytes, filename: str, most: Limits)
     return _asked(job, content, filename, most)
 
 
-def _asked(job: str, content: bytes, filename: str, most: Limits) -> Any:
+def _asked(job: str, content: bytes | Path, filename: str, most: Limits) -> Any:
     with _server.fork() as child:
         child.settimeout(most.seconds * WAITING + GRACE)
-        request = {"job": job, "filename": filename, "size": len(content), "limits": asdict(most)}
-        _send(child, json.dumps(request).encode())
-        child.sendall(content)
+        _ask(child, {"job": job, "filename": filename, "limits": asdict(most)}, content)
         line = _line(child)
         if line.startswith(b'{"refused"'):
             raise _refused(json.loads(line)["refused"])
         return unpack(line, most.memory, lambda array: _fill(child, array))
+
+
+def _ask(child: socket.socket, request: dict[str, Any], content: bytes | Path) -> None:
+    """Bytes go with it; a file is opened there."""
+    if isinstance(content, Path):
+        _send(child, json.dumps(request | {"path": str(content.absolute())}).encode())
+    else:
+        _send(child, json.dumps(request | {"size": len(content)}).encode())
+        child.sendall(content)
 
 
 def _refused(found: dict[str, Any]) -> FormatError | ScheduleError:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
+from pathlib import Path
 
 from estimator.errors import FormatError, Problem
 from estimator.session import CalibrationSession
@@ -28,7 +29,7 @@ class Checked:
     """That it was measured on."""
 
 
-def check(content: bytes, filename: str, now: datetime) -> Checked:
+def check(content: bytes | Path, filename: str, now: datetime) -> Checked:
     """The session that uploaded bytes hold; SessionError with every problem where they cannot be used."""
     session = read_upload(content, filename)
     problems = [*_text_problems(session), *_date_problems(session, now)]

@@ -22,6 +22,8 @@ from service.ingest.limits import Limits, refusal
 
 STATM = Path("/proc/self/statm")
 """Sizes of this process in pages, the whole first (Linux)."""
+DATA = 5
+"""Place there of what is private and can be written."""
 USUAL = 512 * 1024**2
 """Bytes of address space that the readers take where the platform does not say."""
 STDIN, STDERR = 0, 2
@@ -71,7 +73,7 @@ def _answer(connection: socket.socket) -> None:
     request = json.loads(connection.recv(size, socket.MSG_WAITALL))
     most = Limits(**request["limits"])
     limits.use(most)
-    _limit_this_process(most)
+    _limit_this_process(most, _mapped(request))
     try:
         line, arrays = _read(connection, request)
     except MemoryError:
@@ -82,12 +84,17 @@ def _answer(connection: socket.socket) -> None:
 
 
 def _read(connection: socket.socket, request: dict[str, Any]) -> tuple[bytes, tuple[Array, ...]]:
-    content = connection.recv(request["size"], socket.MSG_WAITALL) if request["size"] else b""
     try:
-        packed = pack(jobs.JOBS[request["job"]](content, request["filename"]))
+        packed = pack(jobs.JOBS[request["job"]](_content(connection, request), request["filename"]))
     except SessionError as error:
         return _refusal(error), ()
     return packed.line, packed.arrays
+
+
+def _content(connection: socket.socket, request: dict[str, Any]) -> bytes | Path:
+    if "path" in request:
+        return Path(request["path"])
+    return connection.recv(request["size"], socket.MSG_WAITALL) if request["size"] else b""
 
 
 def _too_large(filename: str, most: Limits) -> SessionError:
@@ -101,22 +108,29 @@ def _refusal(error: SessionError) -> bytes:
     return json.dumps({"refused": {"schedule": schedule, "problems": found, "source": error.source}}).encode()
 
 
-def _limit_this_process(most: Limits) -> None:
+def _mapped(request: dict[str, Any]) -> int:
+    """Bytes of a file that may be mapped: that takes address space, and no memory that could not be taken back."""
+    return Path(request["path"]).stat().st_size if "path" in request else 0
+
+
+def _limit_this_process(most: Limits, mapped: int) -> None:
     """Limits that end it, and no way to dump what it holds."""
-    space = _address_space() + most.memory
+    own = _pages()
+    space, data = own[0] + most.memory + mapped, own[DATA] + most.memory
     resource.setrlimit(resource.RLIMIT_AS, (space, space))
+    resource.setrlimit(resource.RLIMIT_DATA, (data, data))
     resource.setrlimit(resource.RLIMIT_CPU, (most.seconds, most.seconds))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
     signal.setitimer(signal.ITIMER_REAL, most.seconds * WAITING)
 
 
-def _address_space() -> int:
-    """Bytes that this process has before it reads anything."""
+def _pages() -> list[int]:
+    """Bytes that this process has before it reads anything: as `STATM` has them."""
     try:
-        return int(STATM.read_text().split()[0]) * resource.getpagesize()
+        return [int(pages) * resource.getpagesize() for pages in STATM.read_text().split()]
     except OSError:
-        return USUAL
+        return [USUAL] * (DATA + 1)
 
 
 if __name__ == "__main__":

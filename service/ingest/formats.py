@@ -15,3 +15,8 @@ BINARY = (PARQUET, XLSX, HDF5, MAT)
 def is_binary(start: bytes) -> bool:
     """Whether the first bytes are those of a binary format."""
     return start.startswith(BINARY)
+
+
+def may_be_log(start: bytes) -> bool:
+    """Whether the first bytes are those of a format that can be scanned: Parquet, or CSV with its metadata."""
+    return start.startswith(PARQUET) or start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"#")

@@ -1,12 +1,16 @@
 """What a reading process can be asked for, by name. Only that process loads the libraries of the formats."""
 
 from collections.abc import Callable
+from pathlib import Path
 
 from estimator.reading import read_session
 from service.ingest import hdf5, mat, parquet, xlsx
 from service.ingest.formats import HDF5, MAT, PARQUET, XLSX
-from service.ingest.limits import in_force
+from service.ingest.limits import in_force, refusal
+from service.ingest.long_log import averaged_if_long
 
+Content = bytes | Path
+"""Of a file, or where it lies."""
 Reader = Callable[[bytes, str], dict[str, object]]
 
 READERS: tuple[tuple[bytes, Reader], ...] = (
@@ -18,18 +22,29 @@ READERS: tuple[tuple[bytes, Reader], ...] = (
 """First bytes of a binary format, and what reads it; anything else is JSON or CSV, or refused as neither."""
 
 
-def session(content: bytes, filename: str) -> object:
-    """The checked session of a file of any format."""
+def session(content: Content, filename: str) -> object:
+    """The checked session of a file of any format; of a long raw log its averaged positions."""
+    if isinstance(content, Path):
+        averaged = averaged_if_long(content, filename)
+        return session(_whole(content, filename), filename) if averaged is None else averaged
     for magic, read in READERS:
         if content.startswith(magic):
             return read_session(read(content, filename), name=filename, most=in_force().extent)
     return read_session(content, name=filename, most=in_force().extent)
 
 
-def mat_matrices(content: bytes, filename: str) -> object:
+def _whole(path: Path, filename: str) -> bytes:
+    size, most = path.stat().st_size, in_force().whole
+    if size > most:
+        raise refusal(filename, f"has {size:,} bytes; but for raw logs (sample_rate_hz) at most {most:,} can be read")
+    return path.read_bytes()
+
+
+def mat_matrices(content: Content, filename: str) -> object:
     """All variables of a MAT file, with up to three rows or columns."""
-    return mat.variables(content, filename, most_rows=3)
+    held = _whole(content, filename) if isinstance(content, Path) else content
+    return mat.variables(held, filename, most_rows=3)
 
 
-JOBS: dict[str, Callable[[bytes, str], object]] = {"session": session, "mat-matrices": mat_matrices}
+JOBS: dict[str, Callable[[Content, str], object]] = {"session": session, "mat-matrices": mat_matrices}
 """Name → what does it."""

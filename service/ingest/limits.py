@@ -19,6 +19,10 @@ class Limits:
     columns: int
     cells: int
     """Rows × columns of a table."""
+    log_cells: int
+    """The same of a raw log that is averaged while it is scanned."""
+    whole: int
+    """Bytes of a file that is read whole."""
     nesting: int
     """Lists and objects of JSON within each other."""
     unpacked: int
@@ -48,6 +52,8 @@ def limits_of(settings: Settings) -> Limits:
         rows=settings.max_rows,
         columns=settings.max_columns,
         cells=settings.max_cells,
+        log_cells=settings.max_log_cells,
+        whole=settings.max_upload_bytes,
         nesting=settings.max_nesting,
         unpacked=settings.max_unpacked_bytes,
         seconds=settings.max_read_seconds,

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from datetime import datetime
+from pathlib import Path
 
 
 @dataclass(frozen=True)
@@ -14,11 +15,32 @@ class Replaced:
 
 
 @dataclass(frozen=True)
+class Landed:
+    """The bytes of a long upload, in a file of its own."""
+
+    path: Path
+    sha256: str
+    size: int
+
+    def __len__(self) -> int:
+        return self.size
+
+
+Content = bytes | Landed
+"""Of an upload: bytes where they are few."""
+
+
+def where(content: Content) -> bytes | Path:
+    """What reads it is given: the bytes, or where they lie."""
+    return content.path if isinstance(content, Landed) else content
+
+
+@dataclass(frozen=True)
 class SentFile:
     """A file as its sender named it."""
 
     filename: str
-    content: bytes
+    content: Content
     replaces: Replaced | None = None
 
 
@@ -26,7 +48,8 @@ class SentFile:
 class Received:
     """An upload on its way through the steps."""
 
-    content: bytes
+    size: int
+    """Bytes."""
     sha256: str
     """Of the content."""
     filename: str

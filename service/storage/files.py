@@ -1,23 +1,32 @@
 """Uploaded bytes, unchanged, under the name of their hash; safe on disk before the database knows of them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
-from hashlib import sha256
+from hashlib import file_digest, sha256
 from pathlib import Path
 
 from service.errors import DamagedError, NotFoundError
 from service.log import log
+from service.records.received import Content, Landed
 from service.storage.faults import disk_faults
 from service.storage.folders import make_folder, sync_folder
-from service.storage.parts import PART, sweep, written_whole
+from service.storage.landing import IN_MEMORY, Landings, landings
+from service.storage.parts import PART, named_durably, sweep, written_whole
 
 LOST = (NotFoundError, DamagedError)
 """What reading a file may end in although it was stored."""
 
 
-def content_hash(content: bytes) -> str:
+def content_hash(content: Content) -> str:
     """SHA-256, 64 hexadecimal digits."""
-    return sha256(content).hexdigest()
+    return content.sha256 if isinstance(content, Landed) else sha256(content).hexdigest()
+
+
+def file_hash(path: Path) -> str:
+    """The same of a file, of which only a piece is held."""
+    with path.open("rb") as file:
+        return file_digest(file, "sha256").hexdigest()
 
 
 def _ignore(_: str) -> None:
@@ -36,7 +45,7 @@ class Files:
         """Where the bytes of a hash are kept; made from the hash alone, never from an uploaded name."""
         return self.folder / digest[:2] / digest
 
-    def keep(self, content: bytes) -> str:
+    def keep(self, content: Content) -> str:
         """Stores the bytes so that they survive a power cut, and returns their hash.
 
         Kept again they stay as they are, or are put back if they were lost or damaged. The names are made durable in
@@ -47,13 +56,12 @@ class Files:
         with disk_faults():
             if not self._holds(target, digest):
                 make_folder(target.parent)
-                with written_whole(target) as file:
-                    file.write(content)
+                _put(content, target)
             for folder in (target.parent, self.folder, self.folder.parent):
                 sync_folder(folder)
         return digest
 
-    def put_back(self, content: bytes) -> None:
+    def put_back(self, content: Content) -> None:
         """Keeps bytes again that were stored before, and says so where they were lost or damaged."""
         digest = content_hash(content)
         is_whole = self._holds(self.path(digest), digest)
@@ -64,8 +72,28 @@ class Files:
 
     def read(self, digest: str) -> bytes:
         """The bytes as they were uploaded; NotFoundError where they are gone, DamagedError where they were changed."""
-        try:
+        with self._found(digest):
             content = self.path(digest).read_bytes()
+        self._check(content_hash(content), digest)
+        return content
+
+    def content(self, digest: str) -> bytes | Path:
+        """The same; of a long file the place where it lies, once its bytes were checked."""
+        with self._found(digest):
+            if self.path(digest).stat().st_size <= IN_MEMORY:
+                return self.read(digest)
+            found = file_hash(self.path(digest))
+        self._check(found, digest)
+        return self.path(digest)
+
+    def arriving(self) -> AbstractContextManager[Landings]:
+        """A place for files that come in parts."""
+        return landings(self.folder)
+
+    @contextmanager
+    def _found(self, digest: str) -> Iterator[None]:
+        try:
+            yield
         except FileNotFoundError as missing:
             self._tell("missing", digest)
             raise NotFoundError(
@@ -74,13 +102,14 @@ class Files:
         except OSError as fault:
             self._tell("unreadable", digest)
             raise DamagedError(f"The uploaded file {digest} cannot be read: {fault.strerror or fault}.") from fault
-        if content_hash(content) != digest:
+
+    def _check(self, found: str, digest: str) -> None:
+        if found != digest:
             self._tell("damaged", digest)
             raise DamagedError(
                 f"The stored file {digest} is not what was uploaded: its content was changed, so it is not given out. "
                 "Uploading the same file, or the one in a backup, puts it back."
             )
-        return content
 
     def sweep(self) -> int:
         """Removes what dead processes left half written, and returns how many; whoever still writes holds a lock."""
@@ -90,10 +119,19 @@ class Files:
     def _holds(self, target: Path, digest: str) -> bool:
         """Whether the file is there as it was uploaded."""
         try:
-            return content_hash(target.read_bytes()) == digest
+            return file_hash(target) == digest
         except OSError:
             return False
 
     def _tell(self, fault: str, digest: str) -> None:
         log.error("stored file unusable", fault=fault, sha256=digest)
         self.count(fault)
+
+
+def _put(content: Content, target: Path) -> None:
+    """The bytes under their name; a file that landed is moved there."""
+    if isinstance(content, Landed):
+        named_durably(content.path, target)
+        return
+    with written_whole(target) as file:
+        file.write(content)

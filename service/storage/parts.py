@@ -35,6 +35,13 @@ def written_whole(target: Path) -> Iterator[IO[bytes]]:
             raise
 
 
+def named_durably(part: Path, target: Path) -> None:
+    """Syncs a file that was written whole and gives it its name. The name itself is made durable by the caller."""
+    with part.open("rb") as file:
+        os.fsync(file.fileno())
+    os.replace(part, target)
+
+
 def sweep(folder: Path, pattern: str = f"{PART}*") -> int:
     """Removes what dead processes left half written in a folder, and returns how many files that were."""
     return sum(map(_remove_dead, folder.glob(pattern))) if folder.is_dir() else 0

@@ -92,7 +92,7 @@ def certified_session(storage: Storage, diagnosis: StoredDiagnosis, laboratory: 
         until = stored.started_at + JUST_AFTER
         return CertifiedSession(
             report=report,
-            source=read_upload(storage.files.read(stored.sha256), stored.filename),
+            source=read_upload(storage.files.content(stored.sha256), stored.filename),
             unit_type=store.unit_types.of_unit(stored.unit),
             reference=_reference(store, stored),
             pair=_pair(store, report),

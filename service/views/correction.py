@@ -42,7 +42,7 @@ def correction_document(storage: Storage, id: str) -> dict[str, Any]:
         revisions = tuple(r for r in store.models.of_session(id) if r.id <= stored.revision)
     if stored.programme not in CALIBRATIONS:
         raise NotFoundError(f"Session {id!r} gives no correction: {stored.programme} does not calibrate a block.")
-    session = averaged(read_upload(storage.files.read(stored.sha256), stored.filename))
+    session = averaged(read_upload(storage.files.content(stored.sha256), stored.filename))
     found = correction_of(session, calibration)
     if not found.blocks:
         raise NotFoundError(f"Session {id!r} gives no correction: {'; '.join(_reasons(found))}.")

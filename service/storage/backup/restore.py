@@ -71,8 +71,8 @@ def _put_files(archive: zipfile.ZipFile, manifest: Manifest, folder: Path) -> Pa
     files = Files(staging)
     for digest in manifest.files:
         files.path(digest).parent.mkdir(exist_ok=True)
-        with written_whole(files.path(digest)) as file:
-            file.write(archive.read(file_member(digest)))
+        with written_whole(files.path(digest)) as file, archive.open(file_member(digest)) as member:
+            shutil.copyfileobj(member, file)
     for made in (*staging.iterdir(), staging):
         sync_folder(made)
     return staging

@@ -8,7 +8,6 @@ from pathlib import Path
 
 from service.errors import DamagedError
 from service.storage.backup.manifest import Manifest, TableContents, file_member, opened, read_manifest
-from service.storage.files import content_hash
 
 UNREADABLE = (zipfile.BadZipFile, zlib.error, EOFError, KeyError, NotImplementedError)
 """What reading a changed member ends in: a broken header, a broken stream, its end too soon, a member that is missing,
@@ -36,6 +35,10 @@ def _faults(archive: zipfile.ZipFile, manifest: Manifest) -> Iterator[str]:
             yield f"file {digest} was changed or is missing"
 
 
+PIECE = 1024 * 1024
+"""Bytes of a file that are held at a time."""
+
+
 def _is_table(archive: zipfile.ZipFile, table: TableContents) -> bool:
     hashed, rows = sha256(), 0
     try:
@@ -50,6 +53,10 @@ def _is_table(archive: zipfile.ZipFile, table: TableContents) -> bool:
 
 def _is_file(archive: zipfile.ZipFile, digest: str) -> bool:
     try:
-        return content_hash(archive.read(file_member(digest))) == digest
+        with archive.open(file_member(digest)) as member:
+            hashed = sha256()
+            while piece := member.read(PIECE):
+                hashed.update(piece)
+            return hashed.hexdigest() == digest
     except UNREADABLE:
         return False

@@ -94,7 +94,11 @@ def _named(connection: Connection, tables: list[Table]) -> set[str]:
 def _write_file(archive: zipfile.ZipFile, files: Files, digest: str) -> bool:
     """Whether the file was there as it was uploaded."""
     try:
-        archive.writestr(file_member(digest), files.read(digest))
+        content = files.content(digest)
     except LOST:
         return False
+    if isinstance(content, bytes):
+        archive.writestr(file_member(digest), content)
+    else:
+        archive.write(content, file_member(digest))
     return True

@@ -1,0 +1,109 @@
+"""Uploads on their way in: every part is counted, hashed and put on disk as it comes."""
+
+from collections.abc import AsyncIterator
+from io import BytesIO
+from typing import Annotated
+
+from fastapi import Depends, Request
+from python_multipart.exceptions import FormParserError
+from starlette.concurrency import run_in_threadpool
+from starlette.datastructures import FormData, Headers, UploadFile
+from starlette.exceptions import HTTPException
+from starlette.formparsers import MultiPartException, MultiPartParser
+
+from service.dependencies import PlaceOf, SettingsOf, StorageOf, limited
+from service.errors import TooLargeError
+from service.ingest.formats import may_be_log
+from service.records.received import Content
+from service.settings import Settings
+from service.storage.landing import Landing, Landings
+
+MOST_FIELDS = 10
+"""Parts of a form that are no files: a proof, and what a corrected file says of itself."""
+BAD_REQUEST = 400
+
+
+class Arriving:
+    """Where the files of one request land."""
+
+    def __init__(self, request: Request, place: Landings, settings: Settings) -> None:
+        self._request, self._place = request, place
+        self._whole, self._log = settings.max_upload_bytes, settings.max_log_bytes
+
+    async def body(self) -> Content:
+        """The body as one file."""
+        landing = self._place.new()
+        async for data in limited(self._request, self.most, is_form=False).stream():
+            await self.take(landing, data)
+        return await run_in_threadpool(landing.landed)
+
+    async def form(self, most_files: int) -> FormData:
+        """The parts of a form; its files are of the kind `LandedFile`."""
+        if not self._request.headers.get("content-type", "").lower().startswith("multipart/form-data"):
+            return FormData()
+        body = limited(self._request, self.most, is_form=True)
+        try:
+            return await _Form(body, self, most_files).parse()
+        except (MultiPartException, FormParserError) as fault:
+            raise HTTPException(BAD_REQUEST, str(getattr(fault, "message", "The form cannot be read."))) from fault
+
+    def new(self) -> Landing:
+        """For one more file."""
+        return self._place.new()
+
+    @property
+    def most(self) -> int:
+        """Bytes that the files of a request may have together."""
+        return max(self._whole, self._log)
+
+    async def take(self, landing: Landing, data: bytes) -> None:
+        """The next part of a file; TooLargeError where it is too much of what it seems to be."""
+        landing.take(data)
+        most = self.most if may_be_log(landing.start) else self._whole
+        if landing.size > most:
+            raise TooLargeError(
+                f"An upload may hold {most:,} bytes at a time; this one is larger. Average or split it."
+            )
+        if landing.is_due:
+            await run_in_threadpool(landing.write)
+
+
+class LandedFile(UploadFile):
+    """A file of a form, which goes where it will be read from."""
+
+    def __init__(self, arriving: Arriving, filename: str | None, headers: Headers) -> None:
+        super().__init__(BytesIO(), size=0, filename=filename, headers=headers)
+        self._arriving, self._landing = arriving, arriving.new()
+
+    async def write(self, data: bytes) -> None:
+        """The next part."""
+        await self._arriving.take(self._landing, data)
+
+    async def content(self) -> Content:
+        """All of it."""
+        return await run_in_threadpool(self._landing.landed)
+
+
+class _Form(MultiPartParser):
+    """Starlette's, but for the place of files: not a folder of the system's, which may be in memory."""
+
+    def __init__(self, body: Request, arriving: Arriving, most_files: int) -> None:
+        super().__init__(body.headers, body.stream(), max_files=most_files, max_fields=MOST_FIELDS)
+        self._arriving = arriving
+
+    def on_headers_finished(self) -> None:
+        """A part begins."""
+        super().on_headers_finished()
+        given = self._current_part.file
+        if given is not None:
+            given.file.close()
+            self._current_part.file = LandedFile(self._arriving, given.filename, given.headers)
+
+
+async def _arriving(request: Request, settings: SettingsOf, storage: StorageOf, _: PlaceOf) -> AsyncIterator[Arriving]:
+    with storage.files.arriving() as place:
+        yield Arriving(request, place, settings)
+
+
+ArrivingOf = Annotated[Arriving, Depends(_arriving, scope="function")]
+"""Where uploads land, until they were worked on."""

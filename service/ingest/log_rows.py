@@ -1,0 +1,165 @@
+"""The rows of a CSV or Parquet table of any length, some at a time; nobody holds all of them.
+
+A CSV is taken apart here into stretches of whole lines, which polars reads one by one: what is in memory is a stretch.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import takewhile
+from pathlib import Path
+from typing import Protocol
+
+import polars as pl
+
+from service.ingest.limits import refusal
+from service.ingest.metadata import KEY
+
+LONGEST_HEADER = 1024 * 1024
+"""Bytes of # lines, and of the header, before the rows of a CSV file."""
+STRETCH = 4 * 1024 * 1024
+"""Bytes of a CSV that are read at a time: far more than a line, and its numbers are not much larger."""
+CHUNK = 500_000
+"""Cells of a Parquet file that are asked for at a time: some megabytes."""
+SEEN = 1_000
+"""Rows by which it is decided whether a column of a CSV holds numbers."""
+SEPARATORS = ",;\t"
+"""Of columns; the one that the header has most of is taken."""
+UNREADABLE = (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError)
+"""What polars raises for damaged files."""
+PARQUET_DAMAGED = "is damaged or not a readable Parquet file; write it again"
+
+
+class Rows(Protocol):
+    """A table, and how to go through it."""
+
+    @property
+    def metadata(self) -> str:
+        """The JSON text that stands beside the table."""
+
+    @property
+    def names(self) -> Sequence[str]:
+        """Of all columns."""
+
+    def count(self, most: int) -> int:
+        """Rows; more than ``most`` may be left uncounted."""
+
+    def stretches(self, names: Sequence[str]) -> Iterator[pl.DataFrame]:
+        """Some columns, some rows at a time; polars' errors where the table is not as it should be."""
+
+
+@dataclass(frozen=True)
+class ParquetRows:
+    """Of a Parquet file, whose row groups are unpacked one after another."""
+
+    path: Path
+    filename: str
+    metadata: str
+    names: Sequence[str]
+
+    def count(self, most: int) -> int:
+        """As the file says."""
+        return int(pl.scan_parquet(self.path).select(pl.len()).collect().item())
+
+    def stretches(self, names: Sequence[str]) -> Iterator[pl.DataFrame]:
+        """One slice after another, for which only the row groups are unpacked that it lies in."""
+        table, at = pl.scan_parquet(self.path).select(names), 0
+        rows = max(CHUNK // len(self.names), 1)
+        while len(frame := table.slice(at, rows).collect()):
+            yield frame
+            at += len(frame)
+
+
+def parquet_rows(path: Path, filename: str) -> ParquetRows:
+    """The table of a Parquet file; FormatError where it is none."""
+    try:
+        metadata = pl.read_parquet_metadata(path).get(KEY)
+        names = pl.scan_parquet(path).collect_schema().names()
+    except UNREADABLE as error:
+        raise refusal(filename, PARQUET_DAMAGED) from error
+    if metadata is None:
+        raise refusal(filename, f"has no key-value entry {KEY}; put the session's JSON without its table there")
+    return ParquetRows(path, filename, metadata, names)
+
+
+@dataclass(frozen=True)
+class CsvRows:
+    """Of a CSV file with its metadata in # lines."""
+
+    path: Path
+    metadata: str
+    names: Sequence[str]
+    separator: str
+    begins: int
+    """Byte of the first row."""
+    texts: frozenset[str] = frozenset()
+    """Columns that do not hold numbers."""
+
+    def count(self, most: int) -> int:
+        """By the ends of lines."""
+        rows = 0
+        for text in self._stretches():
+            rows += text.count(b"\n") + (not text.endswith(b"\n"))
+            if rows > most:
+                break
+        return rows
+
+    def stretches(self, names: Sequence[str]) -> Iterator[pl.DataFrame]:
+        """One of the file after another; a column that should hold numbers and does not comes as texts."""
+        for text in self._stretches():
+            yield self._read(text, names)
+
+    def _read(self, text: bytes, names: Sequence[str]) -> pl.DataFrame:
+        """Whole lines; numbers with blanks around them take the longer way, and what is wrong with others is kept."""
+        try:
+            return self._as(text, names, self.texts)
+        except pl.exceptions.ComputeError:
+            written = self._as(text, names, frozenset(names))
+            return written.select(_numbers(written[name]) if name not in self.texts else name for name in names)
+
+    def _as(self, text: bytes, names: Sequence[str], texts: frozenset[str]) -> pl.DataFrame:
+        kinds = {name: pl.String if name in texts else pl.Float64 for name in self.names}
+        table = pl.scan_csv(text, has_header=False, separator=self.separator, schema=kinds, infer_schema=False)
+        return table.select(names).collect()
+
+    def _stretches(self) -> Iterator[bytes]:
+        """Whole lines, some megabytes at a time."""
+        with self.path.open("rb") as file:
+            file.seek(self.begins)
+            while text := file.read(STRETCH):
+                yield text if text.endswith(b"\n") else text + file.readline(STRETCH)
+
+
+def csv_rows(path: Path, filename: str) -> CsvRows:
+    """The table of a CSV file; FormatError where it has none."""
+    with path.open("rb") as file:
+        start = file.read(LONGEST_HEADER).removeprefix(b"\xef\xbb\xbf")
+        marked = 3 if file.seek(0) == 0 and file.read(3) == b"\xef\xbb\xbf" else 0
+    lines = start.split(b"\n")[:-1]
+    leading = list(takewhile(lambda line: line.startswith(b"#") or not line.strip(), lines))
+    if len(leading) == len(lines):
+        raise refusal(filename, "has no table after its # lines", "table")
+    header = lines[len(leading)]
+    try:
+        metadata = "\n".join(line.decode()[1:] for line in leading)
+        separator = max(SEPARATORS, key=header.decode().count)
+        names = [name.strip().strip('"') for name in header.decode().split(separator)]
+    except UnicodeDecodeError as error:
+        raise refusal(filename, f"is not UTF-8 text (byte {error.start + 1}); save it as UTF-8") from error
+    if len(set(names)) < len(names) or not all(names):
+        raise refusal(filename, "has columns without a name or of the same name; names must differ", "table")
+    begins = marked + sum(len(line) + 1 for line in lines[: len(leading) + 1])
+    rows = CsvRows(path, metadata, names, separator, begins, frozenset(names))
+    try:
+        first = next(rows.stretches(names), pl.DataFrame()).head(SEEN)
+    except UNREADABLE as error:
+        raise refusal(filename, f"cannot be read as a table: {error}", "table") from error
+    texts = frozenset(name for name in first.columns if _numbers(first[name]).dtype == pl.String)
+    return CsvRows(path, metadata, names, separator, begins, texts)
+
+
+def _numbers(texts: pl.Series) -> pl.Series:
+    """As numbers where all are, else as they are."""
+    stripped = texts.str.strip_chars()
+    stripped = stripped.set(stripped == "", None)
+    numbers = stripped.cast(pl.Float64, strict=False)
+    return texts if numbers.null_count() > stripped.null_count() else numbers
