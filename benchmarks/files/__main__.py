@@ -11,6 +11,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from benchmarks.files.heavy import HEAVY, as_parquet
 from benchmarks.files.hostile import HOSTILE
+from benchmarks.files.long import ROWS, long_logs
 from benchmarks.files.ordinary import milliseconds
 from benchmarks.files.page import Row, page
 from benchmarks.files.service import Service, service
@@ -24,10 +25,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.files", description=__doc__)
     parser.add_argument("--out", type=Path, default=PAGE)
     parser.add_argument("--only", default="", help="only files whose name holds this")
+    parser.add_argument("--rows", type=int, default=ROWS, help="of the long logs")
     options = parser.parse_args()
     with TemporaryDirectory() as folder, service(Path(folder)) as running:
         rows = list(_measured(running, options.only))
-    text = page(rows, milliseconds())
+    with TemporaryDirectory() as folder:
+        long = list(long_logs(Path(folder), options.rows))
+    text = page(rows, milliseconds(), long)
     options.out.parent.mkdir(parents=True, exist_ok=True)
     options.out.write_text(text)
     print(text)

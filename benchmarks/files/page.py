@@ -3,16 +3,21 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from benchmarks.files.long import LongLog, table
 from benchmarks.files.service import Cost
+from estimator.long_logs.log import MOST_RESTS
 from service.ingest import LONG
+from service.ingest.apart import PACE
 from service.settings import Settings
+from service.storage.landing import IN_MEMORY
 
 LIMITS = (
-    "max_upload_bytes", "max_rows", "max_columns", "max_cells", "max_nesting", "max_unpacked_bytes",
-    "max_read_seconds", "max_read_bytes", "reads_at_once", "uploads_in_flight",
+    "max_upload_bytes", "max_log_bytes", "max_rows", "max_columns", "max_cells", "max_log_cells", "max_nesting",
+    "max_unpacked_bytes",    "max_read_seconds", "max_read_bytes", "reads_at_once", "uploads_in_flight",
 )  # fmt: skip
 ANSWERS = {
     "max_upload_bytes": "413",
+    "max_log_bytes": "413",
     "reads_at_once": "503 with `Retry-After`",
     "uploads_in_flight": "503 with `Retry-After`",
 }
@@ -29,7 +34,7 @@ class Row:
     cost: Cost
 
 
-def page(rows: Sequence[Row], ordinary: dict[str, float]) -> str:
+def page(rows: Sequence[Row], ordinary: dict[str, float], long: Sequence[LongLog]) -> str:
     """The whole page."""
     worst = max(row.cost.memory for row in rows if "at once" not in row.name)
     wait = max(row.cost.wait for row in rows)
@@ -37,7 +42,7 @@ def page(rows: Sequence[Row], ordinary: dict[str, float]) -> str:
 
 Made by `python -m benchmarks.files`; edit `benchmarks/files/page.py`, not this page.
 
-No file that somebody uploads may end, freeze or bloat the service. Four things see to that:
+No file that somebody uploads may end, freeze or bloat the service. Five things see to that:
 
 * **Nothing is believed.** The extent of a table is counted before anything is built from it: the cells of a workbook
   one by one, wherever its sheets lie; rows and columns of CSV; lists, nesting and commas of JSON.
@@ -45,6 +50,9 @@ No file that somebody uploads may end, freeze or bloat the service. Four things 
   process of their own. Before it sees a byte the kernel bounds its memory, its computing time and its time by the
   clock. It cannot write files, knows no setting and no password, and gives back numbers and text, never objects
   (no pickle). When it is ended, the upload is answered 422 with what to do, and the service goes on.
+* **Nothing long is held.** An upload of more than {IN_MEMORY // 1024} KiB goes to disk as it comes, hashed and
+  counted on the way; the file that is kept is that one, synced and renamed. The reading process opens it there. What
+  was not kept is removed with the request, or by the hourly look.
 * **Few at once.** So many files are read at the same time; some more wait up to ten seconds; the others are answered
   503 with `Retry-After`.
 * **The bytes stay.** What is stored is the upload, unchanged, under its hash.
@@ -58,8 +66,24 @@ The process is a fork of one that has the readers loaded. An ordinary file of 24
 | --- | --- | --- | --- |
 {_limits()}
 
-A raw log beyond them is averaged first, or sent in parts. Where more cells are allowed, more memory must be:
-about 60 bytes a cell.
+Where more cells are allowed, more memory must be: about 60 bytes a cell. Reading may take a second more for every
+{PACE // 10**6} MB of a file.
+
+## Long raw logs
+
+A raw log (`sample_rate_hz`) of more cells than that, as CSV or Parquet, is averaged to its positions while it is
+scanned (`estimator/long_logs`): first for its labels, or for where the block stands still, then for the sums of every
+rest. Of a rest only sums are kept, so that memory does not grow with the log; the positions are those that a log in
+one piece gives, standard errors included. Up to {MOST_RESTS:,} positions. As JSON, XLSX, HDF5 or MAT a log is read
+whole.
+
+Beside the peer, which is polars alone with a scan and a group-by mean of the same file, its start not counted: medians
+of three in turn on the same machine; the memory is the reading process's over idle.
+
+{table(list(long))}
+
+A CSV is parsed twice, once for its labels: with them unknown, the trimmed ends of a rest are. Parquet is hardly parsed
+at all, so that there the checks of every cell and the sums are what takes the time.
 
 ## Measured
 

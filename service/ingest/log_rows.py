@@ -16,9 +16,9 @@ from service.ingest.metadata import KEY
 
 LONGEST_HEADER = 1024 * 1024
 """Bytes of # lines, and of the header, before the rows of a CSV file."""
-STRETCH = 4 * 1024 * 1024
+STRETCH = 2 * 1024 * 1024
 """Bytes of a CSV that are read at a time: far more than a line, and its numbers are not much larger."""
-CHUNK = 500_000
+CHUNK = 250_000
 """Cells of a Parquet file that are asked for at a time: some megabytes."""
 SEEN = 1_000
 """Rows by which it is decided whether a column of a CSV holds numbers."""
