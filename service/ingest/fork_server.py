@@ -22,6 +22,8 @@ from service.ingest.limits import Limits, refusal
 
 STATM = Path("/proc/self/statm")
 """Sizes of this process in pages, the whole first (Linux)."""
+MAPS = 4
+"""Times that a file may be mapped: every scan that is open maps it."""
 DATA = 5
 """Place there of what is private and can be written."""
 USUAL = 512 * 1024**2
@@ -110,7 +112,7 @@ def _refusal(error: SessionError) -> bytes:
 
 def _mapped(request: dict[str, Any]) -> int:
     """Bytes of a file that may be mapped: that takes address space, and no memory that could not be taken back."""
-    return Path(request["path"]).stat().st_size if "path" in request else 0
+    return MAPS * Path(request["path"]).stat().st_size if "path" in request else 0
 
 
 def _limit_this_process(most: Limits, mapped: int) -> None:
