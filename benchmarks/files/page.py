@@ -69,23 +69,7 @@ The process is a fork of one that has the readers loaded. An ordinary file of 24
 Where more cells are allowed, more memory must be: about 60 bytes a cell. Reading may take a second more for every
 {PACE // 10**6} MB of a file.
 
-## Long raw logs
-
-A raw log (`sample_rate_hz`) of more cells than that, as CSV or Parquet, is averaged to its positions while it is
-scanned (`estimator/long_logs`): first for its labels, or for where the block stands still, then for the sums of every
-rest. Of a rest only sums are kept, so that memory does not grow with the log; the positions are those that a log in
-one piece gives, standard errors included. Up to {MOST_RESTS:,} positions. As JSON, XLSX, HDF5 or MAT a log is read
-whole.
-
-Beside the peer, which is polars alone with a scan and a group-by mean of the same file, its start not counted: medians
-of three in turn on the same machine; the memory is the reading process's over idle.
-
-{table(list(long))}
-
-A CSV is parsed twice, once for its labels: where a rest is trimmed is not known before its end. Of Parquet hardly
-anything is parsed, so that there the checks of every cell and the sums take nearly all of the time: the wish of 1.5
-times a bare scan is met for neither.
-
+{_long(long)}
 ## Measured
 
 Against a running service: peak memory over idle of the service and its readers together (proportional set size, so
@@ -110,6 +94,26 @@ reason. `python -m benchmarks.fuzz` does the same guided by the code that it rea
 
 def _times(ordinary: dict[str, float]) -> str:
     return ", ".join(f"{time:.0f} ms as {name}" for name, time in ordinary.items())
+
+
+def _long(long: Sequence[LongLog]) -> str:
+    return f"""## Long raw logs
+
+A raw log (`sample_rate_hz`) of more cells than that, as CSV or Parquet, is averaged to its positions while it is
+scanned (`estimator/long_logs`): first for its labels, or for where the block stands still, then for the sums of every
+rest. Of a rest only sums are kept, so that memory does not grow with the log; the positions are those that a log in
+one piece gives, standard errors included. Up to {MOST_RESTS:,} positions. As JSON, XLSX, HDF5 or MAT a log is read
+whole.
+
+Beside the peer, which is polars alone with a scan and a group-by mean of the same file, its start not counted: medians
+of three in turn on the same machine; the memory is the reading process's over idle.
+
+{table(list(long))}
+
+A CSV is parsed twice, once for its labels: where a rest is trimmed is not known before its end. Of Parquet hardly
+anything is parsed, so that there the checks of every cell and the sums take nearly all of the time: the wish of 1.5
+times a bare scan is met for neither.
+"""
 
 
 def _limits() -> str:

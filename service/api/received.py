@@ -8,9 +8,9 @@ from fastapi import Depends, Query, Request
 
 from estimator.errors import Problem
 from service.admission import PersonOf
-from service.api.arriving import Arriving, ArrivingOf, LandedFile
 from service.api.schemas.fields import LongText, Text
 from service.api.schemas.sessions import SessionFile
+from service.arriving import Arriving, ArrivingOf, LandedFile
 from service.errors import ForbiddenError, RefusedError
 from service.records.identity import Role
 from service.records.received import Replaced, SentFile

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from fastapi import Depends
 
-from service.api.arriving import ArrivingOf, LandedFile
+from service.arriving import ArrivingOf, LandedFile
 from service.records.received import SentFile
 
 MOST_FILES = 200
