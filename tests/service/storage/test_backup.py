@@ -112,6 +112,14 @@ def test_nothing_is_restored_over_what_is_there(full: Settings, databases: Datab
     assert rows(full.database) == before
 
 
+def inside_a_file(backup: Path, content: bytes, share: float) -> int:
+    """Place of a byte of the largest member's data; some bytes between members, such as their times, mean nothing."""
+    backup.write_bytes(content)
+    with zipfile.ZipFile(backup) as archive:
+        largest = max(archive.infolist(), key=lambda info: info.compress_size)
+    return largest.header_offset + 30 + len(largest.filename) + int(share * largest.compress_size)
+
+
 @one_engine
 @pytest.mark.parametrize("share", [0.2, 0.5, 0.9, 0.999])
 def test_a_backup_that_was_cut_off_or_changed_is_refused(full: Settings, tmp_path: Path, share: float) -> None:
@@ -120,7 +128,7 @@ def test_a_backup_that_was_cut_off_or_changed_is_refused(full: Settings, tmp_pat
     backup.write_bytes(content[: int(share * len(content))])
     with pytest.raises(ServiceError, match="cut off"):
         verified(backup)
-    place = int(share * 0.9 * len(content))
+    place = inside_a_file(backup, content, share)
     backup.write_bytes(content[:place] + bytes([content[place] ^ 1]) + content[place + 1 :])
     with pytest.raises(ServiceError):
         verified(backup)
