@@ -22,7 +22,8 @@ from estimator.diagnosis.selection.excess_noise import sensor_scatter, with_unkn
 from estimator.diagnosis.selection.ranking import extended_basis, family_p_value
 from estimator.diagnosis.selection.search_state import LEVEL, Found, SearchState
 from estimator.diagnosis.signatures.noise import NoiseClaim
-from estimator.diagnosis.signatures.scores import Projected, rescored, tail
+from estimator.diagnosis.signatures.products import Projected
+from estimator.diagnosis.signatures.scores import rescored, tail
 from estimator.session import Array
 
 WRONG = 0.03
@@ -68,7 +69,7 @@ def p_if_unknown(state: SearchState, found: Found, sensor: int) -> float:
     """Family-wise p-value of a name beside the others, the noise of a sensor known from its readings alone."""
     doubting, attributed = with_unknown_noise(state, sensor), state.attributed(without=found)
     own = extended_basis(attributed, found.best.trace)[:, attributed.shape[1] :]
-    p_value = tail(Projected.of(doubting.residuals, attributed), found.best.shape, own)
+    p_value = tail(Projected.of(doubting.residuals, attributed), next(iter(found.best.sensors), -1), own)
     return family_p_value(replace(found.best, p_value=p_value), state.families)
 
 

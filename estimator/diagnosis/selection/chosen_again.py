@@ -103,4 +103,4 @@ def weight(basis: Array, z: Array, columns: Array) -> float:
     new = extended_basis(basis, columns)[:, basis.shape[1] :]
     power, freedom = float(((new.T @ z) ** 2).sum()), new.shape[1]
     rest = max((float(z @ z) - power) / max(len(z) - basis.shape[1] - freedom, 1), 1e-300)
-    return bayes_factor(power / max(rest, 1.0), freedom)
+    return float(bayes_factor(power / max(rest, 1.0), freedom))

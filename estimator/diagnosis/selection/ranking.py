@@ -6,7 +6,7 @@ import numpy as np
 
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.search_state import LEVEL, NEW_DIRECTION, Found, SearchState
-from estimator.diagnosis.signatures.scores import ranked, rescored, score
+from estimator.diagnosis.signatures.scores import rescored, scores
 from estimator.diagnosis.signatures.traces import Scored, Traces
 from estimator.session import Array
 
@@ -28,12 +28,12 @@ def strongest(state: SearchState, traces: Sequence[Traces], without: Found | Non
     if without is not None and without.best.sensors:
         traces = [t.at(without.best.sensors) for t in traces]
     closed = {s.sensor for s in state.autocorrelated if s.plain}
-    scored = score(state.residuals, traces, state.attributed(without))
-    order = ranked([s for s in scored if closed.isdisjoint(s.sensors) and s.group not in state.refuted])
-    for best, _ in order[:TRIED]:
+    found = scores(state.residuals, traces, state.attributed(without))
+    order = [(k, e) for k, e in found.ranked() if found.sensor[k] not in closed and found.group(k) not in state.refuted]
+    for best in (found.scored(k) for k, _ in order[:TRIED]):
         p_family = family_p_value(best, families)
         if p_family < LEVEL:
-            return Found(best, p_family, tuple(order))
+            return Found(best, p_family, tuple((found.scored(k), e) for k, e in order))
     return None
 
 

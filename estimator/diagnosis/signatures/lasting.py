@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from estimator.causes.contract import Setting, Shape, Signature
-from estimator.diagnosis.residuals.whitened import ParameterChange, WhitenedResiduals
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.diagnosis.signatures.products import Products
 from estimator.diagnosis.signatures.traces import INVISIBLE, Traces
 from estimator.session import Array
 
@@ -38,7 +39,7 @@ def _hypotheses(residuals: WhitenedResiduals, cause: Signature, shapes: tuple[Sh
     if len(residuals.baseline.unstated) > MANY:
         return [lasting]
     new = _traces(residuals, cause, shapes, lasting=False)
-    return [lasting, new] if lasting.common else [lasting, new, with_open_change(residuals.change, lasting)]
+    return [lasting, new] if lasting.common else [lasting, new, with_open_change(residuals, lasting)]
 
 
 def _traces(residuals: WhitenedResiduals, cause: Signature, shapes: tuple[Shape, ...], *, lasting: bool) -> Traces:
@@ -54,7 +55,8 @@ def _traces(residuals: WhitenedResiduals, cause: Signature, shapes: tuple[Shape,
         trace[residuals.rows :, np.linalg.norm(trace[: residuals.rows], axis=0) <= INVISIBLE * raw] = 0.0
     columns, raw = np.moveaxis(trace.reshape(len(trace), len(shapes), q), 1, 0), raw.reshape(len(shapes), q)
     shown = (np.linalg.norm(columns, axis=1) > INVISIBLE * raw) & (raw > 0)
-    return Traces(cause, shapes, (lasting,) * len(shapes), columns, raw, int(shown.any(axis=-1).sum()))
+    places, products = int(shown.any(axis=-1).sum()), Products.of(residuals, columns)
+    return Traces(cause, shapes, (lasting,) * len(shapes), columns, raw, places, products)
 
 
 def absorbed_before(
@@ -81,18 +83,19 @@ def absorbed_before(
     return absorbed
 
 
-def with_open_change(change: ParameterChange, traces: Traces) -> Traces:
+def with_open_change(residuals: WhitenedResiduals, traces: Traces) -> Traces:
     """Traces of a sensor's cause, five columns appended that leave open how its parameters changed since the history.
 
     An effect that some of the history had too, at other temperatures or positions, moves the sensor's parameters by
     an amount that only a diagnosis of every earlier session would tell.
     """
-    S, n, _ = traces.columns.shape
-    own = np.zeros((S, n, 5))
-    for k, shape in enumerate(traces.shapes):
-        moved = slice(5 * shape.sensors[0], 5 * shape.sensors[0] + 5)
-        own[k, n - len(change.deviation) :] = change.inverse_root[:, moved]
+    assert residuals.change is not None
+    (S, n, q), P = traces.columns.shape, len(residuals.change.deviation)
+    rows = np.zeros((n, S, q + 5))
+    rows[..., :q] = np.moveaxis(traces.columns, 1, 0)
+    rows[n - P :, :, q:] = residuals.change.inverse_root.reshape(P, -1, 5)[:, traces.sensor]
+    columns = np.moveaxis(rows, 0, 1)
     blank = np.zeros((*traces.shapes[0].columns.shape[:2], 5))
     shapes = tuple(Shape(s.sensors, np.concatenate([s.columns, blank], axis=-1), s.nonlinear) for s in traces.shapes)
     raw = np.concatenate([traces.raw, np.zeros((S, 5))], axis=-1)
-    return replace(traces, shapes=shapes, columns=np.concatenate([traces.columns, own], axis=-1), raw=raw)
+    return replace(traces, shapes=shapes, columns=columns, raw=raw, products=Products.of(residuals, columns))

@@ -13,15 +13,16 @@ which charges every free amplitude for what it could have fitted. Unknown noise 
 probability as its F.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import groupby
 
 import numpy as np
 from scipy.special import chdtrc
 
-from estimator.causes.contract import Setting, Shape, Signature
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.signatures.scatter import ReadingScatter, equivalent_chi2
+from estimator.diagnosis.signatures.products import Products, Projected
+from estimator.diagnosis.signatures.scatter import equivalent_chi2, in_unknown_noise, scatter_beside
 from estimator.diagnosis.signatures.traces import INVISIBLE, Group, Scored, Traces
 from estimator.session import Array
 
@@ -45,109 +46,210 @@ catalogue of some forty. What is only seen because the sensor changed since the 
 TOO_FAINT = 4.0
 """Standard errors that an effect of the size fitted leaves in the session's own rows below which it need not show."""
 
+ALIKE = 1e-6
+"""Share of its length that must lie outside the others' span for a column to count where none is to be left out: the
+square lies well above rounding."""
+
 OCCAM = 0.7
 """ln evidence that every amplitude beyond the first costs, a factor of two: it balances simple causes against richer
 ones that contain them, so that alternatives stay few (docs/diagnosis/study.md, alternatives)."""
 
 
 @dataclass(frozen=True, eq=False)
-class Projected:
-    """Residuals with the traces of earlier findings projected out. n rows, f directions."""
+class Fit:
+    """S signatures of q amplitudes, each fitted alone to what the findings leave. K parts of the rows."""
 
-    residuals: WhitenedResiduals
-    attributed: Array
-    """(n, f) orthonormal traces of the findings."""
-    z: Array
-    """(n,) standard errors: what the findings leave."""
+    products: Products
+    """Of what the findings leave."""
+    value: Array
+    """(S, q) amplitudes, in the causes' SI units."""
+    power: Array
+    """(S,) squared length of the residuals along each signature, dimensionless."""
+    freedom: Array
+    """(S,) int, directions of each signature that count as amplitudes."""
+    directions: Array
+    """(S, q, q) amplitudes of orthonormal directions of each signature; zero where one does not count."""
 
     @classmethod
-    def of(cls, residuals: WhitenedResiduals, attributed: Array) -> "Projected":
-        """``attributed`` (n, f) orthonormal traces of the findings, dimensionless."""
-        return cls(residuals, attributed, residuals.z - attributed @ (attributed.T @ residuals.z))
+    def of(cls, products: Products, shown: Array, faint: float) -> "Fit":
+        """``shown`` (S, q) bool: columns that count; ``faint``: share of the strongest direction that one must have."""
+        whole, along = products.square.sum(axis=0), products.along.sum(axis=0)
+        norms = np.sqrt(np.maximum(np.diagonal(whole, axis1=1, axis2=2), 0.0))
+        unit = np.where(shown, 1 / np.where(shown & (norms > 0), norms, 1.0), 0.0)
+        size, turn = np.linalg.eigh(whole * unit[:, :, None] * unit[:, None, :])
+        live = (size > faint**2 * size[:, -1:]) & shown.any(axis=1, keepdims=True)
+        inverse = np.where(live, 1 / np.sqrt(np.where(live, size, 1.0)), 0.0)
+        directions = unit[:, :, None] * turn * inverse[:, None, :]
+        length = (along[:, None, :] @ directions)[:, 0]
+        value = (directions @ length[..., None])[..., 0]
+        return cls(products, value, (length**2).sum(axis=1), live.sum(axis=1), directions)
 
-    @property
-    def scatter(self) -> ReadingScatter:
-        """The same of the readings alone."""
-        r = self.residuals
-        freedom = r.row_freedom - (self.attributed[: r.rows] ** 2).sum(axis=-1)
-        return ReadingScatter(r.baseline, self.z[: r.rows], freedom, r.sensor_of_row[: r.rows])
+    def at(self, chosen: Array) -> "Fit":
+        """Some of the signatures, (S,) bool."""
+        parts = (self.value, self.power, self.freedom, self.directions)
+        return Fit(self.products.at(chosen), *(x[chosen] for x in parts))
+
+    def tested(self, projected: Projected, sensor: Array) -> tuple[Array, Array]:
+        """(S,) equivalent χ² and (S,) p-value of signatures that are blamed on ``sensor`` (S,) int, −1 for none."""
+        baseline = projected.residuals.baseline
+        unknown = in_unknown_noise(baseline, sensor)
+        energy, freedom = np.full(len(sensor), np.nan), np.full(len(sensor), np.nan)
+        if unknown.any():
+            left = self.at(unknown).left_of_sensors(projected)
+            energy[unknown], freedom[unknown] = scatter_beside(baseline, sensor[unknown], *left)
+        statistic = equivalent_chi2(self.power, self.freedom, energy, freedom)
+        return statistic, np.where(self.freedom > 0, chdtrc(np.maximum(self.freedom, 1), statistic), 1.0)
+
+    def left_of_sensors(self, projected: Projected) -> tuple[Array, Array]:
+        """(S, m) energy, dimensionless, and (S, m) degrees of freedom that each signature leaves of every sensor."""
+        m, own = len(projected.energy), self.products
+        square, moved = own.square[:m], self.value[..., None]
+        fitted = (np.swapaxes(moved, 1, 2) @ (square @ moved - 2 * own.along[:m, ..., None]))[..., 0, 0]
+        used = (self.directions * (square @ self.directions)).sum(axis=(-2, -1))
+        return np.maximum(projected.energy + fitted.T, 0.0), projected.freedom - used.T
+
+
+@dataclass(frozen=True, eq=False)
+class Scores:
+    """The visible shapes of some causes whose amplitude is within reason, in the order of the causes. k shapes."""
+
+    traces: tuple[Traces, ...]
+    cause: Array
+    """(k,) int, which of the traces."""
+    shape: Array
+    """(k,) int, which of their shapes."""
+    sensor: Array
+    """(k,) int, that it is blamed on; −1 for none."""
+    statistic: Array
+    """(k,) equivalent χ²."""
+    freedom: Array
+    """(k,) int, its degrees of freedom."""
+    p_value: Array
+    """(k,) of this shape alone."""
+    log_evidence: Array
+    """(k,) ln Bayes factor, the share of the cause's prior included."""
+
+    def scored(self, k: int) -> Scored:
+        """One of them."""
+        traces, s = self.traces[self.cause[k]], int(self.shape[k])
+        return Scored(
+            traces.cause,
+            traces.shapes[s],
+            traces.lasting[s],
+            traces.columns[s],
+            float(self.statistic[k]),
+            int(self.freedom[k]),
+            float(self.log_evidence[k]),
+            float(self.p_value[k]),
+            max(traces.places, 1),
+        )
+
+    def group(self, k: int) -> Group:
+        """What is named."""
+        return self.traces[self.cause[k]].cause.identifier, (() if self.sensor[k] < 0 else (int(self.sensor[k]),))
+
+    def ranked(self) -> list[tuple[int, float]]:
+        """The best shape of every (cause, sensors) with the ln evidence of all its shapes, strongest first."""
+        if not len(self.cause):
+            return []
+        names = [t.cause.identifier for t in self.traces]
+        number = np.array([names.index(name) for name in names])
+        group = number[self.cause] * (self.sensor.max() + 2) + self.sensor + 1
+        order = np.argsort(group, kind="stable")
+        first = np.flatnonzero(np.diff(group[order], prepend=-1))
+        together = np.logaddexp.reduceat(self.log_evidence[order], first)
+        best = np.lexsort((-self.log_evidence, group))[first]
+        oldest = order[first]
+        pairs = sorted(zip((-np.round(together, 6)).tolist(), oldest.tolist(), range(len(first)), strict=True))
+        return [(int(best[g]), float(together[g])) for _, _, g in pairs]
 
 
 def score(residuals: WhitenedResiduals, traces: Sequence[Traces], attributed: Array) -> list[Scored]:
     """Score every shape on what the findings leave: ``attributed`` (n, f) orthonormal traces, dimensionless."""
+    found = scores(residuals, traces, attributed)
+    return [found.scored(k) for k in range(len(found.cause))]
+
+
+def scores(residuals: WhitenedResiduals, traces: Sequence[Traces], attributed: Array) -> Scores:
+    """The same as arrays; causes of equally many amplitudes are scored as one."""
     projected = Projected.of(residuals, attributed)
-    return [scored for t in traces for scored in _score(projected, t)]
+    by_width = sorted((k for k, t in enumerate(traces) if t.shapes), key=lambda k: traces[k].width)
+    parts = [_scored(projected, traces, list(own)) for _, own in groupby(by_width, key=lambda k: traces[k].width)]
+    if not parts:
+        return Scores(tuple(traces), *(np.zeros(0, dtype=int) for _ in range(7)))
+    columns = [np.concatenate(x) for x in zip(*parts, strict=True)]
+    order = np.argsort(columns[0], kind="stable")
+    return Scores(tuple(traces), *(x[order] for x in columns))
+
+
+def _scored(projected: Projected, traces: Sequence[Traces], chosen: Sequence[int]) -> tuple[Array, ...]:
+    """The columns of `Scores` of some of the traces, of equally many amplitudes."""
+    own = [traces[k] for k in chosen]
+    cause = np.repeat(chosen, [len(t.shapes) for t in own])
+    shape, sensor = np.concatenate([np.arange(len(t.shapes)) for t in own]), np.concatenate([t.sensor for t in own])
+    raw = np.concatenate([t.raw for t in own])
+    products = projected(Products.together([t.products for t in own]), [t.columns for t in own])
+    norms = np.sqrt(np.maximum(np.diagonal(products.square.sum(axis=0), axis1=1, axis2=2), 0.0))
+    shown = norms > np.maximum(INVISIBLE * raw, 1e-300)
+    fit = Fit.of(products, shown, FAINT)
+    statistic, p_value = fit.tested(projected, sensor)
+    kept = (shown & (raw > 0)).any(axis=1)
+    asked = np.flatnonzero(kept & (p_value < WORTH))
+    kept[asked] = [within_reason(projected, traces[cause[k]], int(shape[k]), fit.value[k]) for k in asked]
+    asked = asked[kept[asked]]
+    kept[asked] = shows_itself(projected, [traces[k] for k in cause[asked]], fit.at(asked), raw[asked], sensor[asked])
+    places = np.array([max(t.places, 1) for t in own])[np.searchsorted(chosen, cause)]
+    log_evidence = bayes_factor(statistic, fit.freedom) - np.log(places)
+    found = (cause, shape, sensor, statistic, fit.freedom, p_value, log_evidence)
+    return tuple(x[kept] for x in found)
 
 
 def rescored(residuals: WhitenedResiduals, scored: Scored, attributed: Array) -> Scored:
     """One shape scored anew on what other findings leave: ``attributed`` (n, f) orthonormal traces, dimensionless."""
     raw = np.linalg.norm(residuals.whitened(scored.shape.columns), axis=0)
-    alone = Traces(scored.cause, (scored.shape,), (scored.lasting,), scored.trace[None], raw[None], scored.places)
-    again = next(iter(_score(Projected.of(residuals, attributed), alone)), None)
+    columns = scored.trace[None]
+    products = Products.of(residuals, columns)
+    alone = Traces(scored.cause, (scored.shape,), (scored.lasting,), columns, raw[None], scored.places, products)
+    again = next(iter(score(residuals, [alone], attributed)), None)
     if again is None:
         return replace(scored, statistic=0.0, log_evidence=-float(np.log(scored.places)), p_value=1.0)
     return again
 
 
-def _score(projected: Projected, traces: Traces) -> Iterable[Scored]:
-    """The visible shapes of one cause whose amplitude is within reason."""
-    columns = traces.columns - projected.attributed @ (projected.attributed.T @ traces.columns)
-    norms = np.linalg.norm(columns, axis=1)
-    shown = norms > np.maximum(INVISIBLE * traces.raw, 1e-300)
-    basis, size, turn = orthonormal(columns * np.where(shown, 1 / np.where(shown, norms, 1.0), 0.0)[:, None, :])
-    visible = (shown & (traces.raw > 0)).any(axis=-1)
-    live = (size > FAINT * size[:, :1]) & visible[:, None]
-    along = np.where(live, projected.z @ basis, 0.0)
-    freedom = live.sum(axis=-1)
-    inverse = np.where(live, 1 / np.where(live, size, 1.0), 0.0)
-    amplitude = (turn.swapaxes(-1, -2) @ (along * inverse)[..., None])[..., 0] / np.where(shown, norms, np.inf)
-    energy, rest = projected.scatter.without(traces.shapes, basis * live[:, None, :], along)
-    statistic = equivalent_chi2((along**2).sum(axis=-1), freedom, energy, rest)
-    p_value = np.where(freedom > 0, chdtrc(np.maximum(freedom, 1), statistic), 1.0)
-    places = max(traces.places, 1)
-    for s in np.flatnonzero(visible):
-        shape, t, q, p = traces.shapes[s], float(statistic[s]), int(freedom[s]), float(p_value[s])
-        if p < WORTH and not within_reason(projected.residuals.baseline.setting, traces.cause, shape, amplitude[s]):
-            continue
-        if p < WORTH and not shows_itself(projected, traces, int(s), columns[s] * shown[s] @ np.diag(amplitude[s])):
-            continue
-        log_evidence = bayes_factor(t, q) - float(np.log(places))
-        yield Scored(traces.cause, shape, traces.lasting[s], traces.columns[s], t, q, log_evidence, p, places)
+def shows_itself(projected: Projected, traces: Sequence[Traces], fit: Fit, raw: Array, sensor: Array) -> Array:
+    """(S,) bool: whether shapes of causes that act within the session show there, and not only in what changed since
+    the history.
 
-
-def shows_itself(projected: Projected, traces: Traces, s: int, fitted: Array) -> bool:
-    """Whether shape s of a cause that acts within the session shows there, and not only in what changed since the
-    history.
-
-    ``fitted`` (n, q) standard errors: every column at its fitted amplitude. What is too faint there to show is asked
-    nothing, unless the sensor's change was left open, which explains any change by itself.
+    ``raw`` (S, q) as in `Traces`, ``sensor`` (S,) int. What is too faint there to show is asked nothing, unless the
+    sensor's change was left open, which explains any change by itself.
     """
-    residuals, rows = projected.residuals, projected.residuals.rows
-    if residuals.change is None or traces.cause.between or traces.cause.nameless:
-        return True
-    own = fitted[:rows, traces.raw[s] > 0]
-    if (traces.raw[s] > 0).all() and float((own.sum(axis=1) ** 2).sum()) < TOO_FAINT**2:
-        return True
-    basis, size, _ = np.linalg.svd(own, full_matrices=False)
-    basis = basis[:, size > 1e-9 * max(size[0], 1e-300)]
-    return tail(projected, traces.shapes[s], basis) * max(traces.places, 1) < ALONE
+    if projected.residuals.change is None or not len(sensor):
+        return np.ones(len(sensor), dtype=bool)
+    within = Products(fit.products.square[:-1], fit.products.along[:-1])
+    own = np.where(raw > 0, fit.value, 0.0)
+    seen = (own[:, None, :] @ within.square.sum(axis=0) @ own[..., None])[:, 0, 0]
+    exempt = np.array([t.cause.between or t.cause.nameless for t in traces])
+    exempt |= (raw > 0).all(axis=1) & (seen < TOO_FAINT**2)
+    places = np.array([max(t.places, 1) for t in traces])
+    rest = Fit.of(within, own != 0, ALIKE)
+    return np.asarray(exempt | (rest.tested(projected, sensor)[1] * places < ALONE))
 
 
-def tail(projected: Projected, shape: Shape, basis: Array) -> float:
-    """p-value of what a shape explains through ``basis`` (n, q), orthonormal, or through its part in N readings."""
-    along = basis.T @ projected.z[: len(basis)]
-    energy, rest = projected.scatter.without([shape], basis[None], along[None])
-    q = np.array([max(basis.shape[1], 1)])
-    statistic = equivalent_chi2((along**2).sum(keepdims=True), q, energy, rest)
-    return float(chdtrc(q, statistic)[0])
+def tail(projected: Projected, sensor: int, basis: Array) -> float:
+    """p-value of what a signature blamed on a sensor (−1 for none) explains through ``basis`` (n, q), orthonormal and
+    orthogonal to the findings."""
+    own = projected(Products.of(projected.residuals, basis[None]), [basis[None]])
+    fit = Fit.of(own, np.ones((1, basis.shape[1]), dtype=bool), ALIKE)
+    return float(fit.tested(projected, np.array([sensor]))[1][0])
 
 
-def within_reason(setting: Setting, cause: Signature, shape: Shape, amplitude: Array) -> bool:
-    """Whether the amplitude (q,), in the cause's SI units, that fits best is one that the cause can have.
+def within_reason(projected: Projected, traces: Traces, s: int, amplitude: Array) -> bool:
+    """Whether the amplitude (q,), in the cause's SI units, that fits shape s best is one that the cause can have.
 
     On a stand no effect may be a large part of the applied vector: what the baseline absorbs almost wholly would else
     explain a small residual by an enormous effect.
     """
+    setting, cause, shape = projected.residuals.baseline.setting, traces.cause, traces.shapes[s]
     if cause.bounded and not cause.plausible(shape, float(amplitude[0])):
         return False
     if setting.beta is None:
@@ -156,29 +258,8 @@ def within_reason(setting: Setting, cause: Signature, shape: Shape, amplitude: A
     return bool(np.all(size < LARGEST * setting.norm))
 
 
-def orthonormal(columns: Array) -> tuple[Array, Array, Array]:
-    """Singular value decomposition of dimensionless (S, n, q): bases (S, n, q), sizes (S, q) and turns (S, q, q)."""
-    if columns.shape[-1] == 1:
-        size = np.linalg.norm(columns, axis=1)
-        return columns, size, np.ones((len(columns), 1, 1))
-    return np.linalg.svd(columns, full_matrices=False)
-
-
-def bayes_factor(statistic: float, q: int) -> float:
+def bayes_factor(statistic: Array | float, q: Array | int) -> Array:
     """ln of the local empirical Bayes factor of an effect with q amplitudes against none, less Occam's penalty."""
-    if q == 0:
-        return 0.0
-    statistic = max(statistic, q)
-    return 0.5 * (statistic - q) - 0.5 * q * float(np.log(statistic / q)) - OCCAM * (q - 1)
-
-
-def ranked(scored: Sequence[Scored]) -> list[tuple[Scored, float]]:
-    """The best shape of every (cause, sensors) with the ln evidence of all its shapes, strongest first."""
-    groups: dict[Group, list[Scored]] = {}
-    for s in scored:
-        groups.setdefault(s.group, []).append(s)
-    best = [
-        (max(members, key=lambda s: s.log_evidence), float(np.logaddexp.reduce([s.log_evidence for s in members])))
-        for members in groups.values()
-    ]
-    return sorted(best, key=lambda pair: -round(pair[1], 6))
+    number = np.maximum(q, 1)
+    over = np.maximum(statistic, number) / number
+    return np.where(np.equal(q, 0), 0.0, 0.5 * number * (over - 1 - np.log(over)) - OCCAM * (number - 1))

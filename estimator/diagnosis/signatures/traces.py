@@ -1,10 +1,12 @@
 """What a signature leaves in the residuals: the traces of a cause's shapes, and one shape with its score."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from estimator.causes.contract import Setting, Shape, Signature
+from estimator.diagnosis.signatures.products import Products
 from estimator.session import Array
 
 INVISIBLE = 1e-3
@@ -30,17 +32,30 @@ class Traces:
     amplitude of the cause but a parameter change left open."""
     places: int
     """Number of shapes that are visible at all: what the cause's prior is shared among."""
+    products: Products
+    """Of the columns with one another and with the residuals."""
 
     @property
     def common(self) -> bool:
         """Whether they act on no sensor in particular."""
         return not self.shapes[0].sensors
 
+    @property
+    def width(self) -> int:
+        """q, number of amplitudes."""
+        return self.columns.shape[-1]
+
     def at(self, sensors: tuple[int, ...]) -> "Traces":
         """The shapes on some sensors, and those of no sensor; the prior is still shared among all."""
         own = [k for k, s in enumerate(self.shapes) if s.sensors in ((), sensors)]
         shapes, lasting = tuple(self.shapes[k] for k in own), tuple(self.lasting[k] for k in own)
-        return replace(self, shapes=shapes, lasting=lasting, columns=self.columns[own], raw=self.raw[own])
+        columns, products = np.moveaxis(np.moveaxis(self.columns, 1, 0)[:, own], 0, 1), self.products.at(own)
+        return replace(self, shapes=shapes, lasting=lasting, columns=columns, raw=self.raw[own], products=products)
+
+    @cached_property
+    def sensor(self) -> Array:
+        """(S,) int, the number of the sensor that each is blamed on; −1 for none."""
+        return np.array([next(iter(s.sensors), -1) for s in self.shapes], dtype=int)
 
 
 @dataclass(frozen=True, eq=False)

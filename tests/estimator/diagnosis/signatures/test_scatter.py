@@ -6,15 +6,13 @@ import numpy as np
 import pytest
 from scipy.stats import chi2, f
 
-from estimator.causes import Shape
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.signatures.scatter import ReadingScatter, equivalent_chi2, sharing_scatter
+from estimator.diagnosis.signatures.scatter import equivalent_chi2, in_unknown_noise, scatter_beside, sharing_scatter
 from estimator.session import ACCELEROMETER
 from tests.estimator.causes.hiding import scene
 
 WHERE = scene(ACCELEROMETER, 0)
-ROWS = 48 * 6
 
 
 def blind(ratio: float | None) -> Baseline:
@@ -26,9 +24,8 @@ def blind(ratio: float | None) -> Baseline:
 
 def scatter(baseline: Baseline, size: float = 1.0) -> tuple[float, float]:
     """Energy and degrees of freedom about a signature of one sensor that explains nothing."""
-    sensor = np.tile(np.arange(6), 48)
-    own = ReadingScatter(baseline, np.full(ROWS, size), np.ones(ROWS), sensor)
-    (energy,), (freedom,) = own.without([Shape((2,), np.zeros((48, 6, 1)))], np.zeros((1, ROWS, 1)), np.zeros((1, 1)))
+    rows = np.full((1, 6), 48.0)
+    (energy,), (freedom,) = scatter_beside(baseline, np.array([2]), rows * size**2, rows)
     return energy, freedom
 
 
@@ -45,13 +42,14 @@ def test_a_sensor_plainly_noisier_than_the_others_borrows_nothing() -> None:
 
 
 def test_where_the_noise_is_stated_there_is_no_scatter_to_stand_out_of() -> None:
-    assert np.isnan(scatter(baseline_of(WHERE.measured(1)))).all()
+    assert not in_unknown_noise(baseline_of(WHERE.measured(1)), np.array([2, -1])).any()
 
 
 def test_an_unknown_direction_makes_its_accelerometers_share_their_scatter() -> None:
     baseline = baseline_of(scene("orientations", 0).measured(1))
-    assert sharing_scatter(baseline, (1,)) == [0, 1, 2]
-    assert sharing_scatter(baseline, (4,)) == [4]
+    sharing = sharing_scatter(baseline)
+    assert np.flatnonzero(sharing[1]).tolist() == [0, 1, 2]
+    assert np.flatnonzero(sharing[4]).tolist() == [4]
 
 
 @pytest.mark.parametrize(("power", "q"), [(9.0, 1), (40.0, 2)])
@@ -69,9 +67,8 @@ def test_a_tail_beyond_doubles_still_grows() -> None:
 def along_all(unstated: list[bool], size: list[float]) -> tuple[float, float]:
     """Variance and degrees of freedom of the scatter of six sensors, as a signature common to all meets it."""
     fitted = replace(baseline_of(WHERE.measured(1)), unstated=np.array(unstated))
-    sensor = np.tile(np.arange(6), 48)
-    own = ReadingScatter(fitted, np.array(size)[sensor], np.ones(ROWS), sensor)
-    (energy,), (freedom,) = own.without([Shape((), np.zeros((48, 6, 1)))], np.zeros((1, ROWS, 1)), np.zeros((1, 1)))
+    rows = np.full((1, 6), 48.0)
+    (energy,), (freedom,) = scatter_beside(fitted, np.array([-1]), rows * np.square(size), rows)
     return energy / freedom, freedom
 
 

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from scipy.stats import kstest
 
 from estimator import diagnose
@@ -10,6 +11,7 @@ from estimator.causes import cause
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.lasting import traces_of
+from estimator.diagnosis.signatures.products import Products, Projected
 from estimator.diagnosis.signatures.scores import bayes_factor, score
 from estimator.session import ACCELEROMETER
 from tests.estimator.causes.hiding import scene, with_readings
@@ -66,3 +68,20 @@ def test_an_effect_is_found_under_unknown_noise() -> None:
     session = replace(with_readings(where.measured(1), jump), standard_errors=np.full((48, 6), np.nan))
     (finding,) = diagnose(session).findings
     assert (finding.cause, finding.sensors, finding.nonlinear) == ("bias-jump", ("A3",), {"row": 21.0})
+
+
+@pytest.mark.parametrize("stated", [True, False])
+def test_what_the_findings_leave_is_what_projecting_every_row_would_leave(stated: bool) -> None:
+    """Part by part, from inner products alone; the findings explain most of what is there."""
+    session = with_readings(scene(ACCELEROMETER, 0).measured(1), 0.12 * 1e-3 * np.arange(48)[:, None] * np.eye(6)[2])
+    errors = session.standard_errors if stated else np.full((48, 6), np.nan)
+    residuals = WhitenedResiduals.of(baseline_of(replace(session, standard_errors=errors)))
+    (first, *_), (second, *_) = (traces_of(residuals, [cause(name)]) for name in ("bias-ramp", "cross-coupling"))
+    attributed, _ = np.linalg.qr(first.columns[2])
+    projected = Projected.of(residuals, attributed)
+    left = second.columns - attributed @ (attributed.T @ second.columns)
+    found, expected = projected(second.products, [second.columns]), Products.of(residuals, left)
+    assert np.allclose(found.square, expected.square, rtol=0, atol=1e-12 * second.products.square.max())
+    assert np.allclose(
+        found.along.sum(axis=0), left.swapaxes(1, 2) @ projected.z, rtol=0, atol=1e-9 * found.along.max()
+    )

@@ -1,0 +1,107 @@
+"""Inner products of whitened rows, part by part: all that a score needs of a signature.
+
+Theory
+------
+Rows fall into parts: the readings of each sensor, the priors, the change since the history. Let X be a signature's
+trace, z the residuals and A the orthonormal basis of the findings' traces. The findings leave X̂ = X − A·c of it and
+ẑ = z − A·a, with c = A'X and a = A'z over all rows. In every part, with its own G = X'X, b = X'z, C = A'X, D = A'A,
+
+    X̂'X̂ = G − c'C − C'c + c'Dc,      X̂'ẑ = b − C'a − c'(A'ẑ)
+
+G and b are the same in the whole search; only C is taken anew, where all signatures of a kind are one product.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.session import Array
+
+
+def inner(residuals: WhitenedResiduals, left: Array, right: Array) -> Array:
+    """(K, a, b) left'right of rows (n, a) and (n, b) in each of K = m + 2 parts: m sensors, priors, change; any unit."""
+    R, m = residuals.baseline.residual.shape
+    own = left[: R * m].reshape(R, m, -1).transpose(1, 2, 0) @ right[: R * m].reshape(R, m, -1).transpose(1, 0, 2)
+    rest = [left[rows].T @ right[rows] for rows in (slice(R * m, residuals.rows), slice(residuals.rows, None))]
+    return np.concatenate([own, np.stack(rest)])
+
+
+@dataclass(frozen=True, eq=False)
+class Products:
+    """Of S traces of q amplitudes in K parts, in units of the squared standard error per unit amplitude."""
+
+    square: Array
+    """(K, S, q, q) X'X."""
+    along: Array
+    """(K, S, q) X'z."""
+
+    @classmethod
+    def of(cls, residuals: WhitenedResiduals, columns: Array) -> "Products":
+        """Of traces ``columns`` (S, n, q), standard errors per unit amplitude."""
+        R, m = residuals.baseline.residual.shape
+        S, n, q = columns.shape
+        own = columns[:, : R * m].reshape(S, R, m, q)
+        rest = [columns[:, rows] for rows in (slice(R * m, residuals.rows), slice(residuals.rows, None))]
+        square = [np.einsum("srmp,srmq->mspq", own, own), *(np.einsum("snp,snq->spq", x, x)[None] for x in rest)]
+        rows = np.moveaxis(columns, 1, 0).reshape(n, S * q)
+        along = inner(residuals, residuals.z[:, None], rows).reshape(m + 2, S, q)
+        return cls(np.concatenate(square), along)
+
+    @classmethod
+    def together(cls, parts: Sequence["Products"]) -> "Products":
+        """Of several traces of equally many amplitudes."""
+        return cls(*(np.concatenate(x, axis=1) for x in zip(*((p.square, p.along) for p in parts), strict=True)))
+
+    def at(self, chosen: Array | Sequence[int]) -> "Products":
+        """Of some of the traces, by number or (S,) bool."""
+        return Products(self.square[:, chosen], self.along[:, chosen])
+
+
+@dataclass(frozen=True, eq=False)
+class Projected:
+    """Residuals with the traces of earlier findings projected out. n rows, f directions, K parts."""
+
+    residuals: WhitenedResiduals
+    attributed: Array
+    """(n, f) orthonormal traces of the findings."""
+    z: Array
+    """(n,) standard errors: what the findings leave."""
+
+    @classmethod
+    def of(cls, residuals: WhitenedResiduals, attributed: Array) -> "Projected":
+        """``attributed`` (n, f) orthonormal traces of the findings, dimensionless."""
+        return cls(residuals, attributed, residuals.z - attributed @ (attributed.T @ residuals.z))
+
+    @cached_property
+    def square(self) -> Array:
+        """(K, f, f) dimensionless: A'A."""
+        return inner(self.residuals, self.attributed, self.attributed)
+
+    @cached_property
+    def energy(self) -> Array:
+        """(m,) dimensionless: of what the findings leave of each sensor's readings."""
+        m = len(self.residuals.baseline.unstated)
+        return (self.z[: self.residuals.baseline.residual.size].reshape(-1, m) ** 2).sum(axis=0)
+
+    @cached_property
+    def freedom(self) -> Array:
+        """(m,) degrees of freedom of the same, dimensionless."""
+        m = len(self.residuals.baseline.unstated)
+        known = self.residuals.row_freedom[: self.residuals.baseline.residual.size].reshape(-1, m).sum(axis=0)
+        return np.asarray(known - np.trace(self.square[:m], axis1=1, axis2=2))
+
+    def __call__(self, products: Products, columns: Sequence[Array]) -> Products:
+        """What the findings leave of the products of traces, ``columns`` (S, n, q) each, standard errors per unit."""
+        A, (K, S, q) = self.attributed, products.along.shape
+        if not A.shape[1]:
+            return products
+        each = [inner(self.residuals, A, np.moveaxis(x, 1, 0).reshape(len(A), -1)) for x in columns]
+        C = np.concatenate(each, axis=-1).reshape(K, A.shape[1], S, q)
+        c, a = C.sum(axis=0), A.T @ self.residuals.z
+        left = inner(self.residuals, A, self.z[:, None])[..., 0]
+        cross = np.einsum("fsp,kfsq->kspq", c, C - 0.5 * np.einsum("kfg,gsq->kfsq", self.square, c))
+        along = products.along - np.einsum("kfsq,f->ksq", C, a) - np.einsum("fsq,kf->ksq", c, left)
+        return Products(products.square - cross - np.swapaxes(cross, -1, -2), along)
