@@ -6,13 +6,15 @@ The simulation, the diagnosis, the extended fit, the detection limits and the do
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import groupby
 from typing import ClassVar
 
 import numpy as np
 
-from estimator.forward import projected, slope
+from estimator.forward import input_of, projected, slope
 from estimator.parameters import SensorParameters
 from estimator.session import Array, CalibrationSession
 
@@ -82,10 +84,15 @@ class Setting:
     def rows(self) -> int:
         return self.n.shape[0]
 
-    @property
+    @cached_property
     def a(self) -> Array:
         """(R, m) component along each input axis, m/s² (rad/s)."""
         return projected(self.parameters.axis, self.n)
+
+    @cached_property
+    def input(self) -> Array:
+        """(R, m) what the sensors integrate, a + b + c·a², m/s² (rad/s)."""
+        return input_of(self.parameters, self.n)
 
     @property
     def first_of_run(self) -> Array:
@@ -221,6 +228,10 @@ class Signature(Cause):
         known = (s for s in self.shapes(setting) if (s.sensors, s.nonlinear) == (shape.sensors, shape.nonlinear))
         return next(known).columns
 
+    def all_columns(self, setting: Setting, shapes: Sequence[Shape]) -> Array:
+        """(R, m, S·q) what the effects of S shapes add in another session, m/s² (rad/s) per unit amplitude."""
+        return np.concatenate([self.columns(setting, shape) for shape in shapes], axis=-1)
+
     def plausible(self, shape: Shape, amplitude: float) -> bool:
         """Whether the cause can have this amplitude (one amplitude)."""
         return True
@@ -267,24 +278,42 @@ class SensorCause(Signature):
     def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
         """(R, q) what a unit amplitude adds inside the bracket of sensor i, m/s² (rad/s)."""
 
+    def terms(self, setting: Setting, i: int, grid: Sequence[tuple[float, ...]]) -> Array:
+        """(S, R, q) the same at every one of S points of the grid, m/s² (rad/s)."""
+        return np.stack([self.term(setting, i, nonlinear) for nonlinear in grid])
+
     def shapes(self, setting: Setting) -> Iterator[Shape]:
-        m = len(setting.kinds)
-        for i in range(m):
-            if self.kind is not None and setting.kinds[i] != self.kind:
-                continue
-            for nonlinear in self.grid_of(setting, i):
-                yield Shape((i,), self.placed(setting, i, nonlinear), nonlinear)
+        for i, kind in enumerate(setting.kinds):
+            grid = list(self.grid_of(setting, i)) if self.kind in (None, kind) else []
+            if grid:
+                placed = on_sensor(setting, i, self.terms(setting, i, grid))
+                yield from (Shape((i,), own, nonlinear) for own, nonlinear in zip(placed, grid, strict=True))
 
     def placed(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
         """(R, m, q) the term on sensor i, m/s² (rad/s) per unit amplitude."""
-        term = self.term(setting, i, nonlinear)
-        columns = np.zeros((setting.rows, len(setting.kinds), term.shape[1]))
-        columns[:, i, :] = term
-        return columns
+        return on_sensor(setting, i, self.terms(setting, i, [nonlinear]))[0]
 
     def columns(self, setting: Setting, shape: Shape) -> Array:
         """(R, m, q) m/s² (rad/s) per unit amplitude."""
         return self.placed(setting, shape.sensors[0], shape.nonlinear)
+
+    def all_columns(self, setting: Setting, shapes: Sequence[Shape]) -> Array:
+        """(R, m, S·q) of S shapes, sensor by sensor, m/s² (rad/s) per unit amplitude."""
+        by_sensor = groupby(shapes, key=lambda shape: shape.sensors[0])
+        each = [on_sensor(setting, i, self.terms(setting, i, [s.nonlinear for s in own])) for i, own in by_sensor]
+        return np.moveaxis(np.concatenate(each), 0, 2).reshape(setting.rows, len(setting.kinds), -1)
+
+
+class GridCause(SensorCause):
+    """A cause of one sensor that is tried at many points: `terms` gives all of them at once."""
+
+    @abstractmethod
+    def terms(self, setting: Setting, i: int, grid: Sequence[tuple[float, ...]]) -> Array:
+        """(S, R, q) what a unit amplitude adds at S points of the grid inside the bracket of sensor i, m/s² (rad/s)."""
+
+    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
+        """(R, q) the same at one point, m/s² (rad/s)."""
+        return np.asarray(self.terms(setting, i, [nonlinear])[0])
 
 
 class CommonCause(Signature):
@@ -308,6 +337,13 @@ class Entry(CommonCause):
     @abstractmethod
     def corrected_by(self, session: CalibrationSession, amount: float) -> CalibrationSession:
         """The session with ``amount`` (in the unit of the amplitude) added to the entry."""
+
+
+def on_sensor(setting: Setting, i: int, terms: Array) -> Array:
+    """(S, R, m, q) terms (S, R, q) of sensor i among all sensors, in the terms' own unit, such as m/s²."""
+    columns = np.zeros((*terms.shape[:2], len(setting.kinds), terms.shape[2]))
+    columns[:, :, i, :] = terms
+    return columns
 
 
 def column(*terms: Array) -> Array:

@@ -1,10 +1,10 @@
 """Causes that follow time and temperature. A bar means the session's mean."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from estimator.causes.contract import SensorCause, Setting, Shape, column
+from estimator.causes.contract import GridCause, SensorCause, Setting, Shape, column
 from estimator.causes.sensor import across
 from estimator.session import Array
 
@@ -112,7 +112,7 @@ class AxisCreep(SensorCause):
         return column(p * elapsed(setting), o * elapsed(setting))
 
 
-class WarmUp(SensorCause):
+class WarmUp(GridCause):
     """The nonlinear parameter is τ, s."""
 
     identifier = "warm-up"
@@ -134,10 +134,10 @@ class WarmUp(SensorCause):
         for tau in np.geomspace(span / max(setting.rows, 2), span, self.steps):
             yield (float(tau),)
 
-    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
-        """(R, 1) exp(−t/τ), dimensionless."""
+    def terms(self, setting: Setting, i: int, grid: Sequence[tuple[float, ...]]) -> Array:
+        """(S, R, 1) exp(−t/τ), dimensionless."""
         assert setting.time is not None
-        return column(np.exp(-setting.time / nonlinear[0]))
+        return column(np.exp(-setting.time / np.array(grid)))
 
     def neighbours(self, setting: Setting, shape: Shape) -> Iterator[Shape]:
         (tau,) = shape.nonlinear
@@ -155,7 +155,7 @@ class WarmUp(SensorCause):
         return bent
 
 
-class BiasJump(SensorCause):
+class BiasJump(GridCause):
     """The nonlinear parameter is the first row after the jump, counted from 0."""
 
     identifier = "bias-jump"
@@ -172,6 +172,6 @@ class BiasJump(SensorCause):
         for row in range(1, setting.rows):
             yield (float(row),)
 
-    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
-        """(R, 1) 0 before the jump, 1 from it on, dimensionless."""
-        return column((np.arange(setting.rows) >= nonlinear[0]).astype(float))
+    def terms(self, setting: Setting, i: int, grid: Sequence[tuple[float, ...]]) -> Array:
+        """(S, R, 1) 0 before the jump, 1 from it on, dimensionless."""
+        return column((np.arange(setting.rows) >= np.array(grid)).astype(float))

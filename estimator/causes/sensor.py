@@ -1,13 +1,12 @@
 """Causes inside one sensor. Model equation terms after IEEE Std 1293 where it names them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
 
 from estimator.arrays import tangents
-from estimator.causes.contract import SensorCause, Setting, Shape, column
-from estimator.forward import input_of
+from estimator.causes.contract import GridCause, SensorCause, Setting, Shape, column
 from estimator.session import Array
 
 
@@ -133,7 +132,7 @@ class BiasPerPosition(SensorCause):
         return column(np.sin(setting.beta), np.cos(setting.beta))
 
 
-class Saturation(SensorCause):
+class Saturation(GridCause):
     """The nonlinear parameters are the limit at the input, reported as the amplitude, and the side: 0 both, ±1 one."""
 
     identifier = "saturation"
@@ -155,10 +154,11 @@ class Saturation(SensorCause):
         cut = int(np.count_nonzero(shape.columns))
         return (0.0, 0.0, 0.1, 0.4)[min(cut, 3)] < amplitude < 2.5
 
-    def beyond(self, setting: Setting, i: int, side: float) -> tuple[Array, Array]:
-        """Size (R,) of what sensor i should have read on a side, at the input, m/s² (rad/s), and its sign (R,)."""
-        h = input_of(setting.parameters, setting.n)[:, i]
-        return (np.abs(h) if side == 0 else side * h), np.sign(h)
+    def beyond(self, setting: Setting, i: int, side: Array | float) -> tuple[Array, Array]:
+        """Size (..., R) of what sensor i should have read on sides (..., 1), at the input, m/s² (rad/s), and its sign
+        (R,)."""
+        h = setting.input[:, i]
+        return np.where(np.equal(side, 0), np.abs(h), side * h), np.sign(h)
 
     def grid_of(self, setting: Setting, i: int) -> Iterator[tuple[float, ...]]:
         for side in (0.0, 1.0, -1.0):
@@ -168,10 +168,11 @@ class Saturation(SensorCause):
                 for limit in (lower, (upper + lower) / 2):
                     yield (float(limit * setting.norm[i]), side)
 
-    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
-        """(R, 1) what the limit cuts off, m/s²."""
-        size, sign = self.beyond(setting, i, nonlinear[1])
-        return column(-sign * np.maximum(size - nonlinear[0], 0.0))
+    def terms(self, setting: Setting, i: int, grid: Sequence[tuple[float, ...]]) -> Array:
+        """(S, R, 1) what the limit cuts off, m/s²."""
+        limit, side = np.split(np.array(grid), 2, axis=1)
+        size, sign = self.beyond(setting, i, side)
+        return column(-sign * np.maximum(size - limit, 0.0))
 
     def reported(self, setting: Setting, shape: Shape, amplitude: Array, sigma: Array) -> tuple[Array, Array]:
         """The limit (1,) and its sigma (1,), m/s² (rad/s): what is cut off on average, moved from the
@@ -182,7 +183,7 @@ class Saturation(SensorCause):
         return limit + (1 - amplitude) * depth, sigma * depth
 
 
-class ReadingOutlier(SensorCause):
+class ReadingOutlier(GridCause):
     identifier = "reading-outlier"
     scope = "sensor"
     equation = "k at one position"
@@ -198,8 +199,6 @@ class ReadingOutlier(SensorCause):
         for row in range(setting.rows):
             yield (float(row),)
 
-    def term(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
-        """(R, 1) 1 in one row, else 0, dimensionless."""
-        spike = np.zeros(setting.rows)
-        spike[int(nonlinear[0])] = 1.0
-        return column(spike)
+    def terms(self, setting: Setting, i: int, grid: Sequence[tuple[float, ...]]) -> Array:
+        """(S, R, 1) 1 in one row, else 0, dimensionless."""
+        return column((np.arange(setting.rows) == np.array(grid)).astype(float))

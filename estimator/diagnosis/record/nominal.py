@@ -14,7 +14,7 @@ from estimator.arrays import tangents
 from estimator.causes.contract import Cause, Entry
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.residuals.whitened import WhitenedResiduals, parameter_covariance
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.parameters import LIMIT
 from estimator.session import TWO_AXIS_STAND, CalibrationSession
 
@@ -71,7 +71,7 @@ def regression(baseline: Baseline, cause: Entry) -> tuple[float, float, float, i
     nominal = np.stack([s.nominal_axis for s in baseline.session.sensors])
     frame = tangents(baseline.parameters.axis)
     stray = (np.swapaxes(frame, -1, -2) @ (baseline.parameters.axis - nominal)[..., None]).ravel()
-    known = np.sqrt(np.diagonal(parameter_covariance(baseline))[axes]) < LIMIT
+    known = np.sqrt(np.diagonal(baseline.covariance)[axes]) < LIMIT
     pattern, stray = pattern[known], stray[known]
     size = float(pattern @ pattern)
     if size == 0 or len(stray) < 4:

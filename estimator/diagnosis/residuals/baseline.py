@@ -6,12 +6,15 @@ sigma; the two turns of an unknown direction with an infinite one) and the sessi
 """
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from estimator.causes.contract import Setting
+from estimator.diagnosis.residuals.gauge import observable_directions
+from estimator.diagnosis.residuals.whitener import Whitener
 from estimator.forward import jacobian
-from estimator.parameters import SensorParameters
+from estimator.parameters import PLAUSIBLE, SensorParameters
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
 
@@ -57,6 +60,35 @@ class Baseline:
         """(m,) bool, dimensionless: sensors whose axes may turn together unseen, because no applied vector is known."""
         unseen = self.row_sigma.size > 0 and bool(np.isinf(self.row_sigma).all())
         return np.array([unseen and kind == ACCELEROMETER for kind in self.setting.kinds])
+
+    @cached_property
+    def whiten(self) -> Whitener:
+        """Inverse root of the noise covariance of every row."""
+        return Whitener.of(self.variance, self.row, self.row_sigma)
+
+    @cached_property
+    def whitened_design(self) -> Array:
+        """(R·m + k, 5 m + k) standard errors per unit: of the parameters and constant nuisances (their priors below)."""
+        P, k = 5 * self.residual.shape[1], len(self.constant_sigma)
+        design = self.whiten(np.concatenate([block_columns(self.design), self.constant], axis=-1))
+        prior = np.concatenate([np.zeros((k, P)), np.diag(1 / self.constant_sigma)], axis=1)
+        return np.concatenate([design, prior])
+
+    @cached_property
+    def covariance(self) -> Array:
+        """(5 m, 5 m) total, of the parameters, dimensionless; what is not observed carries the plausible range.
+
+        A common turn that nothing observes carries none: the axes are then those of this session's own frame.
+        """
+        keep, P = observable_directions(self.gauge_free, self.parameters), 5 * self.residual.shape[1]
+        full = np.concatenate([self.whitened_design[:, :P] @ keep, self.whitened_design[:, P:]], axis=1)
+        q = keep.shape[1]
+        ridge = np.zeros(full.shape[1])
+        ridge[:q] = PLAUSIBLE**-2
+        scale = np.sqrt((full**2).sum(axis=0) + ridge)
+        normal = (full / scale).T @ (full / scale) + np.diag(ridge / scale**2)
+        covariance = np.linalg.inv(normal)[:q, :q] / scale[:q, None] / scale[:q]
+        return np.asarray(keep @ covariance @ keep.T)
 
 
 def block_columns(own: Array) -> Array:

@@ -19,7 +19,6 @@ from estimator.diagnosis.residuals.whitened import (
     EarlierSession,
     ParameterChange,
     WhitenedResiduals,
-    parameter_covariance,
 )
 from estimator.parameters import SensorParameters
 from estimator.session import Array
@@ -68,13 +67,13 @@ def parameter_change(now: Baseline, history: Sequence[Baseline]) -> ParameterCha
         return None
     steps = [deviation(p, h.parameters, now.setting.norm).reshape(-1) for h in alike]
     maps = [carried(p, tangents(h.parameters.axis)) for h in alike]
-    known = [keep.T @ map @ parameter_covariance(h) @ map.T @ keep for h, map in zip(alike, maps, strict=True)]
+    known = [keep.T @ map @ h.covariance @ map.T @ keep for h, map in zip(alike, maps, strict=True)]
     information = [(root := inverse_root(covariance)).T @ root for covariance in known]
     turn = keep.T @ turn_response(p)
     information = [without(i, turn) if h.sits_otherwise else i for h, i in zip(alike, information, strict=True)]
     covariance = (root := inverse_root(np.sum(information, axis=0))).T @ root
     shares = [keep @ covariance @ own @ keep.T for own in information]
-    whiten = keep @ inverse_root(covariance + keep.T @ parameter_covariance(now) @ keep) @ keep.T
+    whiten = keep @ inverse_root(covariance + keep.T @ now.covariance @ keep) @ keep.T
     steps = [step + map @ taken_off(h) for h, step, map in zip(alike, steps, maps, strict=True)]
     step = np.sum([share @ step for share, step in zip(shares, steps, strict=True)], axis=0)
     earlier = [EarlierSession(WhitenedResiduals.of(h), w @ map) for h, w, map in zip(alike, shares, maps, strict=True)]

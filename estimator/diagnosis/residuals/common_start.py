@@ -8,7 +8,6 @@ import numpy as np
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.flipped_run import with_its_flip
 from estimator.diagnosis.residuals.turns import in_the_frame_of, turn_between
-from estimator.diagnosis.residuals.whitened import parameter_covariance
 from estimator.session import TWO_AXIS_STAND, CalibrationSession
 
 ROUNDS = 3
@@ -25,7 +24,7 @@ def baselines(session: CalibrationSession, history: Sequence[CalibrationSession]
     baseline = with_its_flip(session)
     earlier = [with_its_flip(h) for h in history]
     if session.programme == TWO_AXIS_STAND and earlier:
-        best = min([baseline, *earlier], key=lambda b: float(np.trace(parameter_covariance(b))))
+        best = min([baseline, *earlier], key=lambda b: float(np.trace(b.covariance)))
         baseline, *earlier = [fitted_near(one, best) for one in (baseline, *earlier)]
     return baseline, in_the_frame_of(baseline, earlier)
 

@@ -14,21 +14,22 @@ small a noise of one sensor shows in all of them: what they share of a row, its 
 import numpy as np
 
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.whitened import RANK, WhitenedResiduals, whitened_design
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.diagnosis.residuals.whitener import RANK
 from estimator.session import Array
 
 
 def log_likelihood_ratio(one: WhitenedResiduals, other: WhitenedResiduals) -> float:
     """ln of the restricted likelihood of the readings, and of their change since the history, in ``one`` over
     ``other``: the same session under two noises, dimensionless."""
-    scale = np.linalg.norm(whitened_design(other.baseline, other.whiten), axis=0)
+    scale = np.linalg.norm(other.baseline.whitened_design, axis=0)
     scale = np.where(scale > 0, scale, 1.0)
     return restricted(one, scale) - restricted(other, scale)
 
 
 def restricted(residuals: WhitenedResiduals, scale: Array) -> float:
     """ln L up to a constant that does not depend on the noise; ``scale`` (5 m + k,) any unit of each column."""
-    design = whitened_design(residuals.baseline, residuals.whiten) / scale
+    design = residuals.baseline.whitened_design / scale
     value = -0.5 * float(residuals.z @ residuals.z) - log_size(design) + row_determinants(residuals.baseline)
     return value if residuals.change is None else value + log_size(residuals.change.inverse_root)
 

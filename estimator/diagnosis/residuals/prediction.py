@@ -10,7 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.diagnosis.residuals.baseline import Baseline, block_columns
-from estimator.diagnosis.residuals.whitened import Whitener
 from estimator.session import Array
 
 FOLDS = 6
@@ -49,7 +48,7 @@ class Prediction:
 
 def counted(baseline: Baseline) -> Array:
     """(R,) number of readings of every row less the directions that they serve to estimate."""
-    return np.asarray(baseline.residual.shape[1] - Whitener.of(baseline).projected_out.sum(axis=1))
+    return np.asarray(baseline.residual.shape[1] - baseline.whiten.projected_out.sum(axis=1))
 
 
 def fold_of(rows: int) -> Array:
@@ -60,7 +59,7 @@ def fold_of(rows: int) -> Array:
 def predicted(baseline: Baseline, effects: Sequence[Sequence[Array]]) -> Prediction:
     """Predict every row; ``effects``: for every fold the columns (R, m, q), m/s² (rad/s), in the model there."""
     R, m = baseline.residual.shape
-    whiten, number = Whitener.of(baseline), counted(baseline)
+    whiten, number = baseline.whiten, counted(baseline)
     own = [block_columns(baseline.design), baseline.constant]
     data = whiten(baseline.residual[..., None]).reshape(R, m)
     errors, volume, squares = np.zeros((R, m)), 0.0, 0.0

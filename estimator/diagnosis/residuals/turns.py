@@ -21,7 +21,6 @@ from estimator.arrays import tangents
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.between_sessions import carried, deviation, inverse_root
 from estimator.diagnosis.residuals.gauge import turn_response
-from estimator.diagnosis.residuals.whitened import parameter_covariance
 from estimator.rotations import common_turn, turn_of, vector_of
 from estimator.session import Array, CalibrationSession
 
@@ -67,7 +66,7 @@ def turned_baseline(baseline: Baseline, turn: Array) -> Baseline:
 def turn_between(now: Baseline, earlier: Baseline) -> Array:
     """(3, 3) rotation, dimensionless, that takes the axes of an earlier session onto those of ``now``."""
     p, q = now.parameters, earlier.parameters
-    own, origin, design = parameter_covariance(now), parameter_covariance(earlier), turn_response(p)
+    own, origin, design = now.covariance, earlier.covariance, turn_response(p)
     m = len(design) // 5
     turn, response = common_turn(q.axis, p.axis), design.reshape(m, 5, 3)
     for _ in range(ROUNDS):
@@ -108,7 +107,7 @@ def sits_otherwise(now: Baseline, one: Baseline, latest: Baseline) -> bool:
     """Whether the block sat otherwise in ``one`` than in the ``latest``, both turned into the frame of ``now``."""
     p = now.parameters
     maps = [carried(p, tangents(h.parameters.axis)) for h in (one, latest)]
-    both = [m @ parameter_covariance(h) @ m.T for h, m in zip((one, latest), maps, strict=True)]
+    both = [m @ h.covariance @ m.T for h, m in zip((one, latest), maps, strict=True)]
     apart = vector_of(turn_of(one.turn) @ turn_of(latest.turn).T)
     seen = inverse_root(both[0] + both[1]) @ turn_response(p) @ apart
     return bool(chdtrc(3, float(seen @ seen)) < OTHERWISE)

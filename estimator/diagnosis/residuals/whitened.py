@@ -2,10 +2,9 @@
 
 Theory
 ------
-Residuals of one row share the row's nuisances: D + H S H' with D diagonal. `Whitener` multiplies by the inverse root
-(D in each sensor's own sigma, then shrinking the nuisance directions by 1/√(1 + s²), to zero where s is infinite).
-Constant nuisances enter as columns with prior rows. Everything that the baseline can absorb is an orthonormal basis;
-what a signature leaves outside it is its trace, whose norm is the effect's strength in standard errors.
+Residuals of one row share the row's nuisances; `Whitener` multiplies by the inverse root of their covariance. Constant
+nuisances enter as columns with prior rows. Everything that the baseline can absorb is an orthonormal basis; what a
+signature leaves outside it is its trace, whose norm is the effect's strength in standard errors.
 
 With history, rows are appended: the whitened deviation of the parameters from the history, and how each cause would
 have moved them. Residuals of a fit and its parameters are independent, so both kinds of rows stand side by side.
@@ -16,75 +15,9 @@ from functools import cached_property
 
 import numpy as np
 
-from estimator.diagnosis.residuals.baseline import Baseline, block_columns
-from estimator.diagnosis.residuals.gauge import observable_directions
-from estimator.parameters import PLAUSIBLE
+from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.whitener import RANK, Whitener
 from estimator.session import Array
-
-RANK = 1e-9
-"""Relative singular value below which a direction of the baseline or of a row's nuisances counts as none: rounding
-leaves 1e-16 to 1e-14 where a session observes nothing."""
-
-
-@dataclass(frozen=True, eq=False)
-class Whitener:
-    """Inverse root of the noise covariance of every row. R rows, m sensors, r nuisances a row."""
-
-    weight: Array
-    """(R, m) inverse sigma of the independent noise, 1/(m/s²) (1/(rad/s))."""
-    direction: Array
-    """(R, m, r) orthonormal nuisance directions in units of the independent noise."""
-    removed: Array
-    """(R, r) share of each direction that is taken away, 1 − 1/√(1 + s²)."""
-
-    @classmethod
-    def of(cls, baseline: Baseline) -> "Whitener":
-        """From the noise and the nuisances of a baseline."""
-        weight = 1.0 / np.sqrt(baseline.variance)
-        unknown = np.isinf(baseline.row_sigma)
-        sigma = np.where(unknown, 1.0, baseline.row_sigma)
-        scaled = baseline.row * weight[..., None] * sigma[:, None, :]
-        direction, size, _ = np.linalg.svd(scaled, full_matrices=False)
-        removed = 1 - 1 / np.sqrt(1 + size**2)
-        acts = size > RANK * np.maximum(size[:, :1], np.finfo(float).tiny)
-        return cls(weight, direction, np.where(unknown.any(axis=1, keepdims=True) & acts, 1.0, removed))
-
-    def __call__(self, columns: Array) -> Array:
-        """(R·m, q) standard errors: columns (R, m, q), m/s² (rad/s), whitened."""
-        x = columns * self.weight[..., None]
-        along = np.swapaxes(self.direction, -1, -2) @ x
-        x = x - self.direction @ (along * self.removed[..., None])
-        return x.reshape(-1, columns.shape[-1])
-
-    @property
-    def projected_out(self) -> Array:
-        """(R, r) bool, dimensionless: nuisance directions of which nothing is known beforehand."""
-        return self.removed == 1
-
-
-def whitened_design(baseline: Baseline, whiten: Whitener) -> Array:
-    """(R·m + k, 5 m + k) standard errors per unit: columns of parameters and of constant nuisances (priors below)."""
-    P, k = 5 * baseline.residual.shape[1], len(baseline.constant_sigma)
-    design = whiten(np.concatenate([block_columns(baseline.design), baseline.constant], axis=-1))
-    prior = np.concatenate([np.zeros((k, P)), np.diag(1 / baseline.constant_sigma)], axis=1)
-    return np.concatenate([design, prior])
-
-
-def parameter_covariance(baseline: Baseline) -> Array:
-    """(5 m, 5 m) total covariance, dimensionless; what is not observed carries the plausible range.
-
-    A common turn that nothing observes carries none: the axes are then those of this session's own frame.
-    """
-    full = whitened_design(baseline, Whitener.of(baseline))
-    keep, P = observable_directions(baseline.gauge_free, baseline.parameters), 5 * baseline.residual.shape[1]
-    full = np.concatenate([full[:, :P] @ keep, full[:, P:]], axis=1)
-    q = keep.shape[1]
-    ridge = np.zeros(full.shape[1])
-    ridge[:q] = PLAUSIBLE**-2
-    scale = np.sqrt((full**2).sum(axis=0) + ridge)
-    normal = (full / scale).T @ (full / scale) + np.diag(ridge / scale**2)
-    covariance = np.linalg.inv(normal)[:q, :q] / scale[:q, None] / scale[:q]
-    return np.asarray(keep @ covariance @ keep.T)
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,9 +63,9 @@ class WhitenedResiduals:
     @classmethod
     def of(cls, baseline: Baseline, change: ParameterChange | None = None) -> "WhitenedResiduals":
         """Of a fitted session, and of its change since the history."""
-        whiten = Whitener.of(baseline)
+        whiten = baseline.whiten
         P, k = 5 * baseline.residual.shape[1], len(baseline.constant_sigma)
-        full = whitened_design(baseline, whiten)
+        full = baseline.whitened_design
         size = np.linalg.norm(full, axis=0)
         scale = np.where(size > 0, size, 1.0)
         left, size, right = np.linalg.svd(full / scale, full_matrices=False)
@@ -170,7 +103,10 @@ class WhitenedResiduals:
         What the baseline absorbs of it shows as a change of the parameters, unless it was there ``before``: (P, q)
         dimensionless, what the history absorbed of it; 0 of what is new, None where it absorbed as much as now.
         """
-        white = self.whitened(columns)
+        return self.left_of(self.whitened(columns), before)
+
+    def left_of(self, white: Array, before: Array | float | None = None) -> Array:
+        """(n, q) standard errors: the same of a signature that is `whitened` (N, q)."""
         inside = white - self.basis @ (self.basis.T @ white)
         if self.change is None:
             return inside

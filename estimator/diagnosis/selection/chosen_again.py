@@ -4,17 +4,17 @@ A name chosen with the help of the very rows that it is judged by always seems t
 is chosen anew among the leaders of its ranking, with all their shapes, from the rows that are not held out.
 """
 
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from estimator.causes.contract import Shape
 from estimator.diagnosis.residuals.prediction import FOLDS, fold_of, predicted
-from estimator.diagnosis.residuals.whitened import whitened_design
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.forward import with_structures
 from estimator.diagnosis.selection.ranking import extended_basis
-from estimator.diagnosis.selection.search_state import Found, SearchState
+from estimator.diagnosis.selection.search_state import NEW_DIRECTION, Found, SearchState
 from estimator.diagnosis.signatures.scores import bayes_factor
 from estimator.session import Array
 
@@ -67,9 +67,9 @@ def chosen_in_folds(state: SearchState, judged: list[Found]) -> list[list[Array]
     """For every fold the columns (R, m, q), m/s² (rad/s), of the causes chosen without its rows."""
     residuals, rows = state.residuals, state.baseline.setting.rows
     candidates = [list(shapes_of(state, f)) for f in judged]
-    whitened = [[residuals.whitened(shape.columns) for shape, _ in own] for own in candidates]
+    whitened = [alike(residuals, [shape for shape, _ in own]) for own in candidates]
     data = residuals.whitened(state.baseline.residual[..., None])[:, 0]
-    design = whitened_design(state.baseline, residuals.whiten)
+    design = state.baseline.whitened_design
     fold = np.full(len(design), -1)
     fold[: rows * state.sensor_count] = np.repeat(fold_of(rows), state.sensor_count)
     chosen = []
@@ -78,10 +78,14 @@ def chosen_in_folds(state: SearchState, judged: list[Found]) -> list[list[Array]
         basis = extended_basis(np.zeros((int(kept.sum()), 0)), design[kept])
         z = data[kept] - basis @ (basis.T @ data[kept])
         columns = []
-        for own, seen in zip(candidates, whitened, strict=True):
-            best = max(range(len(own)), key=lambda k: weight(basis, z, seen[k][kept]) - own[k][1])
+        for own, groups in zip(candidates, whitened, strict=True):
+            weight = np.empty(len(own))
+            for group in groups:
+                weight[group.number] = weights(basis, z, group.columns[:, kept])
+            best = int(np.argmax(weight - [shared for _, shared in own]))
             columns.append(own[best][0].columns)
-            basis = extended_basis(basis, seen[best][kept])
+            seen = residuals.whitened(own[best][0].columns)[kept]
+            basis = extended_basis(basis, seen)
             z = z - basis @ (basis.T @ z)
         chosen.append(columns)
     return chosen
@@ -98,9 +102,37 @@ def shapes_of(state: SearchState, found: Found) -> Iterator[tuple[Shape, float]]
                 yield shape.first(q), float(np.log(max(traces.places, 1)))
 
 
-def weight(basis: Array, z: Array, columns: Array) -> float:
-    """ln evidence of columns (n, q) on what ``basis`` (n, p) leaves of residuals z (n,), standard errors."""
-    new = extended_basis(basis, columns)[:, basis.shape[1] :]
-    power, freedom = float(((new.T @ z) ** 2).sum()), new.shape[1]
-    rest = max((float(z @ z) - power) / max(len(z) - basis.shape[1] - freedom, 1), 1e-300)
-    return float(bayes_factor(power / max(rest, 1.0), freedom))
+@dataclass(frozen=True, eq=False)
+class Alike:
+    """Shapes of equally many amplitudes, whitened. S shapes, N rows."""
+
+    number: Array
+    """(S,) int, their places among all."""
+    columns: Array
+    """(S, N, q) standard errors per unit amplitude."""
+
+
+def alike(residuals: WhitenedResiduals, shapes: Sequence[Shape]) -> list[Alike]:
+    """Shapes whitened, those of equally many amplitudes together."""
+    width = np.array([shape.columns.shape[-1] for shape in shapes])
+    groups = []
+    for q in np.unique(width):
+        number = np.flatnonzero(width == q)
+        white = residuals.whitened(np.concatenate([shapes[k].columns for k in number], axis=-1))
+        groups.append(Alike(number, np.moveaxis(white.reshape(len(white), -1, q), 1, 0)))
+    return groups
+
+
+def weights(basis: Array, z: Array, columns: Array) -> Array:
+    """(S,) ln evidence of columns (S, n, q) on what ``basis`` (n, p) leaves of residuals z (n,), standard errors."""
+    S, n, q = columns.shape
+    rows = np.moveaxis(columns, 1, 0).reshape(n, S * q)
+    norms = np.linalg.norm(rows, axis=0)
+    new = rows / np.where(norms > 0, norms, 1.0)
+    for _ in range(2):  # once leaves rounding of what lies almost within the span
+        new = new - basis @ (basis.T @ new)
+    directions, size, _ = np.linalg.svd(np.moveaxis(new.reshape(n, S, q), 0, 1), full_matrices=False)
+    live = size > NEW_DIRECTION
+    power, freedom = (np.where(live, z @ directions, 0.0) ** 2).sum(axis=1), live.sum(axis=1)
+    rest = (float(z @ z) - power) / np.maximum(len(z) - basis.shape[1] - freedom, 1)
+    return bayes_factor(power / np.maximum(rest, 1.0), freedom)

@@ -1,5 +1,6 @@
 """Between the points of the grid: the best nonlinear parameters, and their error in the amplitudes' sigma."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -65,8 +66,9 @@ def refined(state: SearchState, found: Found) -> Scored:
         return old
     attributed, padding = state.attributed(without=found), old.shape.columns[..., own:]
 
-    def derivative(where: Setting, shape: Shape) -> Array:
-        """(R, m, r) m/s² (rad/s)."""
+    def derivative(where: Setting, shapes: Sequence[Shape]) -> Array:
+        """(R, m, r) m/s² (rad/s), of a single shape."""
+        (shape,) = shapes
         return cause.derivative(where, replace(shape, columns=cause.columns(where, shape)))
 
     def scored(shape: Shape) -> Scored:
@@ -76,7 +78,7 @@ def refined(state: SearchState, found: Found) -> Scored:
         return rescored(state.residuals, replace(old, shape=padded, trace=trace), attributed)
 
     best = max(map(scored, near), key=lambda s: s.statistic)
-    bent = derivative(setting, best.shape)
+    bent = derivative(setting, [best.shape])
     before = absorbed_before(state.residuals, cause, [best.shape], derivative) if old.lasting else 0.0
     trace = np.concatenate([best.trace, state.residuals.trace(bent, before)], axis=1)
     return replace(

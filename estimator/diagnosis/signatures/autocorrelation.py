@@ -19,7 +19,6 @@ mean over the orders (`USUAL`), the kernels and λ. A mean of Bayes factors has 
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.special import logsumexp
 
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.noise import Autocorrelation
@@ -130,29 +129,31 @@ def autocorrelation(
     root = turn[:, kept] * np.sqrt(size[kept])
     y = (turn[:, kept] / np.sqrt(size[kept])).T @ remaining[: R * m].reshape(R, m)[:, sensor]
     factors = {
-        name: logmeanexp([bayes_factor(root.T @ kernel @ root, y, known=known) for kernel in tried])
+        name: logmeanexp(bayes_factors(root.T @ np.stack(tried) @ root, y, known=known))
         for name, tried in kernels(residuals, sensor).items()
     }
     prior = np.array([USUAL[name] for name in factors])
     together = np.array(list(factors.values())) + np.log(prior / prior.sum())
-    return Autocorrelation(sensor, max(factors, key=lambda name: factors[name]), float(logsumexp(together)))
+    return Autocorrelation(sensor, max(factors, key=lambda name: factors[name]), float(np.logaddexp.reduce(together)))
 
 
 def logmeanexp(values: Sequence[float] | Array) -> float:
     """ln of the mean of Bayes factors given by their logarithms."""
-    return float(logsumexp(values) - np.log(len(values)))
+    return float(np.logaddexp.reduce(values) - np.log(len(values)))
 
 
-def bayes_factor(covariance: Array, y: Array, *, known: bool) -> float:
-    """ln B of a course of ``covariance`` (n, n), dimensionless, against white noise, from y (n,), standard errors."""
-    d, turn = np.linalg.eigh(covariance * len(y) / max(float(np.trace(covariance)), 1e-300))
-    power = (turn.T @ y) ** 2
-    largest = max(SIGNAL[-1], float(power.sum()) if known else 0.0)
+def bayes_factors(covariance: Array, y: Array, *, known: bool) -> Array:
+    """(K,) ln B of courses of ``covariance`` (K, n, n), dimensionless, against white noise, from y (n,), standard
+    errors."""
+    size = np.maximum(np.trace(covariance, axis1=1, axis2=2), 1e-300)
+    d, turn = np.linalg.eigh(covariance * (len(y) / size)[:, None, None])
+    power = ((y @ turn) ** 2)[:, None, :]
+    largest = max(SIGNAL[-1], float(y @ y) if known else 0.0)
     signal = np.concatenate([SIGNAL, np.geomspace(SIGNAL[-1], largest, 4)[1:]]) if largest > SIGNAL[-1] else SIGNAL
-    grown = 1 + signal[:, None] * np.maximum(d, 0.0)
-    volume = -0.5 * np.log(grown).sum(axis=1)
+    grown = 1 + signal[:, None] * np.maximum(d, 0.0)[:, None, :]
+    volume = -0.5 * np.log(grown).sum(axis=-1)
     if known:
-        fitted = 0.5 * (power * (1 - 1 / grown)).sum(axis=1)
+        fitted = 0.5 * (power * (1 - 1 / grown)).sum(axis=-1)
     else:
-        fitted = -0.5 * len(y) * np.log((power / grown).sum(axis=1) / power.sum())
-    return logmeanexp(volume + fitted)
+        fitted = -0.5 * len(y) * np.log((power / grown).sum(axis=-1) / float(y @ y))
+    return np.asarray(np.logaddexp.reduce(volume + fitted, axis=1) - np.log(len(signal)))

@@ -48,9 +48,9 @@ def _traces(residuals: WhitenedResiduals, cause: Signature, shapes: tuple[Shape,
     What lasts and this session does not show is not told from how differently the sessions absorbed it.
     """
     q = shapes[0].columns.shape[-1]
-    stacked = np.concatenate([s.columns for s in shapes], axis=-1)
-    trace = residuals.trace(stacked, absorbed_before(residuals, cause, shapes) if lasting else 0.0)
-    raw = np.linalg.norm(residuals.whitened(stacked), axis=0)
+    white = residuals.whitened(np.concatenate([s.columns for s in shapes], axis=-1))
+    trace = residuals.left_of(white, absorbed_before(residuals, cause, shapes) if lasting else 0.0)
+    raw = np.linalg.norm(white, axis=0)
     if lasting:
         trace[residuals.rows :, np.linalg.norm(trace[: residuals.rows], axis=0) <= INVISIBLE * raw] = 0.0
     columns, raw = np.moveaxis(trace.reshape(len(trace), len(shapes), q), 1, 0), raw.reshape(len(shapes), q)
@@ -63,12 +63,12 @@ def absorbed_before(
     residuals: WhitenedResiduals,
     cause: Signature,
     shapes: Sequence[Shape],
-    columns_of: Callable[[Setting, Shape], Array] | None = None,
+    columns_of: Callable[[Setting, Sequence[Shape]], Array] | None = None,
 ) -> Array | None:
     """(P, S·q) dimensionless: what the history's calibrations absorbed of the same effects; None if that is unknown.
 
     It is known on a stand, of causes of one sensor that may act in every session at every row. ``columns_of``: the
-    columns (R, m, q) of a shape in a session, m/s² (rad/s), where they are not the cause's own.
+    columns (R, m, S·q) of the shapes in a session, m/s² (rad/s), where they are not the cause's own.
     """
     change = residuals.change
     if change is None or cause.nameless or not shapes[0].sensors or "row" in cause.nonlinear_units:
@@ -78,7 +78,7 @@ def absorbed_before(
         setting = replace(earlier.residuals.baseline.setting, parameters=residuals.baseline.parameters)
         if setting.beta is None or not cause.available(setting):
             return None
-        columns = np.concatenate([(columns_of or cause.columns)(setting, shape) for shape in shapes], axis=-1)
+        columns = (columns_of or cause.all_columns)(setting, shapes)
         absorbed = absorbed + earlier.share @ (earlier.residuals.response @ earlier.residuals.whitened(columns))
     return absorbed
 

@@ -8,7 +8,7 @@ import pytest
 from estimator.applied_vector import stand_geometry
 from estimator.diagnosis.residuals.baseline import Baseline, block_columns
 from estimator.diagnosis.residuals.fitted import baseline_of, stand_baseline
-from estimator.diagnosis.residuals.whitened import WhitenedResiduals, Whitener
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.session import GYROSCOPE, Array
 from estimator.simulate import orientation_schedule
 from tests.estimator.calibration.bound import covariance
@@ -37,7 +37,7 @@ def dense(case: Case) -> Array:
 def test_whitening_leaves_unit_covariance(case: Case) -> None:
     baseline = at_truth(case)
     R, m = baseline.residual.shape
-    whiten = Whitener.of(baseline)
+    whiten = baseline.whiten
     W = whiten(np.eye(R * m).reshape(R, m, R * m))
     common = W @ baseline.constant.reshape(R * m, -1) * baseline.constant_sigma
     assert np.allclose(W @ dense(case) @ W.T - common @ common.T, np.eye(R * m), atol=1e-5)
@@ -84,7 +84,7 @@ def test_a_direction_that_the_sensors_feel_alike_takes_one_reading_a_row() -> No
     baseline = baseline_of(scene("orientations", 0).measured(1))
     row = np.zeros_like(baseline.row)
     row[:, 0], row[:, 1] = baseline.row[:, 0], 0.3 * baseline.row[:, 0]
-    assert np.all(Whitener.of(replace(baseline, row=row)).projected_out.sum(axis=1) == 1)
+    assert np.all(replace(baseline, row=row).whiten.projected_out.sum(axis=1) == 1)
 
 
 def test_what_the_session_does_not_observe_takes_no_degree_of_freedom() -> None:
