@@ -37,4 +37,4 @@ def nearest_turn(vectors: Array, others: Array) -> Array:
     changes the last digits (2e-15), and with them stored calibrations.
     """
     left, _, right = np.linalg.svd(others.T @ vectors)
-    return np.asarray(left @ np.diag([1.0, 1.0, np.linalg.det(left @ right)]) @ right)
+    return np.asarray(left * [1.0, 1.0, np.linalg.det(left @ right)] @ right)

@@ -16,6 +16,8 @@ FAINT = 1e-9
 """Weight of no turn at all: above the rounding of vectors that share a line, and nothing beside any that do not."""
 ROUNDS = 30
 """Of the reweighting; a start needs no more."""
+SETTLED = 1e-12
+"""Change of a direction cosine below which a round has moved nothing: a thousandth of `CLOSEST`."""
 CLOSEST = 1e-9
 """Distance, rad (0.0002″), below which vectors weigh alike: a perfect agreement may not weigh without bound."""
 
@@ -53,9 +55,11 @@ def common_turn(vectors: Array, others: Array) -> Array:
     Distances, not their squares: the few vectors that moved otherwise hardly drag it (Weiszfeld's reweighting of
     Kabsch). About a line that all vectors share there is no turn. A place to linearise about, not an estimate.
     """
-    both = np.concatenate([others, np.eye(3)])
-    turn = nearest_turn(np.concatenate([vectors, FAINT * np.eye(3)]), both)
+    both, faint = np.concatenate([others, np.eye(3)]), FAINT * np.eye(3)
+    turn = nearest_turn(np.concatenate([vectors, faint]), both)
     for _ in range(ROUNDS):
         near = np.maximum(np.linalg.norm(vectors @ turn.T - others, axis=1), CLOSEST)
-        turn = nearest_turn(np.concatenate([vectors * (near.min() / near)[:, None], FAINT * np.eye(3)]), both)
+        before, turn = turn, nearest_turn(np.concatenate([vectors * (near.min() / near)[:, None], faint]), both)
+        if np.abs(turn - before).max() < SETTLED:
+            break
     return turn

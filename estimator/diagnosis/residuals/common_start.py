@@ -7,7 +7,7 @@ import numpy as np
 
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.flipped_run import with_its_flip
-from estimator.diagnosis.residuals.turns import in_the_frame_of, turn_between
+from estimator.diagnosis.residuals.turns import NEGLIGIBLE, in_the_frame_of, turn_between
 from estimator.session import TWO_AXIS_STAND, CalibrationSession
 
 ROUNDS = 3
@@ -33,8 +33,10 @@ def fitted_near(one: Baseline, best: Baseline) -> Baseline:
     """The baseline fitted anew from the parameters of the ``best``, turned as the block was turned between them."""
     if one is best or one.setting.kinds != best.setting.kinds:
         return one
-    p, found = best.parameters, one
+    p, found, before = best.parameters, one, np.zeros((3, 3))
     for _ in range(ROUNDS):
         turn = turn_between(found, best)
-        found = with_its_flip(one.session, replace(p, axis=p.axis @ turn.T))
+        if np.abs(turn - before).max() < NEGLIGIBLE:
+            break
+        found, before = with_its_flip(one.session, replace(p, axis=p.axis @ turn.T)), turn
     return found

@@ -95,7 +95,7 @@ def in_the_frame_of(now: Baseline, history: Sequence[Baseline]) -> list[Baseline
     def framed(one: Baseline) -> Baseline:
         if one.setting.kinds != now.setting.kinds:
             return one
-        own = turned_baseline(one, turn_between(now, one))
+        own = turned_baseline(one, shared if one is latest else turn_between(now, one))
         as_latest = turned_baseline(one, shared)
         otherwise = one is not latest and sits_otherwise(now, own, turned_baseline(latest, shared))
         return replace(own, sits_otherwise=otherwise) if otherwise or now.gauge_free.any() else as_latest

@@ -10,7 +10,10 @@ the Bayes factor against noise of unknown variance (Jeffreys' prior) is
 
     ln B = −½ Σ ln(1 + λd) − ½ n ln(Σ v²/(1 + λd) / Σ v²)
 
-and against noise of known variance −½ Σ ln(1 + λd) + ½ Σ v² λd/(1 + λd) (Rasmussen & Williams 2006, (5.8)). It is the
+and against noise of known variance −½ Σ ln(1 + λd) + ½ Σ v² λd/(1 + λd) (Rasmussen & Williams 2006, (5.8)). Only
+ln |I + λG| = Σ ln(1 + λd) and y'(I + λG)⁻¹y = Σ v²/(1 + λd) are needed: in a basis that begins with y and makes G
+tridiagonal, both come from the pivots of I + λG, from the last to the first (Golub & Meurant 2010, Matrices, Moments
+and Quadrature, 3.1). No pivot is below one. B is the
 mean over the orders (`USUAL`), the kernels and λ. A mean of Bayes factors has expectation one under noise, so B exceeds
 1/p in no more than a share p of sound sessions (Markov); in simulation it does so in 0.08 p of them at most, of 11 to
 49 rows, and `CHANCE`/B is taken as the p-value, the choice of the order included.
@@ -19,6 +22,7 @@ mean over the orders (`USUAL`), the kernels and λ. A mean of Bayes factors has 
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.linalg.lapack import dsytrd
 
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.noise import Autocorrelation
@@ -145,15 +149,24 @@ def logmeanexp(values: Sequence[float] | Array) -> float:
 def bayes_factors(covariance: Array, y: Array, *, known: bool) -> Array:
     """(K,) ln B of courses of ``covariance`` (K, n, n), dimensionless, against white noise, from y (n,), standard
     errors."""
-    size = np.maximum(np.trace(covariance, axis1=1, axis2=2), 1e-300)
-    d, turn = np.linalg.eigh(covariance * (len(y) / size)[:, None, None])
-    power = ((y @ turn) ** 2)[:, None, :]
-    largest = max(SIGNAL[-1], float(y @ y) if known else 0.0)
+    scale, energy = np.maximum(np.trace(covariance, axis1=1, axis2=2), 1e-300), float(y @ y)
+    diagonal, beside = tridiagonal(covariance * (len(y) / scale)[:, None, None], y)
+    largest = max(SIGNAL[-1], energy if known else 0.0)
     signal = np.concatenate([SIGNAL, np.geomspace(SIGNAL[-1], largest, 4)[1:]]) if largest > SIGNAL[-1] else SIGNAL
-    grown = 1 + signal[:, None] * np.maximum(d, 0.0)[:, None, :]
-    volume = -0.5 * np.log(grown).sum(axis=-1)
-    if known:
-        fitted = 0.5 * (power * (1 - 1 / grown)).sum(axis=-1)
-    else:
-        fitted = -0.5 * len(y) * np.log((power / grown).sum(axis=-1) / float(y @ y))
-    return np.asarray(np.logaddexp.reduce(volume + fitted, axis=1) - np.log(len(signal)))
+    pivot = 1 + signal[:, None, None] * diagonal
+    for k in range(len(y) - 2, -1, -1):
+        pivot[..., k] -= (signal[:, None] * beside[:, k]) ** 2 / np.maximum(pivot[..., k + 1], 1.0)
+    pivot = np.maximum(pivot, 1.0)
+    left = energy / pivot[..., 0]
+    fitted = 0.5 * (energy - left) if known else -0.5 * len(y) * np.log(left / energy)
+    return np.asarray(np.logaddexp.reduce(fitted - 0.5 * np.log(pivot).sum(axis=-1)) - np.log(len(signal)))
+
+
+def tridiagonal(matrices: Array, first: Array) -> tuple[Array, Array]:
+    """(K, n) diagonals and (K, n − 1) beside them of symmetric ``matrices`` (K, n, n), dimensionless, made tridiagonal
+    in orthonormal bases that begin with the direction of ``first`` (n,)."""
+    mirror = first / max(float(np.linalg.norm(first)), 1e-300)
+    mirror[0] += np.copysign(1.0, mirror[0])
+    turn = np.eye(len(first)) - np.outer(mirror, mirror) * (2 / (mirror @ mirror))
+    each = [dsytrd(matrix, lower=1) for matrix in turn @ matrices @ turn]
+    return np.stack([d for _, d, *_ in each]), np.stack([e for _, _, e, *_ in each])

@@ -50,13 +50,18 @@ def _traces(residuals: WhitenedResiduals, cause: Signature, shapes: tuple[Shape,
     q = shapes[0].columns.shape[-1]
     white = residuals.whitened(np.concatenate([s.columns for s in shapes], axis=-1))
     trace = residuals.left_of(white, absorbed_before(residuals, cause, shapes) if lasting else 0.0)
-    raw = np.linalg.norm(white, axis=0)
-    if lasting:
-        trace[residuals.rows :, np.linalg.norm(trace[: residuals.rows], axis=0) <= INVISIBLE * raw] = 0.0
+    raw = lengths(white)
+    if lasting and residuals.change is not None:
+        trace[residuals.rows :, lengths(trace[: residuals.rows]) <= INVISIBLE * raw] = 0.0
     columns, raw = np.moveaxis(trace.reshape(len(trace), len(shapes), q), 1, 0), raw.reshape(len(shapes), q)
-    shown = (np.linalg.norm(columns, axis=1) > INVISIBLE * raw) & (raw > 0)
+    shown = (lengths(trace).reshape(raw.shape) > INVISIBLE * raw) & (raw > 0)
     places, products = int(shown.any(axis=-1).sum()), Products.of(residuals, columns)
     return Traces(cause, shapes, (lasting,) * len(shapes), columns, raw, places, products)
+
+
+def lengths(rows: Array) -> Array:
+    """(q,) norms of columns (n, q), in their unit."""
+    return np.sqrt(np.einsum("nq,nq->q", rows, rows))
 
 
 def absorbed_before(
@@ -98,4 +103,5 @@ def with_open_change(residuals: WhitenedResiduals, traces: Traces) -> Traces:
     blank = np.zeros((*traces.shapes[0].columns.shape[:2], 5))
     shapes = tuple(Shape(s.sensors, np.concatenate([s.columns, blank], axis=-1), s.nonlinear) for s in traces.shapes)
     raw = np.concatenate([traces.raw, np.zeros((S, 5))], axis=-1)
-    return replace(traces, shapes=shapes, columns=columns, raw=raw, products=Products.of(residuals, columns))
+    products = traces.products.continued(columns[:, n - P :], residuals.z[n - P :])
+    return replace(traces, shapes=shapes, columns=columns, raw=raw, products=products)

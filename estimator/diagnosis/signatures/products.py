@@ -55,6 +55,15 @@ class Products:
         """Of several traces of equally many amplitudes."""
         return cls(*(np.concatenate(x, axis=1) for x in zip(*((p.square, p.along) for p in parts), strict=True)))
 
+    def continued(self, change: Array, z: Array) -> "Products":
+        """The same with further columns that show in the last part alone, where all are ``change`` (S, P, q + …),
+        standard errors per unit, of P rows with the residuals ``z`` (P,)."""
+        K, S, q = self.along.shape
+        square, along = np.zeros((K, S, *change.shape[2:] * 2)), np.zeros((K, S, change.shape[2]))
+        square[:-1, :, :q, :q], along[:-1, :, :q] = self.square[:-1], self.along[:-1]
+        square[-1], along[-1] = np.swapaxes(change, 1, 2) @ change, z @ change
+        return Products(square, along)
+
     def at(self, chosen: Array | Sequence[int]) -> "Products":
         """Of some of the traces, by number or (S,) bool."""
         return Products(self.square[:, chosen], self.along[:, chosen])
