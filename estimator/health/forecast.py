@@ -42,9 +42,12 @@ def followed(draws: Draws, ahead: Array, rng: np.random.Generator) -> Array:
     n, k = draws.level.shape
     steps = np.diff(ahead, prepend=0.0)
     walked = np.cumsum(rng.standard_normal((n, k, len(ahead))) * np.sqrt(steps), axis=2) * draws.walk[:, None, None]
-    aged = course(draws.age + ahead, draws.constant[:, None]) - course(np.full(1, draws.age), draws.constant[:, None])
-    drifted = draws.rate[..., None] * ahead + draws.aging[..., None] * aged[:, None, :]
-    return np.asarray(draws.level[..., None] + drifted + walked)
+    level = walked + (draws.level[..., None] + draws.rate[..., None] * ahead)
+    ages = draws.aging.any(axis=1)
+    constant = draws.constant[ages, None]
+    aged = course(draws.age + ahead, constant) - course(np.full(1, draws.age), constant)
+    level[ages] += draws.aging[ages, :, None] * aged[:, None, :]
+    return np.asarray(level)
 
 
 def passage(draws: Draws, prior: Prior, swing: float, rng: np.random.Generator) -> Array:
@@ -66,25 +69,19 @@ def passage(draws: Draws, prior: Prior, swing: float, rng: np.random.Generator) 
 def _hazard(length: Array, prior: Prior, k: int) -> Array:
     """(N, h) expected number of new events that take a draw at (N, h) lengths, T, beyond its tolerance by `AHEAD`."""
     jumps, drifts = PART_KINDS == Kind.JUMP, PART_KINDS == Kind.LATE
-    table = np.stack(
-        [
-            np.broadcast_to(prior.rate[jumps] @ _beyond_jump(k), (len(AHEAD), len(DISTANCES))),
-            np.tensordot(prior.rate[drifts], _beyond_drift(k), axes=1),
-        ],
-        axis=-1,
-    )
-    now, drifted = np.moveaxis(_looked_up(table, length), -1, 0)
-    jumped = np.cumsum((now[:, :-1] + now[:, 1:]) / 2 * np.diff(AHEAD), axis=1)
-    return np.asarray(drifted + np.pad(jumped, ((0, 0), (1, 0))))
+    at_once = np.broadcast_to(prior.rate[jumps] @ _beyond_jump(k), (len(AHEAD), len(DISTANCES)))
+    now, drifted = _looked_up((at_once, np.tensordot(prior.rate[drifts], _beyond_drift(k), axes=1)), length)
+    drifted[:, 1:] += np.cumsum((now[:, :-1] + now[:, 1:]) / 2 * np.diff(AHEAD), axis=1)
+    return drifted
 
 
-def _looked_up(table: Array, length: Array) -> Array:
-    """(N, h, 2) of a table (h, 41, 2) over `DISTANCES`, linear between them, at (N, h) lengths from 0 to 1 T."""
+def _looked_up(tables: tuple[Array, ...], length: Array) -> list[Array]:
+    """(N, h) of each table (h, 41) over `DISTANCES`, linear between them, at (N, h) lengths from 0 to 1 T."""
     steps = len(DISTANCES) - 1
     below = np.minimum((length * steps).astype(int), steps - 1)
-    row = np.arange(len(table))
-    lower = table[row, below]
-    return np.asarray(lower + (length * steps - below)[..., None] * (table[row, below + 1] - lower))
+    beyond = length * steps - below
+    place = below + np.arange(length.shape[1]) * steps
+    return [table[:, :-1].ravel()[place] + beyond * np.diff(table).ravel()[place] for table in tables]
 
 
 @lru_cache(maxsize=2)

@@ -64,17 +64,21 @@ class Mixture:
 
     def log_parts(self, z: Array) -> tuple[Array, Array]:
         """(R, G) and (R, 4) logs of the terms of B, of R whitened histories (R, k, n)."""
-        score = np.einsum("rkn,knh->rkh", z, self.unit)[..., self.shape]
+        by_component = z.swapaxes(0, 1)
+        score2 = ((by_component @ self.unit) ** 2)[..., self.shape]
         gain = self.strength / (1 + self.strength)
-        shaped = 0.5 * np.einsum("rkg,kg->rg", score**2, gain) - 0.5 * np.log1p(self.strength).sum(axis=0)
+        shaped = 0.5 * (score2 * gain[:, None, :]).sum(axis=0) - 0.5 * np.log1p(self.strength).sum(axis=0)
         ratio = WANDERS[:, None, None] ** 2 * self.walked
-        turned = np.einsum("rkn,knm->rkm", z, self.modes) ** 2
-        wandered = 0.5 * np.einsum("rkm,qkm->rq", turned, ratio / (1 + ratio)) - 0.5 * np.log1p(ratio).sum(axis=(1, 2))
+        turned = ((by_component @ self.modes) ** 2).swapaxes(0, 1).reshape(len(z), -1)
+        held = (ratio / (1 + ratio)).reshape(len(WANDERS), -1)
+        wandered = 0.5 * turned @ held.T - 0.5 * np.log1p(ratio).sum(axis=(1, 2))
         return shaped + np.log(self.share), wandered + np.log(SHARES[Kind.WALK] / len(WANDERS))
 
     def log_odds(self, z: Array) -> Array:
         """(R,) log B."""
-        return np.asarray(np.logaddexp.reduce(np.concatenate(self.log_parts(z), axis=1), axis=1))
+        logs = np.concatenate(self.log_parts(z), axis=1)
+        largest = logs.max(axis=1)
+        return np.asarray(largest + np.log(np.exp(logs - largest[:, None]).sum(axis=1)))
 
     def drawn(self, rng: np.random.Generator, runs: int) -> Array:
         """(runs, k, n) histories of the mixture; beyond z̃'s own space they hold noise that nothing looks at."""
