@@ -5,6 +5,7 @@ Frames and signs: see the package page.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -34,6 +35,10 @@ def gravity(site: Site) -> float:
     phi = site.latitude or 0.0
     normal = 9.78030 * (1 + 0.005302 * np.sin(phi) ** 2 - 0.000007 * np.sin(2 * phi) ** 2)
     return float(normal - 2 * 1.543e-6 * site.height)
+
+
+SCHEDULES = 32
+"""Schedules whose geometry is remembered, those used last: a laboratory has a few, of some 100 kB each."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +81,50 @@ def stand_vector(elevation: float, beta: Array, errors: StandErrors | None = Non
     return np.stack([cos * up[0] - sin * z, np.full_like(beta, y), sin * up[0] + cos * z], axis=-1)
 
 
-def to_block(platform: Array, session: CalibrationSession) -> Array:
+@dataclass(frozen=True)
+class Schedule:
+    """All of a session on a stand that its geometry depends on, comparable and hashable by content: no reading."""
+
+    site: Site
+    stand: Stand
+    count_time: float | None
+    kinds: tuple[str, ...]
+    """Of the m sensors."""
+    bits: tuple[bytes, bytes, bytes, bytes]
+    """Of β, the runs, the mounting and the turn of the flipped run."""
+
+    @classmethod
+    def of(cls, session: CalibrationSession) -> "Schedule":
+        """Of a session on a stand."""
+        assert session.stand is not None
+        assert session.beta is not None
+        arrays = (session.beta, np.asarray(session.flipped, dtype=bool), session.mounting, session.flip_turn)
+        bits = tuple(np.asarray(x, dtype=bool if x.dtype == bool else float).tobytes() for x in arrays)
+        kinds = tuple(s.kind for s in session.sensors)
+        return cls(session.site, session.stand, session.count_time, kinds, bits)
+
+    @property
+    def beta(self) -> Array:
+        """(R,) rad."""
+        return np.frombuffer(self.bits[0])
+
+    @property
+    def flipped(self) -> Array:
+        """(R,) bool."""
+        return np.frombuffer(self.bits[1], dtype=bool)
+
+    @property
+    def mounting(self) -> Array:
+        """(3, 3) dimensionless."""
+        return np.frombuffer(self.bits[2]).reshape(3, 3)
+
+    @property
+    def flip_turn(self) -> Array:
+        """(3,) rotation vector as (3, 3), dimensionless."""
+        return np.frombuffer(self.bits[3])
+
+
+def to_block(platform: Array, session: CalibrationSession | Schedule) -> Array:
     """Platform vectors (R, 3), leading axes free, as the block meets them: the same in block axes; m/s², rad/s or none.
 
     Rows of the flipped run are turned, then the mounting is applied: (10), (11). Where the block sits turned in the
@@ -96,12 +144,12 @@ def elevation(stand: Stand, kind: str) -> float:
     return angle
 
 
-def magnitude(session: CalibrationSession, kind: str) -> float:
+def magnitude(session: CalibrationSession | Schedule, kind: str) -> float:
     """Length of the applied vector of a kind of sensor, m/s² or rad/s."""
     return gravity(session.site) if kind == ACCELEROMETER else EARTH_RATE
 
 
-def _constant_weights(session: CalibrationSession, kind: str) -> Array:
+def _constant_weights(session: Schedule, kind: str) -> Array:
     """(6, 3) how each constant error acts: as a raise of the head, a tilt across it (1 a rad), a stretch (1/s).
 
     Gyros by the paper's (31): the latitude raises; levelling and meridian tilt by their share of the Earth's rate.
@@ -115,12 +163,9 @@ def _constant_weights(session: CalibrationSession, kind: str) -> Array:
     )
 
 
-def _kind_geometry(session: CalibrationSession, kind: str) -> Array:
+def _kind_geometry(session: Schedule, kind: str) -> Array:
     """(8, R, 3) for one kind of sensor: n, dn/d(each constant error), dn/dβ; m/s² (rad/s), per rad or s."""
-    stand, beta = session.stand, session.beta
-    assert stand is not None
-    assert beta is not None
-    size, angle = magnitude(session, kind), elevation(stand, kind)
+    beta, size, angle = session.beta, magnitude(session, kind), elevation(session.stand, kind)
     sin, cos, level = np.sin(beta), np.cos(beta), np.ones_like(beta)
     lift, reach = np.sin(angle), np.cos(angle)
     platform = np.empty((4, len(beta), 3))
@@ -134,20 +179,29 @@ def _kind_geometry(session: CalibrationSession, kind: str) -> Array:
 
 
 def stand_geometry(session: CalibrationSession) -> Geometry:
-    """The applied vectors of a two-axis-stand session and how the stand's errors move them."""
-    assert session.stand is not None
-    kinds = [s.kind for s in session.sensors]
+    """The applied vectors of a two-axis-stand session and how the stand's errors move them; read only."""
+    return _geometry(Schedule.of(session))
+
+
+@lru_cache(maxsize=SCHEDULES)
+def _geometry(schedule: Schedule) -> Geometry:
+    """The same of any session with this schedule."""
+    kinds = schedule.kinds
     different = list(dict.fromkeys(kinds))
-    own = np.stack([_kind_geometry(session, kind) for kind in different], axis=2)
+    own = np.stack([_kind_geometry(schedule, kind) for kind in different], axis=2)
     of_sensor = own[:, :, [different.index(kind) for kind in kinds]]
-    sigma = session.stand.sigma
+    sigma = schedule.stand.sigma
     sigmas = np.array([getattr(sigma, name) for name in CONSTANT_ERRORS])
     acts = (sigmas > 0) & of_sensor[1:-1].any(axis=(1, 2, 3))
+    norm = np.array([magnitude(schedule, k) for k in different])[[different.index(kind) for kind in kinds]]
+    constant, constant_sigma = of_sensor[1:-1][acts], sigmas[acts]
+    for shared in (of_sensor, norm, constant, constant_sigma):
+        shared.setflags(write=False)
     return Geometry(
         n=of_sensor[0],
-        norm=np.array([magnitude(session, k) for k in different])[[different.index(kind) for kind in kinds]],
-        constant=of_sensor[1:-1][acts],
-        constant_sigma=sigmas[acts],
+        norm=norm,
+        constant=constant,
+        constant_sigma=constant_sigma,
         constant_names=tuple(n for n, a in zip(CONSTANT_ERRORS, acts, strict=True) if a),
         beta=of_sensor[-1],
         beta_sigma=sigma.beta,

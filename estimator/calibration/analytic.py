@@ -15,10 +15,11 @@ S sessions, R rows, m sensors.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
-from estimator.applied_vector import elevation
+from estimator.applied_vector import SCHEDULES, elevation
 from estimator.arrays import unit
 from estimator.parameters import SensorParameters
 from estimator.session import Array, CalibrationSession
@@ -67,16 +68,30 @@ def coefficients(y: Array, beta: Array, flipped: Array) -> Coefficients | None:
 
     y : (..., R, m) readings, reading units; beta : (R,) rad; flipped : (R,) bool.
     """
-    columns = design(beta, flipped)
+    solution = pseudo_inverse(np.asarray(beta, dtype=float).tobytes(), np.asarray(flipped, dtype=bool).tobytes())
+    return None if solution is None else Coefficients(solution[0] @ y, solution[1])
+
+
+@lru_cache(maxsize=SCHEDULES)
+def pseudo_inverse(beta: bytes, flipped: bytes) -> tuple[Array, Array] | None:
+    """(8, R) of the `design` and (8,) the variance of each coefficient per unit variance of a reading, both
+    dimensionless and read only; None where the rows do not determine the coefficients.
+
+    ``beta``, ``flipped``: the content of `design`'s arrays.
+    """
+    columns = design(np.frombuffer(beta), np.frombuffer(flipped, dtype=bool))
     live = np.sqrt((columns**2).mean(axis=0)) > VANISHES
-    if len(beta) < live.sum():
+    if len(columns) < live.sum():
         return None
     left, size, right = np.linalg.svd(columns[:, live], full_matrices=False)
     if size[-1] < DEPENDENT * size[0]:
         return None
-    inverse = np.zeros((8, len(beta)))
+    inverse = np.zeros((8, len(columns)))
     inverse[live] = (right.T / size) @ left.T
-    return Coefficients(inverse @ y, np.where(live, (inverse**2).sum(axis=1), np.inf))
+    variance = np.where(live, (inverse**2).sum(axis=1), np.inf)
+    for shared in (inverse, variance):
+        shared.setflags(write=False)
+    return inverse, variance
 
 
 def solve(q: Coefficients, size: Array, angle: Array) -> SensorParameters:

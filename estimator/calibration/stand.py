@@ -60,6 +60,8 @@ def freedom(solved: Solved, unstated: Array) -> Array:
     unstated = unstated & np.isfinite(fitted.variance)
     if unstated.any():
         found = noise.freedom_of(fitted.variance, solved.y, fitted.parameters, solved.geometry, unstated)
+    if not (solved.factor > 1.0).any():
+        return found
     grown, dof = solved.factor[:, None], np.maximum(fitted.readings - solved.spectrum.rank, 1)[:, None]
     steady, whole = (np.diagonal(c, axis1=1, axis2=2) for c in (fitted.repeatability, fitted.covariance))
     share = 1.0 + (whole - steady) / (grown * steady)
