@@ -90,7 +90,7 @@ class Schedule:
     count_time: float | None
     kinds: tuple[str, ...]
     """Of the m sensors."""
-    bits: tuple[bytes, bytes, bytes, bytes]
+    bits: tuple[bytes, ...]
     """Of β, the runs, the mounting and the turn of the flipped run."""
 
     @classmethod

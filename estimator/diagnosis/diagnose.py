@@ -56,15 +56,14 @@ def diagnose(
     if session.programme == ROTATION_ALIGNMENT:
         return diagnose_alignment(session)
     rows = averaged(session)
-    clips, right = unclipped(rows, catalogue)
-    earlier = [unclipped(averaged(h), catalogue)[1] for h in history]
-    before = [baseline_of(h) for h in earlier]
-    errors, right = undo_record_errors(right, before, catalogue)
-    wrong = mixed_up(right, before, catalogue)
+    clips, whole = unclipped(rows, catalogue)
+    earlier = [baseline_of(unclipped(averaged(h), catalogue)[1]) for h in history]
+    errors, right = undo_record_errors(baseline_of(whole), earlier, catalogue)
+    wrong = mixed_up(right, earlier, catalogue)
     state = unsearched(right, earlier, catalogue) if wrong else searched(right, earlier, catalogue)
     entry = None if earlier or wrong else wrong_entry(without_effects(state, amplitudes(state)), catalogue)
     if entry is not None:
-        state = searched(entry.corrected(right), earlier, catalogue)
+        state = searched(baseline_of(entry.corrected(right.session)), earlier, catalogue)
     fitted = amplitudes(state)
     new = newness(state, fitted)
     calibration = extended_calibration(state, fitted)
@@ -76,7 +75,7 @@ def diagnose(
             *([] if entry is None else [entry_finding(entry)]),
             *findings(state, fitted, new),
         ),
-        structures=(*wrong_record(wrong, right), *structures(state)),
+        structures=(*wrong_record(wrong, right.session), *structures(state)),
         gain=gain(state, baseline_of(rows) if clips or errors else None, fitted, new),
         limits=limits(state),
         noise=noise_scales(state),
@@ -85,26 +84,21 @@ def diagnose(
     )
 
 
-def mixed_up(
-    session: CalibrationSession, history: Sequence[Baseline], catalogue: Sequence[Cause]
-) -> ImplausibleAxes | None:
+def mixed_up(right: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]) -> ImplausibleAxes | None:
     """Axes that no block of this unit can have, whatever entry is corrected; None where there are none."""
+    session = right.session
     expected = expected_axes(history, session)
-    wrong = implausible_axes(baseline_of(session), expected)
+    wrong = implausible_axes(right, expected)
     entry = None if wrong is None else wrong_entry(session, catalogue)
     return wrong if entry is None else implausible_axes(baseline_of(entry.corrected(session)), expected)
 
 
-def searched(
-    session: CalibrationSession, history: Sequence[CalibrationSession], catalogue: Sequence[Cause]
-) -> SearchState:
+def searched(right: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]) -> SearchState:
     """The causes found in a session whose record is right."""
-    return accepted(unsearched(session, history, catalogue))
+    return accepted(unsearched(right, history, catalogue))
 
 
-def unsearched(
-    session: CalibrationSession, history: Sequence[CalibrationSession], catalogue: Sequence[Cause]
-) -> SearchState:
+def unsearched(right: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]) -> SearchState:
     """The residuals of a session, and nothing sought in them yet."""
-    baseline, earlier = baselines(session, history)
+    baseline, earlier = baselines(right, history)
     return begin(baseline, earlier, catalogue)

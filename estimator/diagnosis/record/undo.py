@@ -8,26 +8,25 @@ from estimator.diagnosis.record.record_error import RecordError
 from estimator.diagnosis.record.turned import expected_axes, turned_record
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.session import CalibrationSession
 
 MOST = 3
 """Record errors undone one after another: it bounds the search, for one error may mislead the look for another."""
 
 
 def undo_record_errors(
-    session: CalibrationSession, history: Sequence[Baseline], catalogue: Sequence[Cause]
-) -> tuple[list[RecordError], CalibrationSession]:
-    """The record errors of the catalogue that were found, and the session put right."""
+    baseline: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]
+) -> tuple[list[RecordError], Baseline]:
+    """The record errors of the catalogue that were found in a fitted session, and the session put right, fitted."""
     known = [c for c in catalogue if isinstance(c, Correction)]
     errors: list[RecordError] = []
     for _ in range(MOST):
-        baseline = baseline_of(session)
-        error = turned_record(baseline, expected_axes(history, session), known) or exchanged_rows(baseline, known)
+        expected = expected_axes(history, baseline.session)
+        error = turned_record(baseline, expected, known) or exchanged_rows(baseline, known)
         if error is None:
             break
         errors.append(error)
-        session = error.undone.session
-    return [e for e in errors if not taken_back(e, errors)], session
+        baseline = baseline_of(error.undone.session)
+    return [e for e in errors if not taken_back(e, errors)], baseline
 
 
 def taken_back(error: RecordError, errors: Sequence[RecordError]) -> bool:

@@ -68,7 +68,7 @@ class Baseline:
 
     @cached_property
     def whitened_design(self) -> Array:
-        """(R·m + k, 5 m + k) standard errors per unit: of the parameters and constant nuisances (their priors below)."""
+        """(R·m + k, 5 m + k) standard errors per unit: of parameters and constant nuisances (their priors below)."""
         P, k = 5 * self.residual.shape[1], len(self.constant_sigma)
         design = self.whiten(np.concatenate([block_columns(self.design), self.constant], axis=-1))
         prior = np.concatenate([np.zeros((k, P)), np.diag(1 / self.constant_sigma)], axis=1)

@@ -6,24 +6,25 @@ from dataclasses import replace
 import numpy as np
 
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.flipped_run import with_its_flip
+from estimator.diagnosis.residuals.flipped_run import about_its_flip, with_its_flip
 from estimator.diagnosis.residuals.turns import NEGLIGIBLE, in_the_frame_of, turn_between
-from estimator.session import TWO_AXIS_STAND, CalibrationSession
+from estimator.session import TWO_AXIS_STAND
 
 ROUNDS = 3
 """Times that a session is fitted from the others' parameters: the turn between them is taken from the fit before."""
 
 
-def baselines(session: CalibrationSession, history: Sequence[CalibrationSession]) -> tuple[Baseline, list[Baseline]]:
-    """Of a session and of every earlier one, these turned into the frame of the session.
+def baselines(now: Baseline, history: Sequence[Baseline]) -> tuple[Baseline, list[Baseline]]:
+    """A session and its earlier ones, each fitted for itself, as they are fitted together: the earlier ones turned into
+    the frame of the session.
 
     On a stand all are fitted from the parameters of the one that observes most. What one of them does not observe (a
     single run leaves a direction open) would else stay at different values, far enough from one another for the second
     order to show as a change of what is observed.
     """
-    baseline = with_its_flip(session)
-    earlier = [with_its_flip(h) for h in history]
-    if session.programme == TWO_AXIS_STAND and earlier:
+    baseline = about_its_flip(now)
+    earlier = [about_its_flip(h) for h in history]
+    if now.session.programme == TWO_AXIS_STAND and earlier:
         best = min([baseline, *earlier], key=lambda b: float(np.trace(b.covariance)))
         baseline, *earlier = [fitted_near(one, best) for one in (baseline, *earlier)]
     return baseline, in_the_frame_of(baseline, earlier)

@@ -35,8 +35,12 @@ def flip_effect(setting: Setting) -> Array:
 
 def with_its_flip(session: CalibrationSession, start: SensorParameters | None = None) -> Baseline:
     """The baseline of a session, fitted about the turn of its flipped run where that is not small."""
-    found = baseline_of(replace(session, flip_turn=np.zeros(3)), start)
-    cause = FlipMisalignment()
+    return about_its_flip(baseline_of(replace(session, flip_turn=np.zeros(3)), start), start)
+
+
+def about_its_flip(found: Baseline, start: SensorParameters | None = None) -> Baseline:
+    """The same of a session that is fitted, from the same ``start``, with no turn."""
+    session, cause = found.session, FlipMisalignment()
     if session.programme != TWO_AXIS_STAND or not cause.available(found.setting):
         return found
     for _ in range(ROUNDS):

@@ -118,7 +118,7 @@ def alike(residuals: WhitenedResiduals, shapes: Sequence[Shape]) -> list[Alike]:
     groups = []
     for q in np.unique(width):
         number = np.flatnonzero(width == q)
-        white = residuals.whitened(np.concatenate([shapes[k].columns for k in number], axis=-1))
+        white = residuals.whitened(np.concatenate([shapes[k].columns for k in number.tolist()], axis=-1))
         groups.append(Alike(number, np.moveaxis(white.reshape(len(white), -1, q), 1, 0)))
     return groups
 

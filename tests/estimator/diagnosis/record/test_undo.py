@@ -6,6 +6,7 @@ from estimator import diagnose
 from estimator.causes import CATALOGUE, Correction, cause
 from estimator.causes.record import exchange_rows
 from estimator.diagnosis.record.undo import undo_record_errors
+from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.session import ACCELEROMETER
 from tests.estimator.causes.hiding import scene, with_readings
 
@@ -16,15 +17,15 @@ REVERSED = list(SIGN.corrected(SESSION))[2][1]
 
 
 def test_two_errors_in_one_record_are_both_undone() -> None:
-    errors, right = undo_record_errors(exchange_rows(REVERSED, 2, 11), [], CATALOGUE)
+    errors, right = undo_record_errors(baseline_of(exchange_rows(REVERSED, 2, 11)), [], CATALOGUE)
     assert {e.undone.cause.identifier for e in errors} == {"sign-reversed", "positions-swapped"}
-    assert np.array_equal(right.readings, SESSION.readings)
+    assert np.array_equal(right.session.readings, SESSION.readings)
 
 
 def test_an_error_missing_in_the_catalogue_is_not_named() -> None:
-    errors, left = undo_record_errors(REVERSED, [], [c for c in CATALOGUE if c is not SIGN])
+    errors, left = undo_record_errors(baseline_of(REVERSED), [], [c for c in CATALOGUE if c is not SIGN])
     assert SIGN not in {e.undone.cause for e in errors}
-    assert not np.array_equal(left.readings, SESSION.readings)
+    assert not np.array_equal(left.session.readings, SESSION.readings)
 
 
 def test_a_record_error_does_not_hide_an_effect() -> None:

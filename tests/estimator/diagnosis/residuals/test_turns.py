@@ -109,7 +109,8 @@ def test_sessions_of_one_mounting_share_the_turn_of_the_latest() -> None:
 def test_histories_of_different_mountings_are_seen_in_one_frame_and_the_turn_is_since_the_latest() -> None:
     turns = [turned_by(3.0, 5), turned_by(4.0, 6), np.zeros(3)]
     history = [measured(40 + k, turn) for k, turn in enumerate(turns)]
-    assert [h.sits_otherwise for h in baselines(measured(50, TURN), history)[1]] == [True, True, False]
+    _, framed = baselines(baseline_of(measured(50, TURN)), [baseline_of(h) for h in history])
+    assert [h.sits_otherwise for h in framed] == [True, True, False]
     (finding,) = diagnose(measured(50, TURN), history).findings
     assert finding.cause == "remount-rotation"
     assert np.abs((np.array(finding.amplitude) - TURN) / finding.sigma).max() < 4
