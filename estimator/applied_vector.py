@@ -121,7 +121,7 @@ class Schedule:
     @property
     def flip_turn(self) -> Array:
         """(3,) rotation vector as (3, 3), dimensionless."""
-        return np.frombuffer(self.bits[3])
+        return np.frombuffer(self.bits[3]).copy()
 
 
 def to_block(platform: Array, session: CalibrationSession | Schedule) -> Array:

@@ -132,10 +132,10 @@ def autocorrelation(
         return None
     root = turn[:, kept] * np.sqrt(size[kept])
     y = (turn[:, kept] / np.sqrt(size[kept])).T @ remaining[: R * m].reshape(R, m)[:, sensor]
-    factors = {
-        name: logmeanexp(bayes_factors(root.T @ np.stack(tried) @ root, y, known=known))
-        for name, tried in kernels(residuals, sensor).items()
-    }
+    tried = kernels(residuals, sensor)
+    each = bayes_factors(root.T @ np.concatenate(list(tried.values())) @ root, y, known=known)
+    ends = np.cumsum([len(own) for own in tried.values()])
+    factors = dict(zip(tried, map(logmeanexp, np.split(each, ends[:-1])), strict=True))
     prior = np.array([USUAL[name] for name in factors])
     together = np.array(list(factors.values())) + np.log(prior / prior.sum())
     return Autocorrelation(sensor, max(factors, key=lambda name: factors[name]), float(np.logaddexp.reduce(together)))

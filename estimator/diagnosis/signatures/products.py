@@ -22,7 +22,7 @@ from estimator.session import Array
 
 
 def inner(residuals: WhitenedResiduals, left: Array, right: Array) -> Array:
-    """(K, a, b) left'right of rows (n, a) and (n, b), any unit, in each of K = m + 2 parts: m sensors, priors, change."""
+    """(K, a, b) left'right of rows (n, a) and (n, b), any unit, in each of m + 2 parts: m sensors, priors, change."""
     R, m = residuals.baseline.residual.shape
     own = left[: R * m].reshape(R, m, -1).transpose(1, 2, 0) @ right[: R * m].reshape(R, m, -1).transpose(1, 0, 2)
     rest = [left[rows].T @ right[rows] for rows in (slice(R * m, residuals.rows), slice(residuals.rows, None))]
