@@ -16,10 +16,10 @@ FAINT = 1e-9
 """Weight of no turn at all: above the rounding of vectors that share a line, and nothing beside any that do not."""
 ROUNDS = 30
 """Of the reweighting; a start needs no more."""
-SETTLED = 1e-12
-"""Change of a direction cosine below which a round has moved nothing: a thousandth of `CLOSEST`."""
 CLOSEST = 1e-9
 """Distance, rad (0.0002″), below which vectors weigh alike: a perfect agreement may not weigh without bound."""
+SETTLED = 1e-12
+"""Change of a direction cosine below which a round has moved nothing: a thousandth of `CLOSEST`."""
 
 
 def turn_of(vector: Array) -> Array:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.diagnosis.residuals.baseline import Baseline, block_columns
+from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.session import Array
 
 FOLDS = 6
@@ -60,14 +60,14 @@ def predicted(baseline: Baseline, effects: Sequence[Sequence[Array]]) -> Predict
     """Predict every row; ``effects``: for every fold the columns (R, m, q), m/s² (rad/s), in the model there."""
     R, m = baseline.residual.shape
     whiten, number = baseline.whiten, counted(baseline)
-    own = [block_columns(baseline.design), baseline.constant]
+    own = baseline.whitened_design[: R * m]
     data = whiten(baseline.residual[..., None]).reshape(R, m)
     errors, volume, squares = np.zeros((R, m)), 0.0, 0.0
     for fold, columns in enumerate(effects):
         rows = fold_of(R) == fold
         if not rows.any():
             continue
-        design = whiten(np.concatenate([*own, *columns], axis=-1)).reshape(R, m, -1)
+        design = np.concatenate([own, *map(whiten, columns)], axis=1).reshape(R, m, -1)
         size = np.maximum(np.linalg.norm(design, axis=(0, 1)), 1e-300)
         held, rest = (design[r].reshape(-1, len(size)) / size for r in (rows, ~rows))
         inverse = np.linalg.pinv(rest.T @ rest + np.diag(priors(baseline, size)), hermitian=True)
