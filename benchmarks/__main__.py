@@ -16,6 +16,7 @@ RESULTS = Path(__file__).with_name("RESULTS.md")
 HEAD = """# Benchmarks
 
 Written by `make bench`. Each ratio is taken in one run on one machine: the peer's median time over ours, taken in turn.
+Times are the processor's, so that other programs on the machine do not count.
 
 Machine: {machine}
 
@@ -24,19 +25,27 @@ Machine: {machine}
 """
 
 NOTE = """
-P1 misses its target. One session is too small for arrays: calibrating it is one Newton step from the closed form, and
-almost all of its time goes into some nine hundred calls of Python and numpy of about a microsecond each, not into
-arithmetic. The peer, one sensor at a time without the stand's errors and the covariance between sensors, is quick for
-the same reason: five parameters from 48 rows. Thirty times faster than it is less time than these calls need. What one
-session cannot show, many can: P2 is the same code on many sessions in one call.
+P1 misses its targets. One session is too small for arrays: calibrating it is one Newton step from the closed form, and
+almost all of its time goes into some eight hundred calls of Python and numpy of about a microsecond each. What the
+schedule alone decides is worked out once and remembered. By profile the Newton step takes a third, the closed form and
+the check of the noise a quarter, what is observable a tenth, and the report, a result for every sensor, a quarter: the
+floor has the first of these only, and no ready schedule makes the others cheaper than their calls. The peer, one sensor
+at a time without the stand's errors and the covariance between sensors, is quick for the same reason: five parameters
+from 48 rows. What one session cannot show, many can: P2 is the same code on many sessions in one call.
 
-P3 meets its target against least squares with a numeric Jacobian on the same likelihood, everywhere. The published
-descent fits less, a functional of triples without directions or covariance, and needs few passes when orientations are
-many: against it the target is met for six sensors in twelve orientations only. A hundred times faster elsewhere would
-be less than the time of the calls that build a covariance.
+P3 misses its targets where the rivals are quick. The published descent fits less, a functional of triples without
+directions or covariance, and least squares starts once; ours looks for the lowest of several minima, from six to eight
+starts, before it says which terms the readings ask for. Each start costs two or three linearisations of half a
+millisecond, most of it calls on small arrays, however many orientations there are.
 
-P4 misses its target by a factor of three. The peer refits once per cause and sensor; ours scores every
-place and shape of the catalogue, states a detection limit for each cause and measures the gain on positions held out.
+P4 misses its target by a factor of two to three. The peer refits once per cause and sensor; ours scores every place and
+shape of the catalogue, states a detection limit for each cause and measures the gain on positions held out. By profile
+a third of its time makes and whitens the thousand signatures and their inner products, a fifth scores them in some ten
+rounds, a fifth predicts positions held out, a tenth looks for smooth courses; no part stands out any more.
+
+P4h misses its target of twice the time. With history every signature is tried three times: as lasting, as new, and with
+the sensor's change left open. Besides, every earlier session is fitted anew near this one and turned into its frame, a
+place that depends on both, so that it cannot be kept.
 """
 
 

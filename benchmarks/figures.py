@@ -26,12 +26,12 @@ class Figure:
 
 
 def side_by_side(ours: Callable[[], object], theirs: Callable[[], object], rounds: int) -> tuple[float, float]:
-    """Median seconds of each, taken in turn so that a busy machine slows both; one unmeasured round first."""
+    """Median processor seconds of each, in turn: other programs do not add to them. One round is not measured."""
     ours(), theirs()
     taken: tuple[list[float], list[float]] = ([], [])
     for _ in range(rounds):
         for work, times in zip((ours, theirs), taken, strict=True):
-            began = time.perf_counter()
+            began = time.process_time()
             work()
-            times.append(time.perf_counter() - began)
+            times.append(time.process_time() - began)
     return statistics.median(taken[0]), statistics.median(taken[1])

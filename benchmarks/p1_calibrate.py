@@ -3,6 +3,9 @@
 The peer fits the same five parameters of each sensor to the same readings under the same reading noise, from the same
 start, and takes each sensor's covariance from its Jacobian. It is given the applied vectors for nothing. What it
 leaves out: the stand's errors, which are common to all sensors, and so the covariance between sensors.
+
+And against the floor: one dense Newton step in plain numpy from the same start, with the stand's errors and the full
+covariance, geometry, start and noise given and nothing reported.
 """
 
 from functools import partial
@@ -15,13 +18,15 @@ from benchmarks.figures import Figure, side_by_side
 from estimator import CalibrationSession, calibrate
 from estimator.applied_vector import Geometry, stand_geometry
 from estimator.arrays import tangents
+from estimator.calibration.refine import designed, input_variance
 from estimator.calibration.stand import starting_point
-from estimator.forward import measured
+from estimator.forward import input_of, measured
 from estimator.parameters import SensorParameters, nominal
 from estimator.session import Array
 
 WORK = "calibrate one session, 6 sensors × 24 positions × 2 runs, full covariance"
 PEER = "scipy.optimize.least_squares, sensor by sensor"
+FLOOR = "one dense numpy Newton step, geometry and start given"
 
 
 def one_sensor(u: Array, sigma: Array, n: Array, norm: float, p: SensorParameters, method: str) -> Array:
@@ -46,6 +51,41 @@ def sensor_by_sensor(session: CalibrationSession, geometry: Geometry, start: Sen
         one_sensor(u[:, i], sigma, geometry.n[:, i], geometry.norm[i], start.at(i), method)
 
 
+def newton_step(u: Array, variance: Array, geometry: Geometry, p: SensorParameters) -> tuple[Array, Array]:
+    """Step (5 m + k,) and covariance of all parameters and constant stand errors, dimensionless (rad), from p (1, m).
+
+    u, variance : (R, m) readings, and the variance of their noise at the input, (m/s²)².
+    """
+    own, beta = (x[0] for x in designed(p, geometry))
+    (R, m), k = u.shape, len(geometry.constant)
+    columns = np.zeros((R, m, 5 * m + k))
+    columns[..., : 5 * m].reshape(R, m, m, 5)[:, np.arange(m), np.arange(m)] = own[..., :5]
+    columns[..., 5 * m :] = own[..., 5:]
+    root = 1 / np.sqrt(variance)
+    white, swing = (columns * root[..., None]).reshape(R * m, -1), beta * root * geometry.beta_sigma
+    left = ((u / p.scale - input_of(p, geometry.n)[0]) * root).ravel()
+    shared = 1 / np.sqrt(1 + (swing**2).sum(axis=1))
+    rows = (swing[:, None, :] @ white.reshape(R, m, -1))[:, 0] * shared[:, None]
+    row = (swing * left.reshape(R, m)).sum(axis=1) * shared
+    normal = white.T @ white - rows.T @ rows
+    normal[range(5 * m, 5 * m + k), range(5 * m, 5 * m + k)] += geometry.constant_sigma**-2.0
+    covariance = np.linalg.inv(normal)
+    return covariance @ (white.T @ left - rows.T @ row), covariance
+
+
+def floor(session: CalibrationSession, geometry: Geometry, start: SensorParameters) -> Figure:
+    """Ours against one Newton step; both must give the same covariance."""
+    u, errors = measured(session)
+    p = SensorParameters(*(v[None] for v in vars(start).values()))
+    variance = input_variance(p, errors[None], np.array([s.bias_repeatability for s in session.sensors]))[0]
+    step = partial(newton_step, u, variance, geometry, p)
+    factors = p.si_factors(geometry.norm)[0]
+    expected = step()[1][: len(factors), : len(factors)] * factors[:, None] * factors
+    if not np.allclose(np.diagonal(calibrate(session).covariance), np.diagonal(expected), rtol=1e-3):
+        raise AssertionError("the floor does not give the covariance of the calibration")
+    return Figure("P1, floor", WORK, FLOOR, *side_by_side(partial(calibrate, session), step, rounds=60), "at least 1/2")
+
+
 def run() -> list[Figure]:
     """From the nominal values, which is what a session gives: the peer as it comes, and its fastest method.
 
@@ -63,4 +103,4 @@ def run() -> list[Figure]:
     for name, peer, start, method, target in peers:
         theirs = partial(sensor_by_sensor, session, geometry, start, method)
         figures.append(Figure(name, WORK, peer, *side_by_side(partial(calibrate, session), theirs, rounds=60), target))
-    return figures
+    return [*figures, floor(session, geometry, ready)]

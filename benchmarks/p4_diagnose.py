@@ -5,6 +5,8 @@ parameters and the cause's amplitudes for a cause of one sensor, all sensors' fo
 signatures handed to it and only the middle of the grid where a cause has nonlinear parameters. It ranks causes by χ².
 What it leaves out and ours does: the stand's common errors, the grids, the second thoughts, the extended calibration,
 the held-out gain and the detection limits.
+
+P4h: what ten earlier sessions add.
 """
 
 from functools import partial
@@ -23,6 +25,8 @@ from estimator.session import Array
 
 WORK = "diagnose one session, 6 sensors × 24 positions × 2 runs, whole catalogue"
 PEER = "scipy.optimize.least_squares once per cause and sensor"
+EARLIER = "the same with ten earlier sessions"
+ALONE = "the same without"
 
 
 def hidden() -> CalibrationSession:
@@ -77,4 +81,6 @@ def run() -> list[Figure]:
     if named != ("bias-ramp", "bias-ramp"):
         raise AssertionError(f"the hidden bias ramp was called {named}")
     times = side_by_side(partial(diagnose, session), partial(one_by_one, session), rounds=5)
-    return [Figure("P4", WORK, PEER, *times, "100")]
+    history = sessions(11)[1:]
+    aged = side_by_side(partial(diagnose, session, history), partial(diagnose, session), rounds=15)
+    return [Figure("P4", WORK, PEER, *times, "100"), Figure("P4h", EARLIER, ALONE, *aged, "at least 1/2")]
