@@ -28,14 +28,15 @@ NOTE = """
 P1 misses its targets. One session is too small for arrays: calibrating it is one Newton step from the closed form, and
 almost all of its time goes into some eight hundred calls of Python and numpy of about a microsecond each. What the
 schedule alone decides is worked out once and remembered. By profile the Newton step takes a third, the closed form and
-the check of the noise a quarter, what is observable a tenth, and the report, a result for every sensor, a quarter: the
-floor has the first of these only, and no ready schedule makes the others cheaper than their calls. The peer, one sensor
-at a time without the stand's errors and the covariance between sensors, is quick for the same reason: five parameters
-from 48 rows. What one session cannot show, many can: P2 is the same code on many sessions in one call.
+the check of the noise a quarter, and the report, a result for every sensor, a quarter: the floor has the first of these
+only, and no ready schedule makes the others cheaper than their calls. The peer, one sensor at a time without the
+stand's errors and the covariance between sensors, is quick for the same reason: five parameters from 48 rows. What one
+session cannot show, many can: P2 is the same code on many sessions in one call. It misses its second target by a sixth:
+a quarter of its time builds the results.
 
 P3 misses its targets where the rivals are quick. The published descent fits less, a functional of triples without
 directions or covariance, and least squares starts once; ours looks for the lowest of several minima, from six to eight
-starts, before it says which terms the readings ask for. Each start costs two or three linearisations of half a
+starts, before it says which terms the readings ask for. Each start costs three or four linearisations of half a
 millisecond, most of it calls on small arrays, however many orientations there are.
 
 P4 misses its target by a factor of two to three. The peer refits once per cause and sensor; ours scores every place and
