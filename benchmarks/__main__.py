@@ -7,10 +7,10 @@ from pathlib import Path
 
 from rich.console import Console
 
-from benchmarks import p1_calibrate, p2_fleet, p3_orientations, p4_diagnose
+from benchmarks import p1_calibrate, p2_fleet, p3_orientations, p4_diagnose, p5_uploads
 from benchmarks.figures import Figure
 
-BENCHMARKS = (p1_calibrate, p2_fleet, p3_orientations, p4_diagnose)
+BENCHMARKS = (p1_calibrate, p2_fleet, p3_orientations, p4_diagnose, p5_uploads)
 RESULTS = Path(__file__).with_name("RESULTS.md")
 
 HEAD = """# Benchmarks

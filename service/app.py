@@ -11,9 +11,10 @@ from fastapi.concurrency import run_in_threadpool
 from service import api, pages
 from service.api.measured import Measured
 from service.application import Application, Gate
+from service.background.beside import work_beside
 from service.background.deliver_messages import deliver_until
 from service.background.derive_pending import derive_pending
-from service.background.diagnose_pending import diagnose_pending
+from service.background.diagnose_waiting import Diagnosing, ask_for_missing
 from service.background.watch_fleet import watch_fleet
 from service.boundary import guard
 from service.identity.elsewhere import provider_of
@@ -21,8 +22,7 @@ from service.ingest import limits
 from service.metrics import Metrics
 from service.reports.sealing import seal_of
 from service.settings import VERSION, Settings
-from service.storage import Database, Files, Storage
-from service.storage.waits import Waits
+from service.storage import open_storage
 
 DESCRIPTION = (
     "Health of redundant inertial measurement units: calibration sessions in, parameters with uncertainties, "
@@ -30,7 +30,7 @@ DESCRIPTION = (
 )
 """Heads the description of the API."""
 LAST_WORK = 5.0
-"""Seconds that a stopping service waits for the diagnosis or the message at hand; the next start takes them up."""
+"""Seconds that a stopping service waits for the message at hand; the next start takes up what is left."""
 
 
 def utc_now() -> datetime:
@@ -60,10 +60,7 @@ def create_app(settings: Settings, clock: Callable[[], datetime] = utc_now) -> F
 
 def _application(settings: Settings, clock: Callable[[], datetime]) -> Application:
     metrics = Metrics()
-    waits = Waits(
-        settings.database_lock_seconds, settings.database_statement_seconds, settings.database_connect_seconds
-    )
-    storage = Storage(Database(settings.database, waits), Files(settings.files, metrics.count_file_fault))
+    storage = open_storage(settings, metrics.count_file_fault)
     seal = seal_of(settings.seal_key_file, settings.seal_password_file)
     return Application(settings, storage, clock, Gate(settings), seal, provider_of(settings), metrics=metrics)
 
@@ -81,6 +78,7 @@ def _at_work(application: Application) -> Callable[[FastAPI], AbstractAsyncConte
             thread.start()
         yield
         stop.set()
+        application.bell.ring()
         for thread in threads:
             await run_in_threadpool(thread.join, LAST_WORK)
         application.storage.database.close()
@@ -92,7 +90,11 @@ def _work(application: Application) -> Iterator[tuple[str, Callable[..., None], 
     """What is done beside the requests: its name, what does it, and what that needs."""
     storage, clock, hosts = application.storage, application.clock, application.settings.webhook_hosts
     metrics, k = application.metrics, application.settings.coverage_factor
-    yield "pending diagnoses", diagnose_pending, (storage, clock, metrics, application.diagnosing)
+    for number in range(application.settings.diagnosis_workers):
+        own = Diagnosing(application.settings, storage, clock, metrics, application.bell)
+        yield f"diagnoses {number}", work_beside, (own,)
+    if application.settings.diagnosis_workers:
+        yield "missing diagnoses", ask_for_missing, (storage, clock, metrics, application.bell)
     yield "pending derivations", derive_pending, (storage, k, clock, metrics)
     yield "fleet", watch_fleet, (storage, clock, metrics)
     if hosts:

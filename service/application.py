@@ -4,11 +4,13 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import datetime
+from functools import cached_property
 
 from fastapi import Request
 
+from service.background.bell import Bell
+from service.background.read_diagnosis import Reader
 from service.errors import BusyError
-from service.flows.diagnose import InProgress
 from service.identity.elsewhere import Provider
 from service.metrics import Metrics
 from service.reports.sealing import Seal
@@ -71,9 +73,15 @@ class Application:
     gate: Gate
     seal: Seal | None = None
     provider: Provider | None = None
-    diagnosing: InProgress = field(default_factory=InProgress)
+    bell: Bell = field(default_factory=Bell)
     metrics: Metrics = field(default_factory=Metrics)
     places: Places = field(default_factory=Places)
+
+    @cached_property
+    def diagnoses(self) -> Reader:
+        """The diagnoses of sessions, for whoever reads them."""
+        own = self.settings
+        return Reader(self.storage, self.clock, self.bell, own.coverage_factor, own.diagnosis_workers)
 
 
 def application_of(request: Request) -> Application:

@@ -1,22 +1,20 @@
 """What routes of the API and of the pages ask for by type."""
 
 from collections.abc import AsyncIterator, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import datetime
 from typing import Annotated
 
-from fastapi import BackgroundTasks, Depends, Request
+from fastapi import Depends, Request
 from starlette.types import Message
 
 from service.admission import PersonOf
-from service.application import Application, application_of
-from service.background.diagnose_pending import diagnose_quietly
+from service.application import application_of
+from service.background.read_diagnosis import Reader
 from service.errors import TooLargeError
-from service.flows.diagnose import diagnose_now_or_later
 from service.flows.receive import Reception
 from service.flows.sign_certificate import Rules
 from service.metrics import Metrics
-from service.records.diagnosis import StoredDiagnosis
 from service.records.identity import Person
 from service.reports.desk import Desk
 from service.settings import Settings
@@ -28,24 +26,6 @@ CREW = "crew"
 """Who uploads, where nobody says who they are."""
 ENVELOPE = 64 * 1024
 """Bytes that a form may add to its files: for each of 200 a boundary and headers of some 300."""
-
-
-@dataclass(frozen=True)
-class Diagnoser:
-    """Diagnoses within the request where that is quick, and after the answer where it is not."""
-
-    application: Application
-    after_the_answer: BackgroundTasks
-
-    def of(self, id: str) -> StoredDiagnosis | None:
-        """The diagnosis of a session; None while it is being made."""
-        application = self.application
-        return diagnose_now_or_later(application.storage, id, application.clock(), self.later)
-
-    def later(self, id: str) -> None:
-        """Diagnoses a session after the answer."""
-        own = self.application
-        self.after_the_answer.add_task(diagnose_quietly, own.storage, id, own.clock(), own.diagnosing)
 
 
 def _settings(request: Request) -> Settings:
@@ -85,14 +65,14 @@ def _reading(request: Request) -> Iterator[Store]:
         yield store
 
 
-def _diagnoser(request: Request, after_the_answer: BackgroundTasks) -> Diagnoser:
-    return Diagnoser(application_of(request), after_the_answer)
+def _reader(request: Request) -> Reader:
+    return application_of(request).diagnoses
 
 
-def _reception(request: Request, storage: StorageOf, person: PersonOf, after_the_answer: BackgroundTasks) -> Reception:
+def _reception(request: Request, storage: StorageOf, person: PersonOf) -> Reception:
     own = application_of(request)
-    later = Diagnoser(own, after_the_answer).later
-    return Reception(storage, own.settings.coverage_factor, own.metrics, later, person.signs(CREW))
+    k, later = own.settings.coverage_factor, own.settings.diagnosis_workers > 0
+    return Reception(storage, k, own.metrics, own.bell.ring, person.signs(CREW), is_dated_later=later)
 
 
 def _desk(request: Request, storage: StorageOf) -> Desk:
@@ -129,8 +109,8 @@ PlaceOf = Annotated[None, Depends(_place, scope="function")]
 """A place for an upload; BusyError where all are taken."""
 MetricsOf = Annotated[Metrics, Depends(_metrics)]
 """The figures of the service."""
-DiagnoserOf = Annotated[Diagnoser, Depends(_diagnoser)]
-"""What makes diagnoses."""
+ReaderOf = Annotated[Reader, Depends(_reader)]
+"""What reads diagnoses."""
 ReceptionOf = Annotated[Reception, Depends(_reception)]
 """What takes in uploads."""
 DeskOf = Annotated[Desk, Depends(_desk)]

@@ -43,9 +43,17 @@ class Metrics:
             "imu_health_free_bytes", "Room on the disk of uploaded files, bytes.", registry=self._registry
         )
 
+        self._pending = Gauge(
+            "imu_health_pending_diagnoses", "Diagnoses that are still to be made.", registry=self._registry
+        )
+
     def note_room(self, free: int) -> None:
         """How much room is left for uploads, bytes."""
         self._room.set(free)
+
+    def note_pending(self, count: int) -> None:
+        """How many diagnoses are still to be made."""
+        self._pending.set(count)
 
     def count_upload(self, receipt: Receipt) -> None:
         """A session that was stored, or was stored before."""

@@ -1,5 +1,6 @@
 """What an operator sets, by environment variables that start with IMU_HEALTH_."""
 
+import os
 from importlib.metadata import version
 from ipaddress import ip_address
 from pathlib import Path
@@ -17,6 +18,11 @@ VERSION = version("imu-health")
 def default_data_folder() -> Path:
     """The platform's folder for the data of programs."""
     return Path(user_data_dir("imu-health", appauthor=False))
+
+
+def cores_left() -> int:
+    """One core answers requests; a machine with one shares it."""
+    return max(1, (os.cpu_count() or 1) - 1)
 
 
 class Settings(BaseSettings):
@@ -136,6 +142,13 @@ class Settings(BaseSettings):
         default=4,
         gt=0,
         description="Large uploads that are received or worked on at once; others are asked back.",
+    )
+    diagnosis_workers: int = Field(
+        default_factory=cores_left,
+        ge=0,
+        le=256,
+        description="Processes that make diagnoses and outlooks beside the requests. 0: a diagnosis is made when "
+        "somebody reads it, an outlook with the upload.",
     )
     coverage_factor: float = Field(
         default=2.0, gt=0, le=5, description="k: expanded uncertainty and guard band are k times the standard one."

@@ -1,5 +1,6 @@
 """What all tests share: databases of both engines, and services on them that are empty or hold sessions already."""
 
+import os
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from functools import cache
@@ -13,6 +14,10 @@ from service.storage import Storage
 from tests.databases import ENGINES, Databases, PostgresDatabases, postgres_databases, sqlite_databases
 from tests.serving import http_client
 from tests.stock import Stock, stores
+
+os.environ.setdefault("IMU_HEALTH_DIAGNOSIS_WORKERS", "0")
+"""Diagnoses are made when they are read: a test that looks at none does not pay for it. Those of the processes that
+make them say how many they want."""
 
 SettingsHolding = Callable[..., Settings]
 Holding = Callable[..., httpx.Client]
@@ -50,14 +55,18 @@ def stock_of(tmp_path_factory: pytest.TempPathFactory) -> StockOf:
 def settings_holding(databases: Databases, stock_of: StockOf) -> Iterator[SettingsHolding]:
     """Settings of a service that holds uploads already, of each engine in turn."""
     with ExitStack() as opened:
-        yield lambda *uploads: opened.enter_context(stock_of(databases).holding(*uploads))
+        yield lambda *uploads, diagnosed=False: opened.enter_context(
+            stock_of(databases).holding(*uploads, diagnosed=diagnosed)
+        )
 
 
 @pytest.fixture
 def holding(settings_holding: SettingsHolding) -> Iterator[Holding]:
     """HTTP to a service that holds uploads already, of each engine in turn."""
     with ExitStack() as opened:
-        yield lambda *uploads: opened.enter_context(http_client(create_app(settings_holding(*uploads))))
+        yield lambda *uploads, diagnosed=False: opened.enter_context(
+            http_client(create_app(settings_holding(*uploads, diagnosed=diagnosed)))
+        )
 
 
 @pytest.fixture

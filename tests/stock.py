@@ -29,30 +29,33 @@ class Stock:
 
     def __init__(self, databases: Databases, folder: Path) -> None:
         self._databases, self._folder = databases, folder
-        self._filled: dict[Uploads, Settings] = {}
+        self._filled: dict[tuple[Uploads, bool], Settings] = {}
 
     @contextmanager
-    def holding(self, *uploads: bytes) -> Iterator[Settings]:
-        """Settings of a new service that holds the uploads; its database is dropped at the end."""
-        settings = self._copy(uploads)
+    def holding(self, *uploads: bytes, diagnosed: bool = False) -> Iterator[Settings]:
+        """Settings of a new service that holds the uploads, which diagnoses what is read; its database is dropped at
+        the end. ``diagnosed``: each was read before the next came."""
+        settings = self._copy(uploads, diagnosed)
         yield settings
         self._databases.drop(settings.database)
 
-    def _copy(self, uploads: Uploads) -> Settings:
+    def _copy(self, uploads: Uploads, diagnosed: bool) -> Settings:
         if not uploads:
             return self._settings(self._databases.migrated())
-        original = self._original(uploads)
+        original = self._original(uploads, diagnosed)
         copy = self._settings(self._databases.copied(original.database))
         shutil.copytree(original.files, copy.files)
         return copy
 
-    def _original(self, uploads: Uploads) -> Settings:
-        if uploads not in self._filled:
-            settings = self._copy(uploads[:-1])
+    def _original(self, uploads: Uploads, diagnosed: bool) -> Settings:
+        if (uploads, diagnosed) not in self._filled:
+            settings = self._copy(uploads[:-1], diagnosed)
             with http_client(create_app(settings)) as client:
-                client.post("/api/v1/sessions", content=uploads[-1]).raise_for_status()
-            self._filled[uploads] = settings
-        return self._filled[uploads]
+                answer = client.post("/api/v1/sessions", content=uploads[-1]).raise_for_status()
+                if diagnosed:
+                    client.get(f"/api/v1/sessions/{answer.json()['id']}/diagnosis").raise_for_status()
+            self._filled[uploads, diagnosed] = settings
+        return self._filled[uploads, diagnosed]
 
     def _settings(self, url: str) -> Settings:
         return Settings(database_url=url, data_folder=self._folder / uuid4().hex)

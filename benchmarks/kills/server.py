@@ -50,7 +50,7 @@ class Service:
 
     def start(self) -> None:
         """Starts it, and waits until it is ready."""
-        self.process = forking.Process(target=serve, args=(self.settings, self.port), daemon=True)
+        self.process = forking.Process(target=serve, args=(self.settings, self.port))
         self.process.start()
         transport = httpx.HTTPTransport(retries=0)
         with httpx.Client(transport=transport) as client:

@@ -1,7 +1,7 @@
 """Signatures under certificates with the papers as they were approved, wrong attempts to sign in, and who somebody is
 elsewhere.
 
-Revision: 0014, after 0012
+Revision: 0014, after 0013
 """
 
 import sqlalchemy as sa
@@ -9,7 +9,7 @@ from alembic import op
 from sqlalchemy.schema import SchemaItem
 
 revision = "0014"
-down_revision = "0012"
+down_revision = "0013"
 branch_labels = None
 depends_on = None
 

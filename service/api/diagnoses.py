@@ -9,7 +9,7 @@ from fastapi.responses import JSONResponse
 from service.api.schemas.fields import SessionId
 from service.api.schemas.models import DiagnosisDocument, ModelSchema, NewModelSchema, PendingDiagnosis
 from service.api.schemas.problem import errors
-from service.dependencies import DiagnoserOf, Now, StorageOf
+from service.dependencies import Now, ReaderOf, StorageOf
 from service.errors import NotFoundError
 from service.flows.accept_model import accept_model
 from service.flows.diagnose import diagnose
@@ -25,16 +25,11 @@ PENDING: dict[int | str, dict[str, Any]] = {
 
 
 @router.get("/{id}/diagnosis", responses={**PENDING, **errors(404, 422)}, response_model=DiagnosisDocument)
-def read_diagnosis(id: SessionId, diagnoser: DiagnoserOf) -> Response | DiagnosisDocument:
-    """What the simulation gets wrong about the session, imu-diagnosis/1."""
-    found = diagnoser.of(id)
+def read_diagnosis(id: SessionId, reader: ReaderOf) -> Response | DiagnosisDocument:
+    """What the simulation gets wrong about the session, imu-diagnosis/1; waits some seconds for one being made."""
+    found = reader.read(id)
     if found is None:
-        return JSONResponse(
-            {"session": id, "status": "pending"},
-            202,
-            {"Retry-After": RETRY_AFTER},
-            background=diagnoser.after_the_answer,
-        )
+        return JSONResponse({"session": id, "status": "pending"}, 202, {"Retry-After": RETRY_AFTER})
     if found.document is None:
         raise NotFoundError(found.summary)
     made = {name: value for name, value in vars(found).items() if name in DiagnosisDocument.model_fields}

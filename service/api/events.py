@@ -17,7 +17,6 @@ from service.api.schemas.problem import errors
 from service.api.schemas.sessions import DecisionSchema, SessionSchema
 from service.dependencies import Now, Reading, ReceptionOf, SettingsOf, StorageOf
 from service.flows.add_note import add_note
-from service.flows.receive import ask_again
 from service.flows.record_service import record_service
 from service.records.event import NewService
 from service.views.found_and_left import found_and_left
@@ -33,8 +32,8 @@ def add_service(
     """Record a known break; the first session measured after it is the new reference, whenever it was uploaded."""
     done = NewService(new.kind, new.at or now, new.note, person.signs(new.by), new.sensor)
     k = reception.coverage_factor
-    service, derived = record_service(reception.storage, serial, done, now, coverage_factor=k)
-    ask_again(reception, () if derived is None else derived.undiagnosed)
+    service, _ = record_service(reception.storage, serial, done, now, coverage_factor=k)
+    reception.ring()
     return ServiceSchema.model_validate(service)
 
 

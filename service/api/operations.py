@@ -1,5 +1,6 @@
 """What those who run the service ask: is it alive, is it ready, what are its figures."""
 
+from contextlib import suppress
 from typing import Literal
 
 from fastapi import APIRouter, Response
@@ -8,6 +9,7 @@ from pydantic import BaseModel, Field
 
 from service.api.schemas.problem import errors
 from service.dependencies import MetricsOf, SettingsOf, StorageOf
+from service.errors import AwayError
 from service.storage.space import space_at
 
 router = APIRouter(tags=["operations"])
@@ -43,7 +45,9 @@ def readiness(storage: StorageOf, settings: SettingsOf) -> Readiness:
 
 
 @router.get("/metrics", responses={200: {"content": {"text/plain": {}}}, **errors()}, response_class=Response)
-def metrics(figures: MetricsOf, settings: SettingsOf) -> Response:
-    """Figures for Prometheus."""
+def metrics(figures: MetricsOf, settings: SettingsOf, storage: StorageOf) -> Response:
+    """Figures for Prometheus; without a database those that need none."""
+    with suppress(AwayError), storage.database.reading() as store:
+        figures.note_pending(store.pending.count())
     figures.note_room(space_at(settings.files, settings.min_free_bytes).free)
     return Response(figures.text(), media_type=CONTENT_TYPE_LATEST)

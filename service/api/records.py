@@ -14,7 +14,7 @@ from service.errors import ConflictError
 from service.flows.accept_session import accept_session
 from service.flows.choose_reference import choose_reference
 from service.flows.correct_session import correct_session
-from service.flows.receive import ask_again, deriving
+from service.flows.receive import deriving
 from service.flows.supersede_session import successor_of, supersede_session
 from service.flows.withdraw_service import withdraw_service
 from service.flows.withdraw_session import withdraw_session
@@ -38,8 +38,8 @@ def read_states(id: SessionId, store: Reading) -> StateList:
 def withdraw(id: SessionId, handling: Handling, reception: ReceptionOf, now: Now, person: PersonOf) -> SessionSchema:
     """Take a session back. It stays readable, and nothing that is known of its unit rests on it any more."""
     step = Step(person.signs(handling.by), now, handling.why)
-    session, derived = withdraw_session(reception.storage, deriving(reception, now), id, step)
-    ask_again(reception, derived.undiagnosed)
+    session, _ = withdraw_session(reception.storage, deriving(reception, now), id, step)
+    reception.ring()
     return SessionSchema.model_validate(session)
 
 
@@ -47,8 +47,8 @@ def withdraw(id: SessionId, handling: Handling, reception: ReceptionOf, now: Now
 def accept(id: SessionId, handling: Handling, reception: ReceptionOf, now: Now, person: PersonOf) -> SessionSchema:
     """Say that a session counts that was questioned, withdrawn or superseded."""
     step = Step(person.signs(handling.by), now, handling.why)
-    session, derived = accept_session(reception.storage, deriving(reception, now), id, step)
-    ask_again(reception, derived.undiagnosed)
+    session, _ = accept_session(reception.storage, deriving(reception, now), id, step)
+    reception.ring()
     return SessionSchema.model_validate(session)
 
 
@@ -67,8 +67,8 @@ def supersede(id: SessionId, given: Superseding, reception: ReceptionOf, now: No
     """Say that another stored session stands for this one: a corrected file, of another unit or date."""
     by = given.superseded_by or successor_of(reception.storage, id)
     replaced = Replaced(id, person.signs(given.by), given.why)
-    session, derived = supersede_session(reception.storage, deriving(reception, now), replaced, by)
-    ask_again(reception, derived.undiagnosed)
+    session, _ = supersede_session(reception.storage, deriving(reception, now), replaced, by)
+    reception.ring()
     return SessionSchema.model_validate(session)
 
 
@@ -80,8 +80,8 @@ def choose(serial: Serial, new: NewReference, reception: ReceptionOf, now: Now, 
     if owner != serial:
         raise ConflictError(f"Session {new.session} is of {owner}, not of {serial}.")
     step = Step(person.signs(new.by), now, new.why)
-    session, derived = choose_reference(reception.storage, deriving(reception, now), new.session, step)
-    ask_again(reception, derived.undiagnosed)
+    session, _ = choose_reference(reception.storage, deriving(reception, now), new.session, step)
+    reception.ring()
     return SessionSchema.model_validate(session)
 
 
@@ -96,6 +96,6 @@ def read_derivation(serial: Serial, store: Reading) -> DerivationSchema:
 def withdraw_break(id: Number, handling: Handling, reception: ReceptionOf, now: Now, person: PersonOf) -> ServiceSchema:
     """Take a service back. It stays on record and is no break any more."""
     step = Step(person.signs(handling.by), now, handling.why)
-    service, derived = withdraw_service(reception.storage, deriving(reception, now), id, step)
-    ask_again(reception, derived.undiagnosed)
+    service, _ = withdraw_service(reception.storage, deriving(reception, now), id, step)
+    reception.ring()
     return ServiceSchema.model_validate(service)

@@ -20,7 +20,7 @@ from service.api.schemas.units import (
     UnitReportSchema,
     UnitSummarySchema,
 )
-from service.dependencies import CREW, Now, Reading, SettingsOf, StorageOf
+from service.dependencies import CREW, Now, ReaderOf, Reading, SettingsOf, StorageOf
 from service.flows.recalibrate import recalibrate
 from service.flows.set_customer import set_customer
 from service.flows.set_lot import set_lot
@@ -98,9 +98,11 @@ def read_outlook(
     serial: Serial,
     store: Reading,
     now: Now,
+    reader: ReaderOf,
     until: Annotated[Moment | None, Query(description="Also the risk of waiting until this date.")] = None,
 ) -> OutlookSchema:
     """When the unit must come back and why: drift, forecast to tolerance, risk of waiting."""
+    reader.until_dated(serial)
     found = outlook_of(store, serial, now)
     risk = None if until is None else found.risk_by(until)
     asked = None if until is None or risk is None else RiskPoint(until, risk)

@@ -8,7 +8,7 @@ from fastapi import APIRouter, Header, Request, Response
 from service.api.schemas.fields import Serial
 from service.api.schemas.problem import errors
 from service.api.schemas.usable import UsableSchema
-from service.dependencies import Now, Reading
+from service.dependencies import Now, ReaderOf, Reading
 from service.records.usable import Usable
 from service.views.usable import usable
 
@@ -25,9 +25,11 @@ def read_usable(
     serial: Serial,
     store: Reading,
     now: Now,
+    reader: ReaderOf,
     if_none_match: Annotated[str | None, Header(description="The `ETag` of an answer that is held.")] = None,
 ) -> Response:
     """Whether the unit may be used now, why, and until when; 200 for yes and for no. In doubt the answer is no."""
+    reader.until_dated(serial)
     answer = _schema(request, usable(store, serial, now))
     tag = f'"{sha256(answer.model_dump_json(exclude={"as_of"}).encode()).hexdigest()[:32]}"'
     headers = {"ETag": tag, "Cache-Control": "no-cache"}

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from http import HTTPStatus
 from pathlib import Path
+from time import sleep
 from typing import Any
 
 import httpx
@@ -15,6 +16,8 @@ from service.errors import RefusedError, ServiceError
 
 TOKEN = "IMU_HEALTH_TOKEN"
 """Environment variable with the token of whoever calls; on a command line others on the machine could read it."""
+MOST_LOOKS = 10
+"""Looks at whether a diagnosis is made; the service itself waits some seconds at each."""
 TIMEOUT = httpx.Timeout(300.0, connect=5.0)
 """Seconds; the report of a large fleet takes some tens."""
 
@@ -46,6 +49,15 @@ class Client:
         response = self._answer("POST", "/sessions", files=sent, data=stated or {})
         answer: dict[str, Any] = response.json()
         return answer
+
+    def diagnosed(self, session: str) -> bool:
+        """Whether a session's diagnosis is made, some time after it was asked for."""
+        for _ in range(MOST_LOOKS):
+            response = self._answer("GET", f"/sessions/{session}/diagnosis")
+            if response.status_code != HTTPStatus.ACCEPTED:
+                return True
+            sleep(float(response.headers.get("Retry-After", "1")))
+        return False
 
     def get(self, path: str, **query: str) -> httpx.Response:
         """Reads a resource below /api/v1."""

@@ -1,12 +1,13 @@
 """`imu-health upload`: session files to a running service."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 from rich.markup import escape
 
-from service.commands.client import connected
+from service.commands.client import Client, connected
 from service.commands.console import DEFAULT_SERVER, AsJson, Files, Server, for_each, print_json, screen
 from service.records.decision import Verdict
 from service.words.conditions import Condition, condition_of
@@ -25,6 +26,9 @@ Supersedes = Annotated[
     str | None, typer.Option(metavar="ID", help="Stored session that this corrected file stands for from now on.")
 ]
 By = Annotated[str | None, typer.Option(help="Who replaces it; with --supersedes.")]
+Wait = Annotated[
+    bool, typer.Option("--wait/--no-wait", help="Wait until causes were looked for: they may be said with the verdict.")
+]
 Why = Annotated[str | None, typer.Option(help="What was wrong; with --supersedes.")]
 
 
@@ -36,6 +40,7 @@ def upload_files(
     supersedes: Supersedes = None,
     by: By = None,
     why: Why = None,
+    wait: Wait = True,
 ) -> None:
     """Upload session files and print the verdict of each; a file that is already there is stored once."""
     if supersedes and len(files) > 1:
@@ -44,7 +49,16 @@ def upload_files(
     stated = {name: text for name, text in given.items() if text}
     show: Callable[[dict[str, Any]], None] = print_json if as_json else _print_line
     with connected(server) as client:
-        for_each(files, lambda file: client.upload(file, stated), show, "uploading")
+        for_each(files, lambda file: _uploaded(client, file, stated, wait=wait), show, "uploading")
+
+
+def _uploaded(client: Client, file: Path, stated: dict[str, str], *, wait: bool) -> dict[str, Any]:
+    """The answer with the verdict that the session has once it is diagnosed."""
+    answer = client.upload(file, stated)
+    if wait and client.diagnosed(answer["id"]):
+        session = client.get(f"/sessions/{answer['id']}").json()
+        answer |= {name: session[name] for name in answer if name in session}
+    return answer
 
 
 def _print_line(answer: dict[str, Any]) -> None:

@@ -18,7 +18,7 @@ from service.flows.flagging.drift import flag_drift
 from service.flows.flagging.fold import settle_sessions
 from service.flows.flagging.settle import Occasion
 from service.flows.flagging.verdict import no_longer_overdue, tell_verdict, told_by
-from service.flows.refresh_outlook import refresh_outlook
+from service.flows.refresh_outlook import END_OF_TIME, refresh_outlook
 from service.flows.weigh import weigh_again
 from service.ingest import read_upload
 from service.judging.calibrate import Comparison
@@ -52,6 +52,8 @@ class Deriving:
     """None where all are judged now."""
     outlook: bool = True
     """Whether the outlook is made too: of many files in a row the last one brings it."""
+    is_dated_later: bool = False
+    """Whether the outlook is asked for only, because processes beside the requests make it."""
 
 
 @dataclass(frozen=True)
@@ -61,8 +63,6 @@ class Derived:
     judged: tuple[str, ...]
     waiting: int
     """Sessions that are to be judged after the answer."""
-    undiagnosed: tuple[str, ...]
-    """Sessions whose diagnosis looked at records that have changed: it is made again."""
 
 
 @dataclass(frozen=True)
@@ -93,11 +93,12 @@ def derive_again(store: Store, way: Deriving, serial: str, since: datetime, touc
     for place in now:
         _judge(store, way, place, known)
     store.derivations.wait(p.session.id for p in later)
-    undiagnosed = store.derivations.forget_diagnoses(unit, since, touched)
+    store.pending.look_again(unit, since, [p.session.id for p in now])
+    store.pending.add(store.derivations.forget_diagnoses(unit, since, touched), way.at)
     for place in now:
         weigh_again(store, way.files, place.session.id)
     _sum_up(store, way, serial, touched)
-    return Derived(tuple(p.session.id for p in now), len(later), undiagnosed)
+    return Derived(tuple(p.session.id for p in now), len(later))
 
 
 def _shared(
@@ -118,6 +119,7 @@ def derive_batch(store: Store, way: Deriving, serial: str, most: int) -> int:
     choices = tuple(choice.session for choice in store.states.choices(unit))
     places = placed(store.derivations.counted(unit), store.services.breaks(unit), choices, known.is_blind)
     waiting = tuple(p for p in places if p.session.basis == "")
+    store.pending.look_again(unit, END_OF_TIME, [p.session.id for p in waiting[:most]])
     for place in waiting[:most]:
         _judge(store, way, place, known)
         weigh_again(store, way.files, place.session.id)
@@ -172,13 +174,16 @@ def _sum_up(store: Store, way: Deriving, serial: str, touched: Sequence[str]) ->
     occasion = Occasion(unit, was.last_session, way.at)
     if was.last_session is None:
         store.outlooks.drop(unit)
+        store.pending_outlooks.settle(unit)
         settle_sessions(store, occasion)
         flag_drift(store, occasion, None)
         return
     latest = store.sessions.get(was.last_session)
     tell_verdict(store, occasion, latest, was)
     settle_sessions(store, occasion)
-    if way.outlook:
+    if way.outlook and way.is_dated_later:
+        store.pending_outlooks.ask(unit, way.at)
+    elif way.outlook:
         refresh_outlook(store, serial)
         flag_drift(store, occasion, store.outlooks.of_unit(serial))
     if latest.id in touched and latest.programme in CALIBRATIONS:

@@ -1,14 +1,12 @@
 """Flow: what the simulation gets wrong about a stored session, found once and kept.
 
-A session without a diagnosis is one whose diagnosis is pending; whoever asks for it first makes it, and a starting
-service makes those that were interrupted. So an acknowledged upload is never left without one.
+A session without a diagnosis is one whose diagnosis is pending. An upload asks for it within its own transaction, and
+processes beside the requests make it, or else whoever reads it first: see `service.background.diagnose_waiting`. So an
+acknowledged upload is never left without one.
 """
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from datetime import datetime
-from threading import Lock
 
 from estimator.diagnosis import diagnose as find_causes
 from estimator.errors import SessionError
@@ -29,12 +27,10 @@ from service.storage import Files, Storage
 from service.storage.diagnosis_document import diagnosis_to_dict, inapplicable_to_dict, read_diagnosis, written
 from service.storage.files import LOST
 from service.storage.store import Store
-from service.words.diagnosis import NOT_APPLICABLE, cannot_be_diagnosed, fault_of_the_program, summary_of
+from service.words.diagnosis import NOT_APPLICABLE, cannot_be_diagnosed, fault_of_the_program, never_ended, summary_of
 
 MOST_EARLIER = 10
 """Earlier sessions of the unit that a diagnosis looks at."""
-QUICK_BYTES, QUICK_EARLIER_BYTES = 40_000, 400_000
-"""Files up to this size are diagnosed within the request that brought them: some tenths of a second."""
 FAULTS = (ArithmeticError, AssertionError, AttributeError, LookupError, TypeError, ValueError)
 """What a mistake in the program ends in. A store or memory that is missing is none: it leaves the diagnosis pending."""
 
@@ -48,35 +44,6 @@ class Task:
     """Of the same unit and epoch, oldest first."""
     model_revision: int
 
-    @property
-    def is_quick(self) -> bool:
-        """Whether it is made within a request."""
-        if self.session.programme not in DIAGNOSED:
-            return True
-        earlier = sum(past.size for past in self.earlier)
-        return self.session.size <= QUICK_BYTES and earlier <= QUICK_EARLIER_BYTES
-
-
-@dataclass(frozen=True)
-class InProgress:
-    """The sessions that this process is diagnosing."""
-
-    _ids: set[str] = field(default_factory=set)
-    _lock: Lock = field(default_factory=Lock)
-
-    @contextmanager
-    def claim(self, id: str) -> Iterator[bool]:
-        """Whether the session is ours to diagnose until the block ends."""
-        with self._lock:
-            free = id not in self._ids
-            self._ids.add(id)
-        try:
-            yield free
-        finally:
-            if free:
-                with self._lock:
-                    self._ids.discard(id)
-
 
 def task_of(store: Store, id: str) -> Task:
     """What the diagnosis of a session looks at."""
@@ -86,40 +53,49 @@ def task_of(store: Store, id: str) -> Task:
     return Task(session, store.sessions.before(session, since, MOST_EARLIER), max((r.id for r in revisions), default=0))
 
 
-def diagnose(storage: Storage, id: str, now: datetime) -> StoredDiagnosis:
-    """The diagnosis of a session: the stored one, or a new one that is stored."""
+def diagnose(storage: Storage, id: str, now: datetime, coverage_factor: float = COVERAGE) -> StoredDiagnosis:
+    """The diagnosis of a session: the stored one, or a new one that is stored.
+
+    Where what it looks at changes meanwhile it is made anew.
+    """
+    way = Deriving(storage.files, coverage_factor, now)
+    while True:
+        with storage.database.reading() as store:
+            known = known_of(store, id)
+            if known is not None:
+                return known
+            task, asked = task_of(store, id), store.pending.of(id)
+        made = _made(storage, task, now)
+        with storage.database.writing() as store:
+            if _keep(store, way, task.session.unit, made, None if asked is None else asked.ticket):
+                return made
+
+
+def give_up(storage: Storage, id: str, now: datetime) -> None:
+    """Stores of a session that no process outlived its diagnosis; this version does not try again."""
     with storage.database.reading() as store:
-        known = _known(store, id)
-        if known is not None:
-            return known
-        task = task_of(store, id)
-    made = _made(storage, task, now)
+        task, asked = task_of(store, id), store.pending.of(id)
+    log.error("diagnosis given up", session=id, estimator_version=VERSION)
+    made, way = _failed(task, never_ended(id), now), Deriving(storage.files, COVERAGE, now)
     with storage.database.writing() as store:
-        if store.diagnoses.add_once(made):
-            details = {"state": made.state.value, "summary": made.summary}
-            store.audit.write(now, "diagnosis", "diagnose", id, details)
-            flag_diagnosis(store, made, now)
-            if made.found is not None:
-                question_diagnosed(store, Deriving(storage.files, COVERAGE, now), id, made.found)
-    return made
+        _keep(store, way, task.session.unit, made, None if asked is None else asked.ticket)
 
 
-def diagnose_now_or_later(
-    storage: Storage, id: str, now: datetime, later: Callable[[str], None], *, wait: bool = True
-) -> StoredDiagnosis | None:
-    """The diagnosis of a session where it is there or quickly made; otherwise ``later`` is asked for it."""
-    with storage.database.reading() as store:
-        known = _known(store, id)
-        if known is not None:
-            return known
-        is_quick = wait and task_of(store, id).is_quick
-    if is_quick:
-        return diagnose(storage, id, now)
-    later(id)
-    return None
+def _keep(store: Store, way: Deriving, unit: str, made: StoredDiagnosis, ticket: str | None) -> bool:
+    """Whether it is of what is known now; then it is stored, unless another one was made meanwhile."""
+    store.units.hold(unit)
+    if not store.pending.settle(made.session, ticket):
+        return False
+    if store.diagnoses.add_once(made):
+        details = {"state": made.state.value, "summary": made.summary}
+        store.audit.write(way.at, "diagnosis", "diagnose", made.session, details)
+        flag_diagnosis(store, made, way.at)
+        if made.found is not None:
+            question_diagnosed(store, way, made.session, made.found)
+    return True
 
 
-def _known(store: Store, id: str) -> StoredDiagnosis | None:
+def known_of(store: Store, id: str) -> StoredDiagnosis | None:
     """The stored diagnosis; None where there is none, or where an earlier version of the program failed to make it."""
     found = store.diagnoses.get(id)
     failed_before = found is not None and found.state is DiagnosisState.FAILED and found.estimator_version != VERSION

@@ -1,16 +1,16 @@
-"""Flow: uploaded bytes → checked → calibrated under the model in force → stored, once → derived → diagnosed → counted.
+"""Flow: uploaded bytes → checked → calibrated under the model in force → stored, once → derived → counted.
 
-The one entry of the API and of the pages.
+The one entry of the API and of the pages. The diagnosis is asked for within the transaction that stores, and made
+beside the requests.
 """
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from datetime import datetime
 
 from estimator.errors import SessionError
-from service.errors import RefusedError, ServiceError
-from service.flows.derive_again import Derived, Deriving, derive_again
-from service.flows.diagnose import diagnose_now_or_later
+from service.errors import RefusedError
+from service.flows.derive_again import Deriving, derive_again
 from service.flows.keep import keep
 from service.flows.question_session import question
 from service.flows.refuse import refuse
@@ -22,7 +22,6 @@ from service.judging.calibrate import Calibrated, basis_of, calibrate
 from service.judging.model_in_force import model_for
 from service.judging.plausible import doubts
 from service.judging.tolerances import type_of
-from service.log import log
 from service.metrics import Metrics
 from service.records.decision import Verdict
 from service.records.received import Content, Received, Replaced, SentFile, where
@@ -33,8 +32,6 @@ from service.storage.store import Store
 
 ID_DIGITS = 20
 """Of the file's SHA-256: 80 bits, so that among a million sessions two share them with a chance of 4e-13."""
-FEW = 4
-"""Files whose diagnosis an upload waits for; those of more files are made after the answer."""
 
 
 @dataclass(frozen=True)
@@ -44,14 +41,16 @@ class Reception:
     storage: Storage
     coverage_factor: float
     metrics: Metrics
-    later: Callable[[str], None]
-    """Is given the id of a session that is to be diagnosed after the answer."""
+    ring: Callable[[], None]
+    """Is told when there are sessions to be diagnosed."""
     who: str = "crew"
     """That sends the files."""
+    is_dated_later: bool = False
+    """Whether the unit's dates are worked out beside the requests."""
 
 
 def receive(reception: Reception, file: SentFile, now: datetime) -> Receipt:
-    """Stores a session file with its verdict, diagnoses it and counts it; RefusedError when it cannot be used."""
+    """Stores a session file with its verdict and counts it; RefusedError when it cannot be used."""
     (outcome,) = receive_all(reception, (file,), now)
     if isinstance(outcome, RefusedError):
         raise outcome
@@ -59,39 +58,19 @@ def receive(reception: Reception, file: SentFile, now: datetime) -> Receipt:
 
 
 def receive_all(reception: Reception, files: Sequence[SentFile], now: datetime) -> tuple[Receipt | RefusedError, ...]:
-    """The same for several files, or why one cannot be used; all are stored before the first is diagnosed."""
+    """The same for several files, or why one cannot be used."""
     outcomes = tuple(_stored_or_refused(reception, file, now) for file in files)
-    receipts = [receipt for receipt in outcomes if isinstance(receipt, Receipt)]
-    for receipt in receipts:
-        _diagnose(reception, receipt.id, now, wait=len(files) <= FEW)
-        reception.metrics.count_upload(receipt)
-    ask_again(reception, (id for receipt in receipts for id in receipt.undiagnosed))
-    return tuple(_as_diagnosed(reception, one) if isinstance(one, Receipt) else one for one in outcomes)
-
-
-def _as_diagnosed(reception: Reception, receipt: Receipt) -> Receipt:
-    """A diagnosis may have questioned the session, or have something to say with its verdict."""
-    with reception.storage.database.reading() as store:
-        now = store.sessions.get(receipt.id)
-    return replace(
-        receipt,
-        verdict=now.verdict,
-        reason=now.reason,
-        is_reference=now.is_reference,
-        reservations=now.reservations,
-        state=now.state,
-    )
+    for outcome in outcomes:
+        if isinstance(outcome, Receipt):
+            reception.metrics.count_upload(outcome)
+    reception.ring()
+    return outcomes
 
 
 def deriving(reception: Reception, now: datetime) -> Deriving:
     """How what follows from a change is derived."""
-    return Deriving(reception.storage.files, reception.coverage_factor, now)
-
-
-def ask_again(reception: Reception, ids: Iterable[str]) -> None:
-    """Asks for diagnoses that look at records that have changed."""
-    for id in dict.fromkeys(ids):
-        reception.later(id)
+    later = reception.is_dated_later
+    return Deriving(reception.storage.files, reception.coverage_factor, now, is_dated_later=later)
 
 
 def _stored_or_refused(reception: Reception, file: SentFile, now: datetime) -> Receipt | RefusedError:
@@ -99,19 +78,11 @@ def _stored_or_refused(reception: Reception, file: SentFile, now: datetime) -> R
     try:
         with in_turn(where(file.content)):
             return upload(
-                reception.storage, file.content, file.filename, now,
-                coverage_factor=k, who=reception.who, replaces=file.replaces,
+                reception.storage, file.content, file.filename, now, coverage_factor=k, who=reception.who,
+                replaces=file.replaces, is_dated_later=reception.is_dated_later,
             )  # fmt: skip
     except RefusedError as refusal:
         return refusal
-
-
-def _diagnose(reception: Reception, id: str, now: datetime, *, wait: bool) -> None:
-    """Now where that is quick, otherwise later; whatever hinders the diagnosis leaves it pending."""
-    try:
-        diagnose_now_or_later(reception.storage, id, now, reception.later, wait=wait)
-    except ServiceError as fault:
-        log.warning("diagnosis pending", session=id, reason=str(fault))
 
 
 def upload(
@@ -125,15 +96,16 @@ def upload(
     who: str = "crew",
     replaces: Replaced | None = None,
     outlook: bool = True,
+    is_dated_later: bool = False,
 ) -> Receipt:
     """Stores a session file with its calibration and verdict; the same content again gives the same receipt.
 
     A corrected file names the session that it replaces, whatever unit or date that one is of. Raises RefusedError with
     every problem when the file cannot be used; then only the refusal is recorded. Without ``outlook`` the unit's dates
-    stay as they were: another file of it follows.
+    stay as they were: another file of it follows. ``is_dated_later``: they are asked for, and made beside the requests.
     """
     received = Received(len(content), content_hash(content), plain_filename(filename), now, who, simulated)
-    way = Deriving(storage.files, coverage_factor, now, outlook=outlook)
+    way = Deriving(storage.files, coverage_factor, now, outlook=outlook, is_dated_later=is_dated_later)
     with storage.database.reading() as store:
         if replaces is not None:
             store.sessions.get(replaces.session)
@@ -155,8 +127,8 @@ def _known(storage: Storage, way: Deriving, known: StoredSession, replaces: Repl
     if replaces is None:
         return _receipt(known, created=False)
     with storage.database.writing() as store:
-        derived = supersede(store, way, replaces, store.sessions.get(known.id))
-        return _receipt(store.sessions.get(known.id), created=False, derived=derived)
+        supersede(store, way, replaces, store.sessions.get(known.id))
+        return _receipt(store.sessions.get(known.id), created=False)
 
 
 def _calibrated(storage: Storage, checked: Checked) -> Calibrated:
@@ -172,26 +144,28 @@ def _store(store: Store, way: Deriving, received: Received, new: Calibrated, rep
     digest = content_digest(new.checked.session)
     known = store.sessions.by_hash(received.sha256) or store.sessions.by_digest(digest)
     if known is not None:
-        derived = None if replaces is None else supersede(store, way, replaces, known)
-        return _receipt(store.sessions.get(known.id), created=False, derived=derived)
+        if replaces is not None:
+            supersede(store, way, replaces, known)
+        return _receipt(store.sessions.get(known.id), created=False)
     record = _record(received, new)
     stand = store.units.stand_key(record.stand)
     store.sessions.add(record, unit, stand, new.checked.session.block, digest)
+    store.pending.add((record.id,), received.at)
     keep(store, unit, record, new.calibration, received.at)
     doubted = doubts(store, new.checked, new.calibration)
     if doubted:
         question(store, way, record, " ".join(doubt.text for doubt in doubted))
     old = None if replaces is None else give_way(store, way.at, replaces, record)
-    gone, since = None, record.started_at
+    since = record.started_at
     if old is not None and old.unit == record.unit:
         since = min(since, old.started_at)
     elif old is not None:
-        gone = derive_again(store, way, old.unit, old.started_at, (old.id,))
-    derived = derive_again(store, way, record.unit, since, (record.id,))
+        derive_again(store, way, old.unit, old.started_at, (old.id,))
+    derive_again(store, way, record.unit, since, (record.id,))
     stored = store.sessions.get(record.id)
     details = {"unit": stored.unit, "verdict": stored.verdict.value, "revision": stored.revision}
     store.audit.write(received.at, received.who, "upload", stored.id, details)
-    return _receipt(stored, created=True, derived=derived, before=gone)
+    return _receipt(stored, created=True)
 
 
 def _unit(store: Store, received: Received, new: Calibrated) -> int:
@@ -230,10 +204,7 @@ def _record(received: Received, new: Calibrated) -> StoredSession:
     )
 
 
-def _receipt(
-    record: StoredSession, *, created: bool, derived: Derived | None = None, before: Derived | None = None
-) -> Receipt:
-    undiagnosed = tuple(id for one in (before, derived) if one is not None for id in one.undiagnosed)
+def _receipt(record: StoredSession, *, created: bool) -> Receipt:
     return Receipt(
         id=record.id,
         unit=record.unit,
@@ -243,5 +214,4 @@ def _receipt(
         is_reference=record.is_reference,
         reservations=record.reservations,
         state=record.state,
-        undiagnosed=undiagnosed,
     )

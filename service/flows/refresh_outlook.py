@@ -1,14 +1,15 @@
 """Step: a unit's outlook is worked out again, within the transaction that changed its history."""
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from hashlib import sha256
 
 from estimator.health.pooled import learn
 from service.judging.forecast import Past, forecast
-from service.judging.histories import histories, told_of_type
+from service.judging.histories import Histories, histories, told_of_type
 from service.measures import COVERAGE
+from service.records.outlook import UnitOutlook
 from service.storage.history_document import unpacked
 from service.storage.store import Store
 from service.words.motion import motions_in_words
@@ -21,14 +22,37 @@ TypeHistories = dict[tuple[str, str], tuple[bytes, ...]]
 """What a type's units tell, by kind of sensor and parameter."""
 
 
+@dataclass(frozen=True)
+class Sources:
+    """What an outlook is worked out from."""
+
+    past: Past
+    known: Histories
+    """The unit's own."""
+    told: TypeHistories
+    together: tuple[str, ...]
+    """What all sensors did together, in words."""
+
+
 def refresh_outlook(store: Store, serial: str) -> None:
     """Works out a unit's outlook again from the sessions since its last break; within the transaction that writes."""
+    unit, known = store.units.key(serial), known_of(store, serial)
+    store.outlooks.put_histories(unit, told_of_type(known))
+    store.outlooks.put(unit, worked_out(gathered(store, serial, known)))
+    store.pending_outlooks.settle(unit)
+
+
+def known_of(store: Store, serial: str) -> Histories:
+    """A unit's own histories since its last break."""
     unit = store.units.key(serial)
     since, _ = store.services.around(unit, END_OF_TIME)
-    known = histories(store.outlooks.changes(unit, since), store.outlooks.references(unit, since))
-    store.outlooks.put_histories(unit, told_of_type(known))
-    told = of_type(store, unit)
-    priors = {place: learn([one for row in rows for one in unpacked(row)]) for place, rows in told.items()}
+    return histories(store.outlooks.changes(unit, since), store.outlooks.references(unit, since))
+
+
+def gathered(store: Store, serial: str, known: Histories) -> Sources:
+    """Everything that a unit's outlook is worked out from; what the unit tells of its type is kept already."""
+    unit = store.units.key(serial)
+    since, _ = store.services.around(unit, END_OF_TIME)
     last, shown = store.outlooks.last_calibration(unit), store.outlooks.last_session(unit)
     past = Past(
         serial=serial,
@@ -38,8 +62,15 @@ def refresh_outlook(store: Store, serial: str) -> None:
         shown=None if shown is None else store.sessions.get(shown),
     )
     together = () if last is None else motions_in_words(store.sessions.motions(last[0]), COVERAGE)
-    outlook = replace(forecast(past, known, priors), rests_on=digest(told))
-    store.outlooks.put(unit, replace(outlook, together=tuple(line.text for line in together)))
+    return Sources(past, known, of_type(store, unit), tuple(line.text for line in together))
+
+
+def worked_out(sources: Sources) -> UnitOutlook:
+    """The numerical part, with no store at hand."""
+    told = sources.told
+    priors = {place: learn([one for row in rows for one in unpacked(row)]) for place, rows in told.items()}
+    outlook = forecast(sources.past, sources.known, priors)
+    return replace(outlook, rests_on=digest(told), together=sources.together)
 
 
 def of_type(store: Store, unit: int) -> TypeHistories:

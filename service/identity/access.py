@@ -77,6 +77,7 @@ DELETE {API}/tokens/{{id}}
 
 CREW = f"""
 GET /upload
+GET /sessions/{{id}}/outcome
 POST /upload
 POST /units/{{serial:path}}/services
 POST /units/{{serial:path}}/notes

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from service.records.diagnosis import DiagnosisState, DiagnosisSummary
 
-PENDING = "Still being found out"
+PENDING = "Still being examined"
 TONES = {
     DiagnosisState.NOTHING: "pass",
     DiagnosisState.NAMED: "conditional-fail",
@@ -25,5 +25,5 @@ class DiagnosisLine:
 
 
 def diagnosis_line(found: DiagnosisSummary | None) -> DiagnosisLine:
-    """What is known; None while it is still being found out."""
+    """What is known; None while it is still being examined."""
     return DiagnosisLine("none", PENDING) if found is None else DiagnosisLine(TONES[found.state], found.summary)

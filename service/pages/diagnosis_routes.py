@@ -6,7 +6,8 @@ from urllib.parse import quote
 from fastapi import APIRouter, Form, Path, Request
 from fastapi.responses import HTMLResponse, RedirectResponse
 
-from service.dependencies import DiagnoserOf, Now, Reading, SettingsOf, StorageOf
+from service.background.read_diagnosis import GLANCE
+from service.dependencies import Now, ReaderOf, Reading, SettingsOf, StorageOf
 from service.flows.accept_model import accept_model
 from service.flows.diagnose import diagnose
 from service.flows.recalibrate import recalibrate
@@ -21,9 +22,9 @@ router = APIRouter(include_in_schema=False)
 
 
 @router.get("/sessions/{id}/diagnosis")
-def show_diagnosis(request: Request, store: Reading, id: Key, diagnoser: DiagnoserOf) -> HTMLResponse:
+def show_diagnosis(request: Request, store: Reading, id: Key, reader: ReaderOf) -> HTMLResponse:
     """What the simulation gets wrong about the session."""
-    page = diagnosis_page(diagnosis_report(store, id, diagnoser.of(id)))
+    page = diagnosis_page(diagnosis_report(store, id, reader.read(id, GLANCE)))
     return render(request, "diagnosis.html", page)
 
 

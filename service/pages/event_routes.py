@@ -9,7 +9,6 @@ from fastapi.responses import RedirectResponse
 
 from service.dependencies import Now, ReceptionOf, StorageOf
 from service.flows.add_note import add_note
-from service.flows.receive import ask_again
 from service.flows.record_service import record_service
 from service.flows.set_stage import set_stage
 from service.flows.withdraw_note import withdraw_note
@@ -37,8 +36,8 @@ def add_service(
 ) -> RedirectResponse:
     """Records what was done to the unit."""
     new, k = NewService(kind, _utc(at, now), note, by, sensor), reception.coverage_factor
-    _, derived = record_service(reception.storage, serial, new, now, coverage_factor=k)
-    ask_again(reception, () if derived is None else derived.undiagnosed)
+    record_service(reception.storage, serial, new, now, coverage_factor=k)
+    reception.ring()
     return _unit(serial, "events")
 
 

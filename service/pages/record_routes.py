@@ -9,7 +9,7 @@ from service.dependencies import Now, ReceptionOf
 from service.flows.accept_session import accept_session
 from service.flows.choose_reference import choose_reference
 from service.flows.correct_session import correct_session
-from service.flows.receive import ask_again, deriving
+from service.flows.receive import deriving
 from service.flows.withdraw_service import withdraw_service
 from service.flows.withdraw_session import withdraw_session
 from service.pages.forms import SEE_OTHER, By, Key, Number, Why
@@ -21,16 +21,16 @@ router = APIRouter(include_in_schema=False)
 @router.post("/sessions/{id}/withdraw")
 def withdraw(id: Key, by: By, why: Why, reception: ReceptionOf, now: Now) -> RedirectResponse:
     """A session is taken back."""
-    _, derived = withdraw_session(reception.storage, deriving(reception, now), id, Step(by, now, why))
-    ask_again(reception, derived.undiagnosed)
+    withdraw_session(reception.storage, deriving(reception, now), id, Step(by, now, why))
+    reception.ring()
     return RedirectResponse(f"/sessions/{id}", SEE_OTHER)
 
 
 @router.post("/sessions/{id}/accept")
 def accept(id: Key, by: By, why: Why, reception: ReceptionOf, now: Now) -> RedirectResponse:
     """A session counts."""
-    _, derived = accept_session(reception.storage, deriving(reception, now), id, Step(by, now, why))
-    ask_again(reception, derived.undiagnosed)
+    accept_session(reception.storage, deriving(reception, now), id, Step(by, now, why))
+    reception.ring()
     return RedirectResponse(f"/sessions/{id}", SEE_OTHER)
 
 
@@ -43,14 +43,14 @@ def correct(id: Key, by: By, reception: ReceptionOf, now: Now) -> RedirectRespon
 @router.post("/sessions/{id}/reference")
 def choose(id: Key, by: By, why: Why, reception: ReceptionOf, now: Now) -> RedirectResponse:
     """A session is chosen as the reference of its epoch."""
-    _, derived = choose_reference(reception.storage, deriving(reception, now), id, Step(by, now, why))
-    ask_again(reception, derived.undiagnosed)
+    choose_reference(reception.storage, deriving(reception, now), id, Step(by, now, why))
+    reception.ring()
     return RedirectResponse(f"/sessions/{id}", SEE_OTHER)
 
 
 @router.post("/services/{id}/withdraw")
 def withdraw_break(id: Number, by: By, why: Why, reception: ReceptionOf, now: Now) -> RedirectResponse:
     """A service is taken back."""
-    service, derived = withdraw_service(reception.storage, deriving(reception, now), id, Step(by, now, why))
-    ask_again(reception, derived.undiagnosed)
+    service, _ = withdraw_service(reception.storage, deriving(reception, now), id, Step(by, now, why))
+    reception.ring()
     return RedirectResponse(f"/units/{quote(service.unit)}#events", SEE_OTHER)

@@ -10,12 +10,13 @@ from service.flows.correct_session import correction_of
 from service.flows.receive import receive_all
 from service.pages.fleet import fleet_page
 from service.pages.fleet_view import FleetAsked, FleetView
+from service.pages.follow import SOONEST, follow_seconds
 from service.pages.forms import Key
 from service.pages.received import FormFiles
 from service.pages.render import render
 from service.pages.session import session_page
 from service.pages.unit import unit_page
-from service.pages.upload import outcomes_of, upload_page
+from service.pages.upload import outcome_of, outcomes_of, upload_page
 from service.records.state import RecordState
 from service.storage.queries.flags import FlagQuery
 from service.views.found_and_left import found_and_left
@@ -78,37 +79,48 @@ def show_unit(
             notes=store.notes.of_unit(serial),
             pair=found_and_left(store, report.unit_type, report.sessions, report.services, settings.coverage_factor),
             outlook=own_outlook(store, serial, now),
+            follow=SOONEST if report.summary.is_undated and settings.diagnosis_workers else None,
         ),
     )
 
 
 @router.get("/sessions/{id}")
-def show_session(request: Request, store: Reading, storage: StorageOf, id: Key) -> HTMLResponse:
+def show_session(
+    request: Request, store: Reading, storage: StorageOf, settings: SettingsOf, now: Now, id: Key
+) -> HTMLResponse:
     """One session with its parameters and residuals."""
-    report = session_report(store, id)
+    report, made = session_report(store, id), store.diagnoses.summary(id)
     questioned = report.session.state is RecordState.QUESTIONED
     page = session_page(
         report,
-        store.diagnoses.summary(id),
+        made,
         traceability_of(store, report.session),
         correction=correction_of(storage, id) if questioned else "",
+        follow=None if made else follow_seconds(report.session.uploaded_at, now, settings.diagnosis_workers),
     )
     return render(request, "session.html", page)
+
+
+@router.get("/sessions/{id}/outcome")
+def show_outcome(request: Request, store: Reading, settings: SettingsOf, id: Key) -> HTMLResponse:
+    """What became of an upload by now, as the card of the upload page."""
+    outcome = outcome_of(store.sessions.get(id), store.diagnoses.summary(id))
+    return render(request, "outcome.html", upload_page((outcome,), settings))
 
 
 @router.get("/upload")
 def show_upload(request: Request, settings: SettingsOf) -> HTMLResponse:
     """The form."""
-    return render(request, "upload.html", upload_page((), settings.max_upload_bytes))
+    return render(request, "upload.html", upload_page((), settings))
 
 
 @router.post("/upload")
 def take_uploads(
     request: Request, files: FormFiles, reception: ReceptionOf, settings: SettingsOf, now: Now
 ) -> HTMLResponse:
-    """The form with verdict and diagnosis of each file, or what is wrong with it; 422 when a file cannot be used."""
+    """The form with the verdict of each file, or what is wrong with it; 422 when a file cannot be used."""
     found = receive_all(reception, files, now)
     with reception.storage.database.reading() as store:
         outcomes = outcomes_of(files, found, store.diagnoses.summary)
-    page = upload_page(outcomes, settings.max_upload_bytes)
+    page = upload_page(outcomes, settings)
     return render(request, "upload.html", page, 422 if page.refused else 200)

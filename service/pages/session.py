@@ -101,6 +101,8 @@ class SessionPage:
     """What a corrected file would hold otherwise; empty where it is not questioned, or nothing is known."""
     traceability: Traceability | None
     """What its numbers hang on."""
+    follow: int | None
+    """Seconds after which the page looks again whether it is diagnosed; None where it is."""
 
 
 def session_page(
@@ -109,6 +111,7 @@ def session_page(
     traceability: Traceability | None = None,
     *,
     correction: str = "",
+    follow: int | None = None,
 ) -> SessionPage:
     """The page of a session."""
     calibration, decisions = report.calibration, report.decisions
@@ -139,6 +142,7 @@ def session_page(
         states=tuple(state_in_words(line) for line in reversed(report.states)),
         correction=correction,
         traceability=traceability,
+        follow=follow,
     )
 
 

@@ -91,6 +91,8 @@ class UnitPage:
     """None before a session was judged."""
     raw: bool
     """Whether what the whole block did is left in."""
+    follow: int | None
+    """Seconds after which the page looks again whether its dates are worked out; None where they are."""
 
 
 def unit_page(
@@ -103,6 +105,7 @@ def unit_page(
     notes: Sequence[Note] = (),
     pair: FoundAndLeft | None = None,
     outlook: UnitOutlook | None = None,
+    follow: int | None = None,
 ) -> UnitPage:
     """The page of a unit with its history, flags and notes, as found and as left, and when it must come back."""
     trends = () if outlook is None or raw else outlook.trends
@@ -122,6 +125,7 @@ def unit_page(
         kinds=tuple(KINDS.items()),
         next=None if outlook is None else next_calibration(outlook, now),
         raw=raw,
+        follow=follow,
     )
 
 

@@ -1,7 +1,7 @@
 """The upload page: what became of each file, or what is wrong with it and what to do."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 from estimator.errors import Problem
 from service.errors import RefusedError
@@ -9,7 +9,8 @@ from service.pages.diagnosis_line import DiagnosisLine, diagnosis_line
 from service.records.diagnosis import DiagnosisSummary
 from service.records.received import SentFile
 from service.records.reservation import Reservations
-from service.records.session import Receipt
+from service.records.session import Receipt, StoredSession
+from service.settings import Settings
 from service.words.conditions import Condition, condition_of
 
 
@@ -21,7 +22,9 @@ class Outcome:
     receipt: Receipt | None = None
     problems: tuple[Problem, ...] = ()
     diagnosis: DiagnosisLine | None = None
-    """None of a refused file, and where the diagnosis is made after the answer."""
+    """None of a refused file."""
+    pending: bool = False
+    """Whether the diagnosis is still being made."""
 
     @property
     def condition(self) -> Condition:
@@ -42,6 +45,8 @@ class UploadPage:
 
     outcomes: tuple[Outcome, ...]
     limit: str
+    follows: bool
+    """Whether cards look again whether their diagnosis is made."""
 
     @property
     def refused(self) -> int:
@@ -62,9 +67,16 @@ def _outcome(filename: str, one: Receipt | RefusedError, summary: Callable[[str]
     if isinstance(one, RefusedError):
         return Outcome(filename, problems=one.problems)
     made = summary(one.id)
-    return Outcome(filename, one, diagnosis=None if made is None else diagnosis_line(made))
+    return Outcome(filename, one, diagnosis=diagnosis_line(made), pending=made is None)
 
 
-def upload_page(outcomes: Sequence[Outcome], max_bytes: int) -> UploadPage:
+def outcome_of(session: StoredSession, made: DiagnosisSummary | None) -> Outcome:
+    """What became of a file that was uploaded a while ago."""
+    known = {f.name: getattr(session, f.name) for f in fields(Receipt) if f.name != "created"}
+    return Outcome(session.filename, Receipt(created=True, **known), (), diagnosis_line(made), made is None)
+
+
+def upload_page(outcomes: Sequence[Outcome], settings: Settings) -> UploadPage:
     """The page before (no outcomes) or after an upload."""
-    return UploadPage(tuple(outcomes), f"{max_bytes / 2**20:g} MiB")
+    follows = settings.diagnosis_workers > 0
+    return UploadPage(tuple(outcomes), f"{settings.max_upload_bytes / 2**20:g} MiB", follows)

@@ -13,6 +13,8 @@ class Doubt(StrEnum):
     """The file says something else than what was done."""
     NOT_CHECKED = "not-checked"
     """No causes could be looked for."""
+    PENDING = "pending"
+    """Causes are still being looked for: told to programs, which read a list; people are told in the verdict."""
     CAUSE = "cause"
     """A named cause is large beside the tolerance."""
     OTHER_MODEL = "other-model"

@@ -82,8 +82,6 @@ class Receipt:
     reservations: Reservations = None
     """What the verdict is said with."""
     state: RecordState = RecordState.ACCEPTED
-    undiagnosed: tuple[str, ...] = ()
-    """Other sessions whose diagnosis is made again, because it looked at records that have changed."""
 
 
 @dataclass(frozen=True)

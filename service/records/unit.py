@@ -74,6 +74,8 @@ class UnitSummary:
     """What the verdict is said with."""
     customer: Customer = NOBODY
     """For whom it is calibrated."""
+    is_undated: bool = False
+    """Whether ``due`` and its outlook are still to be worked out with its latest records."""
 
 
 @dataclass(frozen=True)

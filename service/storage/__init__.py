@@ -1,9 +1,12 @@
 """What is kept: the database (rows) and the files (uploaded bytes)."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
+from service.settings import Settings
 from service.storage.database import Database
-from service.storage.files import Files
+from service.storage.files import Files, ignore
+from service.storage.waits import Waits
 
 
 @dataclass(frozen=True)
@@ -14,4 +17,12 @@ class Storage:
     files: Files
 
 
-__all__ = ["Database", "Files", "Storage"]
+def open_storage(settings: Settings, count: Callable[[str], None] = ignore) -> Storage:
+    """The stores that the settings name; ``count`` is told of faults of files."""
+    waits = Waits(
+        settings.database_lock_seconds, settings.database_statement_seconds, settings.database_connect_seconds
+    )
+    return Storage(Database(settings.database, waits), Files(settings.files, count))
+
+
+__all__ = ["Database", "Files", "Storage", "open_storage"]

@@ -29,7 +29,7 @@ def file_hash(path: Path) -> str:
         return file_digest(file, "sha256").hexdigest()
 
 
-def _ignore(_: str) -> None:
+def ignore(_: str) -> None:
     """Nobody counts."""
 
 
@@ -38,7 +38,7 @@ class Files:
     """A folder of uploads."""
 
     folder: Path
-    count: Callable[[str], None] = _ignore
+    count: Callable[[str], None] = ignore
     """Is told of every file that is "missing", "damaged" or "put back"."""
 
     def path(self, digest: str) -> Path:

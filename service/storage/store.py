@@ -21,6 +21,8 @@ from service.storage.queries.models import Models
 from service.storage.queries.notes import Notes
 from service.storage.queries.notices import Notices
 from service.storage.queries.outlooks import Outlooks
+from service.storage.queries.pending import PendingDiagnoses
+from service.storage.queries.pending_outlooks import PendingOutlooks
 from service.storage.queries.services import Services
 from service.storage.queries.sessions import Sessions
 from service.storage.queries.sign_ins import SignIns
@@ -79,6 +81,16 @@ class Store:
     def diagnoses(self) -> Diagnoses:
         """What the simulation gets wrong."""
         return Diagnoses(self._session)
+
+    @cached_property
+    def pending(self) -> PendingDiagnoses:
+        """Diagnoses that are still to be made."""
+        return PendingDiagnoses(self._session)
+
+    @cached_property
+    def pending_outlooks(self) -> PendingOutlooks:
+        """Outlooks that are to be worked out again."""
+        return PendingOutlooks(self._session)
 
     @cached_property
     def models(self) -> Models:

@@ -8,13 +8,13 @@ unit_types ──< tolerance_revisions          stands ──< stand_certificate
            ├──< flags ──┐                     │
            ├──< notices ┴──< deliveries >── webhooks
            ├──1 conditions                    │
-           ├──1 outlooks, ──< histories       │
+           ├──1 outlooks, pending_outlooks, ──< histories
            └──< sessions >────────────────────┘
                    ├──< calibrations          refusals   what was turned away
                    ├──< parameters            audit      who did what when, append-only
                    ├──< decisions
                    ├──< common_motions
-                   ├──1 diagnoses
+                   ├──1 diagnoses, pending_diagnoses
                    ├──< reference_choices     record_states   what became of sessions and services, append-only
                    ├──< certificates ──< certificate_signatures, certificate_files   papers issued, append-only
                    └──< model_revisions       causes that engineers accepted, numbered through

@@ -31,11 +31,12 @@ def usable(store: Store, serial: str, now: datetime) -> Usable:
     flags = store.flags.open_of(store.units.key(serial))
     session, since = _latest_judged(report, now), _last_service(report, now)
     against = tuple(_against(report, session, flags, now))
+    undated = (words.DATES_PENDING,) if report.summary.is_undated else ()
     return Usable(
         usable=not against,
         why=against[0] if against else words.on(words.YES, _at(session), due=_day(report.summary.due)),
         reasons=against,
-        reservations=(*_reservations(store, session, flags), *_waiting(report, session)),
+        reservations=(*_reservations(store, session, flags), *_waiting(report, session), *undated),
         until=report.summary.due,
         verdict=None if session is None else session.verdict,
         session=None if session is None else session.id,
@@ -79,7 +80,7 @@ def _against(
     if due is not None and due < now:
         yield words.OVERDUE.format(due=day_of(due))
     elif due is None and session is not None and session.verdict in FIT:
-        yield words.NO_DUE
+        yield words.DATES_PENDING if report.summary.is_undated else words.NO_DUE
 
 
 def _nothing_judged(report: UnitReport, now: datetime) -> str:

@@ -108,6 +108,15 @@ def fault_of_the_program(session: str) -> str:
     )
 
 
+def never_ended(session: str) -> str:
+    """That the program did not outlive the diagnosis, and what holds all the same."""
+    return (
+        "The program did not outlive this diagnosis, several times: it took too long or too much memory. The session, "
+        "its calibration and its verdict are stored and hold, and the next version of the program diagnoses it again. "
+        f"The log says when, under session {session}: send that to those who maintain the program."
+    )
+
+
 def headline(answer: Answer) -> str:
     """The first cause or the choice that cannot be made; without one what the diagnosis came to."""
     if answer.findings:

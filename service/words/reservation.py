@@ -21,6 +21,8 @@ REPORT = "see what its diagnosis says"
 ADVICE = {"record": CORRECT, "stand": STAND, "fixture": FIXTURE}
 """By what a cause is of; of a sensor, a session is repeated first."""
 TOO_FEW = "it was not checked for causes, because it has too few positions"
+LOOKING = "causes are still being looked for"
+AGAIN = "ask again in some seconds"
 FAILED = "it was not checked for causes"
 
 

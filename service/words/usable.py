@@ -23,6 +23,7 @@ FUTURE = "Its session is dated {day}, which is still to come: put the date right
 FLAGGED = "Flag {id} is open: {summary}"
 CLOSE = "Within tolerance, but by less than the uncertainty of the measurement: {reason}"
 WAITS = "The session of {day} waits for an engineer and does not count yet: accept it, correct it or withdraw it."
+DATES_PENDING = "Its dates are being worked out with its latest records: ask again in some seconds."
 NOT_DIAGNOSED = "The session of {day} is not diagnosed yet: ask again in a minute."
 
 

@@ -10,10 +10,11 @@ from service.records.unit import UnitSummary
 from service.words.advice import left_open
 from service.words.conditions import Condition, condition_of
 from service.words.names import PARAMETER_NAMES
+from service.words.reservation import LOOKING
 
 FIRST_SESSION = "First session of this unit: it is now the reference that later sessions are judged against."
 NEW_EPOCH = "First session after a service: it is now the reference that later sessions are judged against."
-STILL_LOOKING = "; causes are still being looked for"
+STILL_LOOKING = f"; {LOOKING}"
 MOST_TOLD = 2
 """Reservations that a verdict is said with before the rest are counted: more are no longer read in one breath."""
 NOTHING_JUDGED = "Nothing could be judged: no parameter of this session has a tolerance."

@@ -71,9 +71,9 @@ def files_of(case: Case) -> tuple[bytes, ...]:
 
 
 def held(holding: Holding, what: tuple[str, tuple[int, ...], str | None]) -> tuple[httpx.Client, str]:
-    """A service that holds a case, and the id of its session."""
+    """A service that holds a case with its diagnosis, and the id of its session."""
     files = files_of(drawn(what))
-    return holding(*files), session_id(files[-1])
+    return holding(*files, diagnosed=True), session_id(files[-1])
 
 
 def diagnosis_of(client: httpx.Client, id: str) -> dict[str, Any]:

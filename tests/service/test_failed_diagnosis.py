@@ -8,17 +8,14 @@ import json
 import zlib
 from collections.abc import Iterator
 from datetime import UTC, datetime
-from threading import Event
 
 import httpx
 import pytest
 from sqlalchemy import text
 
 from service.app import create_app
-from service.background.diagnose_pending import diagnose_pending
-from service.flows.diagnose import InProgress, diagnose
+from service.flows.diagnose import diagnose
 from service.flows.receive import upload
-from service.metrics import Metrics
 from service.records.diagnosis import DiagnosisState
 from service.settings import Settings
 from service.storage import Storage
@@ -85,8 +82,10 @@ def test_this_version_fails_once(written: io.StringIO, spoilt: Storage) -> None:
     assert len([line for line in lines(written) if line["event"] == "diagnosis failed"]) == 1
 
 
-def test_one_failure_does_not_keep_the_next_from_its_diagnosis(spoilt: Storage) -> None:
-    diagnose_pending(spoilt, lambda: NOW, Metrics(), InProgress(), Event())
+def test_one_failure_does_not_keep_the_next_from_its_diagnosis(spoilt: Storage, settings: Settings) -> None:
+    with http_client(create_app(settings.model_copy(update={"diagnosis_workers": 1}))) as client:
+        for content in (LATER, REFERENCE):
+            client.get(f"/api/v1/sessions/{session_id(content)}/diagnosis")
     with spoilt.database.reading() as store:
         states = [store.diagnoses.summary(session_id(content)) for content in (REFERENCE, LATER)]
     assert [state and state.state for state in states] == [DiagnosisState.NAMED, DiagnosisState.FAILED]

@@ -21,7 +21,7 @@ API = "/api/v1"
 @pytest.fixture
 def jumped(holding: Holding) -> httpx.Client:
     """A fit unit whose A2 jumped by as much as is allowed."""
-    return holding(*JUMPED)
+    return holding(*JUMPED, diagnosed=True)
 
 
 def said(client: httpx.Client) -> str:
@@ -101,7 +101,7 @@ def test_units_with_a_reservation_are_counted_and_found(jumped: httpx.Client) ->
 
 @one_engine
 def test_a_plain_verdict_is_said_plainly(holding: Holding) -> None:
-    client = holding(*SLIGHTLY)
+    client = holding(*SLIGHTLY, diagnosed=True)
     assert client.get(f"{API}/units/BA-017").json()["summary"]["said"] == "Fit"
     assert client.get(f"{API}/fleet").json()["reserved"]["pass"] == 0
     assert "No unit matches" in client.get("/?condition=reserved", headers=HTML).text

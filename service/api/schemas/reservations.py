@@ -1,11 +1,17 @@
 """A verdict with what it is said with."""
 
-from pydantic import BaseModel, ConfigDict, Field, computed_field
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field, computed_field, field_validator
 
 from service.records.decision import Verdict
 from service.records.reservation import Doubt, Reservation
 from service.words.conditions import condition_of
+from service.words.reservation import AGAIN, LOOKING
 from service.words.verdict import verdict_in_words
+
+STILL_LOOKING = Reservation(Doubt.PENDING, LOOKING, AGAIN)
+"""Of a verdict whose session is not diagnosed yet."""
 
 
 class ReservationSchema(BaseModel):
@@ -14,9 +20,10 @@ class ReservationSchema(BaseModel):
     model_config = ConfigDict(from_attributes=True)
 
     kind: Doubt = Field(
-        description="`record`: the file is wrong. `not-checked`: no causes could be looked for. `cause`: a named cause "
-        "takes more than a third of a tolerance. `other-model`: the verdict is another under a model that the readings "
-        "leave standing. `unexplained`: so does structure that no known cause explains. `stated-errors`: the readings "
+        description="`record`: the file is wrong. `not-checked`: no causes could be looked for. `pending`: they are "
+        "still being looked for; ask again. `cause`: a named cause takes more than a third of a tolerance. "
+        "`other-model`: the verdict is another under a model that the readings leave standing. "
+        "`unexplained`: so does structure that no known cause explains. `stated-errors`: the readings "
         "contradict the standard errors of the file."
     )
     text: str = Field(description="What is the matter, as a clause that stands after `but`.")
@@ -35,14 +42,20 @@ class SaidVerdict(BaseModel):
 
     verdict: Verdict | None
     is_reference: bool
-    reservations: list[ReservationSchema] | None = Field(
-        description="What speaks against taking the verdict as it stands; null while causes are still being looked for."
+    reservations: list[ReservationSchema] = Field(
+        description="What speaks against taking the verdict as it stands; one of kind `pending` while causes are still "
+        "being looked for. Empty where the verdict is plain."
     )
+
+    @field_validator("reservations", mode="before")
+    @classmethod
+    def _told(cls, known: Any) -> Any:
+        return (STILL_LOOKING,) if known is None else known
 
     @computed_field(description="The verdict in words, in one breath with its reservations.")  # type: ignore[prop-decorator]
     @property
     def said(self) -> str:
         """Made of the other fields."""
-        known = self.reservations
-        plain = None if known is None else tuple(Reservation(r.kind, r.text, r.advice) for r in known)
+        known = tuple(Reservation(r.kind, r.text, r.advice) for r in self.reservations)
+        plain = None if Doubt.PENDING in (one.kind for one in known) else known
         return verdict_in_words(condition_of(self.verdict, is_reference=self.is_reference), plain)

@@ -34,8 +34,31 @@ function failed(card, message) {
 function show(card, request) {
   const answer = new DOMParser().parseFromString(request.responseText, "text/html");
   const cards = answer.querySelectorAll("#outcomes > .outcome");
-  if (cards.length) card.replaceWith(...cards);
+  if (cards.length) {
+    card.replaceWith(...cards);
+    cards.forEach((one) => follow(one));
+  }
   else failed(card, answer.querySelector("#problem")?.textContent.trim() ?? `The server answered ${request.status}.`);
+}
+
+// A card whose diagnosis is still being made looks again, ever more slowly, until it is.
+function follow(card, pause = 1000) {
+  if (!card.dataset.follow) return;
+  setTimeout(async () => {
+    let next = card;
+    try {
+      const answer = await fetch(card.dataset.follow, { headers: { Accept: "text/html" } });
+      const found = new DOMParser().parseFromString(await answer.text(), "text/html").querySelector(".outcome");
+      if (answer.ok && found) {
+        if (found.textContent !== card.textContent) card.replaceWith(found);
+        next = found.isConnected ? found : card;
+        if (!found.dataset.follow) return;
+      }
+    } catch {
+      // the server does not answer just now
+    }
+    follow(next, Math.min(1.5 * pause, 60000));
+  }, pause);
 }
 
 function send(file, card) {
@@ -69,6 +92,7 @@ function take(files) {
   work();
 }
 
+document.querySelectorAll(".outcome[data-follow]").forEach((card) => follow(card));
 form.addEventListener("submit", (event) => {
   event.preventDefault();
   take([...input.files]);

@@ -15,6 +15,7 @@ from service.records.paper import Customer
 from service.records.reservation import Reservations
 from service.records.unit import FleetCondition, UnitSummary, UnitType
 from service.storage.outlook_tables import OutlookRow
+from service.storage.pending_tables import PendingOutlookRow
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
 from service.storage.queries.unit_types import unit_type_of
@@ -135,13 +136,16 @@ class Fleet(Queries):
 def _summaries(*, measured: bool = True) -> Summaries:
     """Units with their latest accepted session; those without one too where they need not be measured."""
     return (
-        select(UnitRow, UnitTypeRow.name, ConditionRow, SessionRow, DiagnosisRow, OutlookRow.due)
+        select(
+            UnitRow, UnitTypeRow.name, ConditionRow, SessionRow, DiagnosisRow, OutlookRow.due, PendingOutlookRow.ticket
+        )
         .options(defer(DiagnosisRow.document))
         .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
         .join(ConditionRow, ConditionRow.unit_id == UnitRow.id, isouter=not measured)
         .join(SessionRow, SessionRow.id == ConditionRow.last_session, isouter=not measured)
         .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
         .outerjoin(OutlookRow, OutlookRow.unit_id == UnitRow.id)
+        .outerjoin(PendingOutlookRow, PendingOutlookRow.unit_id == UnitRow.id)
     )
 
 
@@ -168,6 +172,7 @@ def _summary(row: Sequence[Any]) -> UnitSummary:
         lot=unit.lot,
         reservations=_reservations(row[4]),
         customer=Customer(unit.customer, unit.customer_address),
+        is_undated=row[6] is not None,
     )
 
 

@@ -12,6 +12,7 @@ from tests.service.diagnosed import (
     TEMPERATURE,
     TWO_AT_ONCE,
     UNEXPLAINED,
+    diagnosis_of,
     drawn,
     files_of,
     held,
@@ -48,7 +49,7 @@ def test_a_cause_that_an_unknown_one_may_be_raises_its_flag_with_the_doubt(holdi
 
 def test_what_all_sensors_show_is_a_matter_of_stand_or_fixture(holding: Holding) -> None:
     content = json.dumps(swaying_stand()).encode()
-    (flag,) = holding(content).get("/api/v1/flags").json()["flags"]
+    (flag,) = holding(content, diagnosed=True).get("/api/v1/flags").json()["flags"]
     assert (flag["matter"], flag["place"]) == ("unexplained", "")
     assert flag["summary"].startswith("Something common to all sensors, of the stand or fixture")
 
@@ -67,10 +68,10 @@ def test_a_fault_of_the_stand_raises_a_flag_on_the_stand(holding: Holding) -> No
 
 def test_a_recording_in_which_no_causes_are_looked_for_speaks_for_resolving_none(holding: Holding) -> None:
     document = warm(2, "2026-03-05T08:00:00Z")
-    client = holding(json.dumps(document).encode())
+    client = holding(json.dumps(document).encode(), diagnosed=True)
     own = {"unit": document["unit"], "sensors": document["sensors"], "started_at": "2026-09-01T09:00:00Z"}
     recording = recording_document(m=len(document["sensors"])) | own
-    send(client, recording)
+    diagnosis_of(client, send(client, recording))
     (unit,) = client.get("/api/v1/units").json()["units"]
     assert unit["last_at"].startswith("2026-09-01")
     [flag] = [flag for flag in client.get("/api/v1/flags").json()["flags"] if flag["matter"] == "cause"]
@@ -87,5 +88,6 @@ def test_an_accepted_cause_raises_nothing_any_more(holding: Holding, accept: boo
         client.post(f"/api/v1/sessions/{first}/diagnosis/accept", json=new).raise_for_status()
     session = json.loads(files_of(drawn(TEMPERATURE))[-1])
     later = send(client, session | {"started_at": "2026-11-01T09:00:00Z", "notes": "measured again"})
+    diagnosis_of(client, later)
     states = [state for matter, _, state in flagged(client, later) if matter == "cause"]
     assert states == (["resolved"] if accept else ["raised", "resolved"])

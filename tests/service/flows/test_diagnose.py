@@ -4,19 +4,16 @@ import json
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
-from threading import Event
 
 import pytest
 from sqlalchemy import text
 
-from service.background.diagnose_pending import diagnose_pending
 from service.errors import ConflictError, NotFoundError, RefusedError
 from service.flows.accept_model import accept_model
-from service.flows.diagnose import QUICK_BYTES, InProgress, diagnose, diagnose_now_or_later
+from service.flows.diagnose import diagnose
 from service.flows.recalibrate import recalibrate
 from service.flows.receive import upload
 from service.flows.withdraw_model import withdraw_model
-from service.metrics import Metrics
 from service.records.diagnosis import DiagnosisState
 from service.records.model import ModelRevision, NewModel, Scope
 from service.storage import Storage
@@ -80,31 +77,6 @@ def test_only_sessions_of_the_same_sensors_are_a_history(storage: Storage, prefi
 def test_a_session_that_does_not_exist_is_not_found(storage: Storage) -> None:
     with pytest.raises(NotFoundError):
         diagnose(storage, "none", NOW)
-
-
-def test_what_a_crash_interrupted_is_diagnosed_at_the_next_start(storage: Storage) -> None:
-    ids = [stored(storage, notes=str(k)) for k in range(2)]
-    diagnose_pending(storage, lambda: NOW, Metrics(), InProgress(), Event())
-    with storage.database.reading() as store:
-        assert all(store.diagnoses.exists(id) for id in ids)
-        assert store.sessions.without_diagnosis("", 10, "") == ()
-
-
-def test_a_large_session_is_left_for_later(storage: Storage) -> None:
-    content = json.dumps(WARM, indent=100).encode()
-    assert len(content) > QUICK_BYTES
-    id = upload(storage, content, "large.json", NOW).id
-    later: list[str] = []
-    assert diagnose_now_or_later(storage, id, NOW, later.append) is None
-    assert later == [id]
-
-
-def test_one_session_is_not_diagnosed_twice_at_once() -> None:
-    progress = InProgress()
-    with progress.claim("a") as first, progress.claim("a") as second:
-        assert (first, second) == (True, False)
-    with progress.claim("a") as again:
-        assert again
 
 
 def test_the_next_session_is_calibrated_with_the_accepted_cause(warm: Storage) -> None:

@@ -25,7 +25,7 @@ from tests.service.sessions import session_bytes
 @pytest.fixture
 def reception(storage: Storage) -> Reception:
     """Diagnoses are left for later."""
-    return Reception(storage, 2.0, Metrics(), lambda id: None)
+    return Reception(storage, 2.0, Metrics(), lambda: None)
 
 
 Slip = Callable[[dict[str, Any]], None]

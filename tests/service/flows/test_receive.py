@@ -10,7 +10,7 @@ import pytest
 from sqlalchemy import Connection, event, func, select, text
 
 from service.errors import AwayError, NoSpaceError, RefusedError
-from service.flows.receive import FEW, Reception, receive, receive_all, upload
+from service.flows.receive import Reception, receive, receive_all, upload
 from service.metrics import Metrics
 from service.records.received import SentFile
 from service.records.session import Receipt
@@ -145,25 +145,20 @@ def test_a_reference_that_shows_everything_says_no_more(storage: Storage) -> Non
     assert upload(storage, session_bytes(), "a.json", NOW).reason.endswith("judged against.")
 
 
-def reception(storage: Storage, later: list[str]) -> Reception:
-    """What the service receives with; ``later`` collects what is to be diagnosed after the answer."""
-    return Reception(storage, 2.0, Metrics(), later.append)
+def reception(storage: Storage, rung: list[None]) -> Reception:
+    """What the service receives with; ``rung`` collects how often it rang for diagnoses."""
+    return Reception(storage, 2.0, Metrics(), lambda: rung.append(None))
 
 
-def test_a_received_file_is_stored_diagnosed_and_counted(storage: Storage) -> None:
-    own = reception(storage, [])
+def test_a_received_file_is_stored_and_counted_and_its_diagnosis_asked_for(storage: Storage) -> None:
+    rung: list[None] = []
+    own = reception(storage, rung)
     receipt = receive(own, SentFile("a.json", session_bytes()), NOW)
     with storage.database.reading() as store:
-        assert store.diagnoses.exists(receipt.id)
+        assert store.pending.waiting(NOW, 10) == (receipt.id,)
+        assert not store.diagnoses.exists(receipt.id)
+    assert rung == [None]
     assert b'imu_health_uploads_total{result="undecidable"} 1.0' in own.metrics.text()
-
-
-def test_the_diagnoses_of_many_files_are_left_for_later(storage: Storage) -> None:
-    later: list[str] = []
-    files = [SentFile("a.json", session_bytes(seed=seed)) for seed in range(FEW + 1)]
-    received = receive_all(reception(storage, later), files, NOW)
-    assert later == [one.id for one in received if isinstance(one, Receipt)]
-    assert len(later) == FEW + 1
 
 
 def test_a_file_that_cannot_be_used_keeps_no_other_out(storage: Storage) -> None:

@@ -111,7 +111,7 @@ def test_a_form_of_another_site_changes_nothing(holding: Holding, path: str) -> 
 
 def test_the_page_asks_few_questions_and_stays_light(settings_holding: SettingsHolding) -> None:
     files = files_of(drawn(TEMPERATURE))
-    app = create_app(settings_holding(*files))
+    app = create_app(settings_holding(*files, diagnosed=True))
     with http_client(app) as client, counted(app) as statements:
         assert len(page(client, session_id(files[-1])).encode()) < 500_000
     assert 0 < len(statements) <= MOST_QUERIES
@@ -133,7 +133,7 @@ def test_an_accepted_cause_can_be_withdrawn(holding: Holding) -> None:
 
 def test_a_cause_that_this_version_does_not_know_is_shown_by_its_identifier(settings_holding: SettingsHolding) -> None:
     files = files_of(drawn(TEMPERATURE))
-    settings, id = settings_holding(*files), session_id(files[-1])
+    settings, id = settings_holding(*files, diagnosed=True), session_id(files[-1])
     with stores(settings) as storage, http_client(create_app(settings)) as client:
         page(client, id)
         rename_cause(storage, id, "bias-temperature", "bias-hum")

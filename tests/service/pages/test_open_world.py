@@ -70,4 +70,7 @@ def test_the_answer_to_an_upload_says_it_too(holding: Holding) -> None:
     file = ("boast.json", json.dumps(boasting()).encode())
     client = holding()
     card = client.post("/upload", files={"files": file}, headers=HTML | {"Origin": str(client.base_url)}).text
-    assert SMALL in card
+    assert "Still being examined" in card
+    id = session_id(file[1])
+    diagnosis_of(client, id)
+    assert SMALL in client.get(f"/sessions/{id}/outcome", headers=HTML).text

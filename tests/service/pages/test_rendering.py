@@ -8,6 +8,7 @@ from estimator.errors import Problem
 from service.pages.render import TEMPLATES, embed, render
 from service.pages.session import session_page
 from service.pages.upload import Outcome, upload_page
+from service.settings import Settings
 from tests.service.pages.records import session_report
 
 
@@ -29,7 +30,7 @@ def test_what_a_file_says_is_text_never_markup() -> None:
 
 def test_problems_name_field_row_and_what_to_do() -> None:
     outcome = Outcome("bad.json", None, (Problem("table.A3", "is NaN; measure again", 7),))
-    page = bytes(render(request_for("/upload"), "upload.html", upload_page([outcome], 2**20)).body).decode()
+    page = bytes(render(request_for("/upload"), "upload.html", upload_page([outcome], Settings())).body).decode()
     row = re.search(r"<tr><td><code>(.*?)</code></td><td[^>]*>(.*?)</td><td>(.*?)</td>", page)
     assert row is not None
     assert row.groups() == ("table.A3", "7", "is NaN; measure again")

@@ -1,0 +1,145 @@
+"""A process of its own that makes diagnoses and outlooks: numerical work in threads stands in the requests' way.
+
+It is forked from one that holds nothing but the loaded program (`forkserver`), so that it has no connection to the
+database, no lock and no file of the service's. It ends with the service: it reads the end of its pipe.
+"""
+
+import multiprocessing
+import signal
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from datetime import datetime
+from enum import StrEnum
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
+
+from estimator.errors import SessionError
+from service.background.guard import FAULTS
+from service.errors import ServiceError
+from service.flows.diagnose import diagnose
+from service.flows.refresh_beside import refresh_beside
+from service.ingest import limits
+from service.log import log, write_log
+from service.settings import Settings
+from service.storage import Storage, open_storage
+from service.storage.faults import DATABASE_FAULTS
+
+LOOK_EVERY = 0.25
+"""Seconds between two looks whether the service is stopping while a diagnosis is made."""
+LONGEST = 600
+"""Seconds by the clock that a diagnosis may take; then its process is ended. The largest that is allowed takes tens."""
+ANSWERS = multiprocessing.get_context("forkserver")
+"""How processes are started."""
+
+
+Still = Callable[[], bool]
+"""Whether the service goes on; asked now and then while something is made."""
+
+
+class DiedError(ServiceError):
+    """The process ended before it answered."""
+
+
+class StoppingError(ServiceError):
+    """The service stops: the process was ended at its work."""
+
+
+class Job(StrEnum):
+    """What is made."""
+
+    DIAGNOSIS = "diagnosis"
+    """Of a session."""
+    OUTLOOK = "outlook"
+    """Of a unit."""
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why it is not made."""
+
+    fault: str
+    reason: str
+
+
+class Helper:
+    """A process that makes diagnoses one after another; another one takes its place when it died."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self._process: BaseProcess | None = None
+        self._pipe: Connection | None = None
+
+    def start(self) -> None:
+        """Starts it where it is not there."""
+        if self._process is not None and self._process.is_alive():
+            return
+        self.end()
+        ANSWERS.set_forkserver_preload([__name__])
+        ours, theirs = ANSWERS.Pipe()
+        self._process = ANSWERS.Process(target=work, args=(theirs, self._settings), name="diagnoses", daemon=True)
+        self._process.start()
+        theirs.close()
+        self._pipe = ours
+
+    def diagnose(self, id: str, now: datetime, still: Still) -> Failure | None:
+        """Makes and stores a diagnosis, while ``still`` says to go on; DiedError where its process ended before."""
+        return self._answer(Job.DIAGNOSIS, id, now, still)
+
+    def refresh(self, serial: str, now: datetime, still: Still) -> Failure | None:
+        """The same for the outlook of a unit."""
+        return self._answer(Job.OUTLOOK, serial, now, still)
+
+    def _answer(self, job: Job, of: str, now: datetime, still: Still) -> Failure | None:
+        self.start()
+        assert self._pipe is not None
+        try:
+            self._pipe.send((job, of, now))
+            while not self._pipe.poll(LOOK_EVERY):
+                if not still():
+                    self.end()
+                    raise StoppingError(f"The {job} of {of} was interrupted.")
+            answer: Failure | None = self._pipe.recv()
+        except (EOFError, OSError) as gone:
+            self.end()
+            raise DiedError(f"The process died at the {job} of {of}.") from gone
+        return answer
+
+    def end(self) -> None:
+        """Ends it, whatever it is at: a transaction of its is undone."""
+        if self._pipe is not None:
+            self._pipe.close()
+        if self._process is not None:
+            self._process.kill()
+            self._process.join()
+            self._process.close()
+        self._process = self._pipe = None
+
+
+def work(pipe: Connection, settings: Settings) -> None:
+    """In the process: makes what is asked for until nobody is there to ask."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # of a terminal; the service decides
+    limits.use(limits.limits_of(settings))
+    write_log()
+    storage = open_storage(settings)
+    with suppress(EOFError, BrokenPipeError, ConnectionResetError):
+        while True:
+            job, of, now = pipe.recv()
+            signal.alarm(LONGEST)
+            answer = _made(storage, job, of, now, settings.coverage_factor)
+            signal.alarm(0)
+            pipe.send(answer)
+
+
+def _made(storage: Storage, job: Job, of: str, now: datetime, coverage_factor: float) -> Failure | None:
+    try:
+        if job is Job.OUTLOOK:
+            refresh_beside(storage, of, now)
+        else:
+            diagnose(storage, of, now, coverage_factor)
+    except (ServiceError, SessionError, *DATABASE_FAULTS) as fault:
+        return Failure(type(fault).__name__, str(fault))
+    except FAULTS as fault:
+        log.error("work beside the requests failed", job=job.value, of=of, exc_info=fault)
+        return Failure(type(fault).__name__, str(fault))
+    return None

@@ -1,0 +1,122 @@
+"""The diagnosis of a session and the outlook of a unit for whoever reads them: awaited where they are made beside the
+requests, and else made."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from datetime import datetime, timedelta
+from threading import BoundedSemaphore
+from time import monotonic
+from uuid import uuid4
+
+from estimator.errors import SessionError
+from service.background.bell import Bell
+from service.background.diagnose_waiting import PUT_OFF
+from service.errors import ServiceError
+from service.flows.diagnose import diagnose, known_of
+from service.flows.refresh_beside import refresh_beside
+from service.records.diagnosis import StoredDiagnosis
+from service.records.pending import Claim, Pending
+from service.storage import Storage
+
+PATIENCE = 15.0
+"""Seconds that a program is let wait: a usual diagnosis takes one or two, and a few may be before it."""
+GLANCE = 0.3
+"""Seconds that a page is let wait: it follows by itself."""
+LOOK_EVERY = 0.25
+"""Seconds between two looks at what another service may have made."""
+MOST_WAITING = 8
+"""Requests that wait at a time, of the 40 that are answered at once; others are asked back."""
+
+CLAIM = timedelta(minutes=2)
+"""That a reader's claim holds, who does not say again that he is at it: longer than nearly all diagnoses take."""
+
+
+@dataclass(frozen=True)
+class Reader:
+    """Reads diagnoses, and waits for outlooks, of one service."""
+
+    storage: Storage
+    clock: Callable[[], datetime]
+    bell: Bell
+    coverage_factor: float
+    workers: int
+    """Processes of this service that make diagnoses; 0 where each is made when it is read."""
+    _places: BoundedSemaphore = field(default_factory=lambda: BoundedSemaphore(MOST_WAITING))
+
+    def read(self, id: str, patience: float = PATIENCE) -> StoredDiagnosis | None:
+        """The diagnosis of a session; None while it is still being made, NotFoundError where there is no session."""
+        known, asked = self._look(id)
+        if known is not None:
+            return known
+        if self._is_left_to_readers(asked):
+            return self._made(id)
+        self.bell.hurry(id)
+        if not self._places.acquire(blocking=False):
+            return None
+        try:
+            return self._awaited(id, monotonic() + patience)
+        finally:
+            self._places.release()
+
+    def until_dated(self, serial: str, patience: float = PATIENCE) -> bool:
+        """Waits for the outlook of a unit whose history has changed, or makes it where nobody else does; whether it is
+        as the history says."""
+        if not self._is_undated(serial):
+            return True
+        if not self.workers:
+            refresh_beside(self.storage, serial, self.clock())
+            return True
+        if not self._places.acquire(blocking=False):
+            return False
+        try:
+            return self._dated(serial, monotonic() + patience)
+        finally:
+            self._places.release()
+
+    def _dated(self, serial: str, end: float) -> bool:
+        while True:
+            rung = self.bell.rung
+            if not self._is_undated(serial):
+                return True
+            left = end - monotonic()
+            if left <= 0:
+                return False
+            self.bell.wait(rung, min(left, LOOK_EVERY))
+
+    def _is_undated(self, serial: str) -> bool:
+        with self.storage.database.reading() as store:
+            return store.pending_outlooks.ticket(serial) is not None
+
+    def _look(self, id: str) -> tuple[StoredDiagnosis | None, Pending | None]:
+        with self.storage.database.reading() as store:
+            store.sessions.get(id)
+            return known_of(store, id), store.pending.of(id)
+
+    def _is_left_to_readers(self, asked: Pending | None) -> bool:
+        """Where nobody makes it, or where it failed: then the reader is told why."""
+        return not self.workers or asked is None or asked.not_before is not None
+
+    def _awaited(self, id: str, end: float) -> StoredDiagnosis | None:
+        while True:
+            rung = self.bell.rung
+            known, _ = self._look(id)
+            left = end - monotonic()
+            if known is not None or left <= 0:
+                return known
+            self.bell.wait(rung, min(left, LOOK_EVERY))
+
+    def _made(self, id: str) -> StoredDiagnosis | None:
+        """Here, unless somebody is at it."""
+        now = self.clock()
+        claim = Claim(id, uuid4().hex, now + CLAIM)
+        with self.storage.database.writing() as store:
+            store.pending.add((id,), now)
+            is_ours = store.pending.claim(claim, now) is not None
+        if not is_ours:
+            return self._awaited(id, monotonic() + PATIENCE)
+        try:
+            return diagnose(self.storage, id, now, self.coverage_factor)
+        except (ServiceError, SessionError):
+            with self.storage.database.writing() as store:
+                store.pending.put_off(claim, now + PUT_OFF)
+            raise

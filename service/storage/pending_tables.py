@@ -1,0 +1,35 @@
+"""The table of the diagnoses that are still to be made; a line goes when its diagnosis is stored."""
+
+from datetime import datetime
+
+from sqlalchemy import ForeignKey, String
+from sqlalchemy.orm import Mapped, mapped_column
+
+from service.storage.tables import Base
+
+
+class PendingRow(Base):
+    """A session that waits for its diagnosis, and who is at it."""
+
+    __tablename__ = "pending_diagnoses"
+    session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), primary_key=True)
+    asked_at: Mapped[datetime] = mapped_column(index=True)
+    ticket: Mapped[str] = mapped_column(String(32))
+    """Another one whenever what the diagnosis looks at changes: what was made under an older one is not stored."""
+    not_before: Mapped[datetime | None]
+    """After a try that failed, until the next one."""
+    claimed_by: Mapped[str | None] = mapped_column(String(32))
+    claimed_until: Mapped[datetime | None]
+    attempts: Mapped[int]
+    """Claims that ended without a word: the process died."""
+
+
+class PendingOutlookRow(Base):
+    """A unit whose outlook is to be worked out again, and until when somebody is at it."""
+
+    __tablename__ = "pending_outlooks"
+    unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), primary_key=True, autoincrement=False)
+    asked_at: Mapped[datetime]
+    ticket: Mapped[str] = mapped_column(String(32))
+    """Another one whenever the unit's history changes: what was made under an older one is made again."""
+    claimed_until: Mapped[datetime | None]

@@ -1,0 +1,52 @@
+"""Outlooks that are to be worked out again: asked for, claimed by one process at a time, settled once."""
+
+from datetime import datetime
+from uuid import uuid4
+
+from sqlalchemy import ColumnElement, delete, or_, select, update
+
+from service.storage.pending_tables import PendingOutlookRow
+from service.storage.queries.base import Queries
+from service.storage.tables import UnitRow
+
+
+class PendingOutlooks(Queries):
+    """Of units whose history has changed."""
+
+    def ask(self, unit: int, now: datetime) -> None:
+        """Asks for a unit's outlook; what is being made of it now is made again."""
+        ticket = uuid4().hex
+        if not self.insert_once(PendingOutlookRow, unit_id=unit, asked_at=now, ticket=ticket):
+            own = update(PendingOutlookRow).where(PendingOutlookRow.unit_id == unit)
+            self._session.execute(own.values(ticket=ticket))
+
+    def ticket(self, serial: str) -> str | None:
+        """Under which a unit's is asked for; None where it is as its history says."""
+        query = select(PendingOutlookRow.ticket).join(UnitRow, UnitRow.id == PendingOutlookRow.unit_id)
+        return self._session.scalar(query.where(UnitRow.serial == serial))
+
+    def waiting(self, now: datetime, limit: int) -> tuple[str, ...]:
+        """Serial numbers of units that nobody is at, the one that was asked for first before all."""
+        query = select(UnitRow.serial).join(PendingOutlookRow, UnitRow.id == PendingOutlookRow.unit_id)
+        order = (PendingOutlookRow.asked_at, PendingOutlookRow.unit_id)
+        return tuple(self._session.scalars(query.where(_is_free(now)).order_by(*order).limit(limit)))
+
+    def claim(self, serial: str, now: datetime, until: datetime) -> bool:
+        """Whether the unit is ours until a time."""
+        unit = select(UnitRow.id).where(UnitRow.serial == serial).scalar_subquery()
+        own = update(PendingOutlookRow).where(PendingOutlookRow.unit_id == unit, _is_free(now))
+        claimed = own.values(claimed_until=until).returning(PendingOutlookRow.unit_id)
+        return self._session.scalar(claimed) is not None
+
+    def holds(self, unit: int, ticket: str) -> bool:
+        """Whether a unit is still asked for under a ticket; held until the transaction ends."""
+        query = select(PendingOutlookRow.ticket).where(PendingOutlookRow.unit_id == unit)
+        return self._session.scalar(query.with_for_update()) == ticket
+
+    def settle(self, unit: int) -> None:
+        """A unit's is as its history says."""
+        self._session.execute(delete(PendingOutlookRow).where(PendingOutlookRow.unit_id == unit))
+
+
+def _is_free(now: datetime) -> ColumnElement[bool]:
+    return or_(PendingOutlookRow.claimed_until.is_(None), PendingOutlookRow.claimed_until <= now)

@@ -1,0 +1,127 @@
+"""A unit's outlook is worked out beside the requests that change its history, and is what it would be within them."""
+
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from threading import Event
+from typing import Any
+
+import pytest
+
+from service.app import create_app
+from service.background.bell import Bell
+from service.background.diagnose_waiting import CLAIM, Diagnosing
+from service.background.helper import Helper
+from service.background.refresh_waiting import refresh_next
+from service.flows.receive import upload
+from service.flows.refresh_beside import refresh_beside
+from service.flows.withdraw_session import withdraw_session
+from service.metrics import Metrics
+from service.records.usable import Usable
+from service.settings import Settings
+from service.storage import Storage
+from service.views.usable import usable
+from service.words.usable import DATES_PENDING
+from tests.databases import one_engine
+from tests.service.records import step, way
+from tests.service.sessions import session_bytes, session_id
+from tests.serving import http_client
+
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
+UNIT = "BA-017"
+
+
+def fill(storage: Storage, months: tuple[int, ...] = (1, 2, 3, 4)) -> None:
+    for month in months:
+        upload(storage, content_of(month), "a.json", NOW, is_dated_later=True)
+
+
+def content_of(month: int) -> bytes:
+    return session_bytes(seed=month, month=month, a3_moved=10.0 * month)
+
+
+def known(storage: Storage) -> dict[str, Any]:
+    """The outlook and the open flags of the unit."""
+    with storage.database.reading() as store:
+        outlook, flags = store.outlooks.of_unit(UNIT), store.flags.open_of(store.units.key(UNIT))
+    return {"outlook": outlook, "flags": [(flag.key, flag.summary) for flag in flags]}
+
+
+def waiting(storage: Storage) -> tuple[str, ...]:
+    with storage.database.reading() as store:
+        return store.pending_outlooks.waiting(NOW, 10)
+
+
+@pytest.fixture
+def helper(settings: Settings) -> Iterator[Helper]:
+    """A process that makes what is asked for."""
+    started = Helper(settings)
+    yield started
+    started.end()
+
+
+def test_it_is_what_it_would_be_within_the_upload(storage: Storage) -> None:
+    fill(storage)
+    assert (known(storage)["outlook"], waiting(storage)) == (None, (UNIT,))
+    refresh_beside(storage, UNIT, NOW)
+    beside = known(storage)
+    fill(storage, (5,))
+    withdraw_session(storage, way(storage), session_id(content_of(5)), step())
+    within = known(storage)
+    assert (beside["outlook"].due is not None, beside) == (True, within)
+    assert waiting(storage) == ()
+
+
+def test_what_changed_meanwhile_is_looked_at_again(storage: Storage) -> None:
+    fill(storage, (1, 2))
+    with storage.database.reading() as store:
+        before = store.pending_outlooks.ticket(UNIT)
+    fill(storage, (3,))
+    assert before is not None
+    with storage.database.writing() as store:
+        assert not store.pending_outlooks.holds(store.units.key(UNIT), before)
+
+
+def test_one_process_claims_it_at_a_time(storage: Storage) -> None:
+    fill(storage, (1, 2))
+    for got in (True, False):
+        with storage.database.writing() as store:
+            assert store.pending_outlooks.claim(UNIT, NOW, NOW + CLAIM) is got
+    with storage.database.writing() as store:
+        assert store.pending_outlooks.claim(UNIT, NOW + CLAIM, NOW + 2 * CLAIM)
+
+
+@one_engine
+def test_a_process_of_its_own_works_it_out(settings: Settings, storage: Storage, helper: Helper) -> None:
+    fill(storage, (1, 2))
+    own = Diagnosing(settings, storage, lambda: NOW, Metrics(), Bell())
+    assert refresh_next(own, helper, Event())
+    assert known(storage)["outlook"] is not None
+    assert not refresh_next(own, helper, Event())
+
+
+@one_engine
+def test_whoever_asks_whether_a_unit_may_be_used_waits_for_its_dates(settings: Settings) -> None:
+    with http_client(create_app(settings.model_copy(update={"diagnosis_workers": 1}), lambda: NOW)) as client:
+        for month in (9, 10):
+            client.post("/api/v1/sessions", content=session_bytes(seed=month, month=month)).raise_for_status()
+        answer = client.get(f"/api/v1/units/{UNIT}/usable").json()
+    assert (answer["usable"], answer["next_calibration"] is not None) == (True, True)
+
+
+@one_engine
+def test_until_its_dates_are_known_it_may_not_be_used_and_says_why(settings: Settings, storage: Storage) -> None:
+    fill(storage, (9, 10))
+    with storage.database.writing() as store:
+        store.pending_outlooks.claim(UNIT, NOW, NOW + CLAIM)
+    worked = settings.model_copy(update={"diagnosis_workers": 1})
+    with http_client(create_app(worked, lambda: NOW)) as client:
+        page = client.get(f"/units/{UNIT}", headers={"Accept": "text/html"}).text
+        answer = usable_now(storage)
+    assert "being worked out" in page
+    assert 'http-equiv="refresh"' in page
+    assert (answer.usable, answer.reasons) == (False, (DATES_PENDING,))
+
+
+def usable_now(storage: Storage) -> Usable:
+    with storage.database.reading() as store:
+        return usable(store, UNIT, NOW)
