@@ -1,6 +1,7 @@
 """Small array helpers that several rooms share."""
 
 import numpy as np
+import scipy.linalg
 
 from estimator.session import Array
 
@@ -38,3 +39,19 @@ def nearest_turn(vectors: Array, others: Array) -> Array:
     """
     left, _, right = np.linalg.svd(others.T @ vectors)
     return np.asarray(left * [1.0, 1.0, np.linalg.det(left @ right)] @ right)
+
+
+def eigh(matrix: Array) -> tuple[Array, Array]:
+    """(…, n) eigenvalues, rising, and (…, n, n) eigenvectors of symmetric matrices of any unit.
+
+    Divide and conquer, LAPACK's fastest, gives up on some finite matrices with many equal eigenvalues (two among some
+    thousand courses of a sensor); QR does not.
+    """
+    try:
+        values, vectors = np.linalg.eigh(matrix)
+    except np.linalg.LinAlgError:
+        n = matrix.shape[-1]
+        each = [scipy.linalg.eigh(one, driver="ev") for one in matrix.reshape(-1, n, n)]
+        values = np.stack([v for v, _ in each]).reshape(matrix.shape[:-1])
+        vectors = np.stack([w for _, w in each]).reshape(matrix.shape)
+    return values, vectors

@@ -38,6 +38,7 @@ from estimator.alignment.results import AlignmentResult, Course
 from estimator.alignment.sins import EPS, NABLA, PHI, STATES, UNITS, Model
 from estimator.alignment.strapdown import Motion, Strapdown, strapdown
 from estimator.applied_vector import gravity
+from estimator.arrays import eigh
 from estimator.errors import Problem, ScheduleError
 from estimator.results import Fit
 from estimator.session import ACCELEROMETER, GYROSCOPE, ROTATION_ALIGNMENT, Array, CalibrationSession
@@ -234,7 +235,7 @@ def _totals(estimates: Array, start: Coarse) -> Array:
 def _fit(record: Record, filtered: Filtered) -> Fit:
     """How well the innovations agree with their covariance, and what is known least."""
     n = len(filtered.last.x)
-    values, vectors = np.linalg.eigh(relative(filtered.last.P)[2:13, 2:13])
+    values, vectors = eigh(relative(filtered.last.P)[2:13, 2:13])
     dof = filtered.measured - n
     p_value = float(chi2_distribution.sf(filtered.chi2, dof))
     factor = max(1.0, filtered.chi2 / dof) if p_value < UNLIKELY else 1.0

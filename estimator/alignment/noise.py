@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from estimator.arrays import eigh
 from estimator.session import Array
 
 LEAST = 0.1
@@ -56,7 +57,7 @@ def at_rest(means: list[Array], step: float) -> tuple[Array, float]:
     related = np.trace(products) < -SIGNIFICANT * np.sqrt(np.trace(variance @ variance) / freedom)
     if not related:
         return step * variance, 0.0
-    values, vectors = np.linalg.eigh(variance)
+    values, vectors = eigh(variance)
     white = np.clip(np.einsum("ij,ik,kj->j", vectors, variance + 2 * products, vectors), LEAST * values, values)
     return step * (vectors * white) @ vectors.T, step**2 * max(-float(np.trace(products[:2, :2])) / 2, 0.0)
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.applied_vector import Geometry
+from estimator.arrays import eigh
 from estimator.forward import projected, slope
 from estimator.parameters import ELEMENTS, LIMIT, PLAUSIBLE, SensorParameters
 from estimator.results import KnownCombination
@@ -58,7 +59,7 @@ class Spectrum:
 
 def spectrum(information: Array) -> Spectrum:
     """Principal directions of the information (m, 5, 5), leading axes free, of dimensionless elements."""
-    values, vectors = np.linalg.eigh(information)
+    values, vectors = eigh(information)
     return Spectrum(np.where(values < ROUNDING * values[..., -1:], 0.0, values), vectors)
 
 
@@ -71,7 +72,7 @@ def known_bias_quadratic(information: Array, bias: float, quadratic: float, norm
     bias, quadratic : SI, at the solution.
     norm : length of the applied vector, m/s² (rad/s).
     """
-    values, vectors = np.linalg.eigh(information[1:3, 1:3])
+    values, vectors = eigh(information[1:3, 1:3])
     if values[1] < LIMIT**-2:
         return None
     strong, others = vectors[:, 1], [0, 3, 4]

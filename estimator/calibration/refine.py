@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from estimator.applied_vector import Geometry
+from estimator.arrays import eigh
 from estimator.forward import input_of, jacobian, projected, slope
 from estimator.parameters import LIMIT, PLAUSIBLE, SensorParameters
 from estimator.session import Array
@@ -173,7 +174,7 @@ def eliminated(normal: Normal, P: int, sigma: Array) -> tuple[Array, Array, Arra
     lean = inner @ border
     taken = (border + RIDGE * lean).swapaxes(-1, -2) @ lean
     told = sigma[:, None] * (normal.matrix[:, P:, P:] - prior - taken) * sigma
-    values, vectors = np.linalg.eigh(told)
+    values, vectors = eigh(told)
     values = np.maximum(values, 0.0)[:, None, :]
     root = vectors * np.sqrt(values) / sigma[:, None]
     half = vectors * sigma[:, None] / np.sqrt(1.0 + values)
@@ -191,7 +192,7 @@ def held(normal: Normal) -> Normal:
 
     Along them the readings say nothing to first order, but a step would change to second order what they do say.
     """
-    values, vectors = np.linalg.eigh(normal.own)
+    values, vectors = eigh(normal.own)
     weak = np.where(values < LIMIT**-2, 1.0, 0.0)
     stiff = values.max(axis=-1, keepdims=True) * weak
     own = (vectors * stiff[..., None, :]) @ vectors.swapaxes(-1, -2)

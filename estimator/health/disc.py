@@ -11,6 +11,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ndtr, ndtri
 
+from estimator.arrays import eigh
 from estimator.coverage import chance
 from estimator.coverage import coverage_factor as student
 from estimator.session import Array
@@ -106,7 +107,7 @@ def judge_length(
     U is never below k times the largest standard deviation. Of few degrees of freedom the limits are those of standard
     deviations enlarged by t/k, and the chance is that of deviations with which the nearest edge is as likely as by t.
     """
-    variances, axes = np.linalg.eigh(covariance)
+    variances, axes = eigh(covariance)
     sigma = np.sqrt(variances)
     measured = float(np.hypot(*vector))
     factor = student(coverage_factor, dof)

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from estimator.arrays import eigh
 from estimator.health.fits import PART_KINDS, PART_SIZES, Fits
 from estimator.health.shapes import Kind
 from estimator.session import Array
@@ -126,7 +127,7 @@ def _modes(null: Fits, time: Array) -> tuple[Array, Array]:
     half = np.linalg.solve(root, np.broadcast_to(np.minimum.outer(time, time), root.shape))
     whole = np.linalg.solve(root, half.swapaxes(1, 2))
     free = np.eye(len(time)) - frame @ frame.swapaxes(1, 2)
-    values, vectors = np.linalg.eigh(free @ whole @ free)
+    values, vectors = eigh(free @ whole @ free)
     return np.maximum(values, 0.0), vectors
 
 

@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from estimator.arrays import eigh
 from estimator.errors import Problem, ScheduleError
 from estimator.parity.blocks import FEWEST_GROUPS, Selection
 from estimator.parity.reference import Reference
@@ -151,7 +152,7 @@ def excited(x: Array, w: Array, selection: Selection, groups: int) -> Array:
     scatter = np.zeros((groups, 3, 3))
     np.add.at(scatter, selection.group, w[:, None, None] * apart[:, :, None] * apart[:, None, :])
     moments = scatter.sum(axis=0)
-    vectors = np.linalg.eigh(moments)[1]
+    vectors = eigh(moments)[1]
     along = np.einsum("ik,gij,jk->gk", vectors, scatter, vectors)
     left = (along.sum(axis=0) - along.max(axis=0)) / w.sum()
     seen = np.zeros((4, int((left > EXCITED**2).sum())))
@@ -176,7 +177,7 @@ def scores(z: Array, w: Array, residual: Array, selection: Selection, G: Array) 
     score = np.zeros((groups, s, residual.shape[1]))
     np.add.at(own, selection.group, w[:, None, None] * white[:, :, None] * white[:, None, :])
     np.add.at(score, selection.group, w[:, None, None] * white[:, :, None] * residual[:, None, :])
-    values, vectors = np.linalg.eigh(np.eye(s) - own)
+    values, vectors = eigh(np.eye(s) - own)
     freed = (vectors / np.sqrt(np.maximum(values, LEAST_LEFT))[:, None, :]) @ np.swapaxes(vectors, 1, 2)
     return np.linalg.solve(root.T, freed @ score)
 
@@ -212,7 +213,7 @@ def sensor_noise(moved: Array, V: Array, groups: int) -> Array:
     observed = np.einsum("gsm,gtm->mst", D, D)
     shares = np.linalg.pinv((V @ V.T) ** 2, rcond=APART, hermitian=True)
     omega = np.einsum("mj,jst->mst", shares, observed)
-    values, vectors = np.linalg.eigh(omega)
+    values, vectors = eigh(omega)
     omega = np.einsum("msk,mk,mtk->mst", vectors, np.maximum(values, 0.0), vectors)
     mean = observed.sum(axis=0) / (V**2).sum()
     weight = (groups * (V**2).sum(axis=1))[:, None, None]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.arrays import tangents
+from estimator.arrays import eigh, tangents
 from estimator.calibration.free.model import Linear, Rows, Unknowns, linearise
 from estimator.parameters import PLAUSIBLE
 from estimator.session import Array
@@ -93,7 +93,7 @@ def information(rows: Rows, unknowns: Unknowns, quadratic: bool, linear: Linear 
     """
     basis = movable(rows.nominal_axes, unknowns.axes, rows.held, quadratic)
     schur = (linear or linearise(rows, unknowns)).schur
-    values, vectors = np.linalg.eigh(basis.T @ schur @ basis)
+    values, vectors = eigh(basis.T @ schur @ basis)
     vectors = basis @ vectors
     known = values > unseen_below(values)
     lead = int(np.argmax(np.abs(vectors[:, 0])))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.arrays import nearest_turn
+from estimator.arrays import eigh, nearest_turn
 from estimator.calibration.free.information import Information, information, movable, unseen_below
 from estimator.calibration.free.model import Linear, Rows, Unknowns, cost, linearise
 from estimator.calibration.free.schedule import Mask
@@ -102,7 +102,7 @@ def proposal(linear: Linear, basis: Array, damping: float) -> tuple[Array, Array
 
     ``basis`` (5 m, F), dimensionless as in `movable`. Directions that the set does not determine stay where they are.
     """
-    values, vectors = np.linalg.eigh(basis.T @ linear.schur @ basis)
+    values, vectors = eigh(basis.T @ linear.schur @ basis)
     right = vectors.T @ (basis.T @ linear.reduced)
     inside = np.where(values > unseen_below(values), right, 0.0) / (
         np.maximum(values, 0.0) + damping * linear.full.max()

@@ -9,7 +9,7 @@ Source: the ellipsoid fit is the classical multi-position calibration.
 
 import numpy as np
 
-from estimator.arrays import unit
+from estimator.arrays import eigh, unit
 from estimator.calibration.free.model import Rows, Unknowns, cost
 from estimator.session import Array
 
@@ -110,7 +110,7 @@ def ellipsoid(middle: Array, radius: float, found: Array) -> tuple[Array, Array]
     middle (3,) and radius, like the result, relative to nominal scale times g; the quadric in units of the sphere.
     """
     Q = np.eye(3) + found[[0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(3, 3)
-    values, vectors = np.linalg.eigh(Q)
+    values, vectors = eigh(Q)
     if values[0] < FLAT * values[-1]:
         return middle, radius * np.eye(3)
     offset = -0.5 * np.linalg.solve(Q, found[6:])

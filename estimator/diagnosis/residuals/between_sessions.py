@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from estimator.arrays import tangents
+from estimator.arrays import eigh, tangents
 from estimator.causes.fixture import turned
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.flipped_run import flip_effect
@@ -49,7 +49,7 @@ def carried(now: SensorParameters, frames: Array) -> Array:
 def inverse_root(matrix: Array) -> Array:
     """W (P, P), symmetric up to scale, with W'W the pseudo-inverse of a dimensionless covariance (P, P)."""
     scale = np.sqrt(np.diagonal(matrix))
-    values, vectors = np.linalg.eigh(matrix / scale[:, None] / scale)
+    values, vectors = eigh(matrix / scale[:, None] / scale)
     kept = values > NO_VARIANCE * values[-1]
     inverse = np.where(kept, 1 / np.sqrt(np.where(kept, values, 1.0)), 0.0)
     return np.asarray((vectors * inverse) @ vectors.T / scale)

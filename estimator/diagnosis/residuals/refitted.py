@@ -6,19 +6,23 @@ from estimator.diagnosis.residuals.baseline import Baseline, block_columns
 from estimator.diagnosis.residuals.flipped_run import flip_effect
 from estimator.diagnosis.residuals.gauge import observable_directions
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.parameters import PLAUSIBLE
 
 
 def refitted(baseline: Baseline) -> Baseline:
     """The baseline with its parameters at their least squares under its own noise and nuisances: one linear step.
 
     The step holds no common turn of all axes where none can be observed: it would be rounding over nothing, and would
-    turn the session away from its history. The turn of the flipped run that the fit is linear about stays in the
+    turn the session away from its history. Where the readings tell next to nothing the plausible range holds it: with
+    s the least squares and F their information, (F + R)⁻¹ F s = s − (F + R)⁻¹ R s, R of that range; a step of half the
+    scale is no linear one. The turn of the flipped run that the fit is linear about stays in the
     residuals, as the effect that it is.
     """
     residuals, setting = WhitenedResiduals.of(baseline), baseline.setting
     keep = observable_directions(baseline.gauge_free, baseline.parameters)
     own = residuals.whitened((baseline.residual - flip_effect(setting))[..., None])[:, 0]
-    step = keep @ (keep.T @ (residuals.response @ own))
+    free = keep @ (keep.T @ (residuals.response @ own))
+    step = free - baseline.covariance @ free / PLAUSIBLE**2
     left = baseline.residual - block_columns(baseline.design) @ step
     parameters = setting.parameters.stepped(step.reshape(-1, 5), setting.norm)
     return replace(baseline, residual=left, setting=replace(setting, parameters=parameters))

@@ -50,6 +50,9 @@ LINEAR = 1e-4
 SMALLEST = 1e-8
 """Variance over the stated one below which none is told apart: readings simulated without noise leave rounding."""
 
+ENOUGH = 10
+"""Degrees of freedom of a sensor from which on its own readings tell its factor to a quarter."""
+
 FEWEST = 6
 """Degrees of freedom of repeats, or of a kind's residuals, from which on they tell a scale."""
 
@@ -153,6 +156,13 @@ def sensors_of(claims: Iterable[NoiseClaim]) -> set[int]:
     return {i for claim in claims for i in claim.sensors}
 
 
+def groups_of(claim: NoiseClaim) -> list[tuple[int, ...]]:
+    """Sensors whose factor is fitted as one: each by itself where its own readings tell it."""
+    if claim.freedom < ENOUGH * len(claim.sensors):
+        return [claim.sensors]
+    return [(i,) for i in claim.sensors]
+
+
 def with_unknown_scale(
     start: SearchState, claims: tuple[NoiseClaim, ...], found: tuple[Found, ...] = ()
 ) -> SearchState:
@@ -166,7 +176,7 @@ def with_unknown_scale(
     unstated = baseline.unstated.copy()
     expected = np.zeros(len(unstated)) if baseline.expected_ratio is None else baseline.expected_ratio.copy()
     unstated[sensors], expected[sensors] = True, 0.0
-    off = [claim.sensors for claim in claims if claim.freedom > 0]
+    off = [one for claim in claims if claim.freedom > 0 for one in groups_of(claim)]
     named = np.concatenate([f.best.shape.columns for f in found], axis=-1) if found else None
     scaled = as_they_scatter(baseline, off, named)
     changed = replace(scaled, unstated=unstated, expected_ratio=expected)

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from estimator.arrays import eigh
 from estimator.causes.contract import Setting
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.autocorrelation import LENGTHS, around, bending, logmeanexp
@@ -173,7 +174,7 @@ def applied_course(residuals: WhitenedResiduals, attributed: Array, *, lasting: 
 
 def covariance_root(kernel: Array) -> Array:
     """L (R, r) with LL' a covariance (R, R), dimensionless, directions of no size left out."""
-    size, turn = np.linalg.eigh(kernel)
+    size, turn = eigh(kernel)
     kept = size > FAINT * size[-1]
     return np.asarray(turn[:, kept] * np.sqrt(size[kept]))
 
@@ -183,7 +184,7 @@ def evidence(trace: Array, z: Array) -> tuple[float, Array]:
 
     ``trace`` (n, r) of its unit coefficients and residuals ``z`` (n,), standard errors.
     """
-    size, turn = np.linalg.eigh(trace.T @ trace)
+    size, turn = eigh(trace.T @ trace)
     size, power = np.maximum(size, 0.0), turn.T @ (trace.T @ z)
     strengths = np.geomspace(LEAST_ENERGY, max(float(z @ z), 10.0), STEPS) / max(float(size.sum()), 1e-300)
     shrunk = strengths[:, None] / (1 + strengths[:, None] * size)

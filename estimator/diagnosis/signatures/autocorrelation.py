@@ -24,6 +24,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.linalg.lapack import dsytrd
 
+from estimator.arrays import eigh
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.noise import Autocorrelation
 from estimator.session import Array
@@ -126,7 +127,7 @@ def autocorrelation(
     """
     R, m = residuals.baseline.residual.shape
     remaining = residuals.z - attributed @ (attributed.T @ residuals.z)
-    size, turn = np.linalg.eigh(own_covariance(residuals, attributed, sensor))
+    size, turn = eigh(own_covariance(residuals, attributed, sensor))
     kept = size > KEPT_NOISE
     if int(kept.sum()) < FEWEST:
         return None

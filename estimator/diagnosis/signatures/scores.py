@@ -20,6 +20,7 @@ from itertools import groupby
 import numpy as np
 from scipy.special import chdtrc
 
+from estimator.arrays import eigh
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.products import Products, Projected
 from estimator.diagnosis.signatures.scatter import equivalent_chi2, in_unknown_noise, scatter_beside
@@ -76,7 +77,7 @@ class Fit:
         whole, along = products.square.sum(axis=0), products.along.sum(axis=0)
         norms = np.sqrt(np.maximum(np.diagonal(whole, axis1=1, axis2=2), 0.0))
         unit = np.where(shown, 1 / np.where(shown & (norms > 0), norms, 1.0), 0.0)
-        size, turn = np.linalg.eigh(whole * unit[:, :, None] * unit[:, None, :])
+        size, turn = eigh(whole * unit[:, :, None] * unit[:, None, :])
         live = (size > faint**2 * size[:, -1:]) & shown.any(axis=1, keepdims=True)
         inverse = np.where(live, 1 / np.sqrt(np.where(live, size, 1.0)), 0.0)
         directions = unit[:, :, None] * turn * inverse[:, None, :]

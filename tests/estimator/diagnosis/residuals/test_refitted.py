@@ -12,6 +12,7 @@ from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.flipped_run import with_its_flip
 from estimator.diagnosis.residuals.gauge import turn_response
 from estimator.diagnosis.residuals.refitted import refitted
+from tests.blind.cases import draw_case
 from tests.estimator.calibration.cases import CASES
 
 (ARBITRARY,) = [case for case in CASES if case.name == "arbitrary-orientations"]
@@ -33,3 +34,12 @@ def test_a_refit_under_the_same_noise_leaves_a_block_turned_in_its_flipped_run_a
     assert before.setting.flip_turn.any()
     step = deviation(before.parameters, refitted(before).parameters, before.setting.norm)
     assert np.abs(step).max() < 1e-8
+
+
+def test_a_refit_leaves_what_the_readings_do_not_tell_where_it_was() -> None:
+    """The last sensor lies along the head's axis: its scale and its zero are told only together."""
+    before = baseline_of(read_session(draw_case("none", (4001, 28, 3, 0, 1)).session))
+    after = refitted(replace(before, variance=before.variance * [36.0, 1.0, 1.0, 1.0, 1.0, 1.0]))
+    step = deviation(before.parameters, after.parameters, before.setting.norm)
+    assert 1e-9 < np.abs(step[:-1]).max() < 1e-5
+    assert np.abs(step[-1]).max() < 0.01

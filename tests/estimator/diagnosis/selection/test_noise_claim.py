@@ -63,6 +63,14 @@ def test_some_sensors_of_too_large_errors_are_told_apart() -> None:
     assert [(scale.sensors, scale.factor) for scale in found.noise] == [(("A1", "A2"), pytest.approx(1 / 3, rel=0.25))]
 
 
+@pytest.mark.parametrize("seed", [3, 4, 5])
+def test_some_sensors_of_too_small_errors_draw_no_other_in(seed: int) -> None:
+    """Believed too much, they pull what all share of a row to their own noise, which then shows in the others."""
+    found = diagnose(stated(measured(seed=seed), 0.1, slice(0, 2)))
+    assert not found.findings
+    assert [scale.sensors for scale in found.noise] == [("A1", "A2")]
+
+
 @pytest.mark.parametrize("sensors", [slice(0, 1), slice(0, 2)])
 def test_a_cause_is_named_on_a_sensor_whose_errors_are_stated_too_large(sensors: slice) -> None:
     """A2 jumps; it is one of those whose errors are wrong, or its own are right."""
