@@ -45,6 +45,7 @@ from estimator.alignment import AlignmentResult, RateTableResult, align, rate_ta
 from estimator.calibration import calibrate_many
 from estimator.diagnosis import Diagnosis, calibrate_extended, diagnose
 from estimator.errors import FormatError, Problem, ScheduleError, SessionError
+from estimator.groups import GroupDiagnosis, SessionStatistics, diagnose_group, diagnose_statistics, statistics_of
 from estimator.parity import ParityAccumulator, ParityResult, parity_check
 from estimator.programmes import calibrate
 from estimator.reading import read_session
@@ -57,6 +58,7 @@ __all__ = [
     "CalibrationSession",
     "Diagnosis",
     "FormatError",
+    "GroupDiagnosis",
     "ParityAccumulator",
     "ParityResult",
     "Problem",
@@ -64,6 +66,7 @@ __all__ = [
     "ScheduleError",
     "Sensor",
     "SessionError",
+    "SessionStatistics",
     "Site",
     "Stand",
     "StandErrors",
@@ -72,7 +75,10 @@ __all__ = [
     "calibrate_extended",
     "calibrate_many",
     "diagnose",
+    "diagnose_group",
+    "diagnose_statistics",
     "parity_check",
     "rate_table",
     "read_session",
+    "statistics_of",
 ]

@@ -36,7 +36,7 @@ ESTIMATOR_LAYERS = (
     {"causes"},
     {"simulate", "calibration", "alignment", "parity"},
     {"correction", "diagnosis", "health", "programmes"},
-    {"planning"},
+    {"groups", "planning"},
     {"published"},
 )
 HOMES = {

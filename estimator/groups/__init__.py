@@ -1,0 +1,15 @@
+"""Evidence of many sessions: what no single session can show, pooled over a unit, a unit type or a stand."""
+
+from estimator.groups.diagnose_group import diagnose_group, diagnose_statistics
+from estimator.groups.results import GroupDiagnosis, GroupFinding
+from estimator.groups.session_statistics import statistics_of
+from estimator.groups.statistics import SessionStatistics
+
+__all__ = [
+    "GroupDiagnosis",
+    "GroupFinding",
+    "SessionStatistics",
+    "diagnose_group",
+    "diagnose_statistics",
+    "statistics_of",
+]

@@ -1,0 +1,129 @@
+"""What the sessions of a unit, a unit type or a stand show together, which no single session can.
+
+statistics → layout → evidence → selection → findings
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from estimator.causes.catalogue import cause
+from estimator.diagnosis.explanation.naming import sentence
+from estimator.groups.findings import LARGEST, Told, finding_of, structures, told
+from estimator.groups.layout import LEVELS, STAND, TYPE, UNIT, Layout
+from estimator.groups.limits import limits
+from estimator.groups.pool import Model, pooled
+from estimator.groups.results import GroupDiagnosis, GroupFinding
+from estimator.groups.selection import Selection, select
+from estimator.groups.separation import Separator
+from estimator.groups.session_statistics import statistics_of
+from estimator.groups.statistics import SessionStatistics
+from estimator.session import CALIBRATIONS, CalibrationSession
+
+
+def diagnose_group(sessions: Sequence[CalibrationSession], level: str = UNIT) -> GroupDiagnosis:
+    """What several sessions show together.
+
+    Parameters
+    ----------
+    sessions : of programmes that calibrate a block, oldest first. For ``unit`` of one unit; for ``type`` and ``stand``
+        of several. The group is that of the last session: its unit, its type, its stand. Sessions of the same units on
+        other stands, where there are any, tell whether an effect is the stand's or the units'.
+    level : ``unit``, ``type`` or ``stand``.
+
+    Raises
+    ------
+    ValueError : no session, none that calibrates a block, or another level.
+    ScheduleError : a session cannot be calibrated at all.
+    """
+    usable = [s for s in sessions if s.programme in CALIBRATIONS]
+    if not usable:
+        raise ValueError("a group needs a session that calibrates a block")
+    return diagnose_statistics([statistics_of(s) for s in usable], level, usable)
+
+
+def diagnose_statistics(
+    statistics: Sequence[SessionStatistics], level: str = UNIT, sessions: Sequence[CalibrationSession] = ()
+) -> GroupDiagnosis:
+    """The same from what was kept of every session, oldest first.
+
+    ``sessions``: the same sessions, where they are at hand. Without them nothing is said of the measurement that would
+    tell rivals apart, of what moved, or of learned terms.
+    """
+    if level not in LEVELS:
+        raise ValueError(f"a group is one of {', '.join(LEVELS)}, not {level}")
+    if not statistics:
+        raise ValueError("a group needs a session that calibrates a block")
+    layout = Layout.of(statistics, level)
+    selection = select(layout)
+    each = [told(selection, f) for f in selection.found]
+    separator = Separator(tuple(sessions))
+    found = [finding_of(selection, one, separator.measurements(selection, one)) for one in each]
+    scale = selection.weighed()
+    return GroupDiagnosis(
+        level=level,
+        subject=subject_of(statistics[-1], level),
+        sessions=len(statistics),
+        first=statistics[0].started_at,
+        last=statistics[-1].started_at,
+        findings=tuple(merged(found)),
+        terms=(),
+        structures=structures(selection),
+        limits=limits(pooled(layout, Model(), selection.scale), level),
+        gain=None,
+        e_value=float(np.exp(min(scale.log_e_value, LARGEST))),
+        notes=tuple(notes(selection, each)),
+    )
+
+
+def subject_of(session: SessionStatistics, level: str) -> str:
+    """Whose group it is."""
+    return {UNIT: session.unit, TYPE: session.unit_type, STAND: session.stand}[level]
+
+
+def merged(found: Sequence[GroupFinding]) -> list[GroupFinding]:
+    """Findings of one cause on several sensors of one subject put together where their sessions are the same."""
+    kept: dict[tuple[object, ...], GroupFinding] = {}
+    for f in found:
+        dates = tuple((s.started_at, s.unit) for s in f.sessions)
+        key = (f.cause, f.level, f.subject, f.form, f.since, f.shape, dates, not f.sensors)
+        kept[key] = f if key not in kept else joined(kept[key], f)
+    return list(kept.values())
+
+
+def joined(a: GroupFinding, b: GroupFinding) -> GroupFinding:
+    """Two findings of one cause as one."""
+    sensors = a.sensors + b.sensors
+    return replace(
+        a,
+        sensors=sensors,
+        amplitude=a.amplitude + b.amplitude,
+        sigma=a.sigma + b.sigma,
+        units=a.units + b.units,
+        spread=a.spread + b.spread,
+        e_value=min(a.e_value, b.e_value),
+        strength=float(np.hypot(a.strength, b.strength)),
+        cochran=min(a.cochran, b.cochran),
+        alternatives=tuple(x for x in a.alternatives if x in b.alternatives),
+        rivals=a.rivals + b.rivals,
+        sentence=sentence(cause(a.cause), sensors),
+        sessions=tuple(
+            replace(x, amplitude=x.amplitude + y.amplitude, sigma=x.sigma + y.sigma)
+            for x, y in zip(a.sessions, b.sessions, strict=True)
+        ),
+    )
+
+
+def notes(selection: Selection, each: Sequence[Told]) -> list[str]:
+    """What a reader should know beside the findings."""
+    found = []
+    for f, h in selection.misfits:
+        where = f" on {f.sensor}" if f.sensor else ""
+        found.append(f"{f.cause}{where} is near, but leaves harmonic {h.shape:g} of β: it does not fit")
+    alone = {selection.layout.parts[k].statistics.started_at for k, _ in selection.own}
+    if alone:
+        found.append(f"taken out of single sessions, which show it by themselves: {', '.join(sorted(alone))}")
+    larger = {p.statistics.unit: s for p, s in zip(selection.layout.parts, selection.scale, strict=True) if s > 1.5}
+    found += [f"{u}: the sessions scatter {np.sqrt(s):.1f} times as much as stated" for u, s in larger.items()]
+    return found

@@ -1,0 +1,140 @@
+"""From what was found to what people read: amplitudes, forest plots, rivals."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from estimator.causes.catalogue import cause
+from estimator.diagnosis.explanation.naming import sentence
+from estimator.groups.evidence import SINCE, VARYING
+from estimator.groups.layout import EVERY, TYPE, Hypothesis
+from estimator.groups.pool import columns_in
+from estimator.groups.random_effects import Mean, mean_of
+from estimator.groups.results import GroupFinding, GroupStructure, Rival, SessionAmplitude
+from estimator.groups.rivals import Near, near
+from estimator.groups.scores import inverse
+from estimator.groups.selection import Found, Selection
+from estimator.groups.weighing import Scale
+from estimator.session import Array
+
+FORM_WORDS = ("same", "varying", "since")
+LARGEST = 700.0
+"""ln of the largest number that a double holds, about."""
+
+
+@dataclass(frozen=True, eq=False)
+class Told:
+    """One finding with what the pool tells of it. n sessions, w amplitudes."""
+
+    found: Found
+    mean: Mean
+    U: Array
+    """(n, w) 1/SI, given the other findings."""
+    F: Array
+    """(n, w, w) 1/SI²."""
+    scale: Scale
+    rivals: tuple[Near, ...]
+
+
+def told(selection: Selection, found: Found) -> Told:
+    """What the pool tells of one finding, given the others."""
+    scale = selection.weighed(without=found)
+    w, k = found.place
+    m = scale.pool.moments[w]
+    U, F = m.U[:, k], m.F[:, k]
+    seen = (np.diagonal(F, axis1=1, axis2=2).sum(axis=1) > 0) & (np.arange(len(F)) >= found.since)
+    mean = with_joint(mean_of(U[seen], F[seen]), m.lost[k], F[seen].sum(axis=0))
+    return Told(found, mean, U, F, scale, tuple(near(selection, found, scale)))
+
+
+def with_joint(mean: Mean, lost: Array, whole: Array) -> Mean:
+    """The mean with what the joint fit of the other findings takes of its information (w, w), 1/SI², in its sigma.
+
+    Their amplitudes were taken off at values that were fitted without this one, which shrinks it alike.
+    """
+    if not lost.any():
+        return mean
+    grown = inverse(whole - lost) @ whole
+    sigma = np.sqrt(np.maximum(np.diagonal(grown), 1.0))
+    return replace(mean, value=grown @ mean.value, sigma=mean.sigma * sigma, covariance=grown @ mean.covariance)
+
+
+def finding_of(selection: Selection, one: Told, measurements: Sequence[tuple[str, int | None]]) -> GroupFinding:
+    """A finding as people see it; ``measurements`` what would separate each of its rivals."""
+    f, h = one.found, one.found.hypothesis
+    known = cause(h.cause)
+    sensors = (h.sensor,) if h.sensor else ()
+    weighed = one.scale.weighed[f.place[0]]
+    date = selection.layout.parts[f.since].statistics.started_at
+    return GroupFinding(
+        cause=h.cause,
+        level=h.level,
+        subject=h.subject,
+        sensors=sensors,
+        amplitude=tuple(one.mean.value.tolist()),
+        sigma=tuple(s if s > 0 else None for s in one.mean.sigma.tolist()),
+        units=known.units,
+        spread=(one.mean.spread,),
+        shape=h.shape,
+        form=FORM_WORDS[f.form],
+        since=date if f.form == SINCE else None,
+        e_value=float(np.exp(min(one.scale.log_e_value, LARGEST))),
+        strength=strength_of(one, float(weighed.statistic[f.place[1]])),
+        cochran=one.mean.cochran,
+        alternatives=tuple(dict.fromkeys(n.hypothesis.cause for n in one.rivals if n.hypothesis.cause != h.cause)),
+        rivals=tuple(rival_of(n, *m) for n, m in zip(one.rivals, measurements, strict=True)),
+        sentence=sentence(known, (words_of(h),) if h.sensor else ()),
+        advice=known.advice,
+        sessions=forest(selection, one),
+    )
+
+
+def strength_of(one: Told, pooled: float) -> float:
+    """Standard errors of a reading: of the pool, or of the sessions one by one where the effect differs."""
+    if one.found.form == VARYING:
+        return float(np.sqrt(sum(float(u @ inverse(f) @ u) for u, f in zip(one.U, one.F, strict=True))))
+    if one.found.form == SINCE:
+        U, F = one.U[one.found.since :].sum(axis=0), one.F[one.found.since :].sum(axis=0)
+        return float(np.sqrt(max(U @ inverse(F) @ U, 0.0)))
+    return float(np.sqrt(pooled))
+
+
+def words_of(h: Hypothesis) -> str:
+    """Where a hypothesis acts, for people."""
+    every = {"accelerometer": "every accelerometer", "gyroscope": "every gyro"}
+    where = every.get(h.kind, "every sensor") if h.sensor == EVERY else h.sensor
+    return f"{where} of type {h.subject}" if h.level == TYPE else where
+
+
+def rival_of(near_by: Near, measurement: str, sessions: int | None) -> Rival:
+    """A rival as people see it, and what would tell it apart."""
+    h = near_by.hypothesis
+    sensors = (h.sensor,) if h.sensor else ()
+    return Rival(h.cause, sensors, h.level, h.subject, near_by.probability, near_by.separation, measurement, sessions)
+
+
+def forest(selection: Selection, one: Told) -> tuple[SessionAmplitude, ...]:
+    """The amplitude of every session that speaks of a finding."""
+    lines = []
+    for part, U, F in zip(selection.layout.parts, one.U, one.F, strict=True):
+        size = np.diagonal(F)
+        if columns_in(part, one.found.place) is None or not size.any():
+            continue
+        covariance = inverse(F)
+        sigma = tuple(
+            float(np.sqrt(c)) if s > 0 and c > 0 else None for c, s in zip(np.diagonal(covariance), size, strict=True)
+        )
+        s = part.statistics
+        lines.append(SessionAmplitude(s.started_at, s.unit, tuple((covariance @ U).tolist()), sigma))
+    return tuple(lines)
+
+
+def structures(selection: Selection) -> tuple[GroupStructure, ...]:
+    """Structure that the sessions share and no cause explains, in words."""
+    found = []
+    for h, statistic in selection.structures:
+        wave = f"harmonic {h.shape:g} of β"
+        where = f"{h.sensor}: {wave}" if h.sensor else f"the applied vector, common to all sensors: {wave}"
+        found.append(GroupStructure(where, h.subject, (h.sensor,) if h.sensor else (), float(np.sqrt(statistic))))
+    return tuple(found)

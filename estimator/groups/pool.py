@@ -1,0 +1,169 @@
+"""The sessions of a group added up: score and information of every hypothesis, given what was found before.
+
+What is found enters in one of two ways. An amplitude that all sessions share is fitted jointly: with A its columns,
+U|A = U − F_cA·â and F|A = F − F_cA·F_AA⁻¹·F_Ac over the pool. One that differs from session to session is *absorbed*
+in each session by itself, as is what acts in one session only.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+
+import numpy as np
+
+from estimator.groups.layout import Layout, Part
+from estimator.groups.scores import inverse
+from estimator.session import Array
+
+Place = tuple[int, int]
+"""A hypothesis: its width and its number among those."""
+
+
+@dataclass(frozen=True)
+class Shared:
+    """A hypothesis in the joint fit, with one amplitude from some session on."""
+
+    place: Place
+    since: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """What was found so far."""
+
+    shared: tuple[Shared, ...] = ()
+    absorbed: tuple[tuple[int, Place], ...] = ()
+    """Number of the session and the hypothesis that is left free there."""
+
+    def with_shared(self, place: Place, since: int = 0) -> "Model":
+        return replace(self, shared=(*self.shared, Shared(place, since)))
+
+    def with_absorbed(self, sessions: Iterable[int], place: Place) -> "Model":
+        return replace(self, absorbed=(*self.absorbed, *((k, place) for k in sessions)))
+
+
+@dataclass(frozen=True, eq=False)
+class Moments:
+    """Hypotheses of width w in a pool, given a model. n sessions, H hypotheses, a amplitudes in the joint fit."""
+
+    U: Array
+    """(n, H, w) scores, 1/SI, given the joint fit."""
+    evidence: Array
+    """(n, H, w) the same as they enter the evidence: those of estimated noise shrunk."""
+    F: Array
+    """(n, H, w, w) 1/SI²."""
+    cross: Array
+    """(n, H, w, a) 1/SI²: information shared with the joint fit."""
+    lost: Array
+    """(H, w, w) 1/SI²: information of the pool that the joint fit takes."""
+
+    @property
+    def pooled(self) -> tuple[Array, Array]:
+        """(H, w) score and (H, w, w) information of the pool, given the joint fit."""
+        return self.U.sum(axis=0), self.F.sum(axis=0) - self.lost
+
+
+@dataclass(frozen=True, eq=False)
+class Pool:
+    """A group's sessions added up under a model."""
+
+    layout: Layout
+    model: Model
+    scale: Array
+    """(n,) by which the variance of each session is larger than it says."""
+    moments: dict[int, Moments]
+    amplitude: Array = field(default_factory=lambda: np.zeros(0))
+    """(a,) SI, of the joint fit."""
+    information: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    """(a, a) 1/SI²."""
+
+    @property
+    def slices(self) -> list[slice]:
+        """Of the joint fit's amplitudes, finding after finding."""
+        ends = np.cumsum([0, *(s.place[0] for s in self.model.shared)])
+        return [slice(int(a), int(b)) for a, b in pairwise(ends)]
+
+
+def extended(part: Part, scale: float) -> tuple[Array, Array, Array]:
+    """(E,) U, (E,) U as it enters the evidence, (E, E) F, in 1/SI, of a session with its sums over sensors."""
+    s = part.statistics
+    U = s.score * s.size / scale
+    shrink = np.repeat(s.shrink, [b.width for b in s.blocks])
+    F = s.information * s.size[:, None] * s.size / scale
+    if part.sums:
+        add = np.zeros((len(part.sums), len(U)))
+        for row, members in zip(add, part.sums, strict=True):
+            row[list(members)] = 1.0
+        whole = np.concatenate([np.eye(len(U)), add])
+        mean = np.concatenate([shrink, [float(shrink[list(m)].mean()) for m in part.sums]])
+        U, F, shrink = whole @ U, whole @ F @ whole.T, mean
+    return U, U * shrink, F
+
+
+def columns_in(part: Part, place: Place) -> Array | None:
+    """(w,) columns of a hypothesis in a session; None where the session does not speak of it."""
+    width, number = place
+    own = np.flatnonzero(part.hypotheses.get(width, np.zeros(0)) == number)
+    return part.columns[width][own[0]] if len(own) else None
+
+
+def without(U: Array, E: Array, F: Array, columns: Sequence[int]) -> tuple[Array, Array, Array]:
+    """U (E,), evidence (E,) and F (E, E) given some columns left free."""
+    own = list(columns)
+    gain = F[:, own] @ inverse(F[np.ix_(own, own)])
+    left = F - gain @ F[own]
+    gone = np.diagonal(left) < 1e-4 * np.diagonal(F)
+    left[gone], left[:, gone] = 0.0, 0.0
+    return np.where(gone, 0.0, U - gain @ U[own]), np.where(gone, 0.0, E - gain @ E[own]), left
+
+
+def pooled(layout: Layout, model: Model = Model(), scale: Array | None = None) -> Pool:
+    """All sessions of a layout added up under a model; ``scale`` (n,) of their variances, by default 1."""
+    n = len(layout.parts)
+    scale = np.ones(n) if scale is None else scale
+    a = sum(s.place[0] for s in model.shared)
+    empty = {
+        w: (np.zeros((n, H, w)), np.zeros((n, H, w)), np.zeros((n, H, w, w)), np.zeros((n, H, w, a)))
+        for w, H in ((w, len(table)) for w, table in layout.hypotheses.items())
+    }
+    joint_U, joint_F = np.zeros(a), np.zeros((a, a))
+    for k, part in enumerate(layout.parts):
+        U, E, F = extended(part, float(scale[k]))
+        free = [c for j, place in model.absorbed if j == k and (c := columns_in(part, place)) is not None]
+        if free:
+            U, E, F = without(U, E, F, np.unique(np.concatenate(free)).tolist())
+        where, joint = joint_columns(part, model, k)
+        joint_U[where] += U[joint]
+        joint_F[np.ix_(where, where)] += F[np.ix_(joint, joint)]
+        for w, numbers in part.hypotheses.items():
+            c = part.columns[w]
+            all_U, all_E, all_F, cross = empty[w]
+            all_U[k, numbers], all_E[k, numbers] = U[c], E[c]
+            all_F[k, numbers] = F[c[:, :, None], c[:, None, :]]
+            if joint:
+                cross[k][numbers[:, None, None], np.arange(w)[None, :, None], np.array(where)[None, None, :]] = F[
+                    c[:, :, None], np.array(joint)[None, None, :]
+                ]
+    covariance = inverse(joint_F)
+    amplitude = covariance @ joint_U
+    moments = {}
+    for w, (all_U, all_E, all_F, cross) in empty.items():
+        taken, whole = cross @ amplitude, cross.sum(axis=0)
+        lost = whole @ covariance @ np.swapaxes(whole, -1, -2)
+        moments[w] = Moments(all_U - taken, all_E - taken, all_F, cross, lost)
+    return Pool(layout, model, scale, moments, amplitude, joint_F)
+
+
+def joint_columns(part: Part, model: Model, session: int) -> tuple[list[int], list[int]]:
+    """Numbers of the joint fit's amplitudes that act in a session, and their columns there."""
+    where: list[int] = []
+    joint: list[int] = []
+    start = 0
+    for s in model.shared:
+        width = s.place[0]
+        columns = columns_in(part, s.place) if session >= s.since else None
+        if columns is not None:
+            where += range(start, start + width)
+            joint += columns.tolist()
+        start += width
+    return where, joint

@@ -1,0 +1,220 @@
+"""What a group's sessions show together: forward selection, every finding weighed again given the others.
+
+A name needs an e-value of 1/α for the group, given what was found before. A finding must hold without the session that
+shows it most: what one session shows by itself is that session's own affair, and is left free there. Where nameless
+structure on the sensors concerned is as sure as a name must be, the name is taken back: the cause does not fit.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.special import chdtrc
+
+from estimator.groups.evidence import ALPHA, SAME, SINCE, VARYING
+from estimator.groups.layout import STAND, Hypothesis, Layout
+from estimator.groups.pool import Model, Place, Pool, columns_in, pooled
+from estimator.groups.scores import batch, inverse
+from estimator.groups.weighing import Scale, weigh
+from estimator.session import Array
+
+ENOUGH = float(-np.log(ALPHA))
+"""ln e-value of a name."""
+
+STILL = 0.01
+"""p-value that the rest of the sessions must reach without the one that shows a finding most."""
+
+MOST = 8
+"""Findings of a group; what needs more is no sum of catalogue causes."""
+
+ROUNDS = 40
+"""Steps of the search: names taken, taken back, and sessions with an affair of their own."""
+
+LARGEST = 0.3
+"""Largest part of the applied vector that an effect may be, as within one session."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """One finding: a hypothesis in a form."""
+
+    place: Place
+    hypothesis: Hypothesis
+    form: int
+    since: int
+    log_e: float
+    """ln e-value of the group when it was taken, given those before."""
+
+
+@dataclass(frozen=True, eq=False)
+class Selection:
+    """What was found in a group."""
+
+    layout: Layout
+    scale: Array
+    """(n,) by which each session's variance is larger than it says."""
+    found: tuple[Found, ...] = ()
+    structures: tuple[tuple[Hypothesis, float], ...] = ()
+    """Nameless structure, with its χ² in the pool."""
+    misfits: tuple[tuple[Hypothesis, Hypothesis], ...] = ()
+    """Names taken back, each with the structure that it left."""
+    own: tuple[tuple[int, Place], ...] = ()
+    """What one session has by itself."""
+    nameless: tuple[Place, ...] = ()
+    """Structure that is in the fit."""
+    barred: frozenset[tuple[str, ...]] = frozenset()
+
+    def model(self, without: Found | None = None) -> Model:
+        """Everything found, one finding left out."""
+        model = Model(absorbed=self.own)
+        n = range(len(self.layout.parts))
+        for place in self.nameless:
+            model = model.with_shared(place)
+        for f in self.found:
+            if f is not without:
+                varies = f.form == VARYING
+                model = model.with_absorbed(n, f.place) if varies else model.with_shared(f.place, f.since)
+        return model
+
+    def weighed(self, without: Found | None = None) -> Scale:
+        """All hypotheses given everything found, one finding left out."""
+        return weigh(pooled(self.layout, self.model(without), self.scale), self.barred)
+
+
+def select(layout: Layout) -> Selection:
+    """The findings of a group."""
+    state = Selection(layout, larger_than_stated(layout))
+    for _ in range(ROUNDS):
+        scale = state.weighed()
+        step = one_more(state, scale) if len(state.found) < MOST else None
+        if step is None:
+            step = without_misfit(state, scale) or with_structure(state, scale)
+        if step is None:
+            break
+        state = step
+    return reselected(state)
+
+
+def larger_than_stated(layout: Layout) -> Array:
+    """(n,) at least 1: by how much the sessions of each unit scatter more than they say, over all of them.
+
+    The largest effect of the unit is no scatter.
+    """
+    plain = weigh(pooled(layout))
+    energy: dict[str, list[float]] = {}
+    for part in layout.parts:
+        e = energy.setdefault(part.statistics.unit, [0.0, 0.0])
+        e[0] += float(part.statistics.energy.sum())
+        e[1] += float(part.statistics.freedom.sum())
+    most = dict.fromkeys(energy, 0.0)
+    for w, weighed in plain.weighed.items():
+        for h, t in zip(layout.hypotheses[w], weighed.statistic, strict=True):
+            for unit in [h.subject] if h.subject in most else [] if h.level != STAND else list(most):
+                most[unit] = max(most[unit], float(t) / (1 if h.subject in most else len(most)))
+    factor = {u: max(1.0, (e - most[u]) / max(f, 1.0)) for u, (e, f) in energy.items()}
+    return np.array([factor[p.statistics.unit] for p in layout.parts])
+
+
+def one_more(state: Selection, scale: Scale) -> Selection | None:
+    """The state with the strongest hypothesis, or with a session freed of it; None where nothing is enough."""
+    if scale.log_e_value < ENOUGH:
+        return None
+    place, hypothesis, _ = next(scale.ranked())
+    form = scale.form(place)
+    since = int(scale.weighed[place[0]].since[place[1]]) if form == SINCE else 0
+    alone = shown_by_one(scale.pool, place, form, since)
+    if alone is not None:
+        return replace(state, own=(*state.own, (alone, place)))
+    if not within_reason(scale.pool, place):
+        return replace(state, barred=state.barred | {hypothesis.group})
+    return replace(state, found=(*state.found, Found(place, hypothesis, form, since, scale.log_e_value)))
+
+
+def shown_by_one(pool: Pool, place: Place, form: int, since: int) -> int | None:
+    """The session without which the others do not show a hypothesis any more; None where they do."""
+    w, k = place
+    m = pool.moments[w]
+    U, F = m.evidence[:, k], m.F[:, k]
+    each, freedom = batch(U, F)
+    strongest = int(each.argmax())
+    rest = np.arange(len(U)) != strongest
+    if form == VARYING:
+        statistic, q = float(each[rest].sum()), int(freedom[rest].sum())
+    else:
+        own = rest & (np.arange(len(U)) >= since)
+        total, used = batch(U[own].sum(axis=0)[None], F[own].sum(axis=0)[None])
+        statistic, q = float(total[0]), int(used[0])
+    return None if q > 0 and chdtrc(q, statistic) < STILL else strongest
+
+
+def within_reason(pool: Pool, place: Place) -> bool:
+    """Whether the amplitude that fits best is a small part of the applied vector."""
+    w, k = place
+    U, F = (x[k] for x in pool.moments[w].pooled)
+    amplitude = np.abs(inverse(F) @ U)
+    for part in pool.layout.parts:
+        columns = columns_in(part, place)
+        if columns is not None and columns[0] < len(part.statistics.reach):
+            return bool(np.all(part.statistics.reach[columns] * amplitude < LARGEST))
+    return True
+
+
+def nameless_evidence(state: Selection, scale: Scale) -> list[tuple[float, Place, Hypothesis]]:
+    """ln evidence of nameless structure, its share among all of it included, strongest first."""
+    found = []
+    for w, table in state.layout.hypotheses.items():
+        places = [k for k, h in enumerate(table) if h.nameless]
+        values = scale.weighed[w].forms[SAME]
+        found += [(float(values[k]), (w, k), table[k]) for k in places]
+    return sorted(((v - np.log(len(found)), p, h) for v, p, h in found), key=lambda x: -x[0])
+
+
+def without_misfit(state: Selection, scale: Scale) -> Selection | None:
+    """The state without the weakest finding that leaves structure where it acts, which takes its place; None where all
+    fit."""
+    structure = [(h, place) for v, place, h in nameless_evidence(state, scale) if v > ENOUGH]
+    for f in sorted(state.found, key=lambda f: f.log_e):
+        for h, place in structure:
+            if concerns(f.hypothesis, h) and shown_by_one(scale.pool, place, SAME, 0) is None:
+                statistic = float(scale.weighed[place[0]].statistic[place[1]])
+                return replace(
+                    state,
+                    found=tuple(x for x in state.found if x is not f),
+                    nameless=(*state.nameless, place),
+                    structures=(*state.structures, (h, statistic)),
+                    misfits=(*state.misfits, (f.hypothesis, h)),
+                    barred=state.barred | {f.hypothesis.group},
+                )
+    return None
+
+
+def concerns(f: Hypothesis, structure: Hypothesis) -> bool:
+    """Whether structure lives where a finding acts."""
+    if not f.sensor or not structure.sensor:
+        return f.sensor == structure.sensor
+    return f.sensor in (structure.sensor, "*") and (f.level != "unit" or f.subject == structure.subject)
+
+
+def with_structure(state: Selection, scale: Scale) -> Selection | None:
+    """The state with the strongest nameless structure in the fit; None where none is sure enough."""
+    value, place, h = next(iter(nameless_evidence(state, scale)), (-np.inf, (0, 0), None))
+    if h is None or value < ENOUGH or shown_by_one(scale.pool, place, SAME, 0) is not None:
+        return None
+    statistic = float(scale.weighed[place[0]].statistic[place[1]])
+    return replace(state, nameless=(*state.nameless, place), structures=(*state.structures, (h, statistic)))
+
+
+def reselected(state: Selection) -> Selection:
+    """Every finding chosen again given the others; what no longer holds is dropped."""
+    for _ in range(3):
+        before = [f.hypothesis.group for f in state.found]
+        for old in state.found:
+            rest = tuple(f for f in state.found if f is not old)
+            scale = state.weighed(without=old)
+            again = one_more(replace(state, found=rest), scale)
+            new = again.found[-1] if again is not None and len(again.found) > len(rest) else None
+            kept = (replace(new, log_e=scale.log_e_value),) if new is not None else ()
+            others = iter(rest)
+            state = replace(state, found=tuple(x for f in state.found for x in (kept if f is old else (next(others),))))
+        if [f.hypothesis.group for f in state.found] == before:
+            break
+    return state

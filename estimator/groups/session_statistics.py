@@ -1,0 +1,222 @@
+"""From a session to what is kept of it for its groups.
+
+The record is put right first: clipped channels, slips of the record and readings that do not belong to the rest. Then
+every sensor's scatter is held against its stated noise, after what the session shows plainly by itself is taken out.
+Where it contradicts it, because the noise is misstated or because structure is left that no candidate explains, the
+session enters with the scatter that it has and never with full weight. Noise that is estimated from the session itself
+makes its scores Student's t: they enter the evidence as normal deviates of the same tail probability.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.special import chdtr, chdtrc
+
+from estimator.calibration.calibrate import averaged
+from estimator.causes.catalogue import CATALOGUE
+from estimator.diagnosis.record.clipping import unclipped
+from estimator.diagnosis.record.undo import undo_record_errors
+from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.flipped_run import with_its_flip
+from estimator.diagnosis.residuals.refitted import refitted
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.diagnosis.selection.start import as_they_scatter
+from estimator.diagnosis.signatures.scatter import equivalent_chi2
+from estimator.diagnosis.signatures.traces import INVISIBLE
+from estimator.groups.candidates import columns_of
+from estimator.groups.scores import Scores, eigen_scores
+from estimator.groups.statistics import Block, SessionStatistics, quantised
+from estimator.session import Array, CalibrationSession
+
+PLAIN = 1e-3
+"""p-value, all candidates of a session together, at which one shows plainly in the session by itself."""
+
+MOST = 4
+"""Plain effects and outliers each that are taken out before the scatter is judged; more are structure and count."""
+
+DOUBTFUL = 1e-3
+"""p-value, over the sensors, of a scatter that contradicts the stated noise."""
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """A whitened session. N rows, D columns."""
+
+    residuals: WhitenedResiduals
+    blocks: tuple[Block, ...]
+    trace: Array
+    """(N, D) standard errors per unit amplitude, outliers projected out."""
+    z: Array
+    """(N,) standard errors."""
+    reach: Array
+    """(D,) dimensionless."""
+    freedom: Array
+    """(N,) degrees of freedom of every row."""
+    outliers: tuple[int, ...] = ()
+    """Rows of z that do not belong to the rest."""
+
+
+def statistics_of(session: CalibrationSession) -> SessionStatistics:
+    """What is kept of a session of a programme that calibrates a block.
+
+    Raises
+    ------
+    ScheduleError : the session cannot be calibrated at all.
+    """
+    clips, right = unclipped(averaged(session), CATALOGUE)
+    errors, right = undo_record_errors(right, (), CATALOGUE)
+    baseline = with_its_flip(right)
+    words = [f"{session.sensors[c.sensor].name} clipped" for c in clips]
+    words += [e.undone.cause.identifier for e in errors]
+    return kept(session, baseline, tuple(words))
+
+
+def kept(session: CalibrationSession, baseline: Baseline, words: tuple[str, ...]) -> SessionStatistics:
+    """The statistics of a fitted session whose record is right."""
+    stated, seen = baseline, without_outliers(seen_in(baseline))
+    left, freedom = left_of(seen)
+    energy, free = of_sensors(seen, left**2), of_sensors(seen, freedom)
+    off = contradicted(energy, free) & ~baseline.unstated
+    if off.any():
+        named = plain_columns(seen)
+        scaled = as_they_scatter(baseline, [[int(i)] for i in np.flatnonzero(off)], named)
+        baseline = refitted(scaled)
+        seen = without_outliers(seen_in(baseline))
+        left, freedom = left_of(seen)
+        energy, free = of_sensors(seen, left**2), of_sensors(seen, freedom)
+    size = np.linalg.norm(seen.trace, axis=0)
+    estimated = np.where(baseline.unstated | off, free, np.inf)
+    factor = np.sqrt(np.median(baseline.variance / stated.variance, axis=0))
+    return SessionStatistics(
+        unit=session.unit,
+        unit_type=session.unit_type or "",
+        stand="" if session.stand is None else session.stand.id,
+        started_at=session.started_at or "",
+        sensors=tuple(s.name for s in session.sensors),
+        blocks=seen.blocks,
+        size=size,
+        score=seen.trace.T @ seen.z / np.where(size > 0, size, 1.0),
+        correlation=quantised(seen.trace.T @ seen.trace, size),
+        reach=seen.reach,
+        shrink=shrinking(seen, estimated),
+        energy=energy,
+        freedom=free,
+        noise_factor=factor,
+        put_right=words + tuple(f"reading {j + 1} left out" for j in seen.outliers),
+    )
+
+
+def seen_in(baseline: Baseline) -> Seen:
+    """The session's residuals and the traces of all candidates."""
+    residuals = WhitenedResiduals.of(baseline)
+    found = list(columns_of(baseline))
+    columns = np.concatenate([c for _, c in found], axis=-1)
+    raw, trace = np.linalg.norm(residuals.whitened(columns), axis=0), residuals.trace(columns)
+    shown = np.linalg.norm(trace, axis=0) > INVISIBLE * raw
+    reach = (np.abs(columns) / baseline.setting.norm[None, :, None]).max(axis=(0, 1))
+    return Seen(residuals, tuple(b for b, _ in found), trace * shown, residuals.z, reach, residuals.row_freedom)
+
+
+def without_outliers(seen: Seen) -> Seen:
+    """The session without readings that do not belong to the rest: each is left to an amplitude of its own.
+
+    The rest is what else the sensor leaves, effects included: a lone reading must stand out of them too.
+    """
+    rows, sensors = seen.residuals.baseline.residual.size, seen.residuals.sensor_of_row
+    for _ in range(MOST):
+        left, freedom = seen.z, seen.freedom
+        free = np.maximum(freedom, 0.05)
+        energy, whole = of_sensors(seen, left**2)[sensors], of_sensors(seen, freedom)[sensors]
+        own = left**2 / free
+        rest = np.maximum((energy - own) / np.maximum(whole - 1, 1), 1.0)
+        tail = chdtrc(1, own / rest) * rows
+        tail[rows:] = 1.0
+        worst = int(np.argmin(tail))
+        if tail[worst] > PLAIN or freedom[worst] < 0.2 or whole[worst] < 4:
+            break
+        seen = without_row(seen, worst)
+    return seen
+
+
+def without_row(seen: Seen, row: int) -> Seen:
+    """The session with one row of z projected out."""
+    spike = -seen.residuals.basis @ seen.residuals.basis[row]
+    spike[row] += 1.0
+    for other in seen.outliers:
+        spike[other] = 0.0
+    spike /= np.linalg.norm(spike)
+    return replace(
+        seen,
+        trace=seen.trace - np.outer(spike, spike @ seen.trace),
+        z=seen.z - spike * (spike @ seen.z),
+        freedom=seen.freedom - spike**2,
+        outliers=(*seen.outliers, row),
+    )
+
+
+def plainly(seen: Seen) -> list[int]:
+    """Blocks that the session shows plainly by itself, one after another, each given those before."""
+    found: list[int] = []
+    scores = Scores.of(seen.blocks, seen.trace.T @ seen.z, seen.trace.T @ seen.trace)
+    for _ in range(MOST):
+        statistic, freedom = scores.given(found)
+        tail = chdtrc(np.maximum(freedom, 1), statistic) * len(seen.blocks)
+        best = int(np.argmin(tail))
+        if tail[best] > PLAIN:
+            break
+        found.append(best)
+    return found
+
+
+def plain_basis(seen: Seen) -> Array:
+    """(N, f) orthonormal, dimensionless: traces of what the session shows plainly by itself."""
+    starts = np.concatenate([[0], np.cumsum([b.width for b in seen.blocks])]).astype(int)
+    found = plainly(seen)
+    columns = [seen.trace[:, starts[k] : starts[k + 1]] for k in found]
+    if not columns:
+        return np.zeros((len(seen.z), 0))
+    stacked = np.concatenate(columns, axis=1)
+    size = np.linalg.norm(stacked, axis=0)
+    basis, value, _ = np.linalg.svd(stacked[:, size > 0] / size[size > 0], full_matrices=False)
+    return basis[:, value > 1e-3 * value[0]]
+
+
+def plain_columns(seen: Seen) -> Array | None:
+    """(R, m, q), m/s² (rad/s): columns of what the session shows plainly by itself; None where that is nothing."""
+    chosen = {seen.blocks[k] for k in plainly(seen)}
+    found = [c for b, c in columns_of(seen.residuals.baseline) if b in chosen]
+    return np.concatenate(found, axis=-1) if found else None
+
+
+def left_of(seen: Seen) -> tuple[Array, Array]:
+    """(N,) standard errors that plain effects leave, and (N,) degrees of freedom of every row."""
+    basis = plain_basis(seen)
+    return seen.z - basis @ (basis.T @ seen.z), seen.freedom - (basis**2).sum(axis=1)
+
+
+def of_sensors(seen: Seen, values: Array) -> Array:
+    """(m,) sums of values (N,), any unit, over the rows of each sensor."""
+    m = len(seen.residuals.baseline.unstated)
+    return np.asarray((seen.residuals.sensor_of_row[: len(values)] == np.arange(m)[:, None]) @ values)
+
+
+def contradicted(energy: Array, freedom: Array) -> Array:
+    """(m,) bool, dimensionless: sensors whose scatter is not as stated, in either sense."""
+    free = np.maximum(freedom, 1e-3)
+    tail = np.minimum(chdtr(free, energy), chdtrc(free, energy))
+    return np.asarray((tail < DOUBTFUL / len(energy)) & (freedom > 2))
+
+
+def shrinking(seen: Seen, estimated: Array) -> Array:
+    """(B,) dimensionless: by how much each candidate's score is as unlikely as a normal one.
+
+    ``estimated`` (m,): degrees of freedom from which the noise of each sensor was estimated; infinite where stated.
+    """
+    statistic, q = eigen_scores(seen.blocks, seen.trace.T @ seen.z, seen.trace.T @ seen.trace)
+    names = [s.name for s in seen.residuals.baseline.session.sensors]
+    whole = float(estimated.sum())
+    free = np.array([estimated[names.index(b.sensor)] if b.sensor else whole for b in seen.blocks])
+    known = np.isinf(free)
+    energy = np.where(known, np.nan, np.maximum(np.where(known, 1.0, free) - statistic, 1e-3))
+    normal = equivalent_chi2(statistic, q, energy, np.where(known, 1.0, free - q))
+    return np.sqrt(np.where(statistic > 0, np.minimum(normal / np.where(statistic > 0, statistic, 1.0), 1.0), 1.0))
