@@ -46,6 +46,7 @@ OF_STAND = (
 BEYOND = ("third-harmonic", "fifth-harmonic", "turning-scale", "encoder-third-harmonic", "bearing-second-harmonic")
 """Effects outside the catalogue that are the same in every session, whatever its schedule."""
 SAME, SPREAD, SINCE = "same", "spread", "since"
+OUTSIDE = "outside"
 LONGEST = 14
 TRIES = 60
 

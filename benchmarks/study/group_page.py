@@ -1,0 +1,146 @@
+"""The page of evidence of many sessions: explanation, and the table of the study."""
+
+from collections.abc import Iterator
+from statistics import fmean, median
+from typing import Any
+
+from benchmarks.study.rates import rate
+
+EXPLANATION = """# Evidence of many sessions
+
+A session sees an effect from about five standard errors. Thirty sessions of a unit, on a stand or of a type see one of
+strength 1 in each as plainly. `diagnose_group(sessions, level)` adds them up and says what they share, with the rules
+that hold for a session: a name is given only to what fits, and what cannot be told apart is listed together.
+
+## What is kept of a session
+
+`statistics_of(session)` makes a record of some hundred kilobytes: for every cause that can last, at every place and in
+every shape, its *score* U (how much of it the residuals hold) and its *information* F (how much they could hold), with
+the information that any two share. Clipped channels, slips of the record and lone wrong readings are put right first.
+A session that scatters otherwise than its file states enters with the scatter that it shows. The amplitude that fits
+a whole group is â = (ΣF)⁻¹ΣU, its covariance (ΣF)⁻¹: no reading is needed any more.
+
+## Whose it is
+
+| level | effects | held against |
+| --- | --- | --- |
+| unit | a sensor's or its environment's, on one unit | the same on every unit of the type, a cause of the stand |
+| type | the same of the sensor of one name in every unit, or of every sensor of a kind | one unit's, the stand's |
+| stand | of stand and fixture, over all units; a sensor cause that every sensor measured there shares | the units' |
+
+All levels are weighed on the same sessions. Two that fit alike are listed as rivals: only the same units on another
+stand tell them apart.
+
+## When a name is given
+
+The group is looked at after every upload, for years. So evidence is counted in *e-values*: bets that gain nothing on
+average where there is nothing, however often one looks. The mean over all causes, places, shapes and three forms (the
+same in every session; there, but different every time; since some session) reaches 100 in at most one group of a
+hundred without an effect, ever. A name needs that, must hold without the session that shows it most, and must leave
+nothing but noise: where waves of β are left on the same sensor, or common to all, the name is taken back and the group
+is *unexplained*.
+
+## What an answer holds
+
+| field | meaning |
+| --- | --- |
+| `amplitude`, `sigma`, `spread` | mean over sessions in SI, and τ between them (random effects) |
+| `form`, `since` | `same`, `varying` or `since` a date |
+| `e_value`, `strength` | evidence; norm of the pooled effect in standard errors |
+| `rivals` | what cannot be told from it, how far it is, which measurement would tell and how many sessions of it |
+| `sessions` | every session's own amplitude: a forest plot |
+| `limits` | what the pool finds with 95 % power, and what one session would |
+| `gain` | the amplitudes fixed on the first two thirds of the sessions, tried on the later ones |
+| `terms` | empirical terms, learned where the catalogue ends: equation, gain on the later sessions, nearest cause |
+
+## For the service
+
+* At upload, beside the diagnosis: `statistics_of(session).to_dict()` is JSON (`imu-session-statistics/1`) and is kept
+  with the session. Record and diagnosis need nothing of each other.
+* For a group: `diagnose_statistics(records, level, sessions)` with the records of its accepted sessions, oldest first.
+  `sessions` may be left out: then no measurement is proposed, and neither gain nor terms are worked out.
+* A session that is withdrawn leaves the pool by not being handed in.
+* `diagnose_group(sessions, level)` is both at once.
+
+What is not pooled: record causes, outliers, jumps, clipping and excess noise belong to their session. How parameters
+moved between sessions is not yet used as evidence: residuals alone are.
+"""
+
+
+def page(marks: list[dict[str, Any]], command: str) -> str:
+    """The page, from the marks of every group."""
+    rows = "\n".join(f"| {a} | {b} | {c} |" for a, b, c in table(marks))
+    return (
+        f"{EXPLANATION}\n## How well it does\n\nSimulated groups, drawn at random, their physics written a second time "
+        f"(`tests/blind/groups.py`); 95 % intervals after Wilson. Made by `{command}`.\n\n"
+        f"| figure | target | measured |\n| --- | --- | --- |\n{rows}\n"
+    )
+
+
+def table(marks: list[dict[str, Any]]) -> Iterator[tuple[str, str, str]]:
+    """Rows: figure, target, measured."""
+    part = {name: [m for m in marks if m["part"] == name] for name in PARTS}
+    one = part["one"]
+    clear = [m for m in one if m["clear"]]
+    strong = [m for m in [*one, *part["spread"], *part["since"]] if min(m["pooled"]) >= 8]
+    yield (
+        "pooled strength ≥ 8, separation ≥ 5, no session above 3.5: named first, right level",
+        "≥ 97 %",
+        str(rate([m["first"] for m in clear])),
+    )
+    listed = rate([all(m["listed"]) for m in strong])
+    alternatives = fmean([m["alternatives"] for m in strong] or [float("nan")])
+    yield (
+        "all with pooled strength ≥ 8: named or listed; mean alternatives",
+        "≥ 99 %; ≤ 2",
+        f"{listed}; {alternatives:.2f}",
+    )
+    lives = [m["largest"] >= 4.60517 for m in part["life"]]
+    yield "without an effect, looked at after each of 100 sessions: ever a name", "≤ 1 %", str(rate(lives))
+    none = [bool(m["findings"]) for m in part["none"]]
+    yield "without an effect, half of them with misstated noise, 10 to 18 sessions: a name", "≤ 1 %", str(rate(none))
+    first = [m["first_strength"] for m in one if m["first_strength"] is not None]
+    yield (
+        "pooled strength at the session that first shows it, median",
+        "≤ 6.5",
+        f"{median(first):.1f}" if first else "–",
+    )
+    for name, words in (("one", "τ = 0"), ("spread", "τ > 0")):
+        pulls = [abs(p) <= 2 for m in part[name] for p in m["pulls"]]
+        yield f"amplitude within two of its sigma, {words}", "93–97 %", str(rate(pulls))
+    since = [m["forms"][0] == "since" for m in part["since"] if m["named"][0]]
+    yield "effect that began later: said to have begun, where it is named", "–", str(rate(since))
+    two = [all(m["listed"]) for m in part["two"]]
+    yield "two effects of pooled strength ≥ 8: both named or listed", "–", str(rate(two))
+    wrong = [all(m["listed"]) for m in part["misstated"]]
+    yield "the same with one, stated noise wrong by a factor of 0.4 to 2: named or listed", "–", str(rate(wrong))
+    outside = part["outside"]
+    said = rate([m["unexplained"] for m in outside])
+    named = rate([bool(m["findings"]) for m in outside])
+    yield "outside the catalogue, strength 6 in each session: unexplained said; a wrong name", "–", f"{said}; {named}"
+    yield from terms(outside, part["none"])
+    shares = [m["share"] for m in marks if m.get("share")]
+    yield (
+        "time to add a session, as a share of its diagnosis, median",
+        "< 20 %",
+        f"{100 * median(shares):.0f} %" if shares else "–",
+    )
+
+
+def terms(outside: list[dict[str, Any]], none: list[dict[str, Any]]) -> Iterator[tuple[str, str, str]]:
+    """Rows of the learned terms."""
+    judged = [m for m in outside if m.get("correlation") is not None]
+    yield (
+        "outside the catalogue: learned prediction against the truth, correlation ≥ 0.95",
+        "–",
+        str(rate([m["correlation"] >= 0.95 for m in judged])),
+    )
+    yield (
+        "the same: at least 80 % of the excess χ² of left-out sessions removed",
+        "–",
+        str(rate([m["explained"] >= 0.8 for m in judged])),
+    )
+    yield "sound groups: any term learned", "≤ 1 %", str(rate([bool(m["terms"]) for m in none]))
+
+
+PARTS = ("one", "spread", "since", "two", "none", "misstated", "outside", "life")
