@@ -18,11 +18,21 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 
 from benchmarks.study.group_page import page
-from estimator import SessionStatistics, diagnose, diagnose_group, read_session, statistics_of
+from estimator import (
+    CalibrationSession,
+    GroupDiagnosis,
+    SessionStatistics,
+    diagnose,
+    diagnose_group,
+    read_session,
+    statistics_of,
+)
 from estimator.groups.evidence import ALPHA
 from estimator.groups.looks import e_process
+from estimator.groups.terms import HELD_OUT, learn, libraries
 from tests.blind.group_score import score
 from tests.blind.groups import OUTSIDE, Group, draw_group
+from tests.blind.physics import mean_readings
 
 PAGE = Path(__file__).parents[2] / "docs" / "diagnosis" / "groups.md"
 LOOKS = 100
@@ -68,21 +78,51 @@ def tasks(groups: int, seed: int) -> Iterator[Task]:
 def perform(task: Task) -> dict[str, Any]:
     """The marks of one group, plain, so that they can be kept as JSON."""
     size = DESIGNS if task.part == "life" else None
-    group = draw_group(task.level, task.kind, task.seed, form=task.form, size=size, misstated=task.misstated)
+    quiet = task.part == "one" and task.seed[2] % 2 == 1
+    group = draw_group(
+        task.level, task.kind, task.seed, form=task.form, size=size, misstated=task.misstated, quiet=quiet
+    )
     if task.part == "life":
         return {"part": task.part, "level": task.level, "largest": life(group, np.random.default_rng(task.seed))}
     sessions = [read_session(f) for f in group.sessions]
     begun = time.perf_counter()
     kept = [statistics_of(s) for s in sessions]
     seconds = (time.perf_counter() - begun) / len(kept)
-    outcome = score(group, diagnose_group(sessions, task.level).to_dict(), task.misstated)
+    found = diagnose_group(sessions, task.level)
+    outcome = score(group, found.to_dict(), task.misstated)
     marks = asdict(outcome) | {"part": task.part, "clear": bool(group.truths) and outcome.clear}
     marks["first_strength"] = first_strength(group, kept)
+    if task.kind == OUTSIDE:
+        marks |= prediction(group, sessions, found)
     if task.seed[2] % TIMED == 0:
         begun = time.perf_counter()
         diagnose(sessions[-1])
         marks["share"] = seconds / (time.perf_counter() - begun)
     return marks
+
+
+def prediction(group: Group, sessions: list[CalibrationSession], found: GroupDiagnosis) -> dict[str, float]:
+    """How well learned terms say what the effect leaves in the sessions left out of their fit, without noise."""
+    held = [k for k in range(len(sessions)) if k % HELD_OUT == HELD_OUT - 1]
+    truth, told = [], []
+    for k in held:
+        one = libraries([sessions[k]], "")[0]
+        world, effects = group.worlds[k], group.effects[k]
+        change = (mean_readings(world, effects) - mean_readings(world)) / world.unit.scale
+        truth.append(one.residuals.trace(change[..., None])[:, 0])
+        told.append(np.zeros_like(truth[-1]))
+    for term in found.terms:
+        (sensor,) = term.sensors or ("",)
+        own = [k for k, w in enumerate(group.worlds) if term.subject in (w.unit.name, "BT", w.stand.id)]
+        whole = dict(zip(own, libraries([sessions[k] for k in own], sensor), strict=True))
+        learned = learn(sensor, list(whole.values()))
+        for number, k in enumerate(held):
+            if learned is not None and k in whole:
+                told[number] += whole[k].residuals.trace(learned.predicted(whole[k])[..., None])[:, 0]
+    x, y = np.concatenate(truth), np.concatenate(told)
+    size = float(x @ x)
+    alike = float(x @ y / np.sqrt(max(size * (y @ y), 1e-300)))
+    return {"correlation": alike, "explained": 1 - float((x - y) @ (x - y)) / size}
 
 
 def first_strength(group: Group, kept: list[SessionStatistics]) -> float | None:

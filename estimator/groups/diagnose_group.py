@@ -3,7 +3,7 @@
 statistics → layout → evidence → selection → findings
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,14 +11,16 @@ import numpy as np
 from estimator.causes.catalogue import cause
 from estimator.diagnosis.explanation.naming import sentence
 from estimator.groups.findings import LARGEST, Told, finding_of, structures, told
+from estimator.groups.gain import gain_of
 from estimator.groups.layout import LEVELS, STAND, TYPE, UNIT, Layout
 from estimator.groups.limits import limits
 from estimator.groups.pool import Model, pooled
-from estimator.groups.results import GroupDiagnosis, GroupFinding
+from estimator.groups.results import EmpiricalTerm, GroupDiagnosis, GroupFinding
 from estimator.groups.selection import Selection, select
 from estimator.groups.separation import Separator
 from estimator.groups.session_statistics import statistics_of
 from estimator.groups.statistics import SessionStatistics
+from estimator.groups.terms import learn, libraries, shown
 from estimator.session import CALIBRATIONS, CalibrationSession
 
 
@@ -68,13 +70,35 @@ def diagnose_statistics(
         first=statistics[0].started_at,
         last=statistics[-1].started_at,
         findings=tuple(merged(found)),
-        terms=(),
+        terms=tuple(learned_terms(selection, level, sessions)),
         structures=structures(selection),
         limits=limits(pooled(layout, Model(), selection.scale), level),
-        gain=None,
+        gain=gain_of(selection, found, sessions),
         e_value=float(np.exp(min(scale.log_e_value, LARGEST))),
         notes=tuple(notes(selection, each)),
     )
+
+
+def learned_terms(selection: Selection, level: str, sessions: Sequence[CalibrationSession]) -> Iterator[EmpiricalTerm]:
+    """Empirical terms where the sessions share structure that no cause explains, place by place.
+
+    What has a name is left free in every session.
+    """
+    named = [(f.hypothesis.cause, f.hypothesis.sensor, f.hypothesis.shape) for f in selection.found]
+    places = dict.fromkeys(
+        (
+            h.sensor,
+            subject_of(selection.layout.parts[-1].statistics, level) if level == TYPE and h.sensor else h.subject,
+        )
+        for h, _ in selection.structures
+    )
+    for sensor, subject in places if sessions else ():
+        own = [s for s in sessions if subject in (s.unit, s.unit_type, s.stand.id if s.stand else "")]
+        own = [s for s in own if not sensor or sensor in [x.name for x in s.sensors]]
+        whole = libraries(own, sensor, named)
+        terms = learn(sensor, whole)
+        if terms is not None:
+            yield shown(subject, terms, whole)
 
 
 def subject_of(session: SessionStatistics, level: str) -> str:

@@ -26,6 +26,9 @@ STILL = 0.01
 MOST = 8
 """Findings of a group; what needs more is no sum of catalogue causes."""
 
+FEW = 4
+"""One session in so many may have an effect by itself that is no affair of the group; more have something else."""
+
 ROUNDS = 40
 """Steps of the search: names taken, taken back, and sessions with an affair of their own."""
 
@@ -85,13 +88,15 @@ def select(layout: Layout) -> Selection:
     state = Selection(layout, larger_than_stated(layout))
     for _ in range(ROUNDS):
         scale = state.weighed()
-        step = one_more(state, scale) if len(state.found) < MOST else None
+        step = plainly_nameless(state, scale)
+        if step is None and len(state.found) < MOST:
+            step = one_more(state, scale)
         if step is None:
             step = without_misfit(state, scale) or with_structure(state, scale)
         if step is None:
             break
         state = step
-    return reselected(state)
+    return without_lesser(reselected(state))
 
 
 def larger_than_stated(layout: Layout) -> Array:
@@ -122,11 +127,21 @@ def one_more(state: Selection, scale: Scale) -> Selection | None:
     form = scale.form(place)
     since = int(scale.weighed[place[0]].since[place[1]]) if form == SINCE else 0
     alone = shown_by_one(scale.pool, place, form, since)
-    if alone is not None:
+    often = sum(p == place for _, p in state.own) >= max(1, len(state.layout.parts) // FEW)
+    if alone is not None and not often:
         return replace(state, own=(*state.own, (alone, place)))
-    if not within_reason(scale.pool, place):
+    if alone is not None or not within_reason(scale.pool, place):
         return replace(state, barred=state.barred | {hypothesis.group})
     return replace(state, found=(*state.found, Found(place, hypothesis, form, since, scale.log_e_value)))
+
+
+def plainly_nameless(state: Selection, scale: Scale) -> Selection | None:
+    """The state with nameless structure that explains plainly more than any name; None where a name does as well."""
+    best = next(iter(nameless_evidence(state, scale)), None)
+    named = next(scale.ranked(), None)
+    if best is None or (named is not None and best[0] < named[2] + ENOUGH):
+        return None
+    return with_structure(state, scale)
 
 
 def shown_by_one(pool: Pool, place: Place, form: int, since: int) -> int | None:
@@ -169,22 +184,39 @@ def nameless_evidence(state: Selection, scale: Scale) -> list[tuple[float, Place
 
 
 def without_misfit(state: Selection, scale: Scale) -> Selection | None:
-    """The state without the weakest finding that leaves structure where it acts, which takes its place; None where all
-    fit."""
+    """The state without the weakest finding that leaves structure where it acts; None where all fit.
+
+    In its place comes the structure, wherever it is, that is seen best without it.
+    """
     structure = [(h, place) for v, place, h in nameless_evidence(state, scale) if v > ENOUGH]
     for f in sorted(state.found, key=lambda f: f.log_e):
         for h, place in structure:
             if concerns(f.hypothesis, h) and shown_by_one(scale.pool, place, SAME, 0) is None:
-                statistic = float(scale.weighed[place[0]].statistic[place[1]])
-                return replace(
-                    state,
-                    found=tuple(x for x in state.found if x is not f),
-                    nameless=(*state.nameless, place),
-                    structures=(*state.structures, (h, statistic)),
-                    misfits=(*state.misfits, (f.hypothesis, h)),
-                    barred=state.barred | {f.hypothesis.group},
-                )
+                less = taken_back(state, f, h)
+                return with_structure(less, less.weighed()) or less
     return None
+
+
+def taken_back(state: Selection, found: Found, structure: Hypothesis) -> Selection:
+    """The state without a name that does not fit, which is not tried again."""
+    return replace(
+        state,
+        found=tuple(x for x in state.found if x is not found),
+        misfits=(*state.misfits, (found.hypothesis, structure)),
+        barred=state.barred | {found.hypothesis.group},
+    )
+
+
+def without_lesser(state: Selection) -> Selection:
+    """The state without names beside structure on the same sensor, or common to all, that explains more than they do:
+    they are parts of what has no name."""
+    for f in state.found:
+        scale = state.weighed(without=f)
+        own = float(scale.weighed[f.place[0]].statistic[f.place[1]])
+        beside = [(h, value) for h, value in state.structures if concerns(f.hypothesis, h)]
+        if beside and own < sum(value for _, value in beside):
+            state = taken_back(state, f, beside[0][0])
+    return state
 
 
 def concerns(f: Hypothesis, structure: Hypothesis) -> bool:

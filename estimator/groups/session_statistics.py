@@ -101,6 +101,8 @@ def kept(session: CalibrationSession, baseline: Baseline, words: tuple[str, ...]
         shrink=shrinking(seen, estimated),
         energy=energy,
         freedom=free,
+        whole=of_sensors(seen, seen.z**2),
+        whole_freedom=of_sensors(seen, seen.freedom),
         noise_factor=factor,
         put_right=words + tuple(f"reading {j + 1} left out" for j in seen.outliers),
     )

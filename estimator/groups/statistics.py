@@ -69,6 +69,10 @@ class SessionStatistics:
     """(m,) χ² of the residuals of each sensor, what the session itself shows plainly taken out."""
     freedom: Array
     """(m,) its degrees of freedom."""
+    whole: Array
+    """(m,) χ² of the residuals of each sensor, with what the session itself shows plainly."""
+    whole_freedom: Array
+    """(m,) its degrees of freedom."""
     noise_factor: Array
     """(m,) by which the stated standard errors were enlarged (or reduced), because the readings contradict them."""
     put_right: tuple[str, ...] = ()
@@ -128,6 +132,8 @@ PACKED = {
     "shrink": "<f8",
     "energy": "<f8",
     "freedom": "<f8",
+    "whole": "<f8",
+    "whole_freedom": "<f8",
     "noise_factor": "<f8",
 }
 """Arrays and the number type in which each is kept, of little-endian bytes."""

@@ -89,14 +89,24 @@ class Group:
 
 
 def draw_group(
-    level: str, kind: str, seed: tuple[int, ...], *, form: str = SAME, size: int | None = None, misstated: bool = False
+    level: str,
+    kind: str,
+    seed: tuple[int, ...],
+    *,
+    form: str = SAME,
+    size: int | None = None,
+    misstated: bool = False,
+    quiet: bool = False,
 ) -> Group:
-    """A group of a kind (none, one, two, outside) from a seed; drawn anew until it can hold its effects."""
+    """A group of a kind (none, one, two, outside) from a seed; drawn anew until it can hold its effects.
+
+    ``quiet``: no session shows an effect by itself.
+    """
     for attempt in range(TRIES):
         rng = np.random.default_rng([*seed, attempt])
         try:
             worlds = draw_worlds(level, rng, size)
-            truths = draw_truths(level, kind, form, worlds, rng)
+            truths = draw_truths(level, kind, form, worlds, rng, quiet)
         except UnhideableError:
             continue
         return _measured("-".join(map(str, seed)), level, kind, worlds, truths, rng, misstated)
@@ -175,7 +185,7 @@ def _like(unit: Unit, number: int, rng: np.random.Generator) -> Unit:
 
 
 def draw_truths(
-    level: str, kind: str, form: str, worlds: list[Session], rng: np.random.Generator
+    level: str, kind: str, form: str, worlds: list[Session], rng: np.random.Generator, quiet: bool
 ) -> tuple[GroupTruth, ...]:
     """None, one or two effects."""
     count = {"none": 0, "one": 1, "outside": 1, "two": 2}[kind]
@@ -188,15 +198,22 @@ def draw_truths(
         common = level == "stand" or (level == "unit" and rng.random() < 0.25)
         choice = [c for c in (OF_STAND if common else OF_SENSOR) if level != "type" or c not in TANGENT]
         cause = str(rng.choice([c for c in choice if c not in [t.effect.cause for t in found]]))
-        target = float(rng.uniform(8.2, 13.0))
-        found.append(draw_truth(level, cause, form, worlds, rng, target=target))
+        target = float(rng.uniform(8.2, 9.5 if quiet else 13.0))
+        found.append(draw_truth(level, cause, form, worlds, rng, target=target, loudest=3.5 if quiet else np.inf))
     return tuple(found)
 
 
 def draw_truth(
-    level: str, cause: str, form: str, worlds: list[Session], rng: np.random.Generator, *, target: float
+    level: str,
+    cause: str,
+    form: str,
+    worlds: list[Session],
+    rng: np.random.Generator,
+    *,
+    target: float,
+    loudest: float = np.inf,
 ) -> GroupTruth:
-    """One effect of a pooled strength."""
+    """One effect of a pooled strength, at most ``loudest`` in a session."""
     first = worlds[0]
     outside = cause in OUTSIDE_INPUT or cause in OUTSIDE_POSE
     common = cause in OF_STAND or cause in OUTSIDE_POSE
@@ -220,6 +237,8 @@ def draw_truth(
     if not each.any():
         raise UnhideableError(cause)
     grown = target / np.linalg.norm(each)
+    if (grown * each).max() > loudest:
+        raise UnhideableError("a session shows it by itself")
     effect = replace(effect, amplitude=tuple(float(grown * k) for k in effect.amplitude))
     if not sensible(first, effect):
         raise UnhideableError(cause)

@@ -1,0 +1,96 @@
+"""What a group's findings are worth for sessions that took no part in their fit, and what they move.
+
+The amplitudes are fixed on the first two thirds of the sessions and tried on those that came later.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from estimator.calibration.calibrate import averaged
+from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals, parameter_covariance
+from estimator.groups.candidates import columns_of
+from estimator.groups.evidence import VARYING
+from estimator.groups.layout import EVERY
+from estimator.groups.pool import Model, columns_in, extended, joint_columns
+from estimator.groups.results import GroupFinding, GroupGain, Moved
+from estimator.groups.scores import inverse
+from estimator.groups.selection import Selection
+from estimator.groups.terms import predictive
+from estimator.session import Array, CalibrationSession
+
+FIRST = 2 / 3
+"""Part of the sessions that fix the amplitudes."""
+ELEMENTS = ("scale", "bias", "quadratic", "axis_1", "axis_2")
+SHOWN = 5
+"""Parameters that moved most."""
+
+
+def gain_of(
+    selection: Selection, findings: Sequence[GroupFinding], sessions: Sequence[CalibrationSession]
+) -> GroupGain | None:
+    """The gain on later sessions; None without findings or without sessions to leave out."""
+    n = len(selection.layout.parts)
+    model = Model(absorbed=selection.own)
+    for f in selection.found:
+        if f.form != VARYING:
+            model = model.with_shared(f.place, f.since)
+    first = max(int(np.ceil(FIRST * n)), 1 + max((s.since for s in model.shared), default=0))
+    if not model.shared or first >= n:
+        return None
+    each = [_joint(selection, model, k) for k in range(n)]
+    U, F = np.array([u for u, _ in each]), np.array([f for _, f in each])
+    covariance = inverse(F[:first].sum(axis=0))
+    value = covariance @ U[:first].sum(axis=0)
+    later_U, later_F = U[first:].sum(axis=0), F[first:].sum(axis=0)
+    parts = [p.statistics for p in selection.layout.parts[first:]]
+    square = sum(float(p.whole.sum()) for p in parts)
+    freedom = sum(float(p.whole_freedom.sum()) for p in parts)
+    removed = float(2 * value @ later_U - value @ later_F @ value) * float(np.mean(selection.scale[first:]))
+    return GroupGain(
+        fitted=first,
+        held_out=n - first,
+        log_score=predictive(value, covariance, later_U, later_F),
+        chi2_per_dof_before=square / freedom,
+        chi2_per_dof_after=(square - removed) / freedom,
+        moved=moved(findings, sessions[-1]) if sessions else (),
+    )
+
+
+def _joint(selection: Selection, model: Model, k: int) -> tuple[Array, Array]:
+    """(a,) score and (a, a) information of the shared findings in one session."""
+    part = selection.layout.parts[k]
+    U, _, F = extended(part, float(selection.scale[k]))
+    a = sum(s.place[0] for s in model.shared)
+    own_U, own_F = np.zeros(a), np.zeros((a, a))
+    if any(j == k and columns_in(part, p) is not None for j, p in model.absorbed):
+        return own_U, own_F
+    where, joint = joint_columns(part, model, k)
+    own_U[where], own_F[np.ix_(where, where)] = U[joint], F[np.ix_(joint, joint)]
+    return own_U, own_F
+
+
+def moved(findings: Sequence[GroupFinding], session: CalibrationSession) -> tuple[Moved, ...]:
+    """How far the calibration of a session moves when the findings are modelled, what moves most first."""
+    baseline = baseline_of(averaged(session))
+    residuals, names = WhitenedResiduals.of(baseline), [s.name for s in session.sensors]
+    effect = np.zeros(baseline.residual.shape)
+    subjects = (session.unit, session.unit_type, session.stand.id if session.stand else "")
+    for b, columns in columns_of(baseline):
+        for f in findings:
+            places = f.sensors or ("",)
+            if f.subject not in subjects or (f.cause, f.shape) != (b.cause, b.shape):
+                continue
+            for k, place in enumerate(places):
+                if place in (b.sensor, EVERY) and bool(place) == bool(b.sensor):
+                    effect += columns @ np.array(f.amplitude[k * b.width : (k + 1) * b.width])
+    change = -(residuals.response @ residuals.whitened(effect[..., None])[:, 0])
+    sigma = np.sqrt(np.diagonal(parameter_covariance(baseline)))
+    factors = baseline.parameters.si_factors(baseline.setting.norm)
+    order = np.argsort(-np.abs(change / sigma))[:SHOWN]
+    return tuple(
+        Moved(ELEMENTS[j % 5], names[j // 5], float(change[j] * factors[j]), float(change[j] / sigma[j]))
+        for j in order
+        if change[j] != 0
+    )

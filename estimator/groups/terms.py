@@ -1,0 +1,318 @@
+"""Empirical terms: what sessions share and no catalogue has, learned from some of them and confirmed on the others.
+
+Theory
+------
+Forward selection on the pooled score: the term with the largest gain, all amplitudes refitted. The e-value over the
+whole library, the mean of its terms' (as of causes), must reach 1/α for every term that is taken. Then each is tried
+without: one that the others make needless is dropped. The amplitudes and their covariance V from the sessions that
+fitted are the prior with which the others are predicted:
+
+    ln p(U | term) − ln p(U | none) = ½·cᵀ(V⁻¹ + F)⁻¹c − ½·âᵀV⁻¹â − ½·ln|I + V·F|,   c = V⁻¹â + U.
+
+A term is shown where that is above zero. It describes; it names no physical cause.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import logsumexp
+
+from estimator.calibration.calibrate import averaged
+from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.flipped_run import with_its_flip
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.diagnosis.signatures.traces import INVISIBLE
+from estimator.groups.candidates import columns_of
+from estimator.groups.evidence import ALPHA, log_bayes
+from estimator.groups.library import library
+from estimator.groups.results import EmpiricalTerm
+from estimator.groups.scores import inverse
+from estimator.groups.statistics import HARMONIC
+from estimator.session import Array, CalibrationSession
+
+HELD_OUT = 3
+"""Every third session takes no part in the fit: enough are left to fit, and both parts reach over the group's life."""
+
+FEWEST = 4
+"""Sessions from which on there is something to fit and to confirm."""
+
+MOST = 4
+"""Terms of one place; what needs more is no simple law."""
+
+BINS = 24
+"""Points of the picture of a residual against its variable."""
+
+Key = tuple[str, ...]
+"""The words of a term: the same term in every session."""
+
+
+@dataclass(frozen=True, eq=False)
+class Library:
+    """All terms of one place in one session. N rows, D columns."""
+
+    residuals: WhitenedResiduals
+    keys: tuple[tuple[Key, str, str], ...]
+    """Words, unit and variable of every term."""
+    starts: Array
+    """(K + 1,) int"""
+    columns: Array
+    """(R, m, D) m/s² (rad/s) per unit amplitude."""
+    trace: Array
+    """(N, D) standard errors per unit amplitude."""
+    z: Array
+    """(N,) standard errors, what is named taken out."""
+
+    @classmethod
+    def of(cls, baseline: Baseline, sensor: str, named: Sequence[tuple[str, str, float | None]]) -> "Library":
+        """Of a place by its sensor's name; ``named`` causes (cause, sensor, shape) are left free."""
+        residuals, terms = WhitenedResiduals.of(baseline), library(baseline, sensor)
+        columns = np.concatenate([t.columns for t in terms], axis=-1)
+        raw, trace = np.linalg.norm(residuals.whitened(columns), axis=0), residuals.trace(columns)
+        trace = trace * (np.linalg.norm(trace, axis=0) > INVISIBLE * np.maximum(raw, 1e-300))
+        z = residuals.z
+        for b, c in columns_of(baseline) if named else ():
+            if (b.cause, b.sensor, b.shape) in named:
+                basis, size, _ = np.linalg.svd(residuals.trace(c), full_matrices=False)
+                basis = basis[:, size > 1e-3 * max(size[0], 1e-300)]
+                z, trace = z - basis @ (basis.T @ z), trace - basis @ (basis.T @ trace)
+        starts = np.concatenate([[0], np.cumsum([len(t.words) for t in terms])]).astype(int)
+        return cls(residuals, tuple((t.words, t.unit, t.variable) for t in terms), starts, columns, trace, z)
+
+    def at(self, key: Key) -> Array | None:
+        """(w,) columns of a term; None where the session lacks it."""
+        for k, (words, _, _) in enumerate(self.keys):
+            if words == key:
+                return np.arange(self.starts[k], self.starts[k + 1])
+        return None
+
+
+@dataclass(frozen=True, eq=False)
+class Learned:
+    """Terms of one place with their amplitudes."""
+
+    sensor: str
+    keys: tuple[Key, ...]
+    value: Array
+    """(a,) SI."""
+    covariance: Array
+    """(a, a) SI²."""
+
+    def predicted(self, of: Library) -> Array:
+        """(R, m) m/s² (rad/s): what the terms add in a session."""
+        found = np.zeros(of.columns.shape[:2])
+        start = 0
+        for key in self.keys:
+            own = of.at(key)
+            if own is not None:
+                found = found + of.columns[..., own] @ self.value[start : start + len(key)]
+            start += len(key)
+        return found
+
+
+def libraries(
+    sessions: Sequence[CalibrationSession], sensor: str, named: Sequence[tuple[str, str, float | None]] = ()
+) -> list[Library]:
+    """The library of one place in every session."""
+    return [Library.of(with_its_flip(averaged(s)), sensor, named) for s in sessions]
+
+
+def learn(sensor: str, whole: Sequence[Library]) -> Learned | None:
+    """The terms of a place; None where nothing is sure enough, or nothing holds in the sessions left out."""
+    if len(whole) < FEWEST:
+        return None
+    fit = [x for k, x in enumerate(whole) if k % HELD_OUT != HELD_OUT - 1]
+    held = [x for k, x in enumerate(whole) if k % HELD_OUT == HELD_OUT - 1]
+    every = tuple(dict.fromkeys(key for x in fit for key, _, _ in x.keys))
+    chosen: tuple[Key, ...] = ()
+    while len(chosen) < MOST:
+        best = strongest(fit, every, chosen)
+        if best is None:
+            break
+        chosen = (*chosen, best)
+    for key in chosen:
+        others = tuple(k for k in chosen if k != key)
+        if evidence(fit, (key,), others)[0] - np.log(len(every)) < -np.log(ALPHA):
+            chosen = others
+    for key in chosen:
+        others = tuple(k for k in chosen if k != key)
+        if gain(fitted(sensor, fit, chosen), held) <= (gain(fitted(sensor, fit, others), held) if others else 0.0):
+            chosen = others
+    return fitted(sensor, fit, chosen) if chosen else None
+
+
+def moments(whole: Sequence[Library], keys: Sequence[Key]) -> tuple[Array, Array]:
+    """(n, a) scores and (n, a, a) information of some terms in every session."""
+    widths = [len(k) for k in keys]
+    U, F = np.zeros((len(whole), sum(widths))), np.zeros((len(whole), sum(widths), sum(widths)))
+    for n, one in enumerate(whole):
+        places: list[int] = []
+        own: list[int] = []
+        start = 0
+        for key, width in zip(keys, widths, strict=True):
+            columns = one.at(key)
+            if columns is not None:
+                places += range(start, start + width)
+                own += columns.tolist()
+            start += width
+        x = one.trace[:, own]
+        U[n, places], F[n][np.ix_(places, places)] = x.T @ one.z, x.T @ x
+    return U, F
+
+
+def evidence(whole: Sequence[Library], keys: Sequence[Key], given: Sequence[Key]) -> Array:
+    """(K,) ln Bayes factor of each of K terms given others, in the pool."""
+    found = []
+    known = sum(len(k) for k in given)
+    for key in keys:
+        U, F = moments(whole, [*given, key])
+        first = F[np.argmax(F[:, known:, known:].sum(axis=(1, 2)) > 0)][known:, known:]
+        found.append(log_bayes(*conditional(U.sum(axis=0), F.sum(axis=0), known), first[None])[0])
+    return np.array(found)
+
+
+def conditional(U: Array, F: Array, known: int) -> tuple[Array, Array]:
+    """(1, w) score and (1, w, w) information given the first ``known`` amplitudes; 0 of what those explain."""
+    cross = F[known:, :known] @ inverse(F[:known, :known])
+    left = F[known:, known:] - cross @ F[:known, known:]
+    gone = np.diagonal(left) < 1e-3 * np.diagonal(F)[known:]
+    left[gone], left[:, gone] = 0.0, 0.0
+    return np.where(gone, 0.0, U[known:] - cross @ U[:known])[None], left[None]
+
+
+def strongest(whole: Sequence[Library], every: Sequence[Key], chosen: tuple[Key, ...]) -> Key | None:
+    """The term with the largest evidence given those chosen; None where the library's e-value is below 1/α."""
+    rest = [k for k in every if k not in chosen]
+    values = evidence(whole, rest, chosen)
+    if logsumexp(values) - np.log(len(every)) < -np.log(ALPHA):
+        return None
+    return rest[int(np.argmax(values))]
+
+
+def fitted(sensor: str, whole: Sequence[Library], keys: tuple[Key, ...]) -> Learned:
+    """The amplitudes of some terms in the pool of sessions."""
+    U, F = moments(whole, keys)
+    covariance = inverse(F.sum(axis=0))
+    return Learned(sensor, keys, covariance @ U.sum(axis=0), covariance)
+
+
+def gain(terms: Learned, held: Sequence[Library]) -> float:
+    """Log predictive density of the sessions left out that the terms gain."""
+    U, F = (x.sum(axis=0) for x in moments(held, terms.keys))
+    return predictive(terms.value, terms.covariance, U, F)
+
+
+def predictive(value: Array, covariance: Array, U: Array, F: Array) -> float:
+    """ln p(U | amplitude ~ N(value, covariance)) − ln p(U | none), (a,) and (a, a)."""
+    size = np.sqrt(np.maximum(np.diagonal(F), 1e-300))
+    V, a, u, f = covariance * size[:, None] * size, value * size, U / size, F / size[:, None] / size
+    off = u - f @ a
+    grown = np.eye(len(a)) + V @ f
+    better = a @ u - 0.5 * a @ f @ a
+    return float(better + 0.5 * off @ np.linalg.solve(grown, V) @ off - 0.5 * np.linalg.slogdet(grown)[1])
+
+
+def shown(subject: str, terms: Learned, whole: Sequence[Library]) -> EmpiricalTerm:
+    """The learned terms of a place as people see them."""
+    held = [x for k, x in enumerate(whole) if k % HELD_OUT == HELD_OUT - 1]
+    known = {words: (unit, variable) for x in whole for words, unit, variable in x.keys}
+    units = tuple(known[key][0] for key in terms.keys for _ in key)
+    U, F = moments(held, terms.keys)
+    removed = float(sum(2 * terms.value @ u - terms.value @ f @ terms.value for u, f in zip(U, F, strict=True)))
+    excess = float(sum(x.z @ x.z - x.residuals.freedom for x in held))
+    nearest, apart = nearest_cause(terms, whole)
+    return EmpiricalTerm(
+        equation=equation(terms, units),
+        sensors=(terms.sensor,) if terms.sensor else (),
+        subject=subject,
+        amplitude=tuple(terms.value.tolist()),
+        sigma=tuple(np.sqrt(np.diagonal(terms.covariance)).tolist()),
+        units=units,
+        gain=gain(terms, held),
+        explained=float(np.clip(removed / excess, 0.0, 1.0)) if excess > 0 else 0.0,
+        nearest=nearest,
+        separation=apart,
+        picture=picture(terms, whole, known[terms.keys[0]][1]),
+    )
+
+
+def equation(terms: Learned, units: Sequence[str]) -> str:
+    """``δ = (1.2e-6 ± 1e-7) m/s²·sin 3β + …``."""
+    words = [w for key in terms.keys for w in key]
+    sigma = np.sqrt(np.diagonal(terms.covariance))
+    parts = [f"({v:.3g} ± {s:.1g}) {u}·{w}" for v, s, u, w in zip(terms.value, sigma, units, words, strict=True)]
+    return " + ".join(parts)
+
+
+def nearest_cause(terms: Learned, whole: Sequence[Library]) -> tuple[str, float]:
+    """The catalogue cause at the same place that comes nearest, and how far it stays, standard errors on the pool."""
+    total = 0.0
+    sums: dict[tuple[str, float | None], tuple[Array, Array]] = {}
+    for x in whole:
+        baseline = x.residuals.baseline
+        truth = x.residuals.trace(terms.predicted(x)[..., None])[:, 0]
+        total += float(truth @ truth)
+        for b, c in columns_of(baseline):
+            if b.cause != HARMONIC and b.sensor in ("", terms.sensor):
+                trace = x.residuals.trace(c)
+                trace = trace * (
+                    np.linalg.norm(trace, axis=0) > INVISIBLE * np.linalg.norm(x.residuals.whitened(c), axis=0)
+                )
+                U, F = sums.get((b.cause, b.shape), (np.zeros(b.width), np.zeros((b.width, b.width))))
+                sums[b.cause, b.shape] = (U + trace.T @ truth, F + trace.T @ trace)
+    left = {key: total - float(U @ inverse(F) @ U) for key, (U, F) in sums.items()}
+    if not left:
+        return "", float(np.sqrt(total))
+    cause, _ = best = min(left, key=lambda key: left[key])
+    return cause, float(np.sqrt(max(left[best], 0.0)))
+
+
+def picture(terms: Learned, whole: Sequence[Library], variable: str) -> dict[str, object]:
+    """Pooled residual of the place against a variable, mean of each bin, before and after; m/s² (rad/s)."""
+    x, before, after, sigma = [], [], [], []
+    for one in whole:
+        baseline = one.residuals.baseline
+        names = [s.name for s in baseline.session.sensors]
+        i = names.index(terms.sensor) if terms.sensor else 0
+        left = residual_without(one, terms)
+        x.append(variable_values(baseline, i, variable))
+        before.append(baseline.residual[:, i])
+        after.append(left[:, i])
+        sigma.append(np.sqrt(baseline.variance[:, i]))
+    place, weight = np.concatenate(x), np.concatenate(sigma) ** -2.0
+    edges = np.linspace(place.min(), place.max() + 1e-12, BINS + 1)
+    number = np.clip(np.digitize(place, edges) - 1, 0, BINS - 1)
+    total = np.bincount(number, weights=weight, minlength=BINS)
+    seen = total > 0
+    mean = [
+        np.bincount(number, weights=weight * np.concatenate(v), minlength=BINS)[seen] / total[seen]
+        for v in (before, after)
+    ]
+    return {
+        "variable": variable,
+        "at": ((edges[1:] + edges[:-1]) / 2)[seen].tolist(),
+        "before": mean[0].tolist(),
+        "after": mean[1].tolist(),
+        "sigma": (total[seen] ** -0.5).tolist(),
+    }
+
+
+def residual_without(one: Library, terms: Learned) -> Array:
+    """(R, m) m/s² (rad/s): what the calibration leaves once the terms are taken out."""
+    baseline, effect = one.residuals.baseline, terms.predicted(one)
+    step = one.residuals.response @ one.residuals.whitened(effect[..., None])[:, 0]
+    m = effect.shape[1]
+    absorbed = (baseline.design * step.reshape(m, 5)).sum(axis=-1)
+    return np.asarray(baseline.residual - (effect - absorbed))
+
+
+def variable_values(baseline: Baseline, i: int, variable: str) -> Array:
+    """(R,) of what a picture is drawn over."""
+    setting = baseline.setting
+    if variable == "(t − t̄)" and setting.time is not None:
+        return setting.time - setting.time.mean()
+    if variable in ("(T − T̄)", "dT/dt") and setting.temperature is not None:
+        return setting.temperature - setting.temperature.mean()
+    if variable == "β" and setting.beta is not None:
+        return np.mod(setting.beta, 2 * np.pi)
+    return setting.a[:, i] / setting.norm[i]
