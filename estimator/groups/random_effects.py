@@ -43,11 +43,12 @@ def mean_of(U: Array, F: Array) -> Mean:
     """Of sessions' scores U (n, w), 1/SI, and information F (n, w, w), 1/SI²."""
     largest = float(np.sqrt(np.median(np.diagonal(F, axis1=1, axis2=2).max(axis=1))))
     u, f = U / largest, F / largest**2
-    freedom = sum(int(np.linalg.matrix_rank(i, tol=1e-6, hermitian=True)) for i in f)
+    freedom = int(np.linalg.matrix_rank(f, tol=1e-6, hermitian=True).sum())
     freedom -= int(np.linalg.matrix_rank(f.sum(axis=0), tol=1e-6, hermitian=True))
-    q = _heterogeneity(u, f, 0.0)
+    each = float((u * (np.linalg.pinv(f, rcond=1e-6, hermitian=True) @ u[..., None])[..., 0]).sum())
+    q = _heterogeneity(u, f, 0.0, each)
     p = float(chdtrc(freedom, max(q, 0.0))) if freedom > 0 else 1.0
-    spread = np.sqrt(_mandel_paule(u, f, freedom)) if freedom > 0 and q > freedom else 0.0
+    spread = np.sqrt(_mandel_paule(u, f, freedom, each)) if freedom > 0 and q > freedom else 0.0
     alone = inverse(f.sum(axis=0))
     value, covariance = _over_spreads(u, f) if freedom > 0 else (alone @ u.sum(axis=0), alone)
     covariance = covariance / largest**2
@@ -85,17 +86,16 @@ def _over_spreads(u: Array, f: Array) -> tuple[Array, Array]:
     return mean, np.asarray((share[:, None, None] * spread).sum(axis=0))
 
 
-def _heterogeneity(u: Array, f: Array, tau2: float) -> float:
-    """Q at a τ²."""
+def _heterogeneity(u: Array, f: Array, tau2: float, alone: float) -> float:
+    """Q at a τ²; ``alone`` is Σ uᵀF⁻¹u. It uses F⁻¹(I + τ²F)⁻¹ = F⁻¹ − τ²(I + τ²F)⁻¹."""
     W, weighted = _weights(u, f, tau2)
-    own = sum(float(x @ inverse(i) @ y) for x, i, y in zip(u, f, weighted, strict=True))
     total = weighted.sum(axis=0)
-    return float(own - total @ inverse(W.sum(axis=0)) @ total)
+    return float(alone - tau2 * (u * weighted).sum() - total @ inverse(W.sum(axis=0)) @ total)
 
 
-def _mandel_paule(u: Array, f: Array, freedom: int) -> float:
+def _mandel_paule(u: Array, f: Array, freedom: int, alone: float) -> float:
     """τ² at which Q is its degrees of freedom."""
     high = 1.0
-    while _heterogeneity(u, f, high) > freedom:
+    while _heterogeneity(u, f, high, alone) > freedom:
         high *= 10.0
-    return float(brentq(lambda t: _heterogeneity(u, f, t) - freedom, 0.0, high, rtol=1e-6))
+    return float(brentq(lambda t: _heterogeneity(u, f, t, alone) - freedom, 0.0, high, rtol=1e-6))

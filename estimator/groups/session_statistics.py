@@ -8,6 +8,7 @@ makes its scores Student's t: they enter the evidence as normal deviates of the 
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.special import chdtr, chdtrc
@@ -55,6 +56,16 @@ class Seen:
     outliers: tuple[int, ...] = ()
     """Rows of z that do not belong to the rest."""
 
+    @cached_property
+    def score(self) -> Array:
+        """(D,) U, 1/SI."""
+        return np.asarray(self.trace.T @ self.z)
+
+    @cached_property
+    def information(self) -> Array:
+        """(D, D) F, 1/SI²."""
+        return np.asarray(self.trace.T @ self.trace)
+
 
 def statistics_of(session: CalibrationSession) -> SessionStatistics:
     """What is kept of a session of a programme that calibrates a block.
@@ -95,8 +106,8 @@ def kept(session: CalibrationSession, baseline: Baseline, words: tuple[str, ...]
         sensors=tuple(s.name for s in session.sensors),
         blocks=seen.blocks,
         size=size,
-        score=seen.trace.T @ seen.z / np.where(size > 0, size, 1.0),
-        correlation=quantised(seen.trace.T @ seen.trace, size),
+        score=seen.score / np.where(size > 0, size, 1.0),
+        correlation=quantised(seen.information, size),
         reach=seen.reach,
         shrink=shrinking(seen, estimated),
         energy=energy,
@@ -159,7 +170,7 @@ def without_row(seen: Seen, row: int) -> Seen:
 def plainly(seen: Seen) -> list[int]:
     """Blocks that the session shows plainly by itself, one after another, each given those before."""
     found: list[int] = []
-    scores = Scores.of(seen.blocks, seen.trace.T @ seen.z, seen.trace.T @ seen.trace)
+    scores = Scores.of(seen.blocks, seen.score, seen.information)
     for _ in range(MOST):
         statistic, freedom = scores.given(found)
         tail = chdtrc(np.maximum(freedom, 1), statistic) * len(seen.blocks)
@@ -214,7 +225,9 @@ def shrinking(seen: Seen, estimated: Array) -> Array:
 
     ``estimated`` (m,): degrees of freedom from which the noise of each sensor was estimated; infinite where stated.
     """
-    statistic, q = eigen_scores(seen.blocks, seen.trace.T @ seen.z, seen.trace.T @ seen.trace)
+    if np.isinf(estimated).all():
+        return np.ones(len(seen.blocks))
+    statistic, q = eigen_scores(seen.blocks, seen.score, seen.information)
     names = [s.name for s in seen.residuals.baseline.session.sensors]
     whole = float(estimated.sum())
     free = np.array([estimated[names.index(b.sensor)] if b.sensor else whole for b in seen.blocks])
