@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from estimator.causes.catalogue import cause
+from estimator.causes.catalogue import UNEXPLAINED, cause
 from estimator.diagnosis.explanation.naming import sentence
 from estimator.groups.evidence import SINCE, VARYING
 from estimator.groups.layout import EVERY, TYPE, Hypothesis
@@ -14,7 +14,7 @@ from estimator.groups.random_effects import Mean, mean_of
 from estimator.groups.results import GroupFinding, GroupStructure, Rival, SessionAmplitude
 from estimator.groups.rivals import Near, near
 from estimator.groups.scores import inverse
-from estimator.groups.selection import Found, Selection
+from estimator.groups.selection import Found, Selection, concerns
 from estimator.groups.weighing import Scale
 from estimator.session import Array
 
@@ -67,6 +67,8 @@ def finding_of(selection: Selection, one: Told, measurements: Sequence[tuple[str
     sensors = (h.sensor,) if h.sensor else ()
     weighed = one.scale.weighed[f.place[0]]
     date = selection.layout.parts[f.since].statistics.started_at
+    others = dict.fromkeys(n.hypothesis.cause for n in one.rivals if n.hypothesis.cause != h.cause)
+    beside = [UNEXPLAINED] if any(concerns(h, s) for s, _ in selection.structures) else []
     return GroupFinding(
         cause=h.cause,
         level=h.level,
@@ -82,7 +84,7 @@ def finding_of(selection: Selection, one: Told, measurements: Sequence[tuple[str
         e_value=float(np.exp(min(one.scale.log_e_value, LARGEST))),
         strength=strength_of(one, float(weighed.statistic[f.place[1]])),
         cochran=one.mean.cochran,
-        alternatives=tuple(dict.fromkeys(n.hypothesis.cause for n in one.rivals if n.hypothesis.cause != h.cause)),
+        alternatives=(*others, *beside),
         rivals=tuple(rival_of(n, *m) for n, m in zip(one.rivals, measurements, strict=True)),
         sentence=sentence(known, (words_of(h),) if h.sensor else ()),
         advice=known.advice,

@@ -94,9 +94,10 @@ def extended(part: Part, scale: float) -> tuple[Array, Array, Array]:
         add = np.zeros((len(part.sums), len(U)))
         for row, members in zip(add, part.sums, strict=True):
             row[list(members)] = 1.0
-        whole = np.concatenate([np.eye(len(U)), add])
         mean = np.concatenate([shrink, [float(shrink[list(m)].mean()) for m in part.sums]])
-        U, F, shrink = whole @ U, whole @ F @ whole.T, mean
+        across = add @ F
+        F = np.block([[F, across.T], [across, across @ add.T]])
+        U, shrink = np.concatenate([U, add @ U]), mean
     return U, U * shrink, F
 
 

@@ -14,10 +14,13 @@ from estimator.groups.candidates import columns_of
 from estimator.groups.findings import Told
 from estimator.groups.layout import EVERY, Hypothesis
 from estimator.groups.selection import Selection
+from estimator.groups.statistics import Block
 from estimator.session import Array, CalibrationSession
 
 MOST = 1000
 """Sessions beyond which nobody would wait for an answer."""
+
+AGAIN = "more sessions of the same programme"
 
 OTHER_STAND = "measure one of these units on another stand, and another unit on this one"
 
@@ -40,7 +43,7 @@ class Separator:
                 answers.append((OTHER_STAND, None))
                 continue
             missing = DISTINGUISHED**2 - rival.separation**2
-            gains = [(words, information_apart(b, h, rival.hypothesis, amplitude)) for words, b in plans]
+            gains = [(plan.words, plan.apart(h, rival.hypothesis, amplitude)) for plan in plans]
             words, best = max(gains, key=lambda g: g[1], default=("", 0.0))
             count = int(np.ceil(missing / best)) if best > 0 and missing / best <= MOST else None
             answers.append((words if count else "", count))
@@ -52,25 +55,42 @@ class Separator:
         return known[-1] if known else self.sessions[-1]
 
 
-def planned(session: CalibrationSession) -> list[tuple[str, Baseline]]:
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """A session that could be measured."""
+
+    words: str
+    residuals: WhitenedResiduals
+    columns: tuple[tuple[Block, Array], ...]
+
+    @classmethod
+    def of(cls, words: str, baseline: Baseline) -> "Plan":
+        """With the columns of every candidate."""
+        return cls(words, WhitenedResiduals.of(baseline), tuple(columns_of(baseline)))
+
+    def trace(self, h: Hypothesis) -> Array | None:
+        """(N, w) standard errors per unit amplitude that a hypothesis leaves; None where it cannot show."""
+        own = [
+            c
+            for b, c in self.columns
+            if (b.cause, b.shape) == (h.cause, h.shape) and (h.sensor == b.sensor or (h.sensor == EVERY and b.sensor))
+        ]
+        return self.residuals.trace(np.sum(own, axis=0)) if own else None
+
+    def apart(self, h: Hypothesis, rival: Hypothesis, amplitude: Array) -> float:
+        """Squared separation of a finding at its amplitude from its rival that one such session brings."""
+        own, other = self.trace(h), self.trace(rival)
+        if own is None:
+            return 0.0
+        signature = own @ amplitude
+        if other is None:
+            return float(signature @ signature)
+        scale = np.maximum(np.linalg.norm(other, axis=0), 1e-300)
+        value, *_ = np.linalg.lstsq(other / scale, signature, rcond=1e-9)
+        return float(((signature - other / scale @ value) ** 2).sum())
+
+
+def planned(session: CalibrationSession) -> list[Plan]:
     """The same session again, and every proposal of another one."""
     baseline = baseline_of(averaged(session))
-    return [("more sessions of the same programme", baseline), *proposals(baseline)]
-
-
-def information_apart(baseline: Baseline, h: Hypothesis, rival: Hypothesis, amplitude: Array) -> float:
-    """Squared separation of a finding from its rival that one planned session brings."""
-    residuals, columns = WhitenedResiduals.of(baseline), list(columns_of(baseline))
-    own, other = (
-        [c for b, c in columns if (b.cause, b.shape) == (x.cause, x.shape) and x.sensor in (b.sensor, EVERY)]
-        for x in (h, rival)
-    )
-    if not own:
-        return 0.0
-    signature = residuals.trace(np.sum(own, axis=0)) @ amplitude
-    if not other:
-        return float(signature @ signature)
-    trace = residuals.trace(np.sum(other, axis=0))
-    scale = np.maximum(np.linalg.norm(trace, axis=0), 1e-300)
-    value, *_ = np.linalg.lstsq(trace / scale, signature, rcond=1e-9)
-    return float(((signature - trace / scale @ value) ** 2).sum())
+    return [Plan.of(AGAIN, baseline), *(Plan.of(words, b) for words, b in proposals(baseline))]

@@ -75,7 +75,7 @@ class Scale:
                 h = self.pool.layout.hypotheses[w][k]
                 if np.isfinite(value):
                     groups.setdefault(h.group, []).append((float(value), (w, k), h))
-        best = [(max(g, key=lambda x: x[0]), float(logsumexp([x[0] for x in g]))) for g in groups.values()]
+        best = [(max(g, key=lambda x: x[0]), float(np.logaddexp.reduce([x[0] for x in g]))) for g in groups.values()]
         for (_, place, h), value in sorted(best, key=lambda pair: -round(pair[1], 9)):
             yield place, h, value
 
