@@ -1,7 +1,7 @@
 """The library of empirical terms: products of up to two of what a session knows of each reading.
 
 Of one sensor: a, |a|, sign a, p·n, o·n (as part of the applied vector), T − T̄, dT/dt, t − t̄, the run (±1), the input of
-the row before, and waves of β as far as the positions resolve them. Of the applied vector: δα and δβ as waves of β, as
+the row before, and waves of β. Of the applied vector: δα and δβ as waves of β, as
 courses of temperature and time, alike and opposite in the two runs. A wave has two amplitudes, and so have its
 products. The catalogue's causes lie in the span, so that what is learned beside them is what the catalogue lacks.
 """
@@ -16,11 +16,12 @@ from estimator.causes.contract import Setting
 from estimator.causes.sensor import across
 from estimator.causes.stand import harmonic
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.signatures.patterns import highest
 from estimator.session import Array
 
 WAVES = 5
-"""Highest harmonic of β in the library: what is kept with every session for the look at structure ends there too."""
+"""Highest harmonic of β in the library: what is kept with every session for the look at structure ends there too.
+
+A session of few positions takes the fifth for the third. It is in the library all the same: other sessions tell."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +75,7 @@ def factors_of_session(setting: Setting) -> Iterator[Factor]:
     if setting.flipped is not None and setting.has("both runs"):
         yield Factor(("run",), "", np.where(setting.flipped, -1.0, 1.0)[:, None])
     if setting.beta is not None:
-        for k in range(1, min(highest(setting), WAVES) + 1):
+        for k in range(1, WAVES + 1):
             turns = "β" if k == 1 else f"{k}β"
             yield Factor((f"sin {turns}", f"cos {turns}"), "", harmonic(setting, k))
 

@@ -14,6 +14,7 @@ from estimator.groups.evidence import ALPHA, SAME, SINCE, VARYING
 from estimator.groups.layout import STAND, Hypothesis, Layout
 from estimator.groups.pool import Model, Place, Pool, columns_in, pooled
 from estimator.groups.scores import batch, inverse
+from estimator.groups.statistics import SessionStatistics
 from estimator.groups.weighing import Scale, weigh
 from estimator.session import Array
 
@@ -102,21 +103,32 @@ def select(layout: Layout) -> Selection:
 def larger_than_stated(layout: Layout) -> Array:
     """(n,) at least 1: by how much the sessions of each unit scatter more than they say, over all of them.
 
-    The largest effect of the unit is no scatter.
+    Those that were put right by themselves are asked apart. The largest effect of the unit is no scatter.
     """
     plain = weigh(pooled(layout))
-    energy: dict[str, list[float]] = {}
+    energy: dict[tuple[str, bool], Array] = {}
     for part in layout.parts:
-        e = energy.setdefault(part.statistics.unit, [0.0, 0.0])
-        e[0] += float(part.statistics.energy.sum())
-        e[1] += float(part.statistics.freedom.sum())
-    most = dict.fromkeys(energy, 0.0)
+        s = part.statistics
+        own = energy.setdefault(believed(s), np.zeros(2))
+        own += [s.energy.sum(), s.freedom.sum()]
+    most = dict.fromkeys((unit for unit, _ in energy), 0.0)
     for w, weighed in plain.weighed.items():
         for h, t in zip(layout.hypotheses[w], weighed.statistic, strict=True):
-            for unit in [h.subject] if h.subject in most else [] if h.level != STAND else list(most):
-                most[unit] = max(most[unit], float(t) / (1 if h.subject in most else len(most)))
-    factor = {u: max(1.0, (e - most[u]) / max(f, 1.0)) for u, (e, f) in energy.items()}
-    return np.array([factor[p.statistics.unit] for p in layout.parts])
+            if h.subject in most:
+                most[h.subject] = max(most[h.subject], float(t))
+            elif h.level == STAND:
+                most = {u: max(v, float(t) / len(most)) for u, v in most.items()}
+    freedom = {u: sum(f for (v, _), (_, f) in energy.items() if v == u) for u in most}
+    factor = {
+        key: max(1.0, float((e - most[key[0]] * f / max(freedom[key[0]], 1.0)) / max(f, 1.0)))
+        for key, (e, f) in energy.items()
+    }
+    return np.array([factor[believed(p.statistics)] for p in layout.parts])
+
+
+def believed(s: SessionStatistics) -> tuple[str, bool]:
+    """The unit of a session, and whether its noise was taken as stated."""
+    return s.unit, bool(np.all(s.noise_factor == 1))
 
 
 def one_more(state: Selection, scale: Scale) -> Selection | None:

@@ -35,6 +35,9 @@ PLAIN = 1e-3
 MOST = 4
 """Plain effects and outliers each that are taken out before the scatter is judged; more are structure and count."""
 
+LEANING = 0.1
+"""Tail at which a sensor leans towards what all of its kind show: one in ten does so by chance."""
+
 DOUBTFUL = 1e-3
 """p-value, over the sensors, of a scatter that contradicts the stated noise."""
 
@@ -87,16 +90,16 @@ def kept(session: CalibrationSession, baseline: Baseline, words: tuple[str, ...]
     stated, seen = baseline, without_outliers(seen_in(baseline))
     left, freedom = left_of(seen)
     energy, free = of_sensors(seen, left**2), of_sensors(seen, freedom)
-    off = contradicted(energy, free) & ~baseline.unstated
-    if off.any():
-        named = plain_columns(seen)
-        scaled = as_they_scatter(baseline, [[int(i)] for i in np.flatnonzero(off)], named)
-        baseline = refitted(scaled)
+    claims = contradicted(baseline, energy, free)
+    if claims:
+        baseline = refitted(as_they_scatter(baseline, claims, plain_columns(seen)))
         seen = without_outliers(seen_in(baseline))
         left, freedom = left_of(seen)
         energy, free = of_sensors(seen, left**2), of_sensors(seen, freedom)
     size = np.linalg.norm(seen.trace, axis=0)
-    estimated = np.where(baseline.unstated | off, free, np.inf)
+    estimated = np.where(baseline.unstated, free, np.inf)
+    for sensors in claims:
+        estimated[sensors] = free[sensors].sum()
     factor = np.sqrt(np.median(baseline.variance / stated.variance, axis=0))
     return SessionStatistics(
         unit=session.unit,
@@ -213,11 +216,27 @@ def of_sensors(seen: Seen, values: Array) -> Array:
     return np.asarray((seen.residuals.sensor_of_row[: len(values)] == np.arange(m)[:, None]) @ values)
 
 
-def contradicted(energy: Array, freedom: Array) -> Array:
-    """(m,) bool, dimensionless: sensors whose scatter is not as stated, in either sense."""
+def contradicted(baseline: Baseline, energy: Array, freedom: Array) -> list[list[int]]:
+    """Sensors whose scatter is not as stated, those that are off by one factor together.
+
+    All of a kind are, where together they contradict it and half of them lean the same way; else those that
+    contradict it each by itself. ``energy`` (m,) χ² with its degrees of ``freedom`` (m,).
+    """
     free = np.maximum(freedom, 1e-3)
-    tail = np.minimum(chdtr(free, energy), chdtrc(free, energy))
-    return np.asarray((tail < DOUBTFUL / len(energy)) & (freedom > 2))
+    less, more = chdtr(free, energy), chdtrc(free, energy)
+    stated = ~baseline.unstated & (freedom > 2)
+    claims: list[list[int]] = []
+    for kind in dict.fromkeys(baseline.setting.kinds):
+        own = np.flatnonzero(stated & np.array([k == kind for k in baseline.setting.kinds]))
+        if not len(own):
+            continue
+        tails = chdtr(free[own].sum(), energy[own].sum()), chdtrc(free[own].sum(), energy[own].sum())
+        leaning = (less, more)[int(np.argmin(tails))][own] < LEANING
+        if min(tails) < DOUBTFUL and 2 * leaning.sum() >= len(own):
+            claims.append(own.tolist())
+        else:
+            claims += [[int(i)] for i in own if min(less[i], more[i]) < DOUBTFUL / len(energy)]
+    return claims
 
 
 def shrinking(seen: Seen, estimated: Array) -> Array:
@@ -229,7 +248,7 @@ def shrinking(seen: Seen, estimated: Array) -> Array:
         return np.ones(len(seen.blocks))
     statistic, q = eigen_scores(seen.blocks, seen.score, seen.information)
     names = [s.name for s in seen.residuals.baseline.session.sensors]
-    whole = float(estimated.sum())
+    whole = float(np.where(np.isinf(estimated), np.inf, of_sensors(seen, seen.freedom)).sum())
     free = np.array([estimated[names.index(b.sensor)] if b.sensor else whole for b in seen.blocks])
     known = np.isinf(free)
     energy = np.where(known, np.nan, np.maximum(np.where(known, 1.0, free) - statistic, 1e-3))
