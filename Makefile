@@ -45,7 +45,7 @@ papers: setup
 study: setup
 	$(BIN)/python -m benchmarks.study --sessions 2000 --seed 1
 	$(BIN)/python -m benchmarks.study.open_world --sessions 12 --seed 1
-	$(BIN)/python -m benchmarks.study.groups --groups 25 --seed 2
+	$(BIN)/python -m benchmarks.study.groups --groups 40 --seed 2
 
 backtest: setup
 	$(BIN)/python -m benchmarks.backtest
