@@ -66,7 +66,8 @@ What is not pooled: record causes, outliers, jumps, clipping and excess noise be
 moved between sessions is not yet used as evidence: residuals alone are.
 
 The table is of few groups, and its intervals are wide: most figures do not yet tell whether their target is met. Two
-stay beyond it so far. One life without an effect in forty reached a name. And where amplitudes differ from session to
+stay beyond it so far. One life without an effect in forty reached a name, by rounding of what is kept, which was mended
+after the table was made. And where amplitudes differ from session to
 session, two sigma hold the mean of the group too seldom.
 """
 

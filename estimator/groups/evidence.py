@@ -34,6 +34,10 @@ FORMS = (0.6, 0.2, 0.2)
 """Prior share of an effect that is always the same, differs every time, began at some session: what lasts is what
 groups are pooled for."""
 
+FAINT = 0.03
+"""Added to F₁ in units of its own diagonal, where there are several amplitudes: a combination of them that a session
+hardly sees is known to the steps of the kept correlations only, and would be evidence of rounding."""
+
 GROWTH = 1.25
 """From one session at which an effect is tried to begin to the next, counted from the first: one that begins between
 two of them loses at most a fifth of its sessions to the later."""
@@ -47,7 +51,7 @@ def log_bayes(U: Array, F: Array, first: Array) -> Array:
     size = np.sqrt(np.maximum(np.diagonal(first, axis1=-2, axis2=-1), 0.0))
     scale = np.where(size > 0, 1 / np.where(size > 0, size, 1.0), 0.0)
     w = U.shape[-1]
-    unit = first * scale[..., :, None] * scale[..., None, :] + 1e-6 * np.eye(w)
+    unit = first * scale[..., :, None] * scale[..., None, :] + (FAINT if w > 1 else 1e-6) * np.eye(w)
     grown, along = F * scale[..., :, None] * scale[..., None, :], U * scale
     values = []
     for kappa in STRENGTHS:
