@@ -9,7 +9,7 @@ import numpy as np
 
 from estimator.calibration.calibrate import averaged
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.residuals.whitened import WhitenedResiduals, parameter_covariance
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.groups.candidates import columns_of
 from estimator.groups.evidence import VARYING
 from estimator.groups.layout import EVERY
@@ -86,7 +86,7 @@ def moved(findings: Sequence[GroupFinding], session: CalibrationSession) -> tupl
                 if place in (b.sensor, EVERY) and bool(place) == bool(b.sensor):
                     effect += columns @ np.array(f.amplitude[k * b.width : (k + 1) * b.width])
     change = -(residuals.response @ residuals.whitened(effect[..., None])[:, 0])
-    sigma = np.sqrt(np.diagonal(parameter_covariance(baseline)))
+    sigma = np.sqrt(np.diagonal(baseline.covariance))
     factors = baseline.parameters.si_factors(baseline.setting.norm)
     order = np.argsort(-np.abs(change / sigma))[:SHOWN]
     return tuple(

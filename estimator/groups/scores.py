@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from estimator.arrays import eigh
 from estimator.groups.statistics import Block
 from estimator.session import Array
 
@@ -36,7 +37,7 @@ def batch(U: Array, F: Array) -> tuple[Array, Array]:
         return np.where(seen, U[:, 0] ** 2 / np.where(seen, F[:, 0, 0], 1.0), 0.0), seen.astype(int)
     size = np.sqrt(np.maximum(np.diagonal(F, axis1=1, axis2=2), 0.0))
     scale = np.where(size > 0, 1 / np.where(size > 0, size, 1.0), 0.0)
-    value, vector = np.linalg.eigh(F * scale[:, :, None] * scale[:, None, :])
+    value, vector = eigh(F * scale[:, :, None] * scale[:, None, :])
     live = value > FAINT * np.maximum(value[:, -1:], 1e-300)
     along = ((U * scale)[:, None, :] @ vector)[:, 0]
     return (np.where(live, along**2 / np.where(live, value, 1.0), 0.0)).sum(axis=1), live.sum(axis=1) * (
@@ -48,7 +49,7 @@ def inverse(F: Array) -> Array:
     """(q, q) pseudo-inverse of an information (q, q) in any units, its faint directions left out."""
     size = np.sqrt(np.maximum(np.diagonal(F), 0.0))
     scale = np.where(size > 0, 1 / np.where(size > 0, size, 1.0), 0.0)
-    value, vector = np.linalg.eigh(F * scale[:, None] * scale)
+    value, vector = eigh(F * scale[:, None] * scale)
     live = value > 1e-6 * max(float(value[-1]), 1e-300) if len(value) else np.zeros(0, bool)
     part = vector[:, live]
     return np.asarray(scale[:, None] * (part / value[live]) @ part.T * scale)

@@ -18,6 +18,7 @@ from estimator.causes.catalogue import CATALOGUE
 from estimator.diagnosis.record.clipping import unclipped
 from estimator.diagnosis.record.undo import undo_record_errors
 from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.flipped_run import with_its_flip
 from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
@@ -77,9 +78,9 @@ def statistics_of(session: CalibrationSession) -> SessionStatistics:
     ------
     ScheduleError : the session cannot be calibrated at all.
     """
-    clips, right = unclipped(averaged(session), CATALOGUE)
-    errors, right = undo_record_errors(right, (), CATALOGUE)
-    baseline = with_its_flip(right)
+    clips, whole = unclipped(averaged(session), CATALOGUE)
+    errors, right = undo_record_errors(baseline_of(whole), (), CATALOGUE)
+    baseline = with_its_flip(right.session)
     words = [f"{session.sensors[c.sensor].name} clipped" for c in clips]
     words += [e.undone.cause.identifier for e in errors]
     return kept(session, baseline, tuple(words))
