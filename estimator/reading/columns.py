@@ -67,7 +67,8 @@ class Columns:
             return np.array([index[cell] for cell in cells], dtype=np.int64)  # type: ignore[index]
         except (KeyError, TypeError):
             bad = [j for j, cell in enumerate(cells) if not (isinstance(cell, str) and cell in index)]
-            self.problems.add_rows(name, bad, lambda j: f"{_found(cells[j])}; give {' or '.join(allowed)}")
+            message = f"give {' or '.join(allowed)}"
+            self.problems.add_rows(name, bad, lambda j: f"{_found(cells[j])}; {message}", of=self.rows)
             return np.zeros(self.rows, dtype=np.int64)
 
     def labels(self, name: str) -> NDArray[np.int64]:
@@ -77,7 +78,7 @@ class Columns:
         cells = [_label(cell) for cell in self.values[name]]
         bad = [j for j, cell in enumerate(cells) if isinstance(cell, _Bad)]
         message = "must be a whole number from 0, a name, or -1 or empty where the row belongs to no position"
-        self.problems.add_rows(name, bad, lambda j: f"{_found(self.values[name][j])}; {message}")
+        self.problems.add_rows(name, bad, lambda j: f"{_found(self.values[name][j])}; {message}", of=self.rows)
         if bad:
             return np.arange(self.rows)
         if not any(isinstance(cell, str) for cell in cells):
@@ -87,7 +88,7 @@ class Columns:
 
     def _faulty(self, name: str, cells: Column, within: Interval, holes: bool) -> Array:
         faults = {j: fault for j, cell in enumerate(cells) if (fault := _cell_fault(cell, within, holes))}
-        self.problems.add_rows(name, faults, faults.__getitem__)
+        self.problems.add_rows(name, faults, faults.__getitem__, of=self.rows)
         return np.full(self.rows, np.nan)
 
 

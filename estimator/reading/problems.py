@@ -1,15 +1,16 @@
 """Every fault of one session file, collected so that all are reported at once."""
 
 from collections.abc import Callable, Iterable
-from itertools import islice
 
 from estimator.errors import FormatError, Problem, ScheduleError
 from estimator.reading.extent import Extent
 
-ROWS_SHOWN = 20
-"""Faulty rows of one column that are named one by one; the others are counted."""
+ROWS_SHOWN = 5
+"""Faulty rows of one column that are named one by one; the others are counted. A fault of every row is one."""
 PROBLEMS_SHOWN = 500
 """Faults that are named in all; nobody mends more before trying again."""
+Where = Callable[[str, int | None], str]
+"""Field and row → where that stands in the file, such as ``cell C7 of the sheet readings``; empty where unknown."""
 LONGEST_TEXT = 60
 """Characters of a value that a message quotes."""
 
@@ -20,12 +21,13 @@ class Problems:
     A reader that records a fault returns a stand-in value and goes on; no session is built while there are faults.
     """
 
-    def __init__(self, source: str | None, most: Extent | None = None) -> None:
+    def __init__(self, source: str | None, most: Extent | None = None, where: Where | None = None) -> None:
         self.source = None if source is None else printable(source)
         self.most = most or Extent()
         """That the file may hold; more is a fault."""
         self.lines_before_table: int | None = None
         """Set for CSV: row r of the table is line r + this of the file."""
+        self._where = where
         self._found: list[Problem] = []
         self._unsaid = 0
         self._only_schedule = True
@@ -39,13 +41,18 @@ class Problems:
         """Record that the rows, though well formed, cannot support the programme."""
         self._record(field, message, None)
 
-    def add_rows(self, field: str, rows: Iterable[int], message: Callable[[int], str]) -> None:
-        """Record the same kind of fault in several rows; ``rows`` and the message's argument count from 0."""
-        remaining = iter(rows)
-        for index in islice(remaining, ROWS_SHOWN):
+    def add_rows(
+        self, field: str, rows: Iterable[int], message: Callable[[int], str], *, of: int | None = None
+    ) -> None:
+        """Record the same kind of fault in several rows, ``of`` so many; they count from 0 here, as for the message."""
+        faulty = list(rows)
+        if of is not None and len(faulty) == of > ROWS_SHOWN:
+            self.add(field, f"all {of} rows have such a fault; the first {message(0)}")
+            return
+        for index in faulty[:ROWS_SHOWN]:
             self.add(field, message(index), index + 1)
-        if more := sum(1 for _ in remaining):
-            self.add(field, f"{more} more rows have such a fault")
+        if more := len(faulty[ROWS_SHOWN:]):
+            self.add(field, f"{more} more rows have such a fault, the last of them row {faulty[-1] + 1}")
 
     def fail(self, field: str, message: str) -> FormatError:
         """The error to raise when nothing more can be read; holds what was found before, too."""
@@ -63,6 +70,8 @@ class Problems:
             return
         if row is not None and self.lines_before_table is not None:
             message = f"{message} (line {row + self.lines_before_table} of the file)"
+        if self._where is not None and (place := self._where(field, row)):
+            message = f"{message} ({place})"
         self._found.append(Problem(printable(field), printable(message), row))
 
     def _all(self) -> list[Problem]:

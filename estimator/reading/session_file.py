@@ -6,7 +6,7 @@ from pathlib import Path
 from estimator.reading.extent import Extent
 from estimator.reading.fields import Fields, Interval
 from estimator.reading.keys import FORMAT, TOP, check_keys
-from estimator.reading.problems import Problems, shown
+from estimator.reading.problems import Problems, Where, shown
 from estimator.reading.schedule import check_schedule
 from estimator.reading.sensors import KINDS, check_pulses, read_sensors
 from estimator.reading.setting import read_mounting, read_site, read_stand, read_started_at
@@ -25,6 +25,7 @@ def read_session(
     name: str | None = None,
     most: Extent | None = None,
     part: bool = False,
+    where: Where | None = None,
 ) -> CalibrationSession:
     """Read and check one calibration session.
 
@@ -34,6 +35,7 @@ def read_session(
     name : what messages call the source; the path unless given.
     most : how much it may hold; `Extent()` unless given.
     part : whether these are some rows of a longer log, which need not support the programme by themselves.
+    where : says where a field and row stand in the file that a dict was read from; messages name it.
 
     Returns
     -------
@@ -44,7 +46,7 @@ def read_session(
     FormatError : the source cannot be read, or fields of it are wrong; ``problems`` holds every one with its row.
     ScheduleError : every field is right, but the rows cannot support the programme.
     """
-    problems = Problems(name or display_name(source), most)
+    problems = Problems(name or display_name(source), most, where)
     return _assemble(Fields(load(source, problems), "", problems), part=part)
 
 

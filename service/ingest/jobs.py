@@ -27,6 +27,9 @@ def session(content: Content, filename: str) -> object:
     if isinstance(content, Path):
         averaged = averaged_if_long(content, filename)
         return session(_whole(content, filename), filename) if averaged is None else averaged
+    if content.startswith(XLSX):
+        document, where = xlsx.read_with_places(content, filename)
+        return read_session(document, name=filename, most=in_force().extent, where=where)
     for magic, read in READERS:
         if content.startswith(magic):
             return read_session(read(content, filename), name=filename, most=in_force().extent)

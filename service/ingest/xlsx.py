@@ -1,5 +1,6 @@
 """XLSX: sheet `readings` with a header row, sheet `session` with keys and values such as `sensors[1].name` | A1."""
 
+from string import ascii_uppercase
 from typing import Literal
 
 import fastexcel
@@ -8,7 +9,7 @@ import polars as pl
 
 from estimator.reading.columns import Column
 from estimator.reading.csv_text import named_columns
-from estimator.reading.problems import Problems
+from estimator.reading.problems import Problems, Where
 from service.ingest.key_values import TEXTS, last_step, nested
 from service.ingest.limits import in_force, refusal
 from service.ingest.workbook import check_workbook
@@ -23,13 +24,42 @@ SHEETS = ("session", "readings")
 
 def read_xlsx(content: bytes, filename: str) -> dict[str, object]:
     """The document that a workbook holds."""
+    return read_with_places(content, filename)[0]
+
+
+def read_with_places(content: bytes, filename: str) -> tuple[dict[str, object], Where]:
+    """The same, and which cell a field and row stand in."""
     check_workbook(content, filename)
     session, readings = _sheets(content, filename)
     problems = Problems(filename, in_force().extent)
-    document = nested(session, problems)
+    document = nested([row for row in session if row[0].strip()], problems)
     table = named_columns(*readings, problems)
     problems.raise_if_any()
-    return document | {"table": table}
+    return document | {"table": table}, _places([key for key, _ in session], readings[0])
+
+
+def _places(keys: list[str], header: list[str]) -> Where:
+    """``cell C7 of the sheet readings``; a key's line is that of the sheet."""
+    lines = {key.strip(): line for line, key in enumerate(keys, start=1)}
+    letters = {name.strip(): letters_of(number) for number, name in enumerate(header, start=1)}
+
+    def where(field: str, row: int | None) -> str:
+        if row is not None and field in letters:
+            return f"cell {letters[field]}{row + 1} of the sheet readings"
+        if row is None and field in letters:
+            return f"column {letters[field]} of the sheet readings"
+        return f"cell B{lines[field]} of the sheet session" if field in lines else ""
+
+    return where
+
+
+def letters_of(number: int) -> str:
+    """28 → AB, as a spreadsheet names its columns."""
+    letters = ""
+    while number > 0:
+        number, rest = divmod(number - 1, len(ascii_uppercase))
+        letters = ascii_uppercase[rest] + letters
+    return letters
 
 
 def _sheets(content: bytes, filename: str) -> tuple[list[tuple[str, Cell]], tuple[list[str], list[Column]]]:
@@ -51,7 +81,7 @@ def _key_values(book: fastexcel.ExcelReader) -> list[tuple[str, Cell]]:
         return []
     values = _cells(_load(book, "session", "float").get_columns()[1], texts[1])
     rows = zip(texts[0].to_list(), values, texts[1].to_list(), strict=True)
-    return [(key, text if last_step(key) in TEXTS else value) for key, value, text in rows if key]
+    return [(key or "", text if last_step(key or "") in TEXTS else value) for key, value, text in rows]
 
 
 def _table(book: fastexcel.ExcelReader) -> tuple[list[str], list[Column]]:

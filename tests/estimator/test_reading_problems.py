@@ -209,12 +209,21 @@ def test_a_single_position_cannot_be_calibrated(document, field):
     assert caught.value.problems[0].field == field
 
 
-def test_faulty_rows_beyond_twenty_are_counted():
+def test_faulty_rows_beyond_five_are_counted():
     document = builders.accelerometer_block(positions=100)
-    document["table"]["A1"] = ["x"] * 200
+    document["table"]["A1"][20:] = ["x"] * 180
     found = problems_of(document)
-    assert len(found) == 21
-    assert "180 more rows" in found[-1].message
+    assert [problem.row for problem in found] == [21, 22, 23, 24, 25, None]
+    assert "175 more rows have such a fault, the last of them row 200" in found[-1].message
+
+
+def test_a_fault_of_every_row_is_one_problem():
+    document = builders.accelerometer_block(positions=100)
+    document["table"]["A1"] = [f"0,{j}" for j in range(200)]
+    (problem,) = problems_of(document)
+    assert (problem.field, problem.row) == ("A1", None)
+    assert "all 200 rows" in problem.message
+    assert "decimal point" in problem.message
 
 
 def test_the_number_of_problems_is_bounded():

@@ -13,6 +13,7 @@ from scipy.io import savemat
 from estimator.errors import FormatError, SessionError
 from estimator.reading import read_session
 from service.ingest import read_upload
+from service.ingest.xlsx import letters_of
 from tests import builders
 from tests.estimator.test_reading_csv import csv_of, same
 
@@ -131,3 +132,21 @@ def test_a_file_cut_short_is_refused(kind):
     for size in (4, 8, 200, len(content) // 2, len(content) - 9):
         with pytest.raises(SessionError):
             read_upload(content[:size], "x")
+
+
+def test_a_fault_in_a_workbook_names_its_cell():
+    document = builders.accelerometer_block()
+    document["table"]["A2"][4] = "none"
+    document["site"] = {"latitude_deg": 95.0}
+    with pytest.raises(FormatError) as caught:
+        read_upload(xlsx_bytes(document), "x.xlsx")
+    said = {problem.field: problem.message for problem in caught.value.problems}
+    column = letters_of(list(document["table"]).index("A2") + 1)
+    assert f"(cell {column}6 of the sheet readings)" in said["A2"]
+    line = [key for key, _ in key_values(document)].index("site.latitude_deg") + 1
+    assert f"(cell B{line} of the sheet session)" in said["site.latitude_deg"]
+
+
+@pytest.mark.parametrize(("number", "letters"), [(1, "A"), (26, "Z"), (27, "AA"), (703, "AAA")])
+def test_columns_are_named_as_a_spreadsheet_names_them(number, letters):
+    assert letters_of(number) == letters
