@@ -18,6 +18,7 @@ COMMANDS = {
     "serve": "serve.serve",
     "calibrate": "calibrate.calibrate_files",
     "diagnose": "diagnose.diagnose_files",
+    "template": "template.write_template",
     "upload": "upload.upload_files",
     "convert": "convert.convert_files",
     "fleet": "report.fleet",

@@ -21,6 +21,7 @@ from service.api import (
     records,
     sessions,
     stands,
+    templates,
     unit_types,
     units,
     usable,
@@ -47,7 +48,7 @@ def _every() -> APIRouter:
     api, every = APIRouter(prefix=PREFIX), APIRouter(dependencies=ADMITTED)
     for resource in (
         sessions, records, certificates, diagnoses, events, usable, labels, units, unit_types, models, plans, stands,
-        flags, notes, webhooks, feeds, fleet, identity,
+        templates, flags, notes, webhooks, feeds, fleet, identity,
     ):  # fmt: skip
         api.include_router(resource.router)
     every.include_router(api)

@@ -62,6 +62,7 @@ GET {API}/unit-types
 GET {API}/unit-types/{{name:path}}
 GET {API}/models
 GET {API}/plan
+GET {API}/session-template
 GET {API}/stands
 GET {API}/stands/{{name:path}}/certificates
 GET {API}/flags

@@ -22,6 +22,7 @@ from service.storage.queries.flags import FlagQuery
 from service.views.found_and_left import found_and_left
 from service.views.history import recent_history
 from service.views.outlook import own_outlook
+from service.views.pattern import type_names
 from service.views.session_report import session_report
 from service.views.standouts import fleet_standouts
 from service.views.stands import stand_conditions
@@ -109,9 +110,9 @@ def show_outcome(request: Request, store: Reading, settings: SettingsOf, id: Key
 
 
 @router.get("/upload")
-def show_upload(request: Request, settings: SettingsOf) -> HTMLResponse:
+def show_upload(request: Request, store: Reading, settings: SettingsOf) -> HTMLResponse:
     """The form."""
-    return render(request, "upload.html", upload_page((), settings))
+    return render(request, "upload.html", upload_page((), settings, type_names(store)))
 
 
 @router.post("/upload")
@@ -122,5 +123,6 @@ def take_uploads(
     found = receive_all(reception, files, now)
     with reception.storage.database.reading() as store:
         outcomes = outcomes_of(files, found, store.diagnoses.summary)
-    page = upload_page(outcomes, settings)
+        names = type_names(store)
+    page = upload_page(outcomes, settings, names)
     return render(request, "upload.html", page, 422 if page.refused else 200)

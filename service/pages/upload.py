@@ -47,6 +47,8 @@ class UploadPage:
     limit: str
     follows: bool
     """Whether cards look again whether their diagnosis is made."""
+    unit_types: tuple[str, ...] = ()
+    """That a template can be made for."""
 
     @property
     def refused(self) -> int:
@@ -76,7 +78,7 @@ def outcome_of(session: StoredSession, made: DiagnosisSummary | None) -> Outcome
     return Outcome(session.filename, Receipt(created=True, **known), (), diagnosis_line(made), made is None)
 
 
-def upload_page(outcomes: Sequence[Outcome], settings: Settings) -> UploadPage:
+def upload_page(outcomes: Sequence[Outcome], settings: Settings, unit_types: Sequence[str] = ()) -> UploadPage:
     """The page before (no outcomes) or after an upload."""
     follows = settings.diagnosis_workers > 0
-    return UploadPage(tuple(outcomes), f"{settings.max_upload_bytes / 2**20:g} MiB", follows)
+    return UploadPage(tuple(outcomes), f"{settings.max_upload_bytes / 2**20:g} MiB", follows, tuple(unit_types))

@@ -51,7 +51,7 @@ class Workbook:
 
     def __init__(self, target: Any, made: datetime, title: str) -> None:
         self._book = xlsxwriter.Workbook(target, OPTIONS)
-        self._book.set_properties({"title": title, "author": "imu-health", "created": _naive(made)})
+        self._book.set_properties({"title": title, "author": "imu-health", "created": naive(made)})
         self._head = self._book.add_format({"bold": True, "bottom": 1, "text_wrap": True, "valign": "top"})
         self._formats: dict[Kind, Format] = {kind: self._book.add_format({"num_format": kind.value}) for kind in Kind}
         self._quoted = self._book.add_format({"quote_prefix": True})
@@ -81,7 +81,7 @@ class Workbook:
             case bool():
                 sheet.write_string(row, place, "yes" if cell else "no")
             case datetime():
-                sheet.write_datetime(row, place, _naive(cell), self._formats[kind])
+                sheet.write_datetime(row, place, naive(cell), self._formats[kind])
             case int() | float():
                 sheet.write_number(row, place, cell, self._formats[kind])
             case str():
@@ -102,6 +102,6 @@ class Workbook:
         self._book.close()
 
 
-def _naive(at: datetime) -> datetime:
+def naive(at: datetime) -> datetime:
     """A spreadsheet's dates have no zone: UTC, to the second."""
     return at.astimezone(UTC).replace(tzinfo=None, microsecond=0)

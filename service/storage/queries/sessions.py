@@ -16,7 +16,15 @@ from service.records.state import RecordState
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
 from service.storage.reservation_document import reservations_from_list
-from service.storage.tables import CommonMotionRow, DecisionRow, DiagnosisRow, SessionRow, StandRow, UnitRow
+from service.storage.tables import (
+    CommonMotionRow,
+    DecisionRow,
+    DiagnosisRow,
+    SessionRow,
+    StandRow,
+    UnitRow,
+    UnitTypeRow,
+)
 
 NOT_JUDGED = ""
 """What the verdict rests on of a session that is still to be judged, or judged again."""
@@ -97,6 +105,20 @@ class Sessions(Queries):
         """All sessions of a unit, oldest first."""
         query = _sessions().where(UnitRow.serial == serial).order_by(SessionRow.started_at, SessionRow.id)
         return tuple(_session_record(*found) for found in self._session.execute(query))
+
+    def latest_like(self, serial: str | None, unit_type: str | None) -> StoredSession | None:
+        """The last accepted session of a unit, or of a type's units, calibrations first; of all units with neither."""
+        query = _sessions().where(IS_ACCEPTED)
+        if serial is not None:
+            query = query.where(UnitRow.serial == serial)
+        if unit_type is not None:
+            of_type = select(UnitTypeRow.id).where(UnitTypeRow.name == unit_type).scalar_subquery()
+            query = query.where(UnitRow.unit_type_id == of_type)
+        calibrates = SessionRow.programme.in_(CALIBRATIONS)
+        found = self._session.execute(
+            query.order_by(calibrates.desc(), SessionRow.started_at.desc(), SessionRow.id).limit(1)
+        ).first()
+        return None if found is None else _session_record(*found)
 
     def before(self, session: StoredSession, since: datetime | None, most: int) -> tuple[StoredSession, ...]:
         """The last sessions of the unit's same programme before one and not before a time, oldest first."""

@@ -12,6 +12,7 @@ from service.settings import Settings
 from tests.builders import accelerometer_block
 from tests.databases import Databases
 from tests.service.cli.conftest import Run, write
+from tests.service.filled import filled
 from tests.serving import serving
 
 
@@ -117,3 +118,11 @@ def test_a_correction_is_written_as_json(run: Run, address: str, good_file: Path
     target = tmp_path / "correction.json"
     assert run("correction", receipt["id"], "--server", address, "--out", target).code == 0
     assert json.loads(target.read_text("utf-8"))["session"] == receipt["id"]
+
+
+def test_a_template_filled_in_is_taken(run: Run, address: str, tmp_path: Path) -> None:
+    empty, full = tmp_path / "empty.xlsx", tmp_path / "full.xlsx"
+    assert run("template", "--sensors", 4, "--out", empty, "--server", address).code == 0
+    full.write_bytes(filled(empty.read_bytes(), {"unit": "MY-1", "stand.id": "S1"}))
+    [receipt] = run("upload", full, "--server", address, "--json").documents
+    assert receipt["unit"] == "MY-1"

@@ -1,0 +1,65 @@
+"""What the fields and columns of a session file hold, in a line each, for people who fill one in."""
+
+NEEDED_HERE = "Needed."
+KEY_HINTS = {
+    "format": "Leave as it is.",
+    "unit": "Serial number of the unit.",
+    "unit_type": "What units of this build are called.",
+    "block": "Kind of the sensors: accelerometer or gyroscope.",
+    "programme": "How it was measured.",
+    "started_at": "When the first row was measured, with its zone: 2026-03-01T09:00:00Z, or with +03:00 for Moscow.",
+    "stage": "as-found before the unit was worked on, as-left after it; empty otherwise.",
+    "operator": "Who measured.",
+    "notes": "Anything worth knowing.",
+    "latitude_deg": "Latitude of the stand, degrees.",
+    "height_m": "Height above the ellipsoid, metres.",
+    "gravity_m_s2": "Gravity at the stand, m/s², where it was measured.",
+    "stand.id": "Name or number of the stand.",
+    "alpha_deg": "Elevation of the head's axis above the horizon, degrees.",
+    "chi_deg": "Elevation of the head's axis above the plane orthogonal to the Earth's axis, degrees.",
+    "theta_x": "Levelling error, one sigma, arcsec.",
+    "theta_y": "Levelling error, one sigma, arcsec.",
+    "alpha": "Error of the elevation, one sigma, arcsec.",
+    "beta": "Error of the turn of the head, one sigma, arcsec.",
+    "latitude": "Error of the latitude, one sigma, arcsec.",
+    "meridian": "Error of the north direction, one sigma, arcsec.",
+    "sigma_count_time_s": "Error of the count time, one sigma, seconds.",
+    "count_time_s": "Time over which the pulses of a reading are counted, seconds.",
+    "counter": "free-running: the difference of two readings of a counter; reset: counted from zero every time.",
+    "sample_rate_hz": "Samples a second of a log; without it, rows are averages.",
+    "mounting": "Rotation from the platform's axes to the block's: three rows of three numbers.",
+    "name": "Name of the sensor, as in the heading of its column of readings.",
+    "kind": "accelerometer or gyroscope, where it differs from the block.",
+    "nominal_axis": "Input axis in block axes: a unit vector.",
+    "nominal_scale": "Nominal scale factor: reading unit per m/s² (gyroscopes: per rad/s, or pulses per rad).",
+    "nominal_offset": "Reading at zero input, in the reading unit.",
+    "reading_unit": "Unit of the readings, such as V, mA or count.",
+    "bias_repeatability_m_s2": "Scatter of the zero from position to position, one sigma, m/s².",
+    "bias_repeatability_rad_s": "Scatter of the zero from position to position, one sigma, rad/s.",
+    "position_m": "Where the sensor sits: three numbers in metres, block axes.",
+    "direction_sigma_deg": "How well the stated directions are known, one sigma, degrees.",
+}
+"""By the whole key, or by its last step."""
+COLUMN_HINTS = {
+    "run": "direct, or flipped with the block turned by 180° about the platform's Z axis.",
+    "beta_deg": "Turn of the head, degrees.",
+    "time_s": "Time since the first row, seconds. May stay empty.",
+    "temperature_c": "Temperature, °C. May stay empty.",
+    "vibration_m_s2": "Vibration while the row was averaged, rms, m/s². May stay empty.",
+    "turn_angle_deg": "Angle of the turntable at the end of the row, degrees.",
+    "turn_rate_deg_s": "Rate of the table during the row, degrees a second.",
+    "position": "Which position the row belongs to: a whole number or a name.",
+    "direction_x": "Roughly known direction of up in block axes; empty where unknown.",
+    "direction_y": "Roughly known direction of up in block axes; empty where unknown.",
+    "direction_z": "Roughly known direction of up in block axes; empty where unknown.",
+}
+
+
+def reading_hint(sensor: str, unit: str) -> str:
+    """Of a sensor's column."""
+    return f"Reading of {sensor}, {unit}: the mean at this position."
+
+
+def standard_error_hint(sensor: str, unit: str) -> str:
+    """Of the column of its standard errors."""
+    return f"Standard error of the mean reading of {sensor}, {unit}. May stay empty."
