@@ -14,6 +14,7 @@ from service.api import (
     fleet,
     identity,
     labels,
+    layouts,
     models,
     notes,
     operations,
@@ -48,7 +49,7 @@ def _every() -> APIRouter:
     api, every = APIRouter(prefix=PREFIX), APIRouter(dependencies=ADMITTED)
     for resource in (
         sessions, records, certificates, diagnoses, events, usable, labels, units, unit_types, models, plans, stands,
-        templates, flags, notes, webhooks, feeds, fleet, identity,
+        templates, layouts, flags, notes, webhooks, feeds, fleet, identity,
     ):  # fmt: skip
         api.include_router(resource.router)
     every.include_router(api)

@@ -6,14 +6,15 @@ from typing import Annotated, Any
 
 from fastapi import Depends, Query, Request
 
-from estimator.errors import Problem
+from estimator.errors import Problem, SessionError
 from service.admission import PersonOf
 from service.api.schemas.fields import LongText, Text
 from service.api.schemas.sessions import SessionFile
 from service.arriving import Arriving, ArrivingOf, LandedFile
 from service.errors import ForbiddenError, RefusedError
+from service.ingest.layout.envelope import mapping_of
 from service.records.identity import Role
-from service.records.received import Replaced, SentFile
+from service.records.received import Replaced, SentFile, held
 
 NEEDED = "is missing; a session is replaced by somebody and for a reason"
 LONGEST_WHY = 2000
@@ -58,12 +59,24 @@ async def _sent(request: Request, arriving: Arriving, stated: dict[str, str | No
 
 
 async def _from_form(arriving: Arriving, stated: dict[str, str | None]) -> SentFile:
-    form = await arriving.form(most_files=1)
+    form = await arriving.form(most_files=2)
     file = form.get("file")
     if not isinstance(file, LandedFile):
         raise RefusedError(NO_FILE, (Problem("file", "is missing from the form"),))
     own = {name: text for name in FIELDS if isinstance(text := form.get(name), str)}
-    return SentFile(file.filename or "upload", await file.content(), _replaced(stated | own))
+    name, sent = file.filename or "upload", form.get("mapping")
+    mapping = held(await sent.content()) if isinstance(sent, LandedFile) else str(sent or "").encode()
+    return SentFile(name, await file.content(), _replaced(stated | own), _mapping(mapping, name))
+
+
+def _mapping(text: bytes, filename: str) -> dict[str, Any] | None:
+    """How the table is read, from a part of the form, be it a file or not; RefusedError where it is no JSON."""
+    if not text.strip():
+        return None
+    try:
+        return mapping_of(text, filename)
+    except SessionError as fault:
+        raise RefusedError("The mapping cannot be used.", fault.problems) from fault
 
 
 def _replaced(stated: Mapping[str, str | None]) -> Replaced | None:
@@ -94,7 +107,8 @@ REQUEST_BODY: dict[str, Any] = {
                     "type": "object",
                     "required": ["file"],
                     "properties": {"file": {"type": "string", "format": "binary", "description": "The session file."}}
-                    | {name: {"type": "string"} for name in FIELDS},
+                    | {name: {"type": "string"} for name in FIELDS}
+                    | {"mapping": {"type": "string", "description": "imu-mapping/1, for a table of one's own layout."}},
                 }
             },
         },

@@ -22,7 +22,9 @@ from service.api.schemas.sessions import (
 )
 from service.dependencies import Now, Reading, ReceptionOf, StorageOf
 from service.flows.receive import receive
+from service.flows.receive_mapped import receive_mapped
 from service.flows.set_stage import set_stage
+from service.ingest.layout.envelope import is_wrapped, unwrapped
 from service.views.traceability import traceability_of
 
 router = APIRouter(prefix="/sessions", tags=["sessions"])
@@ -42,9 +44,14 @@ def upload_session(
 ) -> ReceiptSchema:
     """Upload a session file: it is checked, calibrated, judged, stored, diagnosed. The same content is stored once.
 
+    A table of one's own layout comes with its `mapping`, as a part of the form.
+
     A corrected file names the session that it `supersedes`, by whom and why; unit and date may be others.
     """
-    receipt = receive(reception, file, now)
+    if file.mapping is None:
+        receipt = receive(reception, file, now)
+    else:
+        receipt = receive_mapped(reception, file, file.mapping, now)
     url = str(request.url_for("read_session", id=receipt.id))
     response.status_code = 201 if receipt.created else 200
     response.headers["Location"] = url
@@ -93,10 +100,18 @@ def mark_session(id: SessionId, new: NewStage, storage: StorageOf, now: Now, per
 
 
 @router.get("/{id}/file", responses={200: {"content": ANY_BYTES}, **errors(404, 422, 500)}, response_class=Response)
-def read_file(id: SessionId, store: Reading, storage: StorageOf) -> Response:
-    """The uploaded bytes, unchanged."""
-    content = storage.files.content(store.sessions.get(id).sha256)
+def read_file(
+    id: SessionId,
+    store: Reading,
+    storage: StorageOf,
+    original: Annotated[bool, Query(description="Of a table with a mapping: the table alone.")] = False,
+) -> Response:
+    """The uploaded bytes, unchanged; of a table of one's own layout with the mapping, in one archive of two parts."""
+    session = store.sessions.get(id)
+    content = storage.files.content(session.sha256)
     headers = {"Content-Disposition": f'attachment; filename="{id}"', "X-Content-Type-Options": "nosniff"}
+    if original and is_wrapped(content):
+        _, content = unwrapped(storage.files.read(session.sha256), session.filename)
     if isinstance(content, bytes):
         return Response(content, media_type=BYTES, headers=headers)
     return FileResponse(content, media_type=BYTES, headers=headers)

@@ -29,6 +29,9 @@ By = Annotated[str | None, typer.Option(help="Who replaces it; with --supersedes
 Wait = Annotated[
     bool, typer.Option("--wait/--no-wait", help="Wait until causes were looked for: they may be said with the verdict.")
 ]
+Mapping = Annotated[
+    Path | None, typer.Option(help="JSON file that says how tables of your own layout are read: imu-mapping/1.")
+]
 Why = Annotated[str | None, typer.Option(help="What was wrong; with --supersedes.")]
 
 
@@ -41,11 +44,13 @@ def upload_files(
     by: By = None,
     why: Why = None,
     wait: Wait = True,
+    mapping: Mapping = None,
 ) -> None:
     """Upload session files and print the verdict of each; a file that is already there is stored once."""
     if supersedes and len(files) > 1:
         raise typer.BadParameter("one corrected file stands for one session", param_hint="--supersedes")
-    given = {"supersedes": supersedes, "by": by, "why": why}
+    read_by = None if mapping is None else mapping.read_text(encoding="utf-8")
+    given = {"supersedes": supersedes, "by": by, "why": why, "mapping": read_by}
     stated = {name: text for name, text in given.items() if text}
     show: Callable[[dict[str, Any]], None] = print_json if as_json else _print_line
     with connected(server) as client:

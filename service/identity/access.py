@@ -80,12 +80,14 @@ CREW = f"""
 GET /upload
 GET /sessions/{{id}}/outcome
 POST /upload
+POST /upload/layout
 POST /units/{{serial:path}}/services
 POST /units/{{serial:path}}/notes
 POST /units/{{serial:path}}/customer
 POST /notes/{{id}}/withdraw
 POST /sessions/{{id}}/stage
 POST {API}/sessions
+POST {API}/layouts/preview
 PUT {SESSION}/stage
 GET {SESSION}/certificate
 POST {UNIT}/services

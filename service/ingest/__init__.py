@@ -6,7 +6,9 @@ Binary formats, and text that is long enough to take time or memory, are read by
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
+from estimator.errors import SessionError
 from estimator.reading import read_session
 from estimator.reading.source import LARGEST_FILE
 from estimator.session import CalibrationSession
@@ -47,6 +49,29 @@ def apart_session(content: bytes | Path, filename: str) -> CalibrationSession:
     session = read_apart("session", content, filename)
     assert isinstance(session, CalibrationSession)
     return session
+
+
+def look_at(content: bytes | Path, filename: str) -> dict[str, Any]:
+    """What a table of one's own layout looks like; ``session`` is true of a file that says itself what it is."""
+    seen: dict[str, Any] = read_apart("look", content, filename)
+    return seen
+
+
+def is_own_layout(content: bytes | Path, filename: str) -> bool:
+    """Whether a file is a table that does not say how it is to be read; what cannot be read is none."""
+    start = content[:1024] if isinstance(content, bytes) else start_of(content, 1024)
+    if start.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"{", b"[", b""):
+        return False
+    try:
+        return not look_at(content, filename)["session"]
+    except SessionError:
+        return False
+
+
+def start_of(path: Path, count: int) -> bytes:
+    """The first bytes of a file."""
+    with path.open("rb") as file:
+        return file.read(count)
 
 
 def read_file(path: Path) -> CalibrationSession:

@@ -29,14 +29,33 @@ def read_hdf5(content: bytes, filename: str) -> dict[str, object]:
         metadata = file.attrs.get(KEY)
         if not isinstance(metadata, str):
             raise refusal(filename, f"has no text attribute {KEY}; put the session's JSON without its table there")
-        if not isinstance(file.get(GROUP, getlink=True), h5py.HardLink) or not isinstance(file[GROUP], h5py.Group):
-            raise refusal(filename, f"has no group {GROUP}; put one dataset per column there")
-        group = file[GROUP]
-        check_table(filename, 0, len(group))
-        datasets = {name: _dataset(group, name, filename) for name in group}
-        check_table(filename, max((column.size for column in datasets.values()), default=0), len(datasets))
-        columns = {name: _values(name, column, filename) for name, column in datasets.items()}
+        columns = _columns(file, filename)
     return with_metadata(metadata, columns, filename)
+
+
+def has_metadata(content: bytes, filename: str) -> bool:
+    """Whether the file says itself that it is a session."""
+    with _damage_refused(filename), h5py.File(BytesIO(content), "r") as file:
+        return KEY in file.attrs
+
+
+def table_of(content: bytes, filename: str) -> dict[str, object]:
+    """The columns of the group, or else of the root."""
+    with _damage_refused(filename), h5py.File(BytesIO(content), "r") as file:
+        return _columns(file, filename) if GROUP in file else _datasets(file, filename)
+
+
+def _columns(file: h5py.File, filename: str) -> dict[str, object]:
+    if not isinstance(file.get(GROUP, getlink=True), h5py.HardLink) or not isinstance(file[GROUP], h5py.Group):
+        raise refusal(filename, f"has no group {GROUP}; put one dataset per column there")
+    return _datasets(file[GROUP], filename)
+
+
+def _datasets(group: h5py.Group, filename: str) -> dict[str, object]:
+    check_table(filename, 0, len(group))
+    datasets = {name: _dataset(group, name, filename) for name in group}
+    check_table(filename, max((column.size for column in datasets.values()), default=0), len(datasets))
+    return {name: _values(name, column, filename) for name, column in datasets.items()}
 
 
 @contextmanager

@@ -6,6 +6,10 @@ from pathlib import Path
 from estimator.reading import read_session
 from service.ingest import hdf5, mat, parquet, xlsx
 from service.ingest.formats import HDF5, MAT, PARQUET, XLSX
+from service.ingest.layout.envelope import is_wrapped, unwrapped
+from service.ingest.layout.look import look
+from service.ingest.layout.mapping import layout_of
+from service.ingest.layout.reading import document_of
 from service.ingest.limits import in_force, refusal
 from service.ingest.long_log import averaged_if_long
 
@@ -27,6 +31,10 @@ def session(content: Content, filename: str) -> object:
     if isinstance(content, Path):
         averaged = averaged_if_long(content, filename)
         return session(_whole(content, filename), filename) if averaged is None else averaged
+    if is_wrapped(content):
+        mapping, table = unwrapped(content, filename)
+        document, where = document_of(table, filename, layout_of(mapping, filename))
+        return read_session(document, name=filename, most=in_force().extent, where=where)
     if content.startswith(XLSX):
         document, where = xlsx.read_with_places(content, filename)
         return read_session(document, name=filename, most=in_force().extent, where=where)
@@ -49,5 +57,10 @@ def mat_matrices(content: Content, filename: str) -> object:
     return mat.variables(held, filename, most_rows=3)
 
 
-JOBS: dict[str, Callable[[Content, str], object]] = {"session": session, "mat-matrices": mat_matrices}
+def look_at(content: Content, filename: str) -> object:
+    """What a table of one's own layout looks like."""
+    return look(_whole(content, filename) if isinstance(content, Path) else content, filename)
+
+
+JOBS: dict[str, Callable[[Content, str], object]] = {"session": session, "look": look_at, "mat-matrices": mat_matrices}
 """Name → what does it."""

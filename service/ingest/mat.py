@@ -48,7 +48,7 @@ def read_mat(content: bytes, filename: str) -> dict[str, object]:
     text = None if metadata is None else metadata.ravel().tolist()
     if text is None or metadata is None or metadata.dtype.kind != "U" or len(text) != 1 or not text[0].strip():
         raise refusal(filename, f"has no text variable {VARIABLE}; put the session's JSON without its table there")
-    return with_metadata(text[0].strip(), {name: _cells(column) for name, column in columns.items()}, filename)
+    return with_metadata(text[0].strip(), {name: cells(column) for name, column in columns.items()}, filename)
 
 
 def variables(content: bytes, filename: str, *, most_rows: int) -> dict[str, np.ndarray[Any, Any]]:
@@ -93,7 +93,8 @@ def _check_declared(declared: list[Declared], filename: str, most_rows: int) -> 
         raise refusal(filename, f"has {cells} cells; at most {most} can be read, so average or split it", "table")
 
 
-def _cells(column: np.ndarray[Any, Any]) -> object:
+def cells(column: np.ndarray[Any, Any]) -> Any:
+    """Numbers, or texts with None where they are empty."""
     if column.dtype.kind in "fiu":
         return column.ravel()
     return [text.strip() or None for text in column.ravel().tolist()]

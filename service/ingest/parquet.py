@@ -13,8 +13,24 @@ MOST_TEXT = 64 * 1024 * 1024
 
 def read_parquet(content: bytes, filename: str) -> dict[str, object]:
     """The document that a Parquet file holds."""
+    columns = table_of(content, filename)
+    metadata = pl.read_parquet_metadata(BytesIO(content)).get(KEY)
+    if metadata is None:
+        raise refusal(filename, f"has no key-value entry {KEY}; put the session's JSON without its table there")
+    return with_metadata(metadata, columns, filename)
+
+
+def has_metadata(content: bytes) -> bool:
+    """Whether a file that can be read says itself that it is a session."""
     try:
-        metadata = pl.read_parquet_metadata(BytesIO(content)).get(KEY)
+        return KEY in pl.read_parquet_metadata(BytesIO(content))
+    except (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError):
+        return True  # what cannot be read is refused as it always is
+
+
+def table_of(content: bytes, filename: str) -> dict[str, object]:
+    """The columns of a Parquet file."""
+    try:
         scan = pl.scan_parquet(BytesIO(content))
         schema = scan.collect_schema()
         check_table(filename, scan.select(pl.len()).collect().item(), len(schema))
@@ -23,9 +39,7 @@ def read_parquet(content: bytes, filename: str) -> dict[str, object]:
         frame = scan.collect()
     except (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError) as error:
         raise refusal(filename, "is damaged or not a readable Parquet file; write it again") from error
-    if metadata is None:
-        raise refusal(filename, f"has no key-value entry {KEY}; put the session's JSON without its table there")
-    return with_metadata(metadata, columns_of(frame, filename), filename)
+    return columns_of(frame, filename)
 
 
 def columns_of(frame: pl.DataFrame, filename: str) -> dict[str, object]:

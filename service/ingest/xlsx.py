@@ -62,6 +62,15 @@ def letters_of(number: int) -> str:
     return letters
 
 
+def sheet_names(content: bytes, filename: str) -> tuple[str, ...]:
+    """Of a workbook."""
+    check_workbook(content, filename)
+    try:
+        return tuple(fastexcel.read_excel(content).sheet_names)
+    except fastexcel.FastExcelError as error:
+        raise refusal(filename, "is damaged or not a readable XLSX file; save it again") from error
+
+
 def _sheets(content: bytes, filename: str) -> tuple[list[tuple[str, Cell]], tuple[list[str], list[Column]]]:
     """Keys and values of `session`; header and columns of `readings`."""
     try:
@@ -71,7 +80,8 @@ def _sheets(content: bytes, filename: str) -> tuple[list[tuple[str, Cell]], tupl
     except fastexcel.FastExcelError as error:
         raise refusal(filename, "is damaged or not a readable XLSX file; save it again") from error
     if found is None:
-        raise refusal(filename, f"has no sheet {' and no sheet '.join(missing)}; a session needs both")
+        text = f"has no sheet {' and no sheet '.join(missing)}; a session needs both, a table of your own a mapping"
+        raise refusal(filename, text)
     return found
 
 

@@ -8,6 +8,7 @@ from fastapi.responses import HTMLResponse
 from service.dependencies import Now, Reading, ReceptionOf, SettingsOf, StorageOf
 from service.flows.correct_session import correction_of
 from service.flows.receive import receive_all
+from service.ingest import is_own_layout
 from service.pages.fleet import fleet_page
 from service.pages.fleet_view import FleetAsked, FleetView
 from service.pages.follow import SOONEST, follow_seconds
@@ -16,7 +17,8 @@ from service.pages.received import FormFiles
 from service.pages.render import render
 from service.pages.session import session_page
 from service.pages.unit import unit_page
-from service.pages.upload import outcome_of, outcomes_of, upload_page
+from service.pages.upload import outcome_of, outcomes_of, table_outcome, upload_page
+from service.records.received import where
 from service.records.state import RecordState
 from service.storage.queries.flags import FlagQuery
 from service.views.found_and_left import found_and_left
@@ -120,9 +122,11 @@ def take_uploads(
     request: Request, files: FormFiles, reception: ReceptionOf, settings: SettingsOf, now: Now
 ) -> HTMLResponse:
     """The form with the verdict of each file, or what is wrong with it; 422 when a file cannot be used."""
-    found = receive_all(reception, files, now)
+    tables = [file for file in files if is_own_layout(where(file.content), file.filename)]
+    sessions = [file for file in files if file not in tables]
+    found = receive_all(reception, sessions, now)
     with reception.storage.database.reading() as store:
-        outcomes = outcomes_of(files, found, store.diagnoses.summary)
+        outcomes = (*map(table_outcome, tables), *outcomes_of(sessions, found, store.diagnoses.summary))
         names = type_names(store)
     page = upload_page(outcomes, settings, names)
     return render(request, "upload.html", page, 422 if page.refused else 200)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 from estimator.errors import Problem
 from service.errors import RefusedError
 from service.pages.diagnosis_line import DiagnosisLine, diagnosis_line
+from service.pages.layout_form import carried
 from service.records.diagnosis import DiagnosisSummary
 from service.records.received import SentFile
 from service.records.reservation import Reservations
@@ -25,6 +26,10 @@ class Outcome:
     """None of a refused file."""
     pending: bool = False
     """Whether the diagnosis is still being made."""
+    is_table: bool = False
+    """Of one's own layout, not read before its page says how."""
+    content: str = ""
+    """Of a table, as text; empty where it is too large for a page."""
 
     @property
     def condition(self) -> Condition:
@@ -53,7 +58,7 @@ class UploadPage:
     @property
     def refused(self) -> int:
         """How many files could not be used."""
-        return sum(o.receipt is None for o in self.outcomes)
+        return sum(o.receipt is None and not o.is_table for o in self.outcomes)
 
 
 def outcomes_of(
@@ -63,6 +68,11 @@ def outcomes_of(
 ) -> tuple[Outcome, ...]:
     """Every file with what became of it; ``summary``: the diagnosis of a session, where it is made already."""
     return tuple(_outcome(file.filename, one, summary) for file, one in zip(files, found, strict=True))
+
+
+def table_outcome(file: SentFile) -> Outcome:
+    """A table of one's own layout, with the bytes that its page asks about."""
+    return Outcome(file.filename, is_table=True, content=carried(file))
 
 
 def _outcome(filename: str, one: Receipt | RefusedError, summary: Callable[[str], DiagnosisSummary | None]) -> Outcome:

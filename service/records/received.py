@@ -1,8 +1,10 @@
 """A file as it comes in, before anything is known of what it holds."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -35,6 +37,11 @@ def where(content: Content) -> bytes | Path:
     return content.path if isinstance(content, Landed) else content
 
 
+def held(content: Content) -> bytes:
+    """All of its bytes, in memory."""
+    return content.path.read_bytes() if isinstance(content, Landed) else content
+
+
 @dataclass(frozen=True)
 class SentFile:
     """A file as its sender named it."""
@@ -42,6 +49,8 @@ class SentFile:
     filename: str
     content: Content
     replaces: Replaced | None = None
+    mapping: Mapping[str, Any] | None = None
+    """How a table of one's own layout is read, as it was sent."""
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from service.storage.queries.fleet import Fleet
 from service.storage.queries.fleet_rows import FleetRows
 from service.storage.queries.history import History
 from service.storage.queries.identities import Identities
+from service.storage.queries.layouts import Layouts
 from service.storage.queries.log import Log
 from service.storage.queries.models import Models
 from service.storage.queries.notes import Notes
@@ -56,6 +57,11 @@ class Store:
     def sessions(self) -> Sessions:
         """Uploaded sessions and their decisions."""
         return Sessions(self._session)
+
+    @cached_property
+    def layouts(self) -> Layouts:
+        """People's own layouts of tables."""
+        return Layouts(self._session)
 
     @cached_property
     def states(self) -> States:

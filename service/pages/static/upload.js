@@ -37,6 +37,7 @@ function show(card, request) {
   if (cards.length) {
     card.replaceWith(...cards);
     cards.forEach((one) => follow(one));
+    if (outcomes.children.length === 1 && !queue.length) outcomes.querySelector("form.table")?.submit();
   }
   else failed(card, answer.querySelector("#problem")?.textContent.trim() ?? `The server answered ${request.status}.`);
 }

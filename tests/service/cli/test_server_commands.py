@@ -11,6 +11,7 @@ import pytest
 from service.settings import Settings
 from tests.builders import accelerometer_block
 from tests.databases import Databases
+from tests.service import tables
 from tests.service.cli.conftest import Run, write
 from tests.service.filled import filled
 from tests.serving import serving
@@ -126,3 +127,13 @@ def test_a_template_filled_in_is_taken(run: Run, address: str, tmp_path: Path) -
     full.write_bytes(filled(empty.read_bytes(), {"unit": "MY-1", "stand.id": "S1"}))
     [receipt] = run("upload", full, "--server", address, "--json").documents
     assert receipt["unit"] == "MY-1"
+
+
+def test_a_table_of_ones_own_is_uploaded_with_its_mapping(run: Run, address: str, tmp_path: Path) -> None:
+    own, mapping = tmp_path / "own.csv", tmp_path / "mapping.json"
+    own.write_bytes(tables.text_table(tables.own_document()).encode("cp1251"))
+    sent = {"file": (own.name, own.read_bytes())}
+    found = httpx.post(f"{address}/api/v1/layouts/preview", files=sent).json()["mapping"]
+    mapping.write_text(json.dumps({**found, "session": tables.facts_of(tables.own_document())}), encoding="utf-8")
+    [receipt] = run("upload", own, "--mapping", mapping, "--server", address, "--json").documents
+    assert receipt["unit"] == "BA-017"

@@ -1,0 +1,74 @@
+"""The uploaded bytes, unchanged, and the mapping that reads them, in one file: a ZIP archive of two parts.
+
+Neither is anything without the other, so they are stored, backed up, checked and handed on as one. The archive is not
+compressed and has no dates: the same bytes under the same mapping are the same file, and another mapping of the same
+bytes is another file, as it may be another session. Whether it is another one, its content tells.
+"""
+
+import json
+from collections.abc import Mapping
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+from zipfile import ZIP_STORED, BadZipFile, ZipFile, ZipInfo
+
+from estimator.reading.json_text import parse_json
+from estimator.reading.problems import Problems
+from service.ingest.formats import HDF5, MAT, PARQUET, XLSX
+from service.ingest.limits import in_force, refusal
+
+MAPPING = "imu-mapping.json"
+"""Name of the first part."""
+NAME_AT = 30
+"""Byte of a ZIP archive at which the name of its first part begins (APPNOTE 4.3.7)."""
+ENDINGS = ((XLSX, "xlsx"), (PARQUET, "parquet"), (HDF5, "h5"), (MAT, "mat"))
+"""Of the second part, by its first bytes; anything else is text."""
+LONGEST_MAPPING = 1024 * 1024
+"""Bytes; ten thousand columns take less."""
+PARTS = 2
+
+
+def wrapped(mapping: Mapping[str, Any], content: bytes) -> bytes:
+    """The file that is stored."""
+    ending = next((ending for magic, ending in ENDINGS if content.startswith(magic)), "csv")
+    text = json.dumps(mapping, ensure_ascii=False, sort_keys=True, separators=(",", ":")).encode()
+    buffer = BytesIO()
+    with ZipFile(buffer, "w", ZIP_STORED) as archive:
+        for name, part in ((MAPPING, text), (f"table.{ending}", content)):
+            archive.writestr(ZipInfo(name), part)
+    return buffer.getvalue()
+
+
+def is_wrapped(content: bytes | Path) -> bool:
+    """Whether a file is one of these."""
+    name = MAPPING.encode()
+    start = content[: NAME_AT + len(name)] if isinstance(content, bytes) else _start(content, NAME_AT + len(name))
+    return start.startswith(XLSX) and start[NAME_AT:] == name
+
+
+def _start(path: Path, count: int) -> bytes:
+    with path.open("rb") as file:
+        return file.read(count)
+
+
+def unwrapped(content: bytes, filename: str) -> tuple[dict[str, Any], bytes]:
+    """The mapping and the uploaded bytes; FormatError where the archive is none of ours."""
+    try:
+        with ZipFile(BytesIO(content)) as archive:
+            parts = archive.infolist()
+            if len(parts) != PARTS or any(part.compress_type != ZIP_STORED for part in parts):
+                raise refusal(filename, f"must hold two parts that are not compressed: {MAPPING} and the table")
+            text, table = (archive.read(part) for part in parts)
+    except (BadZipFile, OSError, EOFError, RuntimeError, NotImplementedError, UnicodeError) as error:
+        raise refusal(filename, "is damaged; upload the table and its mapping again") from error
+    return mapping_of(text, filename), table
+
+
+def mapping_of(text: bytes, filename: str) -> dict[str, Any]:
+    """The mapping that a JSON text holds, not yet checked."""
+    if len(text) > LONGEST_MAPPING:
+        raise refusal(filename, f"is longer than {LONGEST_MAPPING} bytes", "mapping")
+    problems = Problems(filename, in_force().extent)
+    document = parse_json(text.decode("utf-8", errors="replace"), problems)
+    problems.raise_if_any()
+    return document

@@ -1,0 +1,286 @@
+"""Any table → columns of cells with their headings, and how it was taken apart."""
+
+import csv
+import io
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import fastexcel
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+
+from service.ingest import hdf5, mat, parquet
+from service.ingest.formats import HDF5, MAT, PARQUET, XLSX
+from service.ingest.layout.decoding import decoded
+from service.ingest.layout.understand import joined
+from service.ingest.layout.units import unit_of
+from service.ingest.limits import check_table, refusal
+from service.ingest.workbook import check_workbook
+from service.ingest.xlsx import BOOLEANS, letters_of
+
+Cell = str | float | None
+SEPARATORS = (";", "\t", "|", ",")
+"""Of columns, the unlikeliest within a cell first: a comma may be a decimal one."""
+LOOKED_AT = 60
+"""Rows among which the headings are."""
+STEADY = 0.8
+"""Share of the first lines that a separator cuts into equally many cells."""
+NUMBER = re.compile(r"^[+\-−]?[\d \u00a0\u202f']*[.,]?\d+(?:[eEЕ][+\-]?\d+)?$|^[+\-−]?\d+[.,]$")
+"""A number with a decimal point or comma, and spaces between thousands."""
+DECIMAL_COMMA = re.compile(r"^[+\-−]?[\d \u00a0\u202f]*,\d+(?:[eE][+\-]?\d+)?$")
+FEWEST = 2
+"""Columns of a table: a text of one is no table, or is parted by something else."""
+LONGEST_NUMBER = 40
+"""Characters of one, spaces included."""
+LONGEST_HEADING = 200
+"""Characters of a heading that are looked at and kept."""
+SPACES = re.compile(r"[ \u00a0\u202f']")
+NOTHING = ("", "-", "–", "—", "nan", "none", "null", "n/a", "na", "нет")
+"""What people write into a cell that says nothing."""
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A table as cells: R rows of readings, each column with its heading."""
+
+    kind: str
+    """text, xlsx, parquet, hdf5 or mat."""
+    headings: tuple[str, ...]
+    columns: tuple[Sequence[Cell], ...]
+    """As written: numbers where the file has numbers, else texts, None where empty."""
+    taken: Mapping[str, Any]
+    """How it was taken apart: encoding, separator, decimal, sheet, header_row, first_row."""
+    sheets: tuple[str, ...] = ()
+
+    @property
+    def rows(self) -> int:
+        """How many rows of readings."""
+        return max(map(len, self.columns), default=0)
+
+    def place(self, column: int, row: int) -> str:
+        """Where a cell stands in the file; rows count from 1."""
+        line = row + int(self.taken.get("first_row", 1)) - 1
+        if self.kind == "xlsx":
+            return f"cell {letters_of(column + 1)}{line} of the sheet {self.taken['sheet']}"
+        return f"line {line} of the file" if self.kind == "text" else ""
+
+
+def grid_of(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
+    """The table in a file; ``stated`` are the parts of ``taken`` that were chosen by hand."""
+    if content.startswith(XLSX):
+        return _workbook(content, filename, stated)
+    for magic, read in ((PARQUET, _parquet), (HDF5, _hdf5), (MAT, _mat)):
+        if content.startswith(magic):
+            return read(content, filename)
+    return _text(content, filename, stated)
+
+
+def number_of(cell: Cell, decimal: str) -> float | None:
+    """The number that a cell is; None where it is none."""
+    if not isinstance(cell, str):
+        return cell
+    if len(cell) > LONGEST_NUMBER or not NUMBER.match(cell.strip()):
+        return None
+    text = SPACES.sub("", cell.strip()).replace("−", "-").replace("Е", "E")
+    if decimal == ",":
+        text = text.replace(".", "").replace(",", ".") if "," in text else text
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+def is_nothing(cell: Cell) -> bool:
+    """Whether a cell says nothing."""
+    return cell is None or (isinstance(cell, str) and cell.strip().casefold() in NOTHING)
+
+
+def _text(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
+    text, encoding = decoded(content, filename, stated.get("encoding"))
+    lines = text.replace("\r\n", "\n").replace("\r", "\n")
+    separator = str(stated.get("separator") or _separator(lines))
+    rows = _cut(lines, separator, filename)
+    check_table(filename, len(rows), max(map(len, rows), default=0))
+    taken = {"encoding": encoding, "separator": separator}
+    return _headed("text", rows, taken, stated, filename)
+
+
+def _separator(text: str) -> str:
+    """The one that cuts most of the first lines into equally many cells."""
+    lines = [line for line in text[:100_000].split("\n")[:LOOKED_AT] if line.strip()]
+    for separator in SEPARATORS:
+        counts = [line.count(separator) for line in lines if separator in line]
+        if counts and counts.count(most := max(counts, key=counts.count)) >= STEADY * len(lines) and most:
+            return separator
+    return max(SEPARATORS, key=text[:10_000].count)
+
+
+def _cut(text: str, separator: str, filename: str) -> list[list[Cell]]:
+    try:
+        rows = list(csv.reader(io.StringIO(text, newline=""), delimiter=separator[:1]))
+    except (csv.Error, ValueError, TypeError) as error:
+        raise refusal(filename, f"is not a table that can be cut at {separator!r}: {error}") from error
+    while rows and not any(cell.strip() for cell in rows[-1]):
+        rows.pop()
+    return [[cell.strip() or None for cell in row] for row in rows]
+
+
+def _workbook(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
+    check_workbook(content, filename)
+    try:
+        book = fastexcel.read_excel(content)
+        names = tuple(book.sheet_names)
+        chosen = stated.get("sheet")
+        frames = {name: _frames(book, name) for name in names if chosen in (None, name)}
+    except fastexcel.FastExcelError as error:
+        raise refusal(filename, "is damaged or not a readable XLSX file; save it again") from error
+    if not frames:
+        raise refusal(filename, f"has no sheet {chosen!r}; choose one of {', '.join(names)}", "table.sheet")
+    name = max(frames, key=lambda name: _filled(frames[name][0]))
+    texts, numbers = frames[name]
+    columns = [_cells(n, t) for n, t in zip(numbers, texts, strict=True)]
+    rows = [list(row) for row in zip(*columns, strict=True)] if columns else []
+    while rows and all(cell is None for cell in rows[-1]):
+        rows.pop()
+    return _headed("xlsx", rows, {"sheet": name}, stated, filename, names)
+
+
+def _frames(book: fastexcel.ExcelReader, name: str) -> tuple[pl.DataFrame, pl.DataFrame]:
+    """The cells of a sheet as texts and as numbers."""
+    texts = book.load_sheet(name, header_row=None, dtypes="string", skip_whitespace_tail_rows=True).to_polars()
+    numbers = book.load_sheet(name, header_row=None, dtypes="float", skip_whitespace_tail_rows=True).to_polars()
+    return texts, numbers.head(len(texts))
+
+
+def _filled(frame: pl.DataFrame) -> int:
+    return sum(len(series) - series.null_count() for series in frame)
+
+
+def _cells(numbers: pl.Series, texts: pl.Series) -> list[Cell]:
+    pairs = zip(numbers.to_list(), texts.to_list(), strict=True)
+    return [text if number is None or text in BOOLEANS else number for number, text in pairs]
+
+
+def _headed(
+    kind: str,
+    rows: list[list[Cell]],
+    taken: Mapping[str, Any],
+    stated: Mapping[str, Any],
+    filename: str,
+    sheets: tuple[str, ...] = (),
+) -> Grid:
+    """The headings found, or where they were said to be, and the rows below them."""
+    width = max(map(len, rows), default=0)
+    rows = [row + [None] * (width - len(row)) for row in rows]
+    first = int(stated.get("first_row") or _first_row(rows)) - 1
+    header = int(stated["header_row"]) if "header_row" in stated else _header_row(rows, first)
+    if not 0 <= first < len(rows):
+        raise refusal(
+            filename, "has no row of numbers below its headings; say in which row the readings begin", "table"
+        )
+    headings = _headings(rows[header - 1 : first] if header else [], width)
+    columns = tuple([row[k] for row in rows[first:]] for k in range(width))
+    if sum(any(not is_nothing(cell) for cell in cells) for cells in columns) < FEWEST:
+        raise refusal(filename, "has a single column; a table has one for every sensor", "table")
+    decimal = str(stated.get("decimal") or _decimal(columns))
+    places = {"decimal": decimal, "header_row": header, "first_row": first + 1}
+    return Grid(kind, headings, columns, {**taken, **places}, sheets)
+
+
+def _share(row: Sequence[Cell]) -> float:
+    """Of numbers among the cells that say something."""
+    said = [cell for cell in row if not is_nothing(cell)]
+    return sum(number_of(cell, ",") is not None for cell in said) / len(said) if said else 0.0
+
+
+def _first_row(rows: list[list[Cell]]) -> int:
+    """The first row, from 1, that is mostly numbers and as full as the rows after it; past the end where none is."""
+    full = sorted(sum(not is_nothing(cell) for cell in row) for row in rows[:LOOKED_AT])
+    usual = full[len(full) // 2] if full else 0
+    for j, row in enumerate(rows[:LOOKED_AT]):
+        if _share(row) >= 0.5 and 2 * sum(not is_nothing(cell) for cell in row) >= usual:
+            return j + 1
+    return len(rows) + 1
+
+
+def _header_row(rows: list[list[Cell]], first: int) -> int:
+    """The upper one of one or two rows of headings right above the readings, from 1; 0 where there is none."""
+    if first < 1:
+        return 0
+    two = first >= 2 and _is_heading(rows[first - 2]) and (_of_units(rows[first - 1]) or _is_torn(rows[first - 2]))
+    return first - 1 if two else first
+
+
+def _is_heading(row: Sequence[Cell]) -> bool:
+    return sum(cell is not None for cell in row) > 1 and _share(row) < 0.5
+
+
+def _of_units(row: Sequence[Cell]) -> bool:
+    said = [str(cell) for cell in row if not is_nothing(cell)]
+    return bool(said) and sum(unit_of(cell) is not None for cell in said) >= 0.5 * len(said)
+
+
+def _is_torn(row: Sequence[Cell]) -> bool:
+    """Headings of groups, in merged cells: one of several columns."""
+    return any(cell is None for cell in row[1:]) and row[0] is not None
+
+
+def _headings(rows: Sequence[Sequence[Cell]], width: int) -> tuple[str, ...]:
+    """One text a column: group, heading and unit of a column below each other are joined."""
+    if not rows:
+        return tuple(f"column {k + 1}" for k in range(width))
+    lower = rows[-1]
+    parts = [list(row) for row in rows]
+    for row in parts[:-1]:
+        for k in range(1, width):
+            if row[k] is None and lower[k] is not None and not _of_units(lower):
+                row[k] = row[k - 1]
+    above = ([str(row[k]).strip()[:LONGEST_HEADING] for row in parts if row[k] is not None] for k in range(width))
+    return tuple(" ".join(_heading(names).split())[:LONGEST_HEADING] for names in above)
+
+
+def _heading(names: Sequence[str]) -> str:
+    """Of a column: what stands above each other, a unit last."""
+    if len(names) > 1 and unit_of(names[-1]) is not None:
+        unit = names[-1].strip("[]()")
+        return f"{' '.join(names[:-1])} [{unit}]"
+    return joined(" ".join(names[:-1]), names[-1]) if names else ""
+
+
+def _decimal(columns: Sequence[Sequence[Cell]]) -> str:
+    texts = [cell for cells in columns for cell in cells[:LOOKED_AT] if isinstance(cell, str)]
+    commas = sum(bool(DECIMAL_COMMA.match(text[:LONGEST_NUMBER])) for text in texts)
+    points = sum("." in text and number_of(text, ".") is not None for text in texts)
+    return "," if commas > points else "."
+
+
+def _parquet(content: bytes, filename: str) -> Grid:
+    return _named("parquet", parquet.table_of(content, filename))
+
+
+def _hdf5(content: bytes, filename: str) -> Grid:
+    return _named("hdf5", hdf5.table_of(content, filename))
+
+
+def _mat(content: bytes, filename: str) -> Grid:
+    found = mat.variables(content, filename, most_rows=1)
+    return _named("mat", {name: mat.cells(column) for name, column in found.items()})
+
+
+def _named(kind: str, table: Mapping[str, Any]) -> Grid:
+    columns = tuple(_listed(cells) for cells in table.values())
+    rows = max(map(len, columns), default=0)
+    return Grid(
+        kind,
+        tuple(name[:LONGEST_HEADING] for name in table),
+        tuple(c for c in columns if len(c) == rows),
+        {"first_row": 1, "decimal": "."},
+    )
+
+
+def _listed(cells: Sequence[Cell] | NDArray[Any]) -> list[Cell]:
+    listed: list[Cell] = cells.tolist() if isinstance(cells, np.ndarray) else list(cells)
+    return listed

@@ -1,0 +1,82 @@
+"""What a preview shows of a file before anything is decided: headings, first cells, the words of its columns."""
+
+from typing import Any
+
+from service.ingest import hdf5, mat, parquet
+from service.ingest.formats import HDF5, MAT, PARQUET, XLSX
+from service.ingest.layout.envelope import is_wrapped, unwrapped
+from service.ingest.layout.grids import Cell, Grid, grid_of, is_nothing, number_of
+from service.ingest.layout.mapping import layout_of
+from service.ingest.layout.reading import word_text
+from service.ingest.limits import refusal
+from service.ingest.xlsx import sheet_names
+
+SHOWN = 5
+"""First cells of a column."""
+MOST_COLUMNS = 300
+"""That a mapping is made for; a table with more is another matter."""
+MOST_WORDS = 12
+"""Different texts of a column that says what each row is."""
+LONGEST_CELL = 60
+"""Characters of a cell that are shown."""
+MOSTLY = 0.5
+"""Share of numbers from which a column is one of numbers."""
+
+
+def is_session(content: bytes, filename: str) -> bool:
+    """Whether a file says itself that it is imu-session/1, rightly or wrongly, or cannot be a table at all."""
+    if is_wrapped(content):
+        return True
+    if content.startswith(XLSX):
+        return {"session", "readings"} <= set(sheet_names(content, filename))
+    if content.startswith(PARQUET):
+        return parquet.has_metadata(content)
+    if content.startswith(HDF5):
+        return hdf5.has_metadata(content, filename)
+    if content.startswith(MAT):
+        return mat.VARIABLE in mat.variables(content, filename, most_rows=1)
+    start = content[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
+    return not start or start[:1] in b"{[" or (start[:1] == b"#" and start.lstrip(b"# \t")[:1] == b"{")
+
+
+def look(content: bytes, filename: str) -> object:
+    """The first look at a table, or at one with what is said of it already."""
+    table, stated = content, dict[str, Any]()
+    if is_wrapped(content):
+        document, table = unwrapped(content, filename)
+        stated = dict(layout_of(document, filename).table)
+    if is_session(table, filename):
+        return {"session": True}
+    grid = grid_of(table, filename, stated)
+    if len(grid.headings) > MOST_COLUMNS:
+        text = f"has {len(grid.headings)} columns; a mapping takes at most {MOST_COLUMNS}; take out what is not needed"
+        raise refusal(filename, text, "table")
+    return {
+        "session": False,
+        "kind": grid.kind,
+        "taken": dict(grid.taken),
+        "sheets": list(grid.sheets),
+        "rows": grid.rows,
+        "columns": [_column(heading, cells, grid) for heading, cells in zip(grid.headings, grid.columns, strict=True)],
+    }
+
+
+def _column(heading: str, cells: Any, grid: Grid) -> dict[str, Any]:
+    decimal = str(grid.taken.get("decimal", "."))
+    said = [cell for cell in cells if not is_nothing(cell)]
+    numbers = sum(number_of(cell, decimal) is not None for cell in said)
+    words = list(dict.fromkeys(word_text(cell)[:LONGEST_CELL] for cell in said[:10_000]))
+    first = next((j for j, cell in enumerate(cells) if not is_nothing(cell)), len(cells))
+    return {
+        "heading": heading,
+        "cells": [_shown(cell) for cell in cells[:SHOWN]],
+        "numeric": bool(said) and numbers >= MOSTLY * len(said),
+        "empty": not said,
+        "words": words if len(words) <= MOST_WORDS else [],
+        "holes": first == 0 and len(said) < len(cells),
+    }
+
+
+def _shown(cell: Cell) -> str:
+    text = f"{cell:.10g}" if isinstance(cell, float) else "" if cell is None else str(cell)
+    return text if len(text) <= LONGEST_CELL else text[:LONGEST_CELL] + "…"

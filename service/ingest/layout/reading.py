@@ -1,0 +1,157 @@
+"""Cells under a mapping → imu-session/1, in the units of a session; where each cell stands in the file is kept."""
+
+import re
+from collections.abc import Callable, Sequence
+from datetime import datetime
+
+import numpy as np
+
+from estimator.errors import FormatError, Problem
+from estimator.reading.problems import Where, shown
+from service.ingest.layout.grids import Cell, Grid, grid_of, is_nothing, number_of
+from service.ingest.layout.mapping import ColumnMapping, Layout
+from service.ingest.layout.units import conversion, target_label
+
+FORMAT = "imu-session/1"
+WORDS = ("run", "position")
+"""Columns that hold words."""
+CLOCK = re.compile(r"^(?:(?P<h>\d{1,2}):)?(?P<m>\d{1,2}):(?P<s>\d{1,2}(?:[.,]\d+)?)$")
+"""A time of day, or minutes and seconds."""
+DAY = 86_400.0
+"""s."""
+
+
+def document_of(content: bytes, filename: str, layout: Layout) -> tuple[dict[str, object], Where]:
+    """The session's document, and which cell of the file a field and row stand in."""
+    grid = grid_of(content, filename, layout.table)
+    problems = [*_other_columns(grid, layout), *_unit_problems(layout)]
+    if problems:
+        raise FormatError(problems, filename)
+    decimal = str(grid.taken.get("decimal", "."))
+    used = [(k, column) for k, column in enumerate(layout.columns) if column.meaning]
+    kept = _kept_rows([grid.columns[k] for k, _ in used])
+    table = {str(c.meaning): _read([grid.columns[k][j] for j in kept], c, layout, decimal) for k, c in used}
+    places = {str(c.meaning): k for k, c in used}
+
+    def where(field: str, row: int | None) -> str:
+        if field not in places or not kept:
+            return ""
+        heading = layout.columns[places[field]].heading
+        if row is None:
+            return f"column {shown(heading)}"
+        return grid.place(places[field], kept[min(row, len(kept)) - 1] + 1)
+
+    return {**layout.session, "format": FORMAT, "table": table}, where
+
+
+def _kept_rows(columns: Sequence[Sequence[Cell]]) -> list[int]:
+    """Rows in which any column that is read says something: a line left empty between two runs is none."""
+    rows = max(map(len, columns), default=0)
+    return [j for j in range(rows) if any(not is_nothing(cells[j]) for cells in columns)]
+
+
+def _other_columns(grid: Grid, layout: Layout) -> list[Problem]:
+    """A mapping is for the headings it names."""
+    named = [column.heading for column in layout.columns]
+    if list(grid.headings) == named:
+        return []
+    missing = [heading for heading in named if heading not in grid.headings]
+    detail = f"; {', '.join(map(shown, missing[:5]))} is not among them" if missing else ""
+    return [Problem("columns", f"are not those of the file{detail}; make the mapping anew from its preview")]
+
+
+def _unit_problems(layout: Layout) -> list[Problem]:
+    """Units that cannot be turned into those of the session."""
+    return [
+        Problem(
+            column.meaning or "",
+            f"is in {shown(column.unit)}, which cannot be turned into {wanted}; choose the unit of column "
+            f"{shown(column.heading)}",
+        )
+        for column in layout.columns
+        if column.meaning and conversion(column.unit, wanted := _wanted(column.meaning, layout) or column.unit) is None
+    ]
+
+
+def _wanted(meaning: str, layout: Layout) -> str:
+    """The unit of a session's column; of readings the sensor's, empty where it is not said yet."""
+    sensors = layout.session.get("sensors")
+    for sensor in sensors if isinstance(sensors, list | tuple) else ():
+        if isinstance(sensor, dict) and meaning in (sensor.get("name"), f"{sensor.get('name')}_se"):
+            return str(sensor.get("reading_unit") or "")
+    return target_label(meaning)
+
+
+def _read(cells: list[Cell], column: ColumnMapping, layout: Layout, decimal: str) -> object:
+    """A column of the session: words as they mean, numbers in its unit, anything else as it was written."""
+    if column.fill_down:
+        cells = _filled_down(cells)
+    if column.meaning in WORDS:
+        return [_word(cell, column) for cell in cells]
+    numbers = [None if is_nothing(cell) else number_of(cell, decimal) for cell in cells]
+    if column.meaning == "time_s" and all(number is None for number in numbers):
+        return _clock(cells)
+    whole = _in_unit(column, layout)
+    return [cell if n is None and not is_nothing(cell) else whole(n) for n, cell in zip(numbers, cells, strict=True)]
+
+
+def _in_unit(column: ColumnMapping, layout: Layout) -> Callable[[float | None], float | None]:
+    wanted = _wanted(column.meaning or "", layout)
+    times, over, offset = conversion(column.unit, wanted) or (1.0, 1.0, 0.0)
+    if column.meaning and column.meaning.endswith("_se"):
+        offset = 0.0
+    return lambda number: None if number is None else number * times / over + offset
+
+
+def _word(cell: Cell, column: ColumnMapping) -> Cell:
+    text = word_text(cell)
+    if not text:
+        return None
+    return column.words.get(text) or (cell if column.meaning == "position" else text)
+
+
+def word_text(cell: Cell) -> str:
+    """``1`` for 1.0."""
+    if isinstance(cell, float) and cell == np.floor(cell):
+        return f"{cell:.0f}"
+    return "" if cell is None else str(cell).strip()
+
+
+def _filled_down(cells: list[Cell]) -> list[Cell]:
+    found: list[Cell] = []
+    for cell in cells:
+        found.append(found[-1] if is_nothing(cell) and found else cell)
+    return found
+
+
+def _clock(cells: Sequence[Cell]) -> list[Cell]:
+    """Dates and times of day as seconds since the first; what is none stays as it is."""
+    seconds = [_seconds(cell) for cell in cells]
+    start = next((s for s in seconds if s is not None), 0.0)
+    turned: list[Cell] = []
+    days, before = 0.0, start
+    for cell, second in zip(cells, seconds, strict=True):
+        if second is None:
+            turned.append(cell)
+            continue
+        days += DAY if second < DAY and second + days < before - DAY / 2 else 0.0
+        before = second + days
+        turned.append(before - start)
+    return turned
+
+
+def _seconds(cell: Cell) -> float | None:
+    """Seconds since midnight, or since 1970 with a date."""
+    text = str(cell or "").strip()
+    if match := CLOCK.match(text):
+        return 3600 * int(match["h"] or 0) + 60 * int(match["m"]) + float(match["s"].replace(",", "."))
+    for form in ("%d.%m.%Y %H:%M:%S", "%d.%m.%Y %H:%M"):
+        try:
+            return (datetime.strptime(text, form) - datetime(1970, 1, 1)).total_seconds()
+        except ValueError:
+            continue
+    try:
+        moment = datetime.fromisoformat(text)
+    except ValueError:
+        return None
+    return (moment.replace(tzinfo=None) - datetime(1970, 1, 1)).total_seconds()

@@ -1,0 +1,55 @@
+"""The address of the page of a table of one's own layout: looked at, corrected, looked at again, confirmed."""
+
+from fastapi import APIRouter, Request, Response
+from fastapi.responses import HTMLResponse, RedirectResponse
+
+from estimator.errors import Problem
+from service.dependencies import Now, ReceptionOf
+from service.errors import RefusedError
+from service.flows.receive_mapped import receive_mapped
+from service.ingest.layout.mapping import ASKED_ANEW
+from service.pages.forms import SEE_OTHER
+from service.pages.layout import layout_page
+from service.pages.layout_form import LayoutForm, LayoutFormOf, corrected, filled_in
+from service.pages.render import render
+from service.records.received import held
+from service.storage import Storage
+from service.views.layout_preview import Preview, facts_of, preview
+from service.views.pattern import type_names
+
+NO_FILE = "The table did not come with the form: choose it again."
+
+router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
+
+
+@router.post("/upload/layout")
+def show_layout(request: Request, form: LayoutFormOf, reception: ReceptionOf, now: Now) -> Response:
+    """The page, with what was corrected; or, confirmed and without a fault, the stored session."""
+    if not form.file.content:
+        raise RefusedError(NO_FILE, (Problem("file", "is missing from the form"),))
+    found = _found(reception.storage, form)
+    with reception.storage.database.reading() as store:
+        types = type_names(store)
+    page = layout_page(form.file, found, form, types)
+    if form.fields.get("do") == "store" and page.can_store and found.mapping == form.mapping:
+        try:
+            receipt = receive_mapped(reception, form.file, found.mapping, now)
+        except RefusedError as fault:
+            failed = Preview(**{**vars(found), "problems": fault.problems, "session": None})
+            return render(request, "layout.html", layout_page(form.file, failed, form, types), fault.status)
+        return RedirectResponse(f"/sessions/{receipt.id}", SEE_OTHER)
+    return render(request, "layout.html", page)
+
+
+def _found(storage: Storage, form: LayoutForm) -> Preview:
+    """The preview under the corrected mapping, with the facts of another unit or type where one was chosen."""
+    mapping = corrected(form)
+    if mapping is not None and (form.is_other_type or form.is_other_unit):
+        facts, session = facts_of(storage, form.unit, form.like), mapping["session"]
+        own = {key: session[key] for key in ASKED_ANEW if key in session}
+        if form.is_other_type and facts:
+            mapping = {**mapping, "session": {**facts, **own}}
+        else:
+            mapping = {**mapping, "session": filled_in(session, facts)}
+    name, content = form.file.filename, held(form.file.content)
+    return preview(storage, content, name, mapping=mapping, unit=form.unit, unit_type=form.like)

@@ -1,0 +1,136 @@
+"""The page of a table of one's own layout: understood, corrected, looked at, and stored only as it was shown."""
+
+import re
+from html import unescape
+from typing import Any
+
+import httpx
+
+from tests.service import tables
+
+TABLE = tables.text_table(tables.own_document()).encode("cp1251")
+ADDRESS = "/upload/layout"
+SAID = {
+    "fact.unit": "MY-1", "fact.unit_type": "MY", "fact.day": "2026-03-01", "fact.clock": "09:00", "fact.offset": "Z",
+    "fact.stand.id": "S1", "fact.stand.alpha_deg": "40", "fact.site.latitude_deg": "55,81", "arrangement": "cone",
+    **{f"sensor.A{k}.{key}": value for k in (1, 2, 3) for key, value in (("scale", "0,12"), ("unit", "V"))},
+}  # fmt: skip
+"""What somebody writes into the form."""
+
+
+def shown(page: str) -> dict[str, str]:
+    """The fields of a page as a browser sends them."""
+    fields = {}
+    for tag in re.findall(r"<input [^>]*>", page):
+        name, value = (re.search(rf' {key}="([^"]*)"', tag) for key in ("name", "value"))
+        if name and 'type="file"' not in tag:
+            fields[name[1]] = unescape(value[1]) if value else ""
+    for name, options in re.findall(r'<select name="([^"]*)"[^>]*>(.*?)</select>', page, re.DOTALL):
+        chosen = re.search(r'<option(?: value="([^"]*)")? selected>([^<]*)', options)
+        first = re.search(r'<option(?: value="([^"]*)")?>([^<]*)', options)
+        found = chosen or first
+        fields[name] = unescape(found[1] if found and found[1] is not None else found[2] if found else "")
+    return fields
+
+
+def sent(client: httpx.Client, fields: dict[str, str], **changes: str) -> httpx.Response:
+    whole = {name: (None, value) for name, value in {**fields, **changes}.items()}
+    return client.post(ADDRESS, files=whole, headers={"Accept": "text/html"})
+
+
+def first_page(client: httpx.Client, content: bytes = TABLE) -> str:
+    return client.post(ADDRESS, files={"file": ("own.csv", content)}).text
+
+
+def looked_at(client: httpx.Client, **changes: Any) -> dict[str, str]:
+    """The form after everything was said and looked at."""
+    page = sent(client, shown(first_page(client)), **{**SAID, **changes, "do": "look"})
+    assert page.status_code == 200
+    return shown(page.text)
+
+
+def test_an_upload_of_a_table_leads_to_its_page(client: httpx.Client) -> None:
+    answer = client.post("/upload", files={"files": ("own.csv", TABLE)})
+    assert answer.status_code == 200
+    assert f'action="{ADDRESS}"' in answer.text
+    assert client.get("/api/v1/sessions").json()["sessions"] == []
+
+
+def test_the_page_chooses_what_was_understood(client: httpx.Client) -> None:
+    fields = shown(first_page(client))
+    assert [fields[f"as.{k}"] for k in range(6)] == ["run", "beta_deg", "temperature_c", "A1", "A2", "A3"]
+    assert [fields[f"unit.{k}"] for k in range(1, 6)] == ["deg", "°C", "mV", "mV", "mV"]
+    assert [fields[f"word.0.{k}"] for k in range(2)] == ["direct", "flipped"]
+
+
+def test_what_was_shown_is_stored(client: httpx.Client) -> None:
+    answer = sent(client, looked_at(client), do="store")
+    assert answer.status_code == 303, answer.text
+    session = client.get(answer.headers["location"].replace("/sessions", "/api/v1/sessions")).json()
+    assert (session["unit"], session["started_at"][:19]) == ("MY-1", "2026-03-01T09:00:00")
+
+
+def test_what_was_changed_since_is_shown_first(client: httpx.Client) -> None:
+    answer = sent(client, looked_at(client), **{"fact.stand.alpha_deg": "41", "do": "store"})
+    assert answer.status_code == 200
+    assert "Something was changed" in answer.text
+    assert client.get("/api/v1/sessions").json()["sessions"] == []
+
+
+def test_what_is_missing_cannot_be_stored(client: httpx.Client) -> None:
+    page = sent(client, shown(first_page(client)), do="store").text
+    assert "Something is still missing" in page
+    assert 'value="store"' not in page
+
+
+def test_a_column_can_be_left_out_and_a_unit_corrected(client: httpx.Client) -> None:
+    fields = looked_at(client, **{"as.2": "", "unit.1": "rad"})
+    assert (fields["as.2"], fields["unit.1"]) == ("", "rad")
+
+
+def test_words_of_the_run_can_be_corrected(client: httpx.Client) -> None:
+    fields = looked_at(client, **{"word.0.0": "flipped", "word.0.1": "direct"})
+    assert [fields[f"word.0.{k}"] for k in range(2)] == ["flipped", "direct"]
+
+
+def test_how_the_file_is_taken_apart_can_be_chosen(client: httpx.Client) -> None:
+    fields = shown(first_page(client))
+    page = sent(client, fields, **{"table.encoding": "koi8-r", "do": "look"}).text
+    assert shown(page)["table.encoding"] == "koi8-r"
+    assert "Угол" not in page
+
+
+def test_facts_of_a_known_type_are_taken(client: httpx.Client) -> None:
+    client.post("/api/v1/sessions", json=tables.own_document())
+    name = client.get("/api/v1/unit-types").json()["unit_types"][0]["name"]
+    fields = shown(sent(client, shown(first_page(client)), like=name, do="look").text)
+    assert (fields["fact.stand.id"], fields["sensor.A2.scale"], fields["fact.unit"]) == ("ODG-1", "0.12", "")
+
+
+def remarked(count: int) -> bytes:
+    """The table with so many columns of long remarks: 2.5 MB each."""
+    remarks = f";{'x' * 100_000}" * count
+    return "\r\n".join(f"{line}{remarks}" for line in TABLE.decode("cp1251").splitlines()).encode("cp1251")
+
+
+def test_a_table_of_megabytes_comes_back_with_the_page(client: httpx.Client) -> None:
+    fields = shown(first_page(client, remarked(1)))
+    assert sent(client, fields, **SAID, do="look").status_code == 200
+
+
+def test_a_file_too_large_for_the_page_is_chosen_again(client: httpx.Client) -> None:
+    page = first_page(client, remarked(2))
+    assert 'type="file"' in page
+    assert sent(client, shown(page), do="look").status_code == 422
+
+
+def test_a_damaged_form_is_said(client: httpx.Client) -> None:
+    fields = shown(first_page(client))
+    assert sent(client, fields, mapping="[").status_code == 422
+    assert sent(client, fields, content="%%%").status_code == 422
+
+
+def test_headings_are_text_on_the_page(client: httpx.Client) -> None:
+    page = first_page(client, b'<script>alert(1)</script>;"A1, mV"\n1;2\n3;4\n')
+    assert "<script>alert" not in page
+    assert "&lt;script&gt;alert" in page
