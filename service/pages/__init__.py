@@ -38,8 +38,8 @@ PARTS = (
     event_routes,
     record_routes,
     paper_routes,
-    plan_routes,
     oidc_routes,
+    plan_routes,
     assets,
 )
 """Every file of addresses."""
