@@ -101,6 +101,8 @@ ENGINEER = f"""
 POST /sessions/{{id}}/diagnosis/accept
 POST /sessions/{{id}}/diagnosis/withdraw/{{revision}}
 POST /units/{{serial:path}}/recalibrate
+POST /flags/acknowledge
+POST /flags/resolve
 POST /flags/{{id}}/acknowledge
 POST /flags/{{id}}/resolve
 POST /sessions/{{id}}/withdraw

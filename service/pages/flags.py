@@ -1,8 +1,10 @@
 """Flags as people read them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from service.pages.flags_view import STATES as CHOICES
+from service.pages.flags_view import FlagsView
 from service.records.flag import Flag, FlagState, Matter, Notice, NoticeKind
 from service.words.conditions import FIT, NOT_JUDGED, UNDECIDED, UNFIT, Condition
 
@@ -61,11 +63,16 @@ class FlagsPage:
     cards: tuple[FlagCard, ...]
     more: bool
     """Whether there are more than the page lists."""
+    view: FlagsView
+    matters: Mapping[str, str]
+    states: Mapping[str, str]
+    """What the list can be narrowed to, in words."""
 
 
-def flags_page(flags: Sequence[Flag], most: int) -> FlagsPage:
+def flags_page(flags: Sequence[Flag], view: FlagsView, most: int) -> FlagsPage:
     """The page of the fleet's open flags."""
-    return FlagsPage(flag_cards(flags[:most]), len(flags) > most)
+    matters = {matter.value: word for matter, word in MATTERS.items()}
+    return FlagsPage(flag_cards(flags[:most]), len(flags) > most, view, matters, CHOICES)
 
 
 def flag_cards(flags: Sequence[Flag]) -> tuple[FlagCard, ...]:

@@ -1,11 +1,11 @@
 """Flags: one row a flag, as its notices left it."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from datetime import datetime
 from itertools import groupby
 
-from sqlalchemy import Row, select, update
+from sqlalchemy import ColumnElement, Row, select, update
 
 from service.errors import NotFoundError
 from service.records.flag import Concern, Flag, FlagState, Matter, Notice
@@ -22,6 +22,23 @@ class FlagQuery:
     state: FlagState | None = None
     offset: int = 0
     limit: int = 100
+    matter: Matter | None = None
+    text: str | None = None
+    """Part of the unit's serial number, small and capital letters alike."""
+    unresolved: bool = False
+
+
+def _wanted(wanted: FlagQuery) -> Iterator[ColumnElement[bool]]:
+    if wanted.unit is not None:
+        yield UnitRow.serial == wanted.unit
+    if wanted.text:
+        yield UnitRow.serial.icontains(wanted.text, autoescape=True)
+    if wanted.state is not None:
+        yield FlagRow.state == wanted.state
+    if wanted.matter is not None:
+        yield FlagRow.matter == wanted.matter
+    if wanted.unresolved:
+        yield FlagRow.state != FlagState.RESOLVED
 
 
 class Flags(Queries):
@@ -65,11 +82,9 @@ class Flags(Queries):
         """Flags with their lives, open ones first, newest first, in one query."""
         resolved = FlagRow.state == FlagState.RESOLVED
         chosen = select(FlagRow.id).order_by(resolved, FlagRow.id.desc())
-        if wanted.unit is not None:
-            chosen = chosen.join(UnitRow, UnitRow.id == FlagRow.unit_id).where(UnitRow.serial == wanted.unit)
-        if wanted.state is not None:
-            chosen = chosen.where(FlagRow.state == wanted.state)
-        ids = chosen.offset(wanted.offset).limit(wanted.limit).subquery()
+        if wanted.unit is not None or wanted.text:
+            chosen = chosen.join(UnitRow, UnitRow.id == FlagRow.unit_id)
+        ids = chosen.where(*_wanted(wanted)).offset(wanted.offset).limit(wanted.limit).subquery()
         query = (
             select(FlagRow, UnitRow.serial, NoticeRow)
             .join(ids, ids.c.id == FlagRow.id)

@@ -1,0 +1,59 @@
+"""Flags narrowed by the address, and many of them handled at once."""
+
+import httpx
+import pytest
+
+from service.pages.flags_view import FlagsAsked, FlagsView
+from tests.service.sessions import session_bytes
+
+SAID = {"by": "K. Ito", "why": "all seen"}
+
+
+@pytest.fixture
+def flagged(client: httpx.Client) -> list[int]:
+    """Three units, each with a flag: out of tolerance."""
+    for unit in ("BA-1", "BA-2", "BB-1"):
+        for month, moved in ((1, 0.0), (4, 200.0)):
+            client.post("/api/v1/sessions", content=session_bytes(seed=month, month=month, unit=unit, a3_moved=moved))
+    return sorted(flag["id"] for flag in client.get("/api/v1/flags").json()["flags"])
+
+
+def states(client: httpx.Client) -> list[str]:
+    """Of all flags, the oldest first."""
+    found = client.get("/api/v1/flags").json()["flags"]
+    return [flag["state"] for flag in sorted(found, key=lambda flag: int(flag["id"]))]
+
+
+def test_the_list_is_narrowed_by_unit_matter_and_state(client: httpx.Client, flagged: list[int]) -> None:
+    def shown(query: str) -> int:
+        return client.get(f"/flags{query}").text.count('type="checkbox"')
+
+    assert len(flagged) == 3
+    assert [shown(q) for q in ("", "?q=ba", "?matter=drift", "?state=acknowledged", "?matter=odd")] == [3, 2, 0, 0, 3]
+    assert "No open flag matches" in client.get("/flags?matter=drift").text
+
+
+def test_ticked_flags_are_handled_at_once_and_the_view_stays(client: httpx.Client, flagged: list[int]) -> None:
+    answer = client.post("/flags/acknowledge?q=BA", data=SAID | {"flag": flagged[:2]})
+    assert (answer.status_code, answer.headers["location"]) == (303, "/flags?q=BA")
+    assert states(client) == ["acknowledged", "acknowledged", "raised"]
+    client.post("/flags/resolve", data=SAID | {"flag": flagged})
+    assert states(client) == ["resolved"] * 3
+
+
+def test_one_that_somebody_handled_meanwhile_is_left_alone(client: httpx.Client, flagged: list[int]) -> None:
+    for _ in range(2):
+        assert client.post("/flags/acknowledge", data=SAID | {"flag": flagged[:1]}).status_code == 303
+    (one,) = [f for f in client.get("/api/v1/flags").json()["flags"] if f["id"] == flagged[0]]
+    assert [change["kind"] for change in one["changes"]] == ["flag.raised", "flag.acknowledged"]
+
+
+def test_a_flag_that_is_not_there_changes_none(client: httpx.Client, flagged: list[int]) -> None:
+    assert client.post("/flags/resolve", data=SAID | {"flag": [*flagged, 9999]}).status_code == 404
+    assert client.post("/flags/resolve", data=SAID).status_code == 422
+    assert states(client) == ["raised"] * 3
+
+
+def test_a_view_comes_back_from_its_own_address() -> None:
+    view = FlagsView.of(FlagsAsked(q=" BA ", matter="stand", state="raised"))
+    assert view.url("/flags") == "/flags?q=BA&matter=stand&state=raised"
