@@ -91,6 +91,8 @@ class Helper:
         return self._answer(Job.OUTLOOK, serial, now, still)
 
     def _answer(self, job: Job, of: str, now: datetime, still: Still) -> Failure | None:
+        if not still():
+            raise StoppingError(f"The {job} of {of} was not begun.")
         self.start()
         assert self._pipe is not None
         try:

@@ -13,7 +13,7 @@ PAGE = (Path(__file__).parents[2] / "docs" / "session-file.md").read_text(encodi
 
 
 def example(language):
-    (block,) = re.findall(rf"```{language}\n(.*?)```", PAGE, flags=re.DOTALL)
+    block, *_ = re.findall(rf"```{language}\n(.*?)```", PAGE, flags=re.DOTALL)
     return block.encode()
 
 

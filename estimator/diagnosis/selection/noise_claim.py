@@ -50,8 +50,8 @@ LINEAR = 1e-4
 SMALLEST = 1e-8
 """Variance over the stated one below which none is told apart: readings simulated without noise leave rounding."""
 
-ENOUGH = 10
-"""Degrees of freedom of a sensor from which on its own readings tell its factor to a quarter."""
+ENOUGH = 20
+"""Degrees of freedom of a sensor from which on its own readings tell its factor to a sixth."""
 
 FEWEST = 6
 """Degrees of freedom of repeats, or of a kind's residuals, from which on they tell a scale."""

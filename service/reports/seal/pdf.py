@@ -1,6 +1,7 @@
 """A PDF with a seal: PAdES B-B (ETSI EN 319 142-1), certified so that no later change is allowed."""
 
 import io
+from concurrent.futures import ThreadPoolExecutor
 
 from asn1crypto.keys import PrivateKeyInfo
 from asn1crypto.x509 import Certificate
@@ -28,7 +29,8 @@ def sealed_pdf(pair: KeyPair, content: bytes) -> bytes:
         docmdp_permissions=MDPPerm.NO_CHANGES,
     )
     out = io.BytesIO()
-    sign_pdf(IncrementalPdfFileWriter(io.BytesIO(content)), meta, _signer(pair), output=out)
+    with ThreadPoolExecutor(1) as apart:  # the library runs a loop of its own, which no thread that has one may
+        apart.submit(sign_pdf, IncrementalPdfFileWriter(io.BytesIO(content)), meta, _signer(pair), output=out).result()
     return out.getvalue()
 
 

@@ -19,7 +19,7 @@ from service.background.diagnose_waiting import (
     ask_for_missing,
     diagnose_next,
 )
-from service.background.helper import DiedError, Helper, Still, StoppingError
+from service.background.helper import DiedError, Helper, Still
 from service.background.read_diagnosis import Reader
 from service.flows.receive import upload
 from service.metrics import Metrics
@@ -143,8 +143,6 @@ def test_what_no_process_outlives_is_given_up_and_says_so(own: Diagnosing, helpe
 def test_a_service_that_stops_gives_back_what_it_is_at(own: Diagnosing, helper: Helper) -> None:
     id, stop = stored(own.storage), Event()
     stop.set()
-    with pytest.raises(StoppingError):
-        helper.diagnose(id, NOW, lambda: not stop.is_set())
     diagnose_next(own, helper, stop)
     assert waiting(own.storage, NOW) == (id,)
 
