@@ -41,16 +41,37 @@ A parameter vector holds five elements a sensor, sensor after sensor: scale, bia
 last two are rotations of the axis along the two tangent vectors that the result states.
 """
 
-from estimator.alignment import AlignmentResult, RateTableResult, align, rate_table
-from estimator.calibration import calibrate_many
-from estimator.diagnosis import Diagnosis, calibrate_extended, diagnose
-from estimator.errors import FormatError, Problem, ScheduleError, SessionError
-from estimator.groups import GroupDiagnosis, SessionStatistics, diagnose_group, diagnose_statistics, statistics_of
-from estimator.parity import ParityAccumulator, ParityResult, parity_check
-from estimator.programmes import calibrate
-from estimator.reading import read_session
-from estimator.results import Calibration
-from estimator.session import CalibrationSession, Sensor, Site, Stand, StandErrors
+from typing import TYPE_CHECKING
+
+from estimator.on_demand import names_on_demand
+
+if TYPE_CHECKING:
+    from estimator.alignment import AlignmentResult, RateTableResult, align, rate_table
+    from estimator.calibration import calibrate_many
+    from estimator.diagnosis import Diagnosis, calibrate_extended, diagnose
+    from estimator.errors import FormatError, Problem, ScheduleError, SessionError
+    from estimator.groups import GroupDiagnosis, SessionStatistics, diagnose_group, diagnose_statistics, statistics_of
+    from estimator.parity import ParityAccumulator, ParityResult, parity_check
+    from estimator.programmes import calibrate
+    from estimator.reading import read_session
+    from estimator.results import Calibration
+    from estimator.session import CalibrationSession, Sensor, Site, Stand, StandErrors
+else:
+    __getattr__ = names_on_demand(
+        __name__,
+        {
+            "alignment": "AlignmentResult RateTableResult align rate_table",
+            "calibration": "calibrate_many",
+            "diagnosis": "Diagnosis calibrate_extended diagnose",
+            "errors": "FormatError Problem ScheduleError SessionError",
+            "groups": "GroupDiagnosis SessionStatistics diagnose_group diagnose_statistics statistics_of",
+            "parity": "ParityAccumulator ParityResult parity_check",
+            "programmes": "calibrate",
+            "reading": "read_session",
+            "results": "Calibration",
+            "session": "CalibrationSession Sensor Site Stand StandErrors",
+        },
+    )
 
 __all__ = [
     "AlignmentResult",

@@ -6,11 +6,17 @@ Frames and signs: see the package page.
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from estimator.rotations import turn_of
+from estimator.on_demand import function_on_demand
 from estimator.session import ACCELEROMETER, Array, CalibrationSession, Site, Stand, StandErrors
+
+if TYPE_CHECKING:
+    from estimator.rotations import turn_of
+else:
+    turn_of = function_on_demand("estimator.rotations", "turn_of")
 
 EARTH_RATE = 7.292115e-5
 """rad/s, against the stars; WGS 84 (NIMA TR8350.2)."""

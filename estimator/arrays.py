@@ -1,9 +1,16 @@
 """Small array helpers that several rooms share."""
 
-import numpy as np
-import scipy.linalg
+from typing import TYPE_CHECKING
 
+import numpy as np
+
+from estimator.on_demand import function_on_demand
 from estimator.session import Array
+
+if TYPE_CHECKING:
+    from scipy.linalg import eigh as patient_eigh
+else:
+    patient_eigh = function_on_demand("scipy.linalg", "eigh")
 
 
 def unit(vector: Array) -> Array:
@@ -51,7 +58,7 @@ def eigh(matrix: Array) -> tuple[Array, Array]:
         values, vectors = np.linalg.eigh(matrix)
     except np.linalg.LinAlgError:
         n = matrix.shape[-1]
-        each = [scipy.linalg.eigh(one, driver="ev") for one in matrix.reshape(-1, n, n)]
+        each = [patient_eigh(one, driver="ev") for one in matrix.reshape(-1, n, n)]
         values = np.stack([v for v, _ in each]).reshape(matrix.shape[:-1])
         vectors = np.stack([w for _, w in each]).reshape(matrix.shape)
     return values, vectors

@@ -1,10 +1,20 @@
 """The one door to every programme: a session, whatever it is, to the calibration that its programme gives."""
 
-from estimator.alignment import align, rate_table
-from estimator.alignment.as_calibration import alignment_calibration, rate_table_calibration
+from typing import TYPE_CHECKING
+
 from estimator.calibration import calibrate as calibrate_block
+from estimator.on_demand import function_on_demand
 from estimator.results import Calibration
 from estimator.session import RATE_TABLE, ROTATION_ALIGNMENT, CalibrationSession
+
+if TYPE_CHECKING:
+    from estimator.alignment import align, rate_table
+    from estimator.alignment.as_calibration import alignment_calibration, rate_table_calibration
+else:
+    align = function_on_demand("estimator.alignment", "align")
+    rate_table = function_on_demand("estimator.alignment", "rate_table")
+    alignment_calibration = function_on_demand("estimator.alignment.as_calibration", "alignment_calibration")
+    rate_table_calibration = function_on_demand("estimator.alignment.as_calibration", "rate_table_calibration")
 
 
 def calibrate(session: CalibrationSession, *, quadratic: bool | None = None) -> Calibration:

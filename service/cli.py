@@ -1,76 +1,63 @@
 """The command line, `imu-health`. Exit codes: 0 done, 2 unusable input, 1 anything else.
 
-A command is imported when it is asked for, so that `calibrate` waits for neither a web server nor a database.
+A command is imported when it is asked for, so that `calibrate` waits for neither a web server nor a database. The list
+of commands is plain text: what draws boxes takes longer to import than all else that the list needs.
 """
 
 import sys
+from collections.abc import Iterator, Mapping
+from functools import cache
 from importlib import import_module
 from typing import Any
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperCommand, TyperGroup
 from typer.exceptions import TyperException
 
-from service.commands.console import FAILED, say
+from service.commands.catalogue import CATALOGUE
+from service.commands.exits import FAILED, say
 from service.errors import ServiceError
 
-COMMANDS = {
-    "serve": "serve.serve",
-    "calibrate": "calibrate.calibrate_files",
-    "diagnose": "diagnose.diagnose_files",
-    "template": "template.write_template",
-    "upload": "upload.upload_files",
-    "convert": "convert.convert_files",
-    "fleet": "report.fleet",
-    "report": "report.report",
-    "usable": "usable.usable",
-    "flags": "flags.flags",
-    "service": "events.record",
-    "session": "records.session",
-    "withdraw-service": "records.withdraw_service",
-    "note": "events.write_note",
-    "certificate": "certificate.certificate",
-    "sign": "sign.sign",
-    "seal": "sign.seal",
-    "customer": "papers.customer",
-    "stand-certificate": "papers.stand_certificate",
-    "correction": "certificate.correction",
-    "simulate": "simulate.simulate_files",
-    "plan": "plan.plan_session",
-    "parity": "parity.parity",
-    "recalibrate": "recalibrate.recalibrate_units",
-    "user": "accounts.user",
-    "token": "accounts.token",
-    "audit": "accounts.audit",
-    "db": "database.database",
-    "backup": "backup.backup",
-    "restore": "backup.restore_backup",
-}
-"""Every command, and where it is below `service.commands`: a function, or commands of its own."""
+
+class OnDemand(Mapping[str, Any]):
+    """The commands by name, each imported when it is looked up; a name that is none costs no import."""
+
+    def __getitem__(self, name: str) -> Any:
+        return _command(name)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(CATALOGUE)
+
+    def __len__(self) -> int:
+        return len(CATALOGUE)
 
 
 class Commands(TyperGroup):
-    """The commands by name, each imported when it is wanted."""
+    """The commands as the catalogue has them: they are listed without being imported."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self.commands: Any = OnDemand()
 
     def list_commands(self, ctx: Any) -> list[str]:
         """All names, in the order of the help."""
-        return list(COMMANDS)
+        return list(CATALOGUE)
 
-    def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """One command; None when there is none of that name."""
-        if cmd_name in COMMANDS and cmd_name not in self.commands:
-            self.commands[cmd_name] = _command(cmd_name)
-        return self.commands.get(cmd_name)
+    def shell_complete(self, ctx: Any, incomplete: str) -> Any:
+        """What a shell offers for the start of a name: by a group of commands that only have a name and a line."""
+        shown = [TyperCommand(name, help=entry.says) for name, entry in CATALOGUE.items()]
+        listed = TyperGroup(name=self.name, commands=shown, params=self.params)
+        return listed.shell_complete(typer.Context(listed), incomplete)
 
-    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-        """A name that is none is answered with the ones that are like it, so all must be known."""
-        if args[0] not in COMMANDS:
-            self.commands.update({name: _command(name) for name in COMMANDS})
-        return super().resolve_command(ctx, args)
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Every name with what its command does; a mark of code is for where it can be shown."""
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, entry.says.replace("`", "")) for name, entry in CATALOGUE.items()])
 
 
+@cache
 def _command(name: str) -> Any:
-    module, _, member = COMMANDS[name].partition(".")
+    module, _, member = CATALOGUE[name].home.partition(".")
     found = getattr(import_module(f"service.commands.{module}"), member)
     if isinstance(found, typer.Typer):
         return typer.main.get_command(found)
@@ -83,9 +70,8 @@ app = typer.Typer(
     name="imu-health",
     cls=Commands,
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
-    rich_markup_mode="markdown",
+    rich_markup_mode=None,
 )
 
 
@@ -106,3 +92,7 @@ def main() -> None:
         say(f"imu-health: {fault}" + (f" ({cause})" if cause else ""))
         sys.exit(FAILED)
     sys.exit(code if isinstance(code, int) else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,12 +1,21 @@
 """The one door to every calibrator."""
 
+from typing import TYPE_CHECKING
+
 from estimator.calibration.cut_off import require_whole_range
-from estimator.calibration.free import calibrate_free, residual_per_freedom
 from estimator.calibration.stand import calibrate_stand
 from estimator.errors import Problem, ScheduleError
+from estimator.on_demand import function_on_demand
 from estimator.results import Calibration
 from estimator.session import CALIBRATIONS, IN_SERVICE, TWO_AXIS_STAND, CalibrationSession
-from estimator.static import average
+
+if TYPE_CHECKING:
+    from estimator.calibration.free import calibrate_free, residual_per_freedom
+    from estimator.static import average
+else:
+    average = function_on_demand("estimator.static", "average")
+    calibrate_free = function_on_demand("estimator.calibration.free", "calibrate_free")
+    residual_per_freedom = function_on_demand("estimator.calibration.free", "residual_per_freedom")
 
 
 def calibrate(session: CalibrationSession, *, quadratic: bool | None = None) -> Calibration:

@@ -27,7 +27,20 @@ Source: parity space for redundant inertial sensors, Potter and Suman (1977); ge
 and Harrison (1979).
 """
 
-from estimator.parity.check import ParityAccumulator, parity_check
-from estimator.parity.results import ParityResult
+from typing import TYPE_CHECKING
+
+from estimator.on_demand import names_on_demand
+
+if TYPE_CHECKING:
+    from estimator.parity.check import ParityAccumulator, parity_check
+    from estimator.parity.results import ParityResult
+else:
+    __getattr__ = names_on_demand(
+        __name__,
+        {
+            "check": "ParityAccumulator parity_check",
+            "results": "ParityResult",
+        },
+    )
 
 __all__ = ["ParityAccumulator", "ParityResult", "parity_check"]

@@ -9,7 +9,8 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
-from service.commands.console import FAILED, say, screen
+from service.commands.console import screen
+from service.commands.exits import FAILED, say
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.errors import ConflictError
 from service.flows.identity.accounts import AccountChange, add_account, change_account

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from service.commands.console import FAILED, say
+from service.commands.exits import FAILED, say
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.records.identity import COMMAND_LINE as WHO
 from service.storage import Database, Files

@@ -1,4 +1,4 @@
-"""What every command shares: where it writes, its exit codes, and one bad file not stopping the others."""
+"""What commands share: options, where they write, and one bad file not stopping the others."""
 
 import json
 import sys
@@ -12,12 +12,8 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from estimator.errors import Problem, SessionError
+from service.commands.exits import UNUSABLE, say
 from service.errors import RefusedError
-
-FAILED = 1
-"""Exit code where what was asked for could not be done."""
-UNUSABLE = 2
-"""Exit code where a file cannot be used."""
 
 T = TypeVar("T")
 
@@ -34,11 +30,6 @@ DEFAULT_SERVER = "http://127.0.0.1:8000"
 def screen() -> Console:
     """Standard output for people; wide enough for a table when it is not a terminal."""
     return Console(width=None if sys.stdout.isatty() else WIDE)
-
-
-def say(line: str) -> None:
-    """One line on standard error."""
-    typer.echo(" ".join(line.split()), err=True)
 
 
 def print_json(document: Any) -> None:

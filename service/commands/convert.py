@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from estimator.errors import SessionError
-from service.commands.console import UNUSABLE, say
+from service.commands.exits import UNUSABLE, say
 from service.ingest.convert import FORMATS, convert
 
 FORMAT_HELP = "\n\n".join(f"* `{f.name}`: {f.description} Files: {f.files}" for f in FORMATS)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from service.commands.console import FAILED, say
+from service.commands.exits import FAILED, say
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.settings import Settings
 from service.storage import Files

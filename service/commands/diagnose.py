@@ -10,8 +10,9 @@ from estimator import CalibrationSession, diagnose
 from estimator.diagnosis import Diagnosis
 from estimator.errors import SessionError
 from estimator.session import DIAGNOSED
-from service.commands.console import UNUSABLE, AsJson, Files, for_each, print_json, problem_line, say, screen
+from service.commands.console import AsJson, Files, for_each, print_json, problem_line, screen
 from service.commands.diagnosis_tables import diagnosis_view
+from service.commands.exits import UNUSABLE, say
 from service.ingest import read_file
 from service.storage.diagnosis_document import diagnosis_to_dict, inapplicable_to_dict
 

@@ -12,7 +12,8 @@ from estimator import calibrate
 from estimator.errors import SessionError
 from estimator.parity import ParityAccumulator, ParityResult
 from estimator.parity.results import Sight
-from service.commands.console import UNUSABLE, AsJson, print_json, problem_line, say, screen
+from service.commands.console import AsJson, print_json, problem_line, screen
+from service.commands.exits import UNUSABLE, say
 from service.ingest import read_upload
 from service.ingest.stream import open_recording
 from service.measures import COVERAGE, in_words

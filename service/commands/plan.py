@@ -15,7 +15,8 @@ from estimator.errors import Problem, SessionError
 from estimator.planning import OrientationRank, Plan, plan, proposed_orientations, rank_of_orientations
 from estimator.planning.expected import head_kind, input_noise
 from estimator.session import ARBITRARY_ORIENTATIONS, Array, CalibrationSession
-from service.commands.console import UNUSABLE, AsJson, print_json, problem_line, say, screen
+from service.commands.console import AsJson, print_json, problem_line, screen
+from service.commands.exits import UNUSABLE, say
 from service.ingest import read_file
 from service.measures import number
 from service.planning.question import PlanQuestion

@@ -9,7 +9,8 @@ import typer
 from service.app import create_app, utc_now
 from service.boundary.hosts import hosts_of
 from service.boundary.server import Server, address_of
-from service.commands.console import progress, say
+from service.commands.console import progress
+from service.commands.exits import say
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.demo.fill import FILES, fill, is_wanted
 from service.flows.identity.links import make_link

@@ -11,7 +11,8 @@ from rich.markup import escape
 
 from service.commands.certificate import Session
 from service.commands.client import connected
-from service.commands.console import DEFAULT_SERVER, Server, say, screen
+from service.commands.console import DEFAULT_SERVER, Server, screen
+from service.commands.exits import say
 from service.errors import ConflictError
 from service.flows.sign_certificate import NOT_ISSUED
 from service.records.signature import Meaning

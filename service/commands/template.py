@@ -6,7 +6,8 @@ from typing import Annotated
 import typer
 
 from service.commands.client import connected
-from service.commands.console import DEFAULT_SERVER, Server, say
+from service.commands.console import DEFAULT_SERVER, Server
+from service.commands.exits import say
 
 Unit = Annotated[str, typer.Option(help="Like the last session of this serial number.")]
 UnitType = Annotated[str, typer.Option("--unit-type", help="For this stored type of units.")]

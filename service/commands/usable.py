@@ -7,7 +7,8 @@ import typer
 from rich.markup import escape
 
 from service.commands.client import connected
-from service.commands.console import DEFAULT_SERVER, FAILED, AsJson, Server, print_json, screen
+from service.commands.console import DEFAULT_SERVER, AsJson, Server, print_json, screen
+from service.commands.exits import FAILED
 
 Unit = Annotated[str, typer.Argument(metavar="UNIT", help="Serial number.")]
 

@@ -6,15 +6,22 @@ Binary formats, and text that is long enough to take time or memory, are read by
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from estimator.errors import SessionError
+from estimator.on_demand import function_on_demand
 from estimator.reading import read_session
 from estimator.reading.source import LARGEST_FILE
 from estimator.session import CalibrationSession
-from service.ingest.apart import read_apart, turn
 from service.ingest.formats import BINARY, is_binary
-from service.ingest.limits import in_force
+
+if TYPE_CHECKING:
+    from service.ingest.apart import read_apart, turn
+    from service.ingest.limits import in_force
+else:
+    read_apart = function_on_demand("service.ingest.apart", "read_apart")
+    turn = function_on_demand("service.ingest.apart", "turn")
+    in_force = function_on_demand("service.ingest.limits", "in_force")
 
 LONG = 1024 * 1024
 """Bytes of text that are read here: a tenth of a second at most, and 40 MB. A session of positions has a hundredth."""

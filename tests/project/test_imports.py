@@ -1,7 +1,10 @@
 """Imports run one way, never in a circle, never inside a function; and each library stays in its place."""
 
 import ast
+import inspect
 import sys
+from collections.abc import Iterator
+from importlib import import_module
 
 import pytest
 
@@ -26,7 +29,7 @@ SERVICE_LAYERS = (
 )
 """A part imports only from parts of earlier lines, never from one beside it."""
 ESTIMATOR_LAYERS = (
-    {"errors", "wording"},
+    {"errors", "on_demand", "wording"},
     {"session"},
     {"arrays"},
     {"rotations"},
@@ -158,6 +161,61 @@ def test_no_import_stands_inside_a_function() -> None:
         if isinstance(inner, ast.Import | ast.ImportFrom)
     ]
     assert found == []
+
+
+BY_NAME = {
+    "estimator.on_demand": "what a single use does not touch",
+    "service.cli": "the command that was asked for",
+    "service.identity.elsewhere": "a library that is not always installed",
+    "service.reports.sealing": "a library that is not always installed",
+}
+"""Modules that import by a name, and what."""
+
+
+def test_nothing_else_is_imported_by_a_name() -> None:
+    found = {
+        module.name
+        for module in ALL
+        for node in ast.walk(module.tree)
+        if (isinstance(node, ast.ImportFrom) and any(alias.name == "import_module" for alias in node.names))
+        or (isinstance(node, ast.Import) and any(alias.name == "importlib" for alias in node.names))
+        or (isinstance(node, ast.Name) and node.id == "__import__")
+    }
+    assert found == set(BY_NAME)
+
+
+@pytest.mark.parametrize("module", [m for m in ALL if "estimator.on_demand" in m.imports], ids=lambda m: m.name)
+def test_what_comes_on_demand_is_what_the_type_checker_is_shown(module: Module) -> None:
+    loaded, shown = import_module(module.name), only_shown(module)
+    assert {f"{home}.{name}" for home, name in shown.values()} == set(on_demand(module))
+    for own, (home, name) in shown.items():
+        meant = getattr(import_module(home), name)
+        got = getattr(loaded, own)
+        assert got is meant or inspect.getclosurevars(got).nonlocals["found"]() is meant
+
+
+def only_shown(module: Module) -> dict[str, tuple[str, str]]:
+    """Imports that only the type checker sees: own name → home and name there."""
+    return {
+        alias.asname or alias.name: (inner.module, alias.name)
+        for node in module.tree.body
+        if isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"
+        for inner in node.body
+        if isinstance(inner, ast.ImportFrom) and inner.module is not None
+        for alias in inner.names
+    }
+
+
+def on_demand(module: Module) -> Iterator[str]:
+    """Dotted names that a module asks for when they are used."""
+    for call in ast.walk(module.tree):
+        if not isinstance(call, ast.Call) or not isinstance(call.func, ast.Name):
+            continue
+        if call.func.id == "function_on_demand":
+            yield ".".join(map(ast.literal_eval, call.args))
+        elif call.func.id == "names_on_demand":
+            for room, names in ast.literal_eval(call.args[1]).items():
+                yield from (f"{module.name}.{room}.{name}" for name in names.split())
 
 
 def test_no_imports_go_in_a_circle() -> None:

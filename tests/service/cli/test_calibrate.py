@@ -1,7 +1,5 @@
 """`imu-health calibrate`: what it prints, and its exit codes."""
 
-import subprocess
-import sys
 from io import StringIO
 from pathlib import Path
 
@@ -97,14 +95,6 @@ def test_how_model_and_readings_agree_is_said_in_words(run: Run, good_file: Path
     )
     unstated = write(tmp_path, "unstated.json", arbitrary_orientations(se=None))
     assert "states no standard errors" in run("calibrate", unstated).out
-
-
-def test_calibrating_loads_neither_web_server_nor_database_nor_charts(good_file: Path) -> None:
-    script = "import sys, service.cli\ntry: service.cli.main()\nexcept SystemExit: print(*sys.modules)"
-    command = [sys.executable, "-c", script, "calibrate", str(good_file)]
-    loaded = subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
-    assert "estimator.calibration" in loaded
-    assert not {"fastapi", "sqlalchemy", "altair", "uvicorn"} & set(loaded)
 
 
 def test_a_command_that_is_none_is_told_what_it_may_have_been(run: Run) -> None:

@@ -1,0 +1,102 @@
+"""Every command of `imu-health`: where it is, and what the list of commands says of it.
+
+The list is shown, and a name completed, without importing a single command; `tests/service/cli/test_start_up.py` holds
+what stands here equal to what a command says of itself.
+"""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One command."""
+
+    home: str
+    """Module below `service.commands`, and in it the function, or the commands of its own."""
+    says: str
+    """The first paragraph of its help."""
+
+
+CATALOGUE = {
+    "serve": Entry("serve.serve", "Start the service: schema brought up to date, pages and API on one address."),
+    "calibrate": Entry(
+        "calibrate.calibrate_files",
+        "Calibrate session files: scale factor, bias, quadratic term and axis of every sensor, with uncertainties.",
+    ),
+    "diagnose": Entry(
+        "diagnose.diagnose_files",
+        "Say what the simulation gets wrong: the cause with its size, what else it could be, and what cannot be seen.",
+    ),
+    "template": Entry(
+        "template.write_template",
+        "Write a workbook to fill in: sensors, stand and schedule are there; `imu-health upload` takes it as it is.",
+    ),
+    "upload": Entry(
+        "upload.upload_files",
+        "Upload session files and print the verdict of each; a file that is already there is stored once.",
+    ),
+    "convert": Entry("convert.convert_files", "Turn a recording of a public data set into session files."),
+    "fleet": Entry(
+        "report.fleet",
+        "Show every unit with its condition, the worst first; --json prints how many units are in which.",
+    ),
+    "report": Entry("report.report", "Write the fleet's condition as a file for other programs."),
+    "usable": Entry(
+        "usable.usable",
+        "Say whether a unit may be used: exit code 0 for yes, 1 for no, for a unit nobody knows, and in doubt.",
+    ),
+    "flags": Entry("flags.flags", "Show what somebody must look after; acknowledge or resolve it."),
+    "service": Entry(
+        "events.record",
+        "Record a service: a break, after which the unit's next session is its new reference.",
+    ),
+    "session": Entry(
+        "records.session",
+        "Withdraw a session, accept it again, or choose it as the reference of its time.",
+    ),
+    "withdraw-service": Entry(
+        "records.withdraw_service",
+        "Take a service back: it stays on record and is no break any more.",
+    ),
+    "note": Entry("events.write_note", "Write a note on a unit's history."),
+    "certificate": Entry("certificate.certificate", "Write the certificate of a session."),
+    "sign": Entry(
+        "sign.sign",
+        "Sign the certificate of a session: reviewed, then approved by somebody else. Asks for your password.",
+    ),
+    "seal": Entry("sign.seal", "The laboratory's electronic seal."),
+    "customer": Entry("papers.customer", "Record for whom a unit is calibrated; its certificates name them."),
+    "stand-certificate": Entry(
+        "papers.stand_certificate",
+        "Record the certificate of a stand's own calibration, which every session on it hangs on.",
+    ),
+    "correction": Entry("certificate.correction", "Write the correction that firmware applies to readings, as JSON."),
+    "simulate": Entry(
+        "simulate.simulate_files",
+        "Write session files of a simulated block: six accelerometers on a two-axis stand unless told otherwise.",
+    ),
+    "plan": Entry(
+        "plan.plan_session",
+        "Plan a session: elevation, positions, expected uncertainty of every parameter, and what it cannot see.",
+    ),
+    "parity": Entry(
+        "parity.parity",
+        "Judge a recording in service by what the redundant sensors say of one another; no stand needed.",
+    ),
+    "recalibrate": Entry(
+        "recalibrate.recalibrate_units",
+        "Compute stored sessions again under the model in force; what was computed before stays readable.",
+    ),
+    "user": Entry("accounts.user", "Make and change accounts."),
+    "token": Entry("accounts.token", "Make and revoke tokens."),
+    "audit": Entry("accounts.audit", "Read and check the audit trail."),
+    "db": Entry("database.database", "Bring the database's schema up or down."),
+    "backup": Entry(
+        "backup.backup",
+        "Write all that is stored into one file, while the service runs: `imu-health backup FILE`.",
+    ),
+    "restore": Entry(
+        "backup.restore_backup",
+        "Put a backup into an empty database, of either kind, and an empty data folder. Everybody must sign in again.",
+    ),
+}
