@@ -1,0 +1,57 @@
+"""P10: how long a command takes from its start to its end, against Python that imports numpy and scipy and ends.
+
+Both are processes of their own, started in turn, from compiled files as an installation has them; the first round
+compiles what is not compiled yet and is not measured. The session is that of P1, its calibration printed as a table.
+"""
+
+import json
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+from functools import partial
+from pathlib import Path
+
+from benchmarks.block import sessions
+from benchmarks.figures import Figure, side_by_side
+from estimator.writing import session_document
+
+ROUNDS = 20
+COMMAND = str(Path(sys.executable).with_name("imu-health"))
+PEER = (sys.executable, "-c", "import numpy, scipy")
+NEEDED = "import numpy, scipy.special, typer, rich.progress, rich.table; from pydantic import TypeAdapter"
+LIBRARIES = (sys.executable, "-c", NEEDED)
+"""What a command that calibrates and prints a table cannot do without; Typer reads arguments by pydantic."""
+COMPILING = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+
+
+def start(*command: str) -> None:
+    """Runs a command to its end."""
+    subprocess.run(command, env=COMPILING, stdout=subprocess.DEVNULL, check=True)
+
+
+def children() -> float:
+    """Processor seconds of all processes that were started here and have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def run() -> list[Figure]:
+    """The list of commands, the command that needs least, and what bounds it."""
+    with tempfile.TemporaryDirectory(prefix="imu-p10-") as folder:
+        file = Path(folder) / "session.json"
+        file.write_text(json.dumps(session_document(sessions(1)[0])), encoding="utf-8")
+        calibrate = ("calibrate", str(file))
+        rows = (
+            ("P10, help", ("--help",), PEER, "python -c 'import numpy, scipy'", "≥ 1"),
+            ("P10, calibrate", calibrate, PEER, "python -c 'import numpy, scipy'", "at least 1/2"),
+            ("P10, libraries", calibrate, LIBRARIES, "python that imports its libraries and ends", "—"),
+        )
+        figures = []
+        for name, arguments, peer, described, target in rows:
+            ours, theirs = partial(start, COMMAND, *arguments), partial(start, *peer)
+            times = side_by_side(ours, theirs, ROUNDS, clock=children)
+            shown = "imu-health --help" if arguments == ("--help",) else "imu-health calibrate FILE"
+            figures.append(Figure(name, shown, described, *times, target))
+        return figures
