@@ -3,11 +3,12 @@
 import fcntl
 import hashlib
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import NamedTemporaryFile
 from typing import IO
 
+from service.log import log
 from service.records.received import Content, Landed
 from service.storage.faults import disk_faults
 from service.storage.folders import make_folder
@@ -67,10 +68,19 @@ class Landing:
         return Landed(Path(self._file.name), self._hash.hexdigest(), self.size)
 
     def close(self) -> None:
-        """Removes the file, unless it was kept and has another name by now."""
-        if self._file is not None:
+        """Removes the file, unless it was kept and has another name by now.
+
+        Where the disk is full what waits to be written fails once more, and a name that stays is swept later: neither
+        is the answer.
+        """
+        if self._file is None:
+            return
+        with suppress(OSError):
             self._file.close()
+        try:
             Path(self._file.name).unlink(missing_ok=True)
+        except OSError as fault:
+            log.warning("file that came is left behind", file=self._file.name, reason=str(fault))
 
 
 @contextmanager

@@ -17,14 +17,14 @@ from sqlalchemy import Connection, event
 from sqlalchemy.exc import OperationalError
 
 from service.errors import AwayError
-from service.flows.receive import upload
 from service.settings import Settings
 from service.storage import Files, Storage
 from tests.service.sessions import session_bytes
 from tests.service.storage.intact import SENSORS, faults
+from tests.service.storage.sending import Way, as_bytes, landed
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
-CALLS = ("open", "mkdir", "fsync", "replace")
+CALLS = ("open", "mkdir", "fsync", "replace", "unlink")
 """By which the folder of files is changed."""
 
 STEP = 4
@@ -106,20 +106,23 @@ def listening(storage: Storage, what: str, to: Callable[..., Any]) -> Iterator[N
         event.remove(storage.database.engine, what, to)
 
 
-@pytest.mark.parametrize("way", [failing_disk, failing_statements, lost_answers])
+@pytest.mark.parametrize(
+    ("failing", "send"),
+    [(failing_disk, as_bytes), (failing_disk, landed), (failing_statements, as_bytes), (lost_answers, as_bytes)],
+)
 def test_after_every_single_failure_an_upload_is_whole_or_not_there_and_is_stored_once_when_repeated(
-    storage: Storage, settings: Settings, way: Callable[..., Any]
+    storage: Storage, settings: Settings, failing: Callable[..., Any], send: Way
 ) -> None:
     done: list[bytes] = []
-    step = STEP if way is failing_statements and storage.database.engine.name == "postgresql" else 1
+    step = STEP if failing is failing_statements and storage.database.engine.name == "postgresql" else 1
     for n in count(1, step):
         content, nth = session_bytes(seed=n, unit=f"FC-{n}", m=SENSORS), Failing(n)
         try:
-            with way(storage, nth):
-                upload(storage, content, "a.json", NOW)
+            with failing(storage, nth):
+                send(storage, content, NOW)
         except (AwayError, OperationalError):
             assert faults(settings, done, [*done, content]) == []
-        upload(storage, content, "a.json", NOW)
+        send(storage, content, NOW)
         done.append(content)
         if not nth.happened:
             break
@@ -127,12 +130,40 @@ def test_after_every_single_failure_an_upload_is_whole_or_not_there_and_is_store
     assert faults(settings, done, done) == []
 
 
+@contextmanager
+def no_file_longer_than(size: int) -> Iterator[None]:
+    """As on a disk that fills up."""
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+
+
+def left(folder: Path) -> list[Path]:
+    """Every file in a folder."""
+    return [path for path in folder.rglob("*") if path.is_file()]
+
+
 def test_a_file_that_cannot_grow_is_not_there_and_is_whole_when_kept_again(tmp_path: Path) -> None:
     files, content = Files(tmp_path), bytes(10_000)
-    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (100, limits[1]))
-    with pytest.raises(AwayError):
+    with no_file_longer_than(100), pytest.raises(AwayError):
         files.keep(content)
-    resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-    assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
+    assert left(tmp_path) == []
     assert files.read(files.keep(content)) == content
+
+
+@pytest.mark.parametrize("size", [100, 9_900], ids=["at once", "with its last bytes"])
+def test_a_file_that_cannot_land_leaves_nothing(tmp_path: Path, size: int) -> None:
+    with no_file_longer_than(size), pytest.raises(AwayError):
+        land(Files(tmp_path), bytes(10_000))
+    assert left(tmp_path) == []
+
+
+def land(files: Files, content: bytes) -> None:
+    """Nobody keeps it."""
+    with files.arriving() as place:
+        landing = place.new()
+        landing.take(content)
+        landing.write()

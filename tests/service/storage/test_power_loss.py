@@ -5,18 +5,19 @@ import shutil
 import subprocess
 import sys
 from copy import deepcopy
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
 
-from service.flows.receive import upload
 from service.settings import Settings
 from service.storage import Database, Files, Storage
 from service.storage.schema import upgrade
 from tests.service.sessions import session_bytes
 from tests.service.storage.disk import TRACED, Call, Disk, calls, moments
 from tests.service.storage.intact import SENSORS, faults
+from tests.service.storage.sending import WAYS
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 SESSION = session_bytes(m=SENSORS)
@@ -24,42 +25,50 @@ UPLOAD = """
 import os, sys
 from datetime import UTC, datetime
 from pathlib import Path
-from service.flows.receive import upload
 from service.settings import Settings
 from service.storage import Database, Files, Storage
+from tests.service.storage.sending import WAYS
 settings = Settings(data_folder=Path(sys.argv[1]))
 storage = Storage(Database(settings.database), Files(settings.files))
-upload(storage, sys.stdin.buffer.read(), "a.json", datetime.now(UTC))
+WAYS[sys.argv[2]](storage, sys.stdin.buffer.read(), datetime.now(UTC))
 os.write(1, b"acknowledged")
 os._exit(0)
 """
 
 
-@pytest.fixture(scope="module")
-def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Disk, list[Call]]:
+@dataclass(frozen=True)
+class Recorded:
+    """An upload in one of the ways."""
+
+    way: str
+    before: Disk
+    calls: list[Call]
+
+    @property
+    def answered(self) -> int:
+        """After how many calls it is acknowledged."""
+        return next(n for n, call in enumerate(self.calls, 1) if call.data == b"acknowledged")
+
+
+@pytest.fixture(scope="module", params=WAYS)
+def recorded(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Recorded:
     """The disk before an upload, and the calls of the upload."""
     if shutil.which("strace") is None:
         pytest.skip("strace is not installed: the calls of an upload cannot be recorded")
     folder = tmp_path_factory.mktemp("power")
     upgrade(Settings(data_folder=folder).database)
     before, trace = Disk.of(folder), folder.with_name("trace")
-    command = ["strace", "-f", "-y", "-xx", "-s", "100000000", "-e", f"trace={TRACED}", "-o", trace]
-    done = subprocess.run(
-        [*command, sys.executable, "-c", UPLOAD, folder], input=SESSION, capture_output=True, check=False
-    )
+    command = ["strace", "-f", "--seccomp-bpf", "-y", "-xx", "-s", "100000000", "-e", f"trace={TRACED}", "-o", trace]
+    own = [sys.executable, "-c", UPLOAD, folder, request.param]
+    done = subprocess.run([*command, *own], input=SESSION, capture_output=True, check=False)
     if b"ptrace" in done.stderr.lower():
         pytest.skip("strace may not look at processes here")
     assert done.stdout == b"acknowledged", done.stderr
-    return before, list(calls(trace.read_text(), str(folder)))
+    return Recorded(request.param, before, list(calls(trace.read_text(), str(folder))))
 
 
-def answered(done: list[Call]) -> int:
-    """After how many calls the upload is acknowledged."""
-    return next(n for n, call in enumerate(done, 1) if call.data == b"acknowledged")
-
-
-def test_all_is_synced_before_the_answer_file_before_row(recorded: tuple[Disk, list[Call]]) -> None:
-    calls_before = recorded[1][: answered(recorded[1])]
+def test_all_is_synced_before_the_answer_file_before_row(recorded: Recorded) -> None:
+    calls_before = recorded.calls[: recorded.answered]
     synced = [Path(call.path) for call in calls_before if call.name in ("fsync", "fdatasync")]
     parts = [n for n, path in enumerate(synced) if path.name.startswith(".part-")]
     folders = [n for n, path in enumerate(synced) if path.name == "files"]
@@ -69,17 +78,16 @@ def test_all_is_synced_before_the_answer_file_before_row(recorded: tuple[Disk, l
 
 @pytest.mark.parametrize("names_kept", [False, True], ids=["nothing unsynced", "names but not bytes"])
 def test_whenever_the_power_is_cut_nothing_acknowledged_is_lost(
-    recorded: tuple[Disk, list[Call]], tmp_path: Path, names_kept: bool
+    recorded: Recorded, tmp_path: Path, names_kept: bool
 ) -> None:
-    before, done = recorded
-    end = answered(done)
-    for number, disk in moments(deepcopy(before), done):
+    done, end = recorded.calls, recorded.answered
+    for number, disk in moments(deepcopy(recorded.before), done):
         place = tmp_path / str(number)
         place.mkdir()
         disk.write_to(place, names_kept=names_kept)
         settings = Settings(data_folder=place)
         assert faults(settings, [SESSION] if number >= end else [], [SESSION]) == [], (number, done[number - 1])
         database = Database(settings.database)
-        upload(Storage(database, Files(settings.files)), SESSION, "a.json", NOW)
+        WAYS[recorded.way](Storage(database, Files(settings.files)), SESSION, NOW)
         database.close()
         assert faults(settings, [SESSION], [SESSION]) == []
