@@ -15,6 +15,10 @@ SERVICES: dict[str, dict[str, Any]] = yaml.safe_load((DOCKER / "compose.yml").re
 IMAGE = (DOCKER / "Dockerfile").read_text()
 GATEWAY = (DOCKER / "gateway.conf").read_text()
 OURS = ("gateway", "imu-health")
+BASES = [line.split()[1] for line in IMAGE.splitlines() if line.startswith("FROM ")]
+PULLED = [service["image"] for service in SERVICES.values() if "image" in service]
+IGNORED = (DOCKER / "Dockerfile.dockerignore").read_text().splitlines()
+SECRET = re.compile(r"password|secret|token|private_key", re.IGNORECASE)
 
 
 def last_stage(image: str) -> list[str]:
@@ -31,6 +35,31 @@ def test_the_image_runs_as_nobody_in_particular_and_says_how_it_is() -> None:
     assert {"HEALTHCHECK", "STOPSIGNAL", "VOLUME"} <= set(words)
 
 
+@pytest.mark.parametrize("image", {*BASES, *PULLED})
+def test_every_image_is_of_a_named_version(image: str) -> None:
+    name, _, tag = image.partition(":")
+    assert name
+    assert re.match(r"\d", tag), "a tag without a version is another image tomorrow"
+
+
+def test_what_is_built_and_what_is_kept_rest_on_one_image() -> None:
+    assert len(BASES) == 2
+    assert len(set(BASES)) == 1
+
+
+def test_no_secret_is_written_into_the_files() -> None:
+    assert not [line for line in IMAGE.splitlines() if SECRET.search(line)]
+    given = [value for service in SERVICES.values() for value in service.get("environment", {}).items()]
+    written = {name: text for name, text in given if SECRET.search(f"{name} {text}")}
+    assert written
+    assert all("${" in re.sub(r"\$\{(\w+):-[^}]+\}", "", text) for text in written.values())
+
+
+def test_nothing_is_sent_to_the_build_but_what_is_named() -> None:
+    assert IGNORED[0] == "*"
+    assert not [line for line in IGNORED if line.startswith("!") and ("*" in line or line.startswith("!."))]
+
+
 def test_the_image_holds_the_program_and_nothing_that_built_it() -> None:
     copied = [shlex.split(line)[1:] for line in last_stage(IMAGE) if line.startswith("COPY")]
     assert copied == [
@@ -41,7 +70,7 @@ def test_the_image_holds_the_program_and_nothing_that_built_it() -> None:
 
 
 def test_what_the_image_copies_is_sent_to_the_build() -> None:
-    sent = {line[1:] for line in (DOCKER / "Dockerfile.dockerignore").read_text().splitlines() if line.startswith("!")}
+    sent = {line[1:] for line in IGNORED if line.startswith("!")}
     taken = {name for line in IMAGE.splitlines() if line.startswith("COPY ") for name in line.split()[1:-1]}
     named = {name for name in taken if not name.startswith(("--", "/"))}
     assert named <= sent
