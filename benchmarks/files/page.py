@@ -50,6 +50,8 @@ No file that somebody uploads may end, freeze or bloat the service. Five things 
   process of their own. Before it sees a byte the kernel bounds its memory, its computing time and its time by the
   clock. It cannot write files, knows no setting and no password, and gives back numbers and text, never objects
   (no pickle). When it is ended, the upload is answered 422 with what to do, and the service goes on.
+  The commands read such files the same way, recordings of any length for `imu-health parity` among them; there the
+  answer is a line and exit code 2.
 * **Nothing long is held.** An upload of more than {IN_MEMORY // 1024} KiB goes to disk as it comes, hashed and
   counted on the way; the file that is kept is that one, synced and renamed. The reading process opens it there. What
   was not kept is removed with the request, or by the hourly look.

@@ -14,8 +14,7 @@ from estimator.parity import ParityAccumulator, ParityResult
 from estimator.parity.results import Sight
 from service.commands.console import AsJson, print_json, problem_line, screen
 from service.commands.exits import UNUSABLE, say
-from service.ingest import read_upload
-from service.ingest.stream import open_recording
+from service.ingest.stream import open_recording, session_in
 from service.measures import COVERAGE, in_words
 from service.words.in_service import found_in_words
 
@@ -45,7 +44,7 @@ def _result(file: Path, reference: Path, motion: str, false_alarm: float) -> Par
     """Exit code 2 with one line when either file cannot be used."""
     place = reference
     try:
-        calibration = calibrate(read_upload(reference.read_bytes(), str(reference)))
+        calibration = calibrate(session_in(reference))
         place = file
         recording = open_recording(file)
         head = recording.head

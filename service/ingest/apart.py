@@ -48,26 +48,49 @@ MOMENT = 0.3
 """Seconds within which a process that is ending has ended."""
 SIZE = struct.Struct(">Q")
 READY = b"r"
+END = b"end"
+"""The line after the last part of an answer that comes in parts."""
 FELL = (OSError, EOFError, *DAMAGED)
 """What a fork that ends before its answer is seen as."""
 
 
 def read_apart(job: str, content: bytes | Path, filename: str) -> Any:
     """What the job makes of the content; a SessionError where it cannot be used, BusyError where it must wait."""
+    most = _limits(content)
+    with turn(), _refused_if_it_fell(filename, most):
+        return _asked_again_if_ended(job, content, filename, most)
+
+
+def read_parts(job: str, path: Path, filename: str) -> Iterator[Any]:
+    """The parts that the job makes of a file, one after another; its process waits until they are taken."""
+    most = _limits(path)
+    with turn(), _refused_if_it_fell(filename, most), _server.fork() as child:
+        child.settimeout(most.seconds * WAITING + GRACE)
+        _ask(child, {"job": job, "filename": filename, "limits": asdict(most)}, path)
+        while (line := _line(child)) != END:
+            yield _answer(child, line, most)
+
+
+def _limits(content: bytes | Path) -> Limits:
+    """Those in force, and more time for a long file."""
     most = limits.in_force()
-    if isinstance(content, Path):
-        most = replace(most, seconds=most.seconds + content.stat().st_size // PACE)
-    with turn():
-        try:
-            return _asked_again_if_ended(job, content, filename, most)
-        except FELL as error:
-            if isinstance(error, SessionError):
-                raise
-            raise refusal(
-                filename,
-                f"cannot be read with {most.memory // 1024**2} MiB of memory in {most.seconds} s: it is damaged, or "
-                "much larger inside than outside; write it again, or average or split it",
-            ) from error
+    more = content.stat().st_size // PACE if isinstance(content, Path) else 0
+    return replace(most, seconds=most.seconds + more)
+
+
+@contextmanager
+def _refused_if_it_fell(filename: str, most: Limits) -> Iterator[None]:
+    """The file is refused whose process ended before its answer."""
+    try:
+        yield
+    except FELL as error:
+        if isinstance(error, SessionError):
+            raise
+        raise refusal(
+            filename,
+            f"cannot be read with {most.memory // 1024**2} MiB of memory in {most.seconds} s: it is damaged, or "
+            "much larger inside than outside; write it again, or average or split it",
+        ) from error
 
 
 @contextmanager
@@ -91,10 +114,13 @@ def _asked(job: str, content: bytes | Path, filename: str, most: Limits) -> Any:
     with _server.fork() as child:
         child.settimeout(most.seconds * WAITING + GRACE)
         _ask(child, {"job": job, "filename": filename, "limits": asdict(most)}, content)
-        line = _line(child)
-        if line.startswith(b'{"refused"'):
-            raise _refused(json.loads(line)["refused"])
-        return unpack(line, most.memory, lambda array: _fill(child, array))
+        return _answer(child, _line(child), most)
+
+
+def _answer(child: socket.socket, line: bytes, most: Limits) -> Any:
+    if line.startswith(b'{"refused"'):
+        raise _refused(json.loads(line)["refused"])
+    return unpack(line, most.memory, lambda array: _fill(child, array))
 
 
 def _ask(child: socket.socket, request: dict[str, Any], content: bytes | Path) -> None:

@@ -11,13 +11,14 @@ import resource
 import signal
 import socket
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 from estimator.errors import ScheduleError, SessionError
 from service.ingest import jobs, limits
-from service.ingest.apart import READY, SIZE, WAITING
-from service.ingest.exchange import Array, pack, plain_bytes
+from service.ingest.apart import END, READY, SIZE, WAITING
+from service.ingest.exchange import Packed, pack, plain_bytes
 from service.ingest.limits import Limits, refusal
 
 STATM = Path("/proc/self/statm")
@@ -77,20 +78,29 @@ def _answer(connection: socket.socket) -> None:
     limits.use(most)
     _limit_this_process(most, _mapped(request))
     try:
-        line, arrays = _read(connection, request)
-    except MemoryError:
-        line, arrays = _refusal(_too_large(request["filename"], most)), ()
-    connection.sendall(SIZE.pack(len(line)) + line)
-    for array in arrays:
-        connection.sendall(plain_bytes(array))
-
-
-def _read(connection: socket.socket, request: dict[str, Any]) -> tuple[bytes, tuple[Array, ...]]:
-    try:
-        packed = pack(jobs.JOBS[request["job"]](_content(connection, request), request["filename"]))
+        for packed in _read(connection, request):
+            _send(connection, packed)
     except SessionError as error:
-        return _refusal(error), ()
-    return packed.line, packed.arrays
+        _send(connection, Packed(_refusal(error), ()))
+    except MemoryError:
+        _send(connection, Packed(_refusal(_too_large(request["filename"], most)), ()))
+
+
+def _read(connection: socket.socket, request: dict[str, Any]) -> Iterator[Packed]:
+    """The answer, or its parts and their end."""
+    content, filename = _content(connection, request), request["filename"]
+    if request["job"] in jobs.PARTED and isinstance(content, Path):
+        for part in jobs.PARTED[request["job"]](content, filename):
+            yield pack(part)
+        yield Packed(END, ())
+    else:
+        yield pack(jobs.JOBS[request["job"]](content, filename))
+
+
+def _send(connection: socket.socket, packed: Packed) -> None:
+    connection.sendall(SIZE.pack(len(packed.line)) + packed.line)
+    for array in packed.arrays:
+        connection.sendall(plain_bytes(array))
 
 
 def _content(connection: socket.socket, request: dict[str, Any]) -> bytes | Path:

@@ -1,6 +1,6 @@
 """What a reading process can be asked for, by name. Only that process loads the libraries of the formats."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from estimator.reading import read_session
@@ -12,6 +12,7 @@ from service.ingest.layout.mapping import layout_of
 from service.ingest.layout.reading import document_of
 from service.ingest.limits import in_force, refusal
 from service.ingest.long_log import averaged_if_long
+from service.ingest.recording import recording
 
 Content = bytes | Path
 """Of a file, or where it lies."""
@@ -64,3 +65,5 @@ def look_at(content: Content, filename: str) -> object:
 
 JOBS: dict[str, Callable[[Content, str], object]] = {"session": session, "look": look_at, "mat-matrices": mat_matrices}
 """Name → what does it."""
+PARTED: dict[str, Callable[[Path, str], Iterator[object]]] = {"recording": recording}
+"""The same for answers that come in parts."""

@@ -11,6 +11,7 @@ from typing import Protocol
 
 import polars as pl
 
+from service.ingest.formats import PARQUET, may_be_log
 from service.ingest.limits import refusal
 from service.ingest.metadata import KEY
 
@@ -26,6 +27,8 @@ SEPARATORS = ",;\t"
 """Of columns; the one that the header has most of is taken."""
 UNREADABLE = (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError)
 """What polars raises for damaged files."""
+START = 4096
+"""Bytes by which a file is told: blank lines may come first."""
 PARQUET_DAMAGED = "is damaged or not a readable Parquet file; write it again"
 
 
@@ -45,6 +48,15 @@ class Rows(Protocol):
 
     def stretches(self, names: Sequence[str]) -> Iterator[pl.DataFrame]:
         """Some columns, some rows at a time; polars' errors where the table is not as it should be."""
+
+
+def rows_of(path: Path, filename: str) -> Rows | None:
+    """The table of a CSV or Parquet file; None of any other."""
+    with path.open("rb") as file:
+        start = file.read(START)
+    if not may_be_log(start):
+        return None
+    return parquet_rows(path, filename) if start.startswith(PARQUET) else csv_rows(path, filename)
 
 
 @dataclass(frozen=True)
@@ -114,7 +126,7 @@ class CsvRows:
             return self._as(text, names, self.texts)
         except pl.exceptions.ComputeError:
             written = self._as(text, names, frozenset(names))
-            return written.select(_numbers(written[name]) if name not in self.texts else name for name in names)
+            return written.select(numbers(written[name]) if name not in self.texts else name for name in names)
 
     def _as(self, text: bytes, names: Sequence[str], texts: frozenset[str]) -> pl.DataFrame:
         kinds = {name: pl.String if name in texts else pl.Float64 for name in self.names}
@@ -153,11 +165,11 @@ def csv_rows(path: Path, filename: str) -> CsvRows:
         first = next(rows.stretches(names), pl.DataFrame()).head(SEEN)
     except UNREADABLE as error:
         raise refusal(filename, f"cannot be read as a table: {error}", "table") from error
-    texts = frozenset(name for name in first.columns if _numbers(first[name]).dtype == pl.String)
+    texts = frozenset(name for name in first.columns if numbers(first[name]).dtype == pl.String)
     return CsvRows(path, metadata, names, separator, begins, texts)
 
 
-def _numbers(texts: pl.Series) -> pl.Series:
+def numbers(texts: pl.Series) -> pl.Series:
     """As numbers where all are, else as they are."""
     stripped = texts.str.strip_chars()
     stripped = stripped.set(stripped == "", None)

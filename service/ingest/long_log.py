@@ -15,21 +15,18 @@ from estimator.reading import Extent, read_session
 from estimator.reading.csv_text import cell_of
 from estimator.reading.keys import COLUMNS
 from estimator.session import CALIBRATIONS, Array, CalibrationSession
-from service.ingest.formats import PARQUET
 from service.ingest.limits import check_table, in_force, refusal
-from service.ingest.log_rows import UNREADABLE, Rows, csv_rows, parquet_rows
+from service.ingest.log_rows import UNREADABLE, Rows, rows_of
 from service.ingest.metadata import with_metadata
 from service.ingest.parquet import columns_of
 
 LABEL, SETTINGS = "position", ("beta_deg", "run")
 """Columns that say where the block stood."""
-START = 4096
-"""Bytes by which a file is told: blank lines may come first."""
 
 
 def averaged_if_long(path: Path, filename: str) -> CalibrationSession | None:
     """The averaged positions of a long raw log in a file; None of any other file, which is read whole."""
-    rows = _rows(path, filename)
+    rows = rows_of(path, filename)
     if rows is None:
         return None
     most, columns = in_force(), len(rows.names)
@@ -44,14 +41,6 @@ def averaged_if_long(path: Path, filename: str) -> CalibrationSession | None:
     except SessionError as fault:
         kind = ScheduleError if isinstance(fault, ScheduleError) else FormatError
         raise kind(fault.problems, filename) from fault
-
-
-def _rows(path: Path, filename: str) -> Rows | None:
-    with path.open("rb") as file:
-        start = file.read(START)
-    if start.startswith(PARQUET):
-        return parquet_rows(path, filename)
-    return csv_rows(path, filename) if start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"#") else None
 
 
 @dataclass

@@ -1,16 +1,25 @@
 """`imu-health parity` on files as people have them."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import polars as pl
+import psutil
 import pytest
 
+from benchmarks.files.hostile import HOSTILE, Hostile
+from estimator.errors import FormatError
+from service.ingest import limits
+from service.ingest.recording import HEAD, recording
 from service.ingest.stream import open_recording
 from tests.service.cli.conftest import Run
 from tests.service.recordings import recording_bytes, recording_document
 from tests.service.sessions import session_bytes
+
+HARMFUL = ("parquet-long-texts", "csv-many-columns", "csv-row-of-a-million", "xlsx-cells-without-r")
+"""One of each way in which a recording is read, and one that is read whole."""
 
 
 @pytest.fixture
@@ -49,12 +58,40 @@ def test_every_format_gives_the_same_result(run: Run, tmp_path: Path, reference:
     assert streamed["format"] == "imu-parity/1"
 
 
-def test_a_file_is_read_in_chunks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("service.ingest.stream.CHUNK", 500)
-    recording = open_recording(columnar(tmp_path / "flight.csv"))
-    sizes = [chunk.shape for chunk in recording.chunks]
-    assert sum(rows for rows, _ in sizes) == 2400
-    assert len(sizes) > 1
+def test_a_file_comes_in_chunks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("service.ingest.log_rows.STRETCH", 50_000)
+    head, *chunks = recording(columnar(tmp_path / "flight.csv"), "flight.csv")
+    assert sum(len(chunk) for chunk in chunks) == 2400
+    assert len(chunks) > 1
+    assert (head.unit, len(head.readings)) == ("BA-017", HEAD)
+
+
+def children() -> set[int]:
+    """Processes of this one, and theirs."""
+    return {child.pid for child in psutil.Process().children(recursive=True)}
+
+
+def test_a_recording_is_read_by_a_process_of_its_own(tmp_path: Path) -> None:
+    before, opened = children(), open_recording(columnar(tmp_path / "flight.csv"))
+    assert children() - before
+    assert sum(len(chunk) for chunk in opened.chunks) == 2400
+
+
+def test_a_recording_of_more_cells_than_allowed_is_refused(tmp_path: Path) -> None:
+    usual = limits.in_force()
+    limits.use(replace(usual, log_cells=12_000))
+    opened = open_recording(columnar(tmp_path / "flight.parquet"))
+    limits.use(usual)
+    with pytest.raises(FormatError, match="more than 12000 cells"):
+        list(opened.chunks)
+
+
+@pytest.mark.parametrize("hostile", [one for one in HOSTILE if one.name in HARMFUL], ids=lambda one: one.name)
+def test_a_hostile_recording_is_unusable_input(run: Run, tmp_path: Path, reference: Path, hostile: Hostile) -> None:
+    file = tmp_path / "flight"
+    file.write_bytes(hostile.make())
+    done = run("parity", file, "--reference", reference)
+    assert (done.code, done.err.count("\n")) == (2, 1)
 
 
 def test_a_missing_value_is_named_by_its_row(run: Run, tmp_path: Path, reference: Path) -> None:
