@@ -1,7 +1,7 @@
 """The database: the only place that commits. One transaction a request."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from copy import copy
 
 from sqlalchemy.orm import Session
@@ -12,6 +12,7 @@ from service.storage.faults import database_faults
 from service.storage.revisions import unfit
 from service.storage.schema import stored_revision
 from service.storage.store import Store
+from service.storage.turns import Turns
 from service.storage.waits import Waits
 
 
@@ -21,6 +22,7 @@ class Database:
     def __init__(self, url: str, waits: Waits | None = None) -> None:
         self.url, self._account = url, ""
         self.engine = open_engine(url, waits)
+        self._turns = Turns((waits or Waits()).lock) if self.engine.name == "sqlite" else None
         self._writing_engine = self.engine.execution_options(**{WRITES: True})
 
     def acting(self, account: str) -> "Database":
@@ -37,8 +39,12 @@ class Database:
 
     @contextmanager
     def writing(self) -> Iterator[Store]:
-        """One transaction: committed when the block ends, undone when it raises."""
-        with database_faults(), Session(self._writing_engine) as session:
+        """One transaction: committed when the block ends, undone when it raises.
+
+        SQLite has one writer at a time, and forgets who waited longest: those of this process come in turn.
+        """
+        turn = nullcontext() if self._turns is None else self._turns.taken()
+        with database_faults(), turn, Session(self._writing_engine) as session:
             store = Store(session, self._account)
             yield store
             store.audit.seal()

@@ -9,15 +9,19 @@ from typing import Any
 import psycopg
 from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url
 from sqlalchemy.engine.interfaces import DBAPIConnection, Dialect
-from sqlalchemy.exc import ArgumentError
+from sqlalchemy.exc import ArgumentError, OperationalError
 from sqlalchemy.pool import ConnectionPoolEntry
 
 from service.errors import ServiceError
+from service.storage.faults import PRIMARY
 from service.storage.folders import make_folder
 from service.storage.waits import Waits, connect_within
 
 LOOK_AGAIN = 0.02
 """Seconds between two attempts at what SQLite refuses at once while another process does the same."""
+FAIR = 0.005
+"""Seconds between two attempts at SQLite's one place to write. Its own patience grows to a tenth of a second, so that
+one that waits long hardly ever comes in time; with equal steps every process has the same chance."""
 WRITES = "imu_health_writes"
 """Execution option of a connection that will write."""
 
@@ -56,7 +60,7 @@ def open_engine(url: str, waits: Waits | None = None) -> Engine:
     make_folder(Path(parsed.database).absolute().parent)
     engine = create_engine(parsed, hide_parameters=True, pool_timeout=waits.lock)
     event.listen(engine, "connect", _preparing(waits))
-    event.listen(engine, "begin", _begin_sqlite)
+    event.listen(engine, "begin", _beginning(waits))
     event.listen(engine, "checkin", _end_transaction)
     return engine
 
@@ -72,7 +76,7 @@ def _connecting(waits: Waits) -> Callable[..., psycopg.Connection[Any]]:
 
 
 def _preparing(waits: Waits) -> Callable[[DBAPIConnection, ConnectionPoolEntry], None]:
-    """Leaves transactions to `_begin_sqlite`, and makes a commit durable and a reader never block a writer."""
+    """Leaves transactions to `_beginning`, and makes a commit durable and a reader never block a writer."""
 
     def prepare(connection: DBAPIConnection, _: ConnectionPoolEntry) -> None:
         assert isinstance(connection, sqlite3.Connection)
@@ -91,17 +95,48 @@ def _write_ahead(connection: sqlite3.Connection, end: float) -> None:
         try:
             connection.execute("PRAGMA journal_mode=WAL").close()
         except sqlite3.OperationalError as fault:
-            if fault.sqlite_errorcode & 0xFF != sqlite3.SQLITE_BUSY or monotonic() > end:
+            if not _is_busy(fault) or monotonic() > end:
                 raise
             sleep(LOOK_AGAIN)
         else:
             return
 
 
-def _begin_sqlite(connection: Connection) -> None:
+def _beginning(waits: Waits) -> Callable[[Connection], None]:
+    def begin(connection: Connection) -> None:
+        if connection.get_execution_options().get(WRITES):
+            _begin_to_write(connection, waits)
+        else:
+            connection.exec_driver_sql("BEGIN")
+
+    return begin
+
+
+def _begin_to_write(connection: Connection, waits: Waits) -> None:
     """A writer takes the write lock at once, so that waiting for it never fails half-way."""
-    writes = connection.get_execution_options().get(WRITES)
-    connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
+    raw, end = connection.connection.driver_connection, monotonic() + waits.lock
+    assert isinstance(raw, sqlite3.Connection)
+    raw.execute("PRAGMA busy_timeout=0").close()
+    try:
+        while not _has_begun(connection, is_last=monotonic() > end):
+            sleep(FAIR)
+    finally:
+        raw.execute(f"PRAGMA busy_timeout={round(1000 * waits.lock)}").close()
+
+
+def _has_begun(connection: Connection, *, is_last: bool) -> bool:
+    """Whether nobody else writes; the last attempt raises."""
+    try:
+        connection.exec_driver_sql("BEGIN IMMEDIATE")
+    except OperationalError as fault:
+        if is_last or not _is_busy(fault.orig):
+            raise
+        return False
+    return True
+
+
+def _is_busy(fault: object) -> bool:
+    return isinstance(fault, sqlite3.OperationalError) and fault.sqlite_errorcode & PRIMARY == sqlite3.SQLITE_BUSY
 
 
 def _end_transaction(connection: DBAPIConnection | None, place: ConnectionPoolEntry) -> None:

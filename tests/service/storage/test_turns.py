@@ -1,0 +1,49 @@
+"""Those who write come in the order in which they came, and nobody waits for ever."""
+
+from threading import Thread
+from time import sleep
+
+import pytest
+
+from service.errors import AwayError
+from service.storage.turns import Turns
+
+
+def waiting(turns: Turns, name: int, seen: list[int]) -> Thread:
+    """One that waits in line when this returns."""
+    before = len(turns)
+
+    def take() -> None:
+        with turns.taken():
+            seen.append(name)
+
+    thread = Thread(target=take)
+    thread.start()
+    while len(turns) == before:
+        sleep(0)
+    return thread
+
+
+def test_nobody_overtakes() -> None:
+    turns, seen = Turns(60.0), list[int]()
+    with turns.taken():
+        threads = [waiting(turns, name, seen) for name in range(8)]
+    for thread in threads:
+        thread.join()
+    assert seen == list(range(8))
+
+
+def test_who_waits_too_long_gives_up_and_the_next_comes_all_the_same() -> None:
+    turns = Turns(0.05)
+    with turns.taken(), pytest.raises(AwayError), turns.taken():
+        pass
+    with turns.taken():
+        assert len(turns) == 1
+
+
+def test_a_turn_that_ends_in_an_error_is_over() -> None:
+    turns = Turns(0.05)
+    with pytest.raises(ZeroDivisionError), turns.taken():
+        raise ZeroDivisionError
+    with turns.taken():
+        assert len(turns) == 1
