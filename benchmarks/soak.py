@@ -19,6 +19,9 @@ LOOKS = 6
 SPARE = 20
 """Descriptors that may come and go: connections of the pool, files that are read at the moment."""
 
+Look = tuple[int, float, int]
+"""Uploads so far, resident memory in MB, open descriptors."""
+
 
 def main() -> int:
     """The table."""
@@ -26,17 +29,23 @@ def main() -> int:
     asked.add_argument("--uploads", type=int, default=300)
     given = asked.parse_args()
     with sqlite_databases() as databases, tempfile.TemporaryDirectory(prefix="imu-soak-") as folder:
-        service = Service(Settings(database_url=databases.migrated(), data_folder=Path(folder)), free_port())
-        service.start()
-        seen = list(_looked(service, given.uploads))
-        service.kill()
+        seen = soaked(Settings(database_url=databases.migrated(), data_folder=Path(folder)), given.uploads)
     print("| uploads | memory, MB | descriptors |\n| --- | --- | --- |")
     print("\n".join(f"| {number} | {memory:.0f} | {handles} |" for number, memory, handles in seen))
     return seen[-1][2] > seen[0][2] + SPARE
 
 
-def _looked(service: Service, uploads: int) -> list[tuple[int, float, int]]:
-    """Uploads so far, resident memory in MB, open descriptors."""
+def soaked(settings: Settings, uploads: int) -> list[Look]:
+    """What a service of its own takes on the way."""
+    service = Service(settings, free_port())
+    service.start()
+    try:
+        return _looked(service, uploads)
+    finally:
+        service.kill()
+
+
+def _looked(service: Service, uploads: int) -> list[Look]:
     assert service.process is not None
     assert service.process.pid is not None
     seen, every = [], max(uploads // LOOKS, 1)

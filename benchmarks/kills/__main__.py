@@ -1,11 +1,10 @@
 """Kills the service with `kill -9` at random moments while clients upload, and on PostgreSQL the database in turn with
-it; then says what was lost, and writes it into docs/security/durability.md."""
+it, one of its processes or the whole server; then says what was lost, and writes it into docs/security/durability.md.
+"""
 
 import argparse
-import os
 import random
 import re
-import signal
 import sys
 import tempfile
 import time
@@ -14,23 +13,33 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 
-import psycopg
-
+from benchmarks.kills.database import Kill, kill_of_all, kill_of_one, sync_as_delivered
 from benchmarks.kills.load import Load
 from benchmarks.kills.server import Service, free_port
 from service.settings import Settings
-from tests.databases import Databases, postgres_databases, sqlite_databases
+from tests.databases import Databases, PostgresDatabases, postgres_databases, sqlite_databases
 from tests.service.storage.intact import faults
 
 PAGE = Path(__file__).parents[2] / "docs" / "security" / "durability.md"
 LONGEST = 5.0
 """Seconds from one start to the next kill at most: an upload takes some tenths of it on a machine that is not busy."""
-ATTEMPTS, PAUSE = 600, 0.1
-"""To reach a database that recovers, and the seconds between them."""
 ENGINES: dict[str, Callable[[], AbstractContextManager[Databases]]] = {
     "sqlite": sqlite_databases,
     "postgresql": postgres_databases,
+    "postgresql-server": postgres_databases,
 }
+"""What is killed beside the service: nothing, a process of the database, or the whole server."""
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """How much is tried."""
+
+    kills: int
+    seed: int
+    longest: float = LONGEST
+    uploads: int = 0
+    """That are acknowledged before each kill, and after the last."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +71,9 @@ def main() -> int:
     given = asked.parse_args()
     with ENGINES[given.engine]() as databases, tempfile.TemporaryDirectory(prefix="imu-kills-") as folder:
         settings = Settings(database_url=databases.migrated(), data_folder=Path(folder))
-        seen = killed(given.engine, settings, given.kills, given.seed)
+        sync_as_delivered(databases)
+        kill = kill_of_database(given.engine, databases, settings)
+        seen = killed(given.engine, settings, kill, Chosen(given.kills, given.seed))
     print(seen.row())
     print("\n".join([*seen.faults, *seen.load.refused][:20]), file=sys.stderr)
     text = given.page.read_text("utf-8")
@@ -70,39 +81,34 @@ def main() -> int:
     return bool(seen.faults or seen.load.refused)
 
 
-def killed(engine: str, settings: Settings, kills: int, seed: int) -> Seen:
-    """Runs the load through so many kills; on PostgreSQL every second one is the database's."""
-    service, chance = Service(settings, free_port()), random.Random(seed)
-    load, database_kills = Load(service.address, seed), 0
+def kill_of_database(engine: str, databases: Databases, settings: Settings) -> Kill | None:
+    """How the database is killed; None of SQLite, which has no process of its own."""
+    if not isinstance(databases, PostgresDatabases):
+        return None
+    return kill_of_all(databases) if engine == "postgresql-server" else kill_of_one(settings)
+
+
+def killed(engine: str, settings: Settings, kill: Kill | None, chosen: Chosen) -> Seen:
+    """Runs the load through so many kills; every second one is the database's, where it can be killed."""
+    service, chance = Service(settings, free_port()), random.Random(chosen.seed)
+    load, database_kills = Load(service.address, chosen.seed), 0
     service.start()
     with load.running():
-        for number in range(kills):
-            time.sleep(chance.uniform(0.0, LONGEST))
-            if engine == "postgresql" and number % 2:
-                _kill_database(settings)
+        for number in range(chosen.kills):
+            load.wait_for(chosen.uploads * (number + 1))
+            time.sleep(chance.uniform(0.0, chosen.longest))
+            if kill is not None and number % 2 == 0:
+                kill()
                 database_kills += 1
             else:
                 service.kill()
                 service.start()
+        load.wait_for(chosen.uploads * (chosen.kills + 1))
     service.kill()
     service.start()
     found = faults(settings, load.acknowledged, load.sent)
     service.kill()
-    return Seen(engine, kills - database_kills, database_kills, load, found)
-
-
-def _kill_database(settings: Settings) -> None:
-    """`kill -9` of one of its processes: all others are ended too, and it recovers from its log."""
-    for _ in range(ATTEMPTS):
-        try:
-            with psycopg.connect(settings.database) as connection:
-                os.kill(connection.info.backend_pid, signal.SIGKILL)
-                connection.execute("SELECT 1")
-        except psycopg.OperationalError as fault:
-            if "recovery" not in str(fault) and "starting" not in str(fault):
-                return
-            time.sleep(PAUSE)
-    raise TimeoutError("the database did not come back")
+    return Seen(engine, chosen.kills - database_kills, database_kills, load, found)
 
 
 if __name__ == "__main__":

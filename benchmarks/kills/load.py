@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import count
 from threading import Event, Lock
+from time import monotonic, sleep
 
 import httpx
 
@@ -21,6 +22,9 @@ GIVEN_UP = 0.5
 """Share of the unanswered uploads that are never sent again: those may be stored or not, but not by halves."""
 PAUSE = 0.02
 """Seconds before a service that does not answer is tried again."""
+
+LONGEST = 120.0
+"""Seconds in which what is waited for must be acknowledged, on a machine that has much else to do."""
 
 
 @dataclass
@@ -44,10 +48,20 @@ class Load:
         """Uploads until the block ends."""
         with ThreadPoolExecutor(CLIENTS) as pool:
             clients = [pool.submit(self._upload_for_ever, random.Random(f"{self.seed} {n}")) for n in range(CLIENTS)]
-            yield
-            self._stop.set()
+            try:
+                yield
+            finally:
+                self._stop.set()
         for client in clients:
             client.result()
+
+    def wait_for(self, uploads: int) -> None:
+        """Until so many were acknowledged."""
+        end = monotonic() + LONGEST
+        while len(self.acknowledged) < uploads:
+            if monotonic() > end:
+                raise TimeoutError(f"{len(self.acknowledged)} of {uploads} uploads in {LONGEST} s: {self.refused}")
+            sleep(PAUSE)
 
     def _upload_for_ever(self, chance: random.Random) -> None:
         with httpx.Client(base_url=self.address, timeout=120) as client:
