@@ -10,6 +10,7 @@ from fastapi import Request
 
 from service.background.bell import Bell
 from service.background.read_diagnosis import Reader
+from service.background.read_group import GroupReader
 from service.errors import BusyError
 from service.identity.elsewhere import Provider
 from service.metrics import Metrics
@@ -82,6 +83,11 @@ class Application:
         """The diagnoses of sessions, for whoever reads them."""
         own = self.settings
         return Reader(self.storage, self.clock, self.bell, own.coverage_factor, own.diagnosis_workers)
+
+    @cached_property
+    def groups(self) -> GroupReader:
+        """What groups of sessions show, for whoever reads it."""
+        return GroupReader(self.storage, self.clock, self.bell, self.settings.diagnosis_workers)
 
 
 def application_of(request: Request) -> Application:

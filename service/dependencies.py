@@ -11,6 +11,7 @@ from starlette.types import Message
 from service.admission import PersonOf
 from service.application import application_of
 from service.background.read_diagnosis import Reader
+from service.background.read_group import GroupReader
 from service.errors import TooLargeError
 from service.flows.receive import Reception
 from service.flows.sign_certificate import Rules
@@ -75,6 +76,10 @@ def _reception(request: Request, storage: StorageOf, person: PersonOf) -> Recept
     return Reception(storage, k, own.metrics, own.bell.ring, person.signs(CREW), is_dated_later=later)
 
 
+def _groups(request: Request) -> GroupReader:
+    return application_of(request).groups
+
+
 def _desk(request: Request, storage: StorageOf) -> Desk:
     own = application_of(request)
     return Desk(storage, laboratory_of(own.settings), Rules(own.settings.four_eyes), own.seal)
@@ -111,6 +116,8 @@ MetricsOf = Annotated[Metrics, Depends(_metrics)]
 """The figures of the service."""
 ReaderOf = Annotated[Reader, Depends(_reader)]
 """What reads diagnoses."""
+GroupReaderOf = Annotated[GroupReader, Depends(_groups)]
+"""What reads what groups of sessions show."""
 ReceptionOf = Annotated[Reception, Depends(_reception)]
 """What takes in uploads."""
 DeskOf = Annotated[Desk, Depends(_desk)]

@@ -53,14 +53,23 @@ is *unexplained*.
 | `gain` | the amplitudes fixed on the first two thirds of the sessions, tried on the later ones |
 | `terms` | empirical terms, learned where the catalogue ends: equation, gain on the later sessions, nearest cause |
 
-## For the service
+## In the service
 
-* At upload, beside the diagnosis: `statistics_of(session).to_dict()` is JSON (`imu-session-statistics/1`) and is kept
-  with the session. Record and diagnosis need nothing of each other.
-* For a group: `diagnose_statistics(records, level, sessions)` with the records of its accepted sessions, oldest first.
-  `sessions` may be left out: then no measurement is proposed, and neither gain nor terms are worked out.
-* A session that is withdrawn leaves the pool by not being handed in.
-* `diagnose_group(sessions, level)` is both at once.
+* Beside the diagnosis of a session, in the same process, its record is made and kept: once, since it needs nothing of
+  other sessions. Records of sessions older than that are made with the first answer of their group. One that fails is
+  kept with its reason, and the next version of the program tries again.
+* A group's answer is made again when one of its sessions comes, gets its record, or changes its state: a session that
+  is withdrawn, questioned or superseded leaves the pool, and one that is accepted comes back. A digest of the
+  sessions says whether a stored answer still holds; one that does not is never given out.
+* The newest 60 accepted sessions are pooled, of a unit those since its last service. To those of a stand come up to
+  60 of the same units elsewhere, from before its last one. `left_out` counts the older ones; `not_pooled` lists
+  sessions without a record, with the reason.
+* `GET /units/{serial}/diagnosis`, `/unit-types/{name}/diagnosis` and `/stands/{name}/diagnosis` hand it out: [the
+  API](../api.md#diagnosis-and-models).
+
+From Python: `statistics_of(session)` is the record, with `to_dict` and `from_dict` (`imu-session-statistics/1`);
+`diagnose_statistics(records, level, sessions)` pools records, oldest first. Without `sessions` no measurement is
+proposed and no term learned. `diagnose_group(sessions, level)` is both at once.
 
 What is not pooled: record causes, outliers, jumps, clipping and excess noise belong to their session. How parameters
 moved between sessions is not yet used as evidence: residuals alone are.

@@ -12,6 +12,7 @@ from service.api import (
     feeds,
     flags,
     fleet,
+    groups,
     identity,
     labels,
     layouts,
@@ -48,8 +49,8 @@ def _every() -> APIRouter:
     """The routes of all applications: what a route does depends on its request alone, and building them is slow."""
     api, every = APIRouter(prefix=PREFIX), APIRouter(dependencies=ADMITTED)
     for resource in (
-        sessions, records, certificates, diagnoses, events, usable, labels, units, unit_types, models, plans, stands,
-        templates, layouts, flags, notes, webhooks, feeds, fleet, identity,
+        groups, sessions, records, certificates, diagnoses, events, usable, labels, units, unit_types, models, plans,
+        stands, templates, layouts, flags, notes, webhooks, feeds, fleet, identity,
     ):  # fmt: skip
         api.include_router(resource.router)
     every.include_router(api)

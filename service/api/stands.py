@@ -1,11 +1,9 @@
 """Stands: their own health, and the certificates of their own calibration."""
 
-from typing import Annotated
-
-from fastapi import APIRouter, Path
+from fastapi import APIRouter
 
 from service.admission import PersonOf
-from service.api.schemas.fields import TEXT
+from service.api.schemas.fields import StandName
 from service.api.schemas.papers import NewStandCertificate, StandCertificateList, StandCertificateSchema
 from service.api.schemas.problem import errors
 from service.api.schemas.stands import StandList, StandSchema
@@ -15,10 +13,6 @@ from service.records.paper import StandCertificate
 from service.views.stands import stand_conditions
 
 router = APIRouter(prefix="/stands", tags=["stands"])
-StandName = Annotated[
-    str,
-    Path(pattern=TEXT, max_length=200, description="The stand's name, as session files give it.", examples=["ODG-1"]),
-]
 
 
 @router.get("", responses=errors())

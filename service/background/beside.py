@@ -5,6 +5,7 @@ from threading import Event
 from service.background.diagnose_waiting import WORK, Diagnosing, diagnose_next
 from service.background.guard import Guard
 from service.background.helper import Helper
+from service.background.pool_waiting import pool_next
 from service.background.refresh_waiting import refresh_next
 
 LOOK_EVERY = 1.0
@@ -29,6 +30,7 @@ def work_beside(own: Diagnosing, stop: Event) -> None:
 
 
 def _work(own: Diagnosing, helper: Helper, stop: Event) -> bool:
-    """One of each kind, so that neither waits for all of the other; whether there was any."""
+    """A diagnosis and an outlook, so that neither waits for all of the other; whether there was any. A group waits for
+    both: every diagnosis changes what it rests on."""
     refreshed = refresh_next(own, helper, stop)
-    return diagnose_next(own, helper, stop) or refreshed
+    return diagnose_next(own, helper, stop) or refreshed or pool_next(own, helper, stop)

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 
 from estimator.errors import SessionError
+from service.errors import FAULTS as PROGRAM_FAULTS
 from service.errors import ServiceError
-from service.flows.diagnose import FAULTS as PROGRAM_FAULTS
 from service.log import log
 from service.metrics import Metrics
 from service.storage.faults import DATABASE_FAULTS

@@ -1,4 +1,5 @@
-"""A process of its own that makes diagnoses and outlooks: numerical work in threads stands in the requests' way.
+"""A process of its own that makes diagnoses, outlooks and what groups show: numerical work in threads stands in the way
+of requests.
 
 It is forked from one that holds nothing but the loaded program (`forkserver`), so that it has no connection to the
 database, no lock and no file of the service's. It ends with the service: it reads the end of its pipe.
@@ -13,14 +14,17 @@ from datetime import datetime
 from enum import StrEnum
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
+from typing import Any
 
 from estimator.errors import SessionError
 from service.background.guard import FAULTS
 from service.errors import ServiceError
 from service.flows.diagnose import diagnose
 from service.flows.refresh_beside import refresh_beside
+from service.flows.refresh_group import refresh_group
 from service.ingest import limits
 from service.log import log, write_log
+from service.records.group import Group
 from service.settings import Settings
 from service.storage import Storage, open_storage
 from service.storage.faults import DATABASE_FAULTS
@@ -52,6 +56,8 @@ class Job(StrEnum):
     """Of a session."""
     OUTLOOK = "outlook"
     """Of a unit."""
+    GROUP = "group"
+    """What the sessions of a unit, a unit type or a stand show together."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +96,11 @@ class Helper:
         """The same for the outlook of a unit."""
         return self._answer(Job.OUTLOOK, serial, now, still)
 
-    def _answer(self, job: Job, of: str, now: datetime, still: Still) -> Failure | None:
+    def pool(self, group: Group, now: datetime, still: Still) -> Failure | None:
+        """The same for what a group of sessions shows."""
+        return self._answer(Job.GROUP, group, now, still)
+
+    def _answer(self, job: Job, of: str | Group, now: datetime, still: Still) -> Failure | None:
         if not still():
             raise StoppingError(f"The {job} of {of} was not begun.")
         self.start()
@@ -133,15 +143,17 @@ def work(pipe: Connection, settings: Settings) -> None:
             pipe.send(answer)
 
 
-def _made(storage: Storage, job: Job, of: str, now: datetime, coverage_factor: float) -> Failure | None:
+def _made(storage: Storage, job: Job, of: Any, now: datetime, coverage_factor: float) -> Failure | None:
     try:
-        if job is Job.OUTLOOK:
+        if job is Job.GROUP:
+            refresh_group(storage, of, now)
+        elif job is Job.OUTLOOK:
             refresh_beside(storage, of, now)
         else:
             diagnose(storage, of, now, coverage_factor)
     except (ServiceError, SessionError, *DATABASE_FAULTS) as fault:
         return Failure(type(fault).__name__, str(fault))
     except FAULTS as fault:
-        log.error("work beside the requests failed", job=job.value, of=of, exc_info=fault)
+        log.error("work beside the requests failed", job=job.value, of=str(of), exc_info=fault)
         return Failure(type(fault).__name__, str(fault))
     return None

@@ -8,6 +8,7 @@ from threading import Event
 from service.background.flag_overdue import flag_overdue
 from service.background.flag_shifted_stands import flag_shifted_stands
 from service.background.guard import Guard
+from service.background.pool_waiting import ask_for_outdated
 from service.background.relearn import relearn
 from service.metrics import Metrics
 from service.storage import Storage
@@ -50,6 +51,8 @@ def look(storage: Storage, clock: Callable[[], datetime], metrics: Metrics) -> b
         flag_overdue(storage, clock(), guard.alone)
     with guard.alone("stands", ""):
         flag_shifted_stands(storage, clock(), guard.alone)
+    with guard.alone("groups", ""):
+        ask_for_outdated(storage, clock, guard.alone)
     with guard.alone("half-written files", ""):
         storage.files.sweep()
     return not guard.failed

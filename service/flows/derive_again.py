@@ -98,6 +98,7 @@ def derive_again(store: Store, way: Deriving, serial: str, since: datetime, touc
     for place in now:
         weigh_again(store, way.files, place.session.id)
     _sum_up(store, way, serial, touched)
+    store.pending_groups.ask(store.groups.of_unit(serial), way.at)
     return Derived(tuple(p.session.id for p in now), len(later))
 
 

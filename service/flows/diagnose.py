@@ -12,8 +12,10 @@ from estimator.diagnosis import diagnose as find_causes
 from estimator.errors import SessionError
 from estimator.results import COVERAGE
 from estimator.session import DIAGNOSED, CalibrationSession
+from service.errors import FAULTS
 from service.flows.derive_again import Deriving
 from service.flows.flagging.diagnosis import flag_diagnosis
+from service.flows.keep_statistics import keep_statistics
 from service.flows.question_session import question_diagnosed
 from service.flows.weigh import Weighed, weigh, weighing_of
 from service.ingest import read_upload
@@ -31,8 +33,6 @@ from service.words.diagnosis import NOT_APPLICABLE, cannot_be_diagnosed, fault_o
 
 MOST_EARLIER = 10
 """Earlier sessions of the unit that a diagnosis looks at."""
-FAULTS = (ArithmeticError, AssertionError, AttributeError, LookupError, TypeError, ValueError)
-"""What a mistake in the program ends in. A store or memory that is missing is none: it leaves the diagnosis pending."""
 
 
 @dataclass(frozen=True)
@@ -67,8 +67,11 @@ def diagnose(storage: Storage, id: str, now: datetime, coverage_factor: float = 
             task, asked = task_of(store, id), store.pending.of(id)
         made = _made(storage, task, now)
         with storage.database.writing() as store:
-            if _keep(store, way, task.session.unit, made, None if asked is None else asked.ticket):
-                return made
+            is_kept = _keep(store, way, task.session.unit, made, None if asked is None else asked.ticket)
+        if is_kept:
+            if made.state is not DiagnosisState.FAILED:
+                keep_statistics(storage, id, now)
+            return made
 
 
 def give_up(storage: Storage, id: str, now: datetime) -> None:

@@ -48,6 +48,7 @@ GET {SESSION}/correction
 GET {SESSION}/diagnosis
 GET {API}/units
 GET {UNIT}
+GET {UNIT}/diagnosis
 GET {UNIT}/history
 GET {UNIT}/flags
 GET {UNIT}/outlook
@@ -60,11 +61,13 @@ GET {UNIT}/label.svg
 GET {UNIT}/customer
 GET {API}/unit-types
 GET {API}/unit-types/{{name:path}}
+GET {API}/unit-types/{{name:path}}/diagnosis
 GET {API}/models
 GET {API}/plan
 GET {API}/session-template
 GET {API}/stands
 GET {API}/stands/{{name:path}}/certificates
+GET {API}/stands/{{name:path}}/diagnosis
 GET {API}/flags
 GET {API}/feeds/flags.atom
 GET {API}/feeds/due.ics

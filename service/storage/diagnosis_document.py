@@ -26,7 +26,7 @@ from service.words.diagnosis import NOT_APPLICABLE
 
 def diagnosis_to_dict(diagnosis: Diagnosis) -> dict[str, Any]:
     """imu-diagnosis/1; a number that is not finite becomes null."""
-    document: dict[str, Any] = _finite(diagnosis.to_dict())
+    document: dict[str, Any] = finite(diagnosis.to_dict())
     return document
 
 
@@ -61,7 +61,7 @@ def read_diagnosis(text: str) -> Diagnosed | None:
 
 def evidence_to_dict(evidence: Evidence | None) -> dict[str, Any]:
     """What a model revision rests on; empty of one that withdraws another."""
-    return {} if evidence is None else _finite(asdict(evidence))
+    return {} if evidence is None else finite(asdict(evidence))
 
 
 def evidence_from_dict(entry: dict[str, Any]) -> Evidence | None:
@@ -81,12 +81,13 @@ def evidence_from_dict(entry: dict[str, Any]) -> Evidence | None:
     )
 
 
-def _finite(value: Any) -> Any:
+def finite(value: Any) -> Any:
+    """What JSON can hold: a number that is not finite becomes null."""
     match value:
         case dict():
-            return {key: _finite(inner) for key, inner in value.items()}
+            return {key: finite(inner) for key, inner in value.items()}
         case list() | tuple():
-            return [_finite(inner) for inner in value]
+            return [finite(inner) for inner in value]
         case float():
             return value if isfinite(value) else None
         case _:

@@ -14,6 +14,7 @@ from service.storage.queries.diagnoses import Diagnoses
 from service.storage.queries.flags import Flags
 from service.storage.queries.fleet import Fleet
 from service.storage.queries.fleet_rows import FleetRows
+from service.storage.queries.groups import Groups
 from service.storage.queries.history import History
 from service.storage.queries.identities import Identities
 from service.storage.queries.layouts import Layouts
@@ -23,6 +24,7 @@ from service.storage.queries.notes import Notes
 from service.storage.queries.notices import Notices
 from service.storage.queries.outlooks import Outlooks
 from service.storage.queries.pending import PendingDiagnoses
+from service.storage.queries.pending_groups import PendingGroups
 from service.storage.queries.pending_outlooks import PendingOutlooks
 from service.storage.queries.services import Services
 from service.storage.queries.sessions import Sessions
@@ -31,6 +33,7 @@ from service.storage.queries.signatures import Signatures
 from service.storage.queries.stand_certificates import StandCertificates
 from service.storage.queries.stands import Stands
 from service.storage.queries.states import States
+from service.storage.queries.statistics import Statistics
 from service.storage.queries.tokens import Tokens
 from service.storage.queries.unit_types import UnitTypes
 from service.storage.queries.units import Units
@@ -97,6 +100,21 @@ class Store:
     def pending_outlooks(self) -> PendingOutlooks:
         """Outlooks that are to be worked out again."""
         return PendingOutlooks(self._session)
+
+    @cached_property
+    def statistics(self) -> Statistics:
+        """What sessions tell of their groups."""
+        return Statistics(self._session)
+
+    @cached_property
+    def groups(self) -> Groups:
+        """Units, unit types and stands as groups of sessions."""
+        return Groups(self._session)
+
+    @cached_property
+    def pending_groups(self) -> PendingGroups:
+        """Groups whose answer is to be made again."""
+        return PendingGroups(self._session)
 
     @cached_property
     def models(self) -> Models:

@@ -14,11 +14,11 @@ unit_types ──< tolerance_revisions          stands ──< stand_certificate
                    ├──< parameters            audit      who did what when, append-only
                    ├──< decisions
                    ├──< common_motions
-                   ├──1 diagnoses, pending_diagnoses
+                   ├──1 diagnoses, pending_diagnoses, session_statistics
                    ├──< reference_choices     record_states   what became of sessions and services, append-only
                    ├──< certificates ──< certificate_signatures, certificate_files   papers issued, append-only
                    └──< model_revisions       causes that engineers accepted, numbered through
-
+group_diagnoses, pending_groups               what the sessions of a unit, a unit type or a stand show together
 accounts ──< tokens, sign_ins, sign_in_links, identities   who may sign in, and what they show for it; attempts
 """
 

@@ -65,6 +65,10 @@ Serial = Annotated[
 TypeName = Annotated[
     str, Path(pattern=TEXT, max_length=200, description="The unit type's name.", examples=["hex-cone"])
 ]
+StandName = Annotated[
+    str,
+    Path(pattern=TEXT, max_length=200, description="The stand's name, as session files give it.", examples=["ODG-1"]),
+]
 Page = Annotated[int, Query(ge=1, le=1_000_000, description="Which page, from 1.")]
 Limit = Annotated[int, Query(ge=1, le=1000, description="How many on a page.")]
 Revision = Annotated[

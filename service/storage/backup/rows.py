@@ -23,8 +23,8 @@ from sqlalchemy import (
 )
 from sqlalchemy.types import UserDefinedType
 
-BATCH = 500
-"""Rows that are held at a time: the widest, a calibration, has some ten kilobytes."""
+BATCH = 100
+"""Rows that are held at a time: the widest, the statistics of a session, have some hundred kilobytes."""
 BOOKKEEPING = "alembic_version"
 """The table that is made by the migrations themselves."""
 

@@ -70,6 +70,11 @@ class Diagnoses(Queries):
         row = self._session.execute(query).one_or_none()
         return None if row is None else DiagnosisSummary(DiagnosisState(row[0]), row[1])
 
+    def has_failed(self, session: str) -> bool:
+        """Whether a session could not be diagnosed."""
+        found = self.summary(session)
+        return found is not None and found.state is DiagnosisState.FAILED
+
     def exists(self, session: str) -> bool:
         """Whether a session was diagnosed."""
         return self.summary(session) is not None

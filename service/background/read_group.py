@@ -1,0 +1,62 @@
+"""What a group of sessions shows, for whoever reads it: awaited where it is made beside the requests, else made."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from datetime import datetime
+from threading import BoundedSemaphore
+from time import monotonic
+
+from service.background.bell import Bell
+from service.flows.refresh_group import current, refresh_group
+from service.records.group import Group, GroupAnswer, Level
+from service.storage import Storage
+
+PATIENCE = 15.0
+"""Seconds that a program is let wait: a usual group takes some."""
+LOOK_EVERY = 0.25
+"""Seconds between two looks at what another service may have made."""
+MOST_WAITING = 4
+"""Requests that wait at a time, of the 40 that are answered at once; others are asked back."""
+
+
+@dataclass(frozen=True)
+class GroupReader:
+    """Reads what groups show, of one service."""
+
+    storage: Storage
+    clock: Callable[[], datetime]
+    bell: Bell
+    workers: int
+    """Processes of this service that make answers; 0 where each is made when it is read."""
+    places: BoundedSemaphore = field(default_factory=lambda: BoundedSemaphore(MOST_WAITING))
+
+    def read(self, level: Level, name: str, patience: float = PATIENCE) -> GroupAnswer | None:
+        """The answer of a group for its sessions of now; None while it is still being made, NotFoundError where there
+        is no such unit, unit type or stand."""
+        with self.storage.database.reading() as store:
+            group = store.groups.find(level, name)
+            known, asked = current(store, group), store.pending_groups.asked(group)
+        if known is not None:
+            return known
+        if not self.workers:
+            return refresh_group(self.storage, group, self.clock())
+        if not asked:
+            with self.storage.database.writing() as store:
+                store.pending_groups.ask((group,), self.clock())
+            self.bell.ring()
+        if not self.places.acquire(blocking=False):
+            return None
+        try:
+            return self._awaited(group, monotonic() + patience)
+        finally:
+            self.places.release()
+
+    def _awaited(self, group: Group, end: float) -> GroupAnswer | None:
+        while True:
+            rung = self.bell.rung
+            with self.storage.database.reading() as store:
+                known = current(store, group)
+            left = end - monotonic()
+            if known is not None or left <= 0:
+                return known
+            self.bell.wait(rung, min(left, LOOK_EVERY))

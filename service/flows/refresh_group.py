@@ -1,0 +1,117 @@
+"""Flow: what the sessions of a unit, a unit type or a stand show together, made again when one of them changed.
+
+It rests on the accepted sessions: a digest of them says whether a stored answer still holds. So a session that is
+withdrawn, questioned or superseded leaves the pool, and comes back when it is accepted.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from datetime import datetime
+from hashlib import sha256
+
+from estimator.errors import SessionError
+from estimator.groups import SessionStatistics, diagnose_statistics
+from estimator.session import CalibrationSession
+from service.errors import FAULTS
+from service.flows.keep_statistics import add_statistics
+from service.flows.refresh_outlook import END_OF_TIME
+from service.ingest import read_upload
+from service.log import log
+from service.records.group import Group, GroupAnswer, Level, Member, Members
+from service.settings import VERSION
+from service.storage import Files, Storage
+from service.storage.files import LOST
+from service.storage.group_document import group_document
+from service.storage.store import Store
+from service.words.group import FAILED, summary_of_group
+
+RULE = b"1"
+"""Version of what an answer says of its sessions: those made by an earlier one are made again."""
+
+
+def members_of(store: Store, group: Group) -> Members:
+    """The sessions that a group's answer rests on: of a unit those since its last service."""
+    since = store.services.around(group.key, END_OF_TIME)[0] if group.level is Level.UNIT else None
+    return store.groups.members(group, since)
+
+
+def digest(members: Members) -> str:
+    """64 hexadecimal digits, the same for the same sessions."""
+    lines = (f"{m.session} {m.has_statistics}" for m in members.sessions)
+    return sha256(RULE + "\n".join((*lines, str(members.left_out))).encode()).hexdigest()
+
+
+def current(store: Store, group: Group) -> GroupAnswer | None:
+    """The stored answer of a group, if it rests on what is known now; one that this version failed at holds too."""
+    known = store.groups.get(group)
+    if known is None or (known.document is None and known.estimator_version != VERSION):
+        return None
+    return known if known.rests_on == digest(members_of(store, group)) else None
+
+
+def refresh_group(storage: Storage, group: Group, now: datetime) -> GroupAnswer:
+    """The answer of a group for its sessions of now, made and stored where it is not there.
+
+    Statistics that are missing, as of sessions older than they are, are made first. What changes meanwhile has asked
+    for the group again.
+    """
+    with storage.database.reading() as store:
+        asked, missing = store.pending_groups.asked(group), members_of(store, group).without
+    for member in missing:
+        with storage.database.writing() as store:
+            wanted = not store.diagnoses.has_failed(member.session) and store.statistics.begin(member.session, VERSION)
+        if wanted:
+            add_statistics(storage, member.session, member.sha256, member.filename)
+    with storage.database.reading() as store:
+        members, answer = members_of(store, group), current(store, group)
+        records = store.statistics.of([m.session for m in members.pooled])
+    is_new = answer is None
+    answer = answer or _answered(storage.files, group, members, records, now)
+    with storage.database.writing() as store:
+        if is_new:
+            store.groups.put(group, answer)
+        store.pending_groups.settle(asked)
+    return answer
+
+
+def _answered(
+    files: Files, group: Group, members: Members, records: dict[str, SessionStatistics], now: datetime
+) -> GroupAnswer:
+    pooled = _pooled(group, members, records)
+    made = GroupAnswer(digest(members), len(pooled), summary_of_group(0, ()), None, VERSION, now)
+    if not pooled:
+        return replace(made, document=group_document(group, None, members))
+    try:
+        own = [_named(records[m.session], m) for m in pooled]
+        found = diagnose_statistics(own, group.level.value, _sessions(files, pooled))
+    except (*FAULTS, SessionError) as fault:
+        log.error("group failed", level=group.level.value, name=group.name, exc_info=fault)
+        return replace(made, summary=FAILED)
+    summary = summary_of_group(found.sessions, found.findings, unexplained=found.unexplained)
+    return replace(made, summary=summary, document=group_document(group, found, members))
+
+
+def _pooled(group: Group, members: Members, records: dict[str, SessionStatistics]) -> list[Member]:
+    """Oldest first; the last one is the group's own, since it says whose the group is."""
+    found = [m for m in members.pooled if m.session in records]
+    while found and not _is_own(group, found[-1]):
+        found.pop()
+    return found
+
+
+def _is_own(group: Group, member: Member) -> bool:
+    """Whether it is not a stand's unit elsewhere."""
+    return group.level is not Level.STAND or member.stand == group.name
+
+
+def _named(record: SessionStatistics, member: Member) -> SessionStatistics:
+    """As the service calls what it belongs to: a file may not state its type."""
+    return replace(record, unit=member.unit, unit_type=member.unit_type, stand=member.stand or "")
+
+
+def _sessions(files: Files, members: Sequence[Member]) -> list[CalibrationSession]:
+    """The sessions themselves; none where one is lost: then no measurement is proposed and no term learned."""
+    try:
+        return [replace(read_upload(files.content(m.sha256), m.filename), unit_type=m.unit_type) for m in members]
+    except (*LOST, SessionError):
+        return []

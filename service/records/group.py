@@ -1,0 +1,72 @@
+"""Sessions that are looked at together: of a unit, a unit type or a stand."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from enum import StrEnum
+
+
+class Level(StrEnum):
+    """Whose sessions."""
+
+    UNIT = "unit"
+    TYPE = "type"
+    STAND = "stand"
+
+
+@dataclass(frozen=True)
+class Group:
+    """A unit, a unit type or a stand."""
+
+    level: Level
+    key: int
+    name: str
+
+
+@dataclass(frozen=True)
+class Member:
+    """A session of a group."""
+
+    session: str
+    started_at: datetime
+    sha256: str
+    filename: str
+    unit: str
+    unit_type: str
+    stand: str | None
+    has_statistics: bool
+    why: str
+    """It has none; empty where nobody knows yet."""
+
+
+@dataclass(frozen=True)
+class Members:
+    """The sessions that a group's answer rests on."""
+
+    sessions: tuple[Member, ...]
+    """Oldest first."""
+    left_out: int
+    """Older ones, beyond the most that are pooled."""
+
+    @property
+    def pooled(self) -> tuple[Member, ...]:
+        """Those with statistics."""
+        return tuple(m for m in self.sessions if m.has_statistics)
+
+    @property
+    def without(self) -> tuple[Member, ...]:
+        """Those without."""
+        return tuple(m for m in self.sessions if not m.has_statistics)
+
+
+@dataclass(frozen=True)
+class GroupAnswer:
+    """What the sessions of a group show together, as it is stored."""
+
+    rests_on: str
+    """Digest of its sessions."""
+    sessions: int
+    summary: str
+    document: str | None
+    """imu-fleet-diagnosis/1 with what the service adds; None where it could not be made."""
+    estimator_version: str
+    created_at: datetime

@@ -1,0 +1,128 @@
+"""Units, unit types and stands as groups of sessions: who belongs to them, and what was found."""
+
+import zlib
+from datetime import datetime
+
+from sqlalchemy import ColumnElement, Select, and_, delete, func, or_, select
+
+from estimator.groups.statistics import FORMAT
+from estimator.session import CALIBRATIONS
+from service.errors import NotFoundError
+from service.records.group import Group, GroupAnswer, Level, Member, Members
+from service.storage.group_tables import GroupDiagnosisRow, SessionStatisticsRow
+from service.storage.queries.accepted import IS_ACCEPTED
+from service.storage.queries.base import Queries
+from service.storage.tables import SessionRow, StandRow, UnitRow, UnitTypeRow
+
+MOST = 60
+"""Sessions of a group that are pooled, the newest. An effect of one standard error in each reaches 8, at which it is
+named, at the 64th: fewer would miss what is worth a name. More would cost minutes, and tell of years ago."""
+KEYS = {Level.UNIT: UnitRow.id, Level.TYPE: UnitTypeRow.id, Level.STAND: StandRow.id}
+CALLED = {Level.UNIT: UnitRow.serial, Level.TYPE: UnitTypeRow.name, Level.STAND: StandRow.name}
+WORDS = {Level.UNIT: "unit", Level.TYPE: "unit type", Level.STAND: "stand"}
+
+
+class Groups(Queries):
+    """Groups and their answers."""
+
+    def find(self, level: Level, name: str) -> Group:
+        """A unit by its serial number, a unit type or stand by its name."""
+        key = self._session.scalar(select(KEYS[level]).where(CALLED[level] == name))
+        if key is None:
+            raise NotFoundError(f"There is no {WORDS[level]} {name!r}.")
+        return Group(level, key, name)
+
+    def by_key(self, level: Level, key: int) -> Group:
+        """A group whose key is known."""
+        name = self._session.scalars(select(CALLED[level]).where(KEYS[level] == key)).one()
+        return Group(level, key, name)
+
+    def every(self) -> tuple[Group, ...]:
+        """All units, then all unit types, then all stands."""
+        return tuple(
+            Group(level, key, name)
+            for level, number in KEYS.items()
+            for key, name in self._session.execute(select(number, CALLED[level]).order_by(number))
+        )
+
+    def of_unit(self, serial: str) -> tuple[Group, ...]:
+        """The groups that a unit's sessions are in, whatever their state."""
+        unit, of_type = self._session.execute(
+            select(UnitRow, UnitTypeRow).join(UnitTypeRow).where(UnitRow.serial == serial)
+        ).one()
+        stands = select(StandRow.id, StandRow.name).join(SessionRow, SessionRow.stand_id == StandRow.id)
+        on = self._session.execute(stands.where(SessionRow.unit_id == unit.id).distinct().order_by(StandRow.id))
+        return (
+            Group(Level.UNIT, unit.id, serial),
+            Group(Level.TYPE, of_type.id, of_type.name),
+            *(Group(Level.STAND, key, name) for key, name in on),
+        )
+
+    def members(self, group: Group, since: datetime | None) -> Members:
+        """The newest accepted sessions of a group that calibrate a block, not before a time.
+
+        To those of a stand come older ones of the same units elsewhere: they tell a stand's effect from a unit's.
+        """
+        own = _belongs(group)
+        if since is not None:
+            own = and_(own, SessionRow.started_at >= since)
+        found = self._newest(own)
+        count = self._session.scalar(select(func.count()).select_from(SessionRow).where(own, *_COUNTS)) or 0
+        elsewhere: tuple[Member, ...] = ()
+        if group.level is Level.STAND and found:
+            units = UnitRow.serial.in_({m.unit for m in found})
+            not_here = or_(SessionRow.stand_id.is_(None), SessionRow.stand_id != group.key)
+            elsewhere = self._newest(and_(units, not_here, SessionRow.started_at < found[0].started_at))
+        members = sorted((*found, *elsewhere), key=lambda m: (m.started_at, m.session))
+        return Members(tuple(members), count - len(found))
+
+    def _newest(self, condition: ColumnElement[bool]) -> tuple[Member, ...]:
+        query = _members().where(condition, *_COUNTS)
+        newest = query.order_by(SessionRow.started_at.desc(), SessionRow.id.desc()).limit(MOST)
+        return tuple(Member(*row) for row in self._session.execute(newest))
+
+    def get(self, group: Group) -> GroupAnswer | None:
+        """What is stored of a group; None where nothing is."""
+        row = self._session.get(GroupDiagnosisRow, (group.level.value, group.key))
+        if row is None:
+            return None
+        document = None if row.document is None else zlib.decompress(row.document).decode()
+        return GroupAnswer(row.rests_on, row.sessions, row.summary, document, row.estimator_version, row.created_at)
+
+    def put(self, group: Group, answer: GroupAnswer) -> None:
+        """Stores what was found of a group in place of what was."""
+        own = (GroupDiagnosisRow.level == group.level, GroupDiagnosisRow.group_id == group.key)
+        self._session.execute(delete(GroupDiagnosisRow).where(*own))
+        document = None if answer.document is None else zlib.compress(answer.document.encode())
+        values = {**vars(answer), "document": document}
+        self.insert_once(GroupDiagnosisRow, level=group.level, group_id=group.key, **values)
+        self._session.expire_all()
+
+
+_COUNTS = (IS_ACCEPTED, SessionRow.programme.in_(CALIBRATIONS))
+
+
+def _belongs(group: Group) -> ColumnElement[bool]:
+    match group.level:
+        case Level.UNIT:
+            return SessionRow.unit_id == group.key
+        case Level.TYPE:
+            return SessionRow.unit_id.in_(select(UnitRow.id).where(UnitRow.unit_type_id == group.key))
+        case Level.STAND:
+            return SessionRow.stand_id == group.key
+
+
+def _members() -> Select[str, datetime, str, str, str, str, str, bool, str]:
+    """As the fields of `Member`."""
+    has = and_(SessionStatisticsRow.format == FORMAT, SessionStatisticsRow.document.is_not(None))
+    return (
+        select(
+            SessionRow.id, SessionRow.started_at, SessionRow.sha256, SessionRow.filename,
+            UnitRow.serial, UnitTypeRow.name, StandRow.name,
+            func.coalesce(has, False), func.coalesce(SessionStatisticsRow.why, ""),
+        )
+        .join(UnitRow, UnitRow.id == SessionRow.unit_id)
+        .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+        .outerjoin(StandRow, StandRow.id == SessionRow.stand_id)
+        .outerjoin(SessionStatisticsRow, SessionStatisticsRow.session_id == SessionRow.id)
+    )  # fmt: skip

@@ -1,0 +1,52 @@
+"""Groups whose answer is to be made again: asked for, claimed by one process at a time, settled once."""
+
+from collections.abc import Collection, Iterable
+from datetime import datetime
+
+from sqlalchemy import ColumnElement, delete, func, insert, or_, select, update
+
+from service.records.group import Group, Level
+from service.storage.group_tables import PendingGroupRow
+from service.storage.queries.base import Queries
+from service.storage.queries.groups import Groups
+
+
+class PendingGroups(Queries):
+    """Of groups of which a session has changed."""
+
+    def ask(self, groups: Iterable[Group], now: datetime) -> None:
+        """Asks for what groups show; what is being made of them now is looked at again."""
+        rows = [{"level": g.level.value, "group_id": g.key, "asked_at": now} for g in groups]
+        if rows:
+            self._session.execute(insert(PendingGroupRow), rows)
+
+    def asked(self, group: Group) -> tuple[int, ...]:
+        """Who asks for a group now: to be read before its sessions are."""
+        return tuple(self._session.scalars(select(PendingGroupRow.id).where(*_of(group))))
+
+    def waiting(self, now: datetime, limit: int) -> tuple[Group, ...]:
+        """Groups that nobody is at, the one that was asked for first before all."""
+        key = (PendingGroupRow.level, PendingGroupRow.group_id)
+        until = func.max(PendingGroupRow.claimed_until)
+        query = select(*key).group_by(*key).having(or_(until.is_(None), until <= now))
+        first = query.order_by(func.min(PendingGroupRow.asked_at), *key).limit(limit)
+        groups = Groups(self._session)
+        return tuple(groups.by_key(Level(level), id) for level, id in self._session.execute(first))
+
+    def claim(self, group: Group, now: datetime, until: datetime) -> bool:
+        """Whether a group is ours until a time."""
+        is_free = or_(PendingGroupRow.claimed_until.is_(None), PendingGroupRow.claimed_until <= now)
+        own = update(PendingGroupRow).where(*_of(group), is_free).values(claimed_until=until)
+        return bool(self._session.scalars(own.returning(PendingGroupRow.id)).all())
+
+    def give_back(self, group: Group) -> None:
+        """Whoever was at it stops: the next one may begin at once."""
+        self._session.execute(update(PendingGroupRow).where(*_of(group)).values(claimed_until=None))
+
+    def settle(self, asked: Collection[int]) -> None:
+        """Who asked has the answer; whoever asked since has not."""
+        self._session.execute(delete(PendingGroupRow).where(PendingGroupRow.id.in_(tuple(asked))))
+
+
+def _of(group: Group) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
+    return PendingGroupRow.level == group.level.value, PendingGroupRow.group_id == group.key

@@ -1,0 +1,56 @@
+"""What the sessions of a unit, a type or a stand show together, over HTTP."""
+
+from datetime import UTC, datetime
+
+import httpx
+import pytest
+
+from service.app import create_app
+from service.background.bell import Bell
+from service.background.pool_waiting import CLAIM
+from service.background.read_group import MOST_WAITING, GroupReader
+from service.flows.receive import upload
+from service.records.group import Level
+from service.settings import Settings
+from service.storage import Storage
+from tests.conftest import Holding
+from tests.databases import one_engine
+from tests.service.grouped import GROUP
+from tests.serving import http_client
+
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
+GROUPS = ("units/BA-017", "unit-types/three", "stands/ODG-1")
+
+
+@pytest.mark.parametrize("path", GROUPS)
+def test_a_group_answers_what_its_sessions_show(holding: Holding, path: str) -> None:
+    answer = holding(*GROUP[:3]).get(f"/api/v1/{path}/diagnosis").raise_for_status().json()
+    assert (answer["format"], answer["id"], answer["sessions"]) == ("imu-fleet-diagnosis/1", path.split("/")[1], 3)
+    assert answer["summary"] == "Over 3 sessions: nothing wrong found."
+    assert {limit["cause"] for limit in answer["limits"]} >= {"cubic-nonlinearity", "beta-eccentricity"}
+
+
+@one_engine
+@pytest.mark.parametrize("path", ["units/none", "unit-types/none", "stands/none"])
+def test_what_does_not_exist_is_not_found(client: httpx.Client, path: str) -> None:
+    assert client.get(f"/api/v1/{path}/diagnosis").status_code == 404
+
+
+@one_engine
+def test_what_somebody_is_at_is_202_where_too_many_wait_for_it(settings: Settings, storage: Storage) -> None:
+    upload(storage, GROUP[0], "a.json", NOW)
+    with storage.database.writing() as store:
+        store.pending_groups.claim(store.groups.find(Level.UNIT, "BA-017"), NOW, NOW + CLAIM)
+    app = create_app(settings.model_copy(update={"diagnosis_workers": 1}), lambda: NOW)
+    for _ in range(MOST_WAITING):
+        app.state.application.groups.places.acquire()
+    with http_client(app) as client:
+        answer = client.get("/api/v1/units/BA-017/diagnosis")
+    assert (answer.status_code, "Retry-After" in answer.headers, answer.json()["status"]) == (202, True, "pending")
+
+
+@one_engine
+def test_patience_ends(storage: Storage) -> None:
+    upload(storage, GROUP[0], "a.json", NOW)
+    reader = GroupReader(storage, lambda: NOW, Bell(), workers=1)
+    assert reader.read(Level.UNIT, "BA-017", patience=0.0) is None

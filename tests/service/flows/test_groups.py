@@ -1,0 +1,163 @@
+"""What the sessions of a unit, a type and a stand show together: which of them count, and when it is made anew."""
+
+import json
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from estimator.diagnosis import diagnose as find_causes
+from service.flows.accept_session import accept_session
+from service.flows.diagnose import diagnose
+from service.flows.receive import upload
+from service.flows.record_service import record_service
+from service.flows.refresh_group import current, members_of, refresh_group
+from service.flows.withdraw_session import withdraw_session
+from service.ingest import read_upload
+from service.records.event import NewService
+from service.records.group import Group, GroupAnswer, Level
+from service.settings import VERSION
+from service.storage import Storage
+from service.storage.queries.statistics import GIVEN_UP, MOST_ATTEMPTS
+from tests.databases import one_engine
+from tests.service.grouped import GROUP, cubic_session
+from tests.service.records import step, way
+from tests.service.sessions import session_id
+
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
+UNIT = "BA-017"
+
+
+def fill(storage: Storage, *contents: bytes) -> None:
+    for content in contents:
+        upload(storage, content, "a.json", NOW)
+
+
+def group(storage: Storage, level: Level = Level.UNIT, name: str = UNIT) -> Group:
+    with storage.database.reading() as store:
+        return store.groups.find(level, name)
+
+
+def refreshed(storage: Storage, level: Level = Level.UNIT, name: str = UNIT) -> GroupAnswer:
+    return refresh_group(storage, group(storage, level, name), NOW)
+
+
+def told(answer: GroupAnswer) -> dict[str, Any]:
+    document: dict[str, Any] = json.loads(answer.document or "null")
+    return document
+
+
+def holds(storage: Storage) -> bool:
+    """Whether the stored answer of the unit is of what is known."""
+    with storage.database.reading() as store:
+        return current(store, store.groups.find(Level.UNIT, UNIT)) is not None
+
+
+def test_twelve_sessions_name_what_none_of_them_shows(storage: Storage) -> None:
+    fill(storage, *GROUP)
+    alone = [find_causes(read_upload(content, "a.json")).findings for content in GROUP]
+    found = told(refreshed(storage))
+    assert alone == [()] * 12
+    assert [(f["cause"], f["sensors"]) for f in found["findings"]] == [("cubic-nonlinearity", ["A2"])]
+    assert (found["sessions"], len(found["findings"][0]["sessions"]), found["left_out"]) == (12, 12, 0)
+
+
+@pytest.mark.parametrize(("level", "name"), [(Level.TYPE, "three"), (Level.STAND, "ODG-1")])
+def test_a_type_and_a_stand_have_the_sessions_of_all_their_units(storage: Storage, level: Level, name: str) -> None:
+    fill(storage, *GROUP[:2], cubic_session(2, unit="BA-018"))
+    found = told(refreshed(storage, level, name))
+    assert (found["level"], found["id"], found["sessions"]) == (level.value, name, 3)
+
+
+def test_to_a_stand_come_its_units_elsewhere_before_its_last_session(storage: Storage) -> None:
+    documents = [json.loads(content) for content in GROUP[:4]]
+    for k in (0, 3):
+        documents[k]["stand"]["id"] = "ODG-2"
+    fill(storage, *(json.dumps(document).encode() for document in documents))
+    assert (told(refreshed(storage, Level.STAND, "ODG-1"))["sessions"], told(refreshed(storage))["sessions"]) == (3, 4)
+
+
+def test_a_session_that_is_withdrawn_leaves_and_comes_back_when_it_is_accepted(storage: Storage) -> None:
+    fill(storage, *GROUP[:4])
+    before, last = refreshed(storage), session_id(GROUP[3])
+    withdraw_session(storage, way(storage), last, step())
+    assert not holds(storage)
+    assert told(refreshed(storage))["sessions"] == 3
+    accept_session(storage, way(storage), last, step())
+    assert told(refreshed(storage)) == told(before)
+
+
+def test_a_unit_is_pooled_since_its_last_service(storage: Storage) -> None:
+    fill(storage, *GROUP[:4])
+    record_service(storage, UNIT, NewService("repair", datetime(2023, 2, 15, tzinfo=UTC)), NOW)
+    assert told(refreshed(storage))["first"].startswith("2023-03")
+
+
+def test_it_is_made_once_while_its_sessions_stay_the_same(storage: Storage) -> None:
+    fill(storage, *GROUP[:2])
+    refreshed(storage)
+    again = refresh_group(storage, group(storage), NOW + timedelta(days=1))
+    assert again.created_at == NOW
+    fill(storage, GROUP[2])
+    assert refresh_group(storage, group(storage), NOW + timedelta(days=1)).created_at > NOW
+
+
+def test_the_statistics_of_a_session_are_made_with_its_diagnosis(storage: Storage) -> None:
+    fill(storage, GROUP[0])
+    id = session_id(GROUP[0])
+    diagnose(storage, id, NOW)
+    with storage.database.reading() as store:
+        assert store.statistics.of([id])[id].sensors == ("A1", "A2", "A3")
+
+
+@one_engine
+def test_every_change_of_a_record_asks_for_its_groups(storage: Storage) -> None:
+    fill(storage, GROUP[0])
+    for level, name in ((Level.UNIT, UNIT), (Level.TYPE, "three"), (Level.STAND, "ODG-1")):
+        refreshed(storage, level, name)
+    withdraw_session(storage, way(storage), session_id(GROUP[0]), step())
+    with storage.database.reading() as store:
+        assert {g.name for g in store.pending_groups.waiting(NOW, 10)} == {UNIT, "three", "ODG-1"}
+
+
+@one_engine
+def test_a_lost_file_is_left_out_and_named(storage: Storage) -> None:
+    fill(storage, *GROUP[:3])
+    file_of(storage, session_id(GROUP[1])).unlink()
+    found = told(refreshed(storage))
+    assert (found["sessions"], [one["session"] for one in found["not_pooled"]]) == (2, [session_id(GROUP[1])])
+
+
+def file_of(storage: Storage, id: str) -> Path:
+    with storage.database.reading() as store:
+        sha256 = store.sessions.get(id).sha256
+    return next(storage.files.folder.rglob(f"{sha256}*"))
+
+
+@one_engine
+def test_a_group_without_a_session_says_so(storage: Storage) -> None:
+    fill(storage, GROUP[0])
+    withdraw_session(storage, way(storage), session_id(GROUP[0]), step())
+    answer = refreshed(storage)
+    assert (told(answer)["sessions"], answer.summary) == (0, "No accepted session calibrates a block.")
+
+
+@one_engine
+def test_only_the_newest_are_pooled_and_the_rest_is_counted(storage: Storage, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("service.storage.queries.groups.MOST", 2)
+    fill(storage, *GROUP[:3])
+    found = told(refreshed(storage))
+    assert (found["sessions"], found["left_out"], found["first"][:7]) == (2, 1, "2023-02")
+
+
+def test_a_session_that_no_process_outlives_is_given_up(storage: Storage) -> None:
+    fill(storage, GROUP[0])
+    id = session_id(GROUP[0])
+    for attempt in range(MOST_ATTEMPTS + 1):
+        with storage.database.writing() as store:
+            assert store.statistics.begin(id, VERSION) is (attempt < MOST_ATTEMPTS)
+    with storage.database.reading() as store:
+        assert [m.why for m in members_of(store, group(storage)).without] == [GIVEN_UP]
+    with storage.database.writing() as store:
+        assert store.statistics.begin(id, "the next one")

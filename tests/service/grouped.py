@@ -1,0 +1,26 @@
+"""Sessions that share an effect too small for one of them, as bytes: a cubic term of A2, about two standard errors
+in each."""
+
+import json
+
+import numpy as np
+
+from tests.service.sessions import session_bytes
+
+CUBIC = 6.5e-8
+"""(m/s²)⁻² of A2: some two standard errors of a session, seven of twelve. Counted, not derived: a session that shows
+it by itself fails the test that says none does."""
+SCALE = 0.12
+
+
+def cubic_session(number: int, *, unit: str = "BA-017", cubic: float = CUBIC) -> bytes:
+    """One of several sessions, a month after the one before, of three sensors."""
+    year, month = 2023 + number // 12, number % 12 + 1
+    document = json.loads(session_bytes(seed=100 + number, unit=unit, m=3))
+    readings = np.array(document["table"]["A2"])
+    document["table"]["A2"] = (readings + SCALE * cubic * (readings / SCALE) ** 3).tolist()
+    return json.dumps(document | {"started_at": f"{year}-{month:02d}-01T09:00:00Z", "unit_type": "three"}).encode()
+
+
+GROUP = tuple(cubic_session(number) for number in range(12))
+"""Twelve of one unit, oldest first."""
