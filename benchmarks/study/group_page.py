@@ -64,8 +64,9 @@ is *unexplained*.
 * The newest 60 accepted sessions are pooled, of a unit those since its last service. To those of a stand come up to
   60 of the same units elsewhere, from before its last one. `left_out` counts the older ones; `not_pooled` lists
   sessions without a record, with the reason.
-* `GET /units/{serial}/diagnosis`, `/unit-types/{name}/diagnosis` and `/stands/{name}/diagnosis` hand it out: [the
-  API](../api.md#diagnosis-and-models).
+* The page of a unit shows it, with every session's own amplitude and the limits of the pool beside those of one
+  session. `GET /units/{serial}/diagnosis`, `/unit-types/{name}/diagnosis` and `/stands/{name}/diagnosis` hand it out:
+  [the API](../api.md#diagnosis-and-models).
 
 From Python: `statistics_of(session)` is the record, with `to_dict` and `from_dict` (`imu-session-statistics/1`);
 `diagnose_statistics(records, level, sessions)` pools records, oldest first. Without `sessions` no measurement is

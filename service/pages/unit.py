@@ -17,6 +17,7 @@ from service.records.session import StoredSession
 from service.records.unit import UnitReport
 from service.views.found_and_left import FoundAndLeft
 from service.words.conditions import NOT_JUDGED, Condition, condition_of, said_with
+from service.words.group_finding import GroupView
 from service.words.names import day_of, heading
 from service.words.outlook import NextCalibration, next_calibration
 
@@ -91,6 +92,8 @@ class UnitPage:
     """None before a session was judged."""
     raw: bool
     """Whether what the whole block did is left in."""
+    group: GroupView | None
+    """What its sessions show together; None where that is not made of its records of now."""
     follow: int | None
     """Seconds after which the page looks again whether its dates are worked out; None where they are."""
 
@@ -105,6 +108,7 @@ def unit_page(
     notes: Sequence[Note] = (),
     pair: FoundAndLeft | None = None,
     outlook: UnitOutlook | None = None,
+    group: GroupView | None = None,
     follow: int | None = None,
 ) -> UnitPage:
     """The page of a unit with its history, flags and notes, as found and as left, and when it must come back."""
@@ -125,6 +129,7 @@ def unit_page(
         kinds=tuple(KINDS.items()),
         next=None if outlook is None else next_calibration(outlook, now),
         raw=raw,
+        group=group,
         follow=follow,
     )
 

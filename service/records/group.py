@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 
+from estimator.groups.results import GroupFinding, PoolLimit
+
 
 class Level(StrEnum):
     """Whose sessions."""
@@ -70,3 +72,16 @@ class GroupAnswer:
     """imu-fleet-diagnosis/1 with what the service adds; None where it could not be made."""
     estimator_version: str
     created_at: datetime
+
+
+@dataclass(frozen=True)
+class GroupShown:
+    """What imu-fleet-diagnosis/1 says, as pages show it."""
+
+    sessions: int
+    left_out: int
+    findings: tuple[GroupFinding, ...]
+    limits: tuple[PoolLimit, ...]
+    equations: tuple[str, ...]
+    """Of empirical terms."""
+    notes: tuple[str, ...]

@@ -3,8 +3,10 @@
 import json
 from typing import Any
 
+from estimator.diagnosis.results import Limit
 from estimator.groups import GroupDiagnosis
-from service.records.group import Group, Members
+from estimator.groups.results import GroupFinding, PoolLimit, Rival, SessionAmplitude
+from service.records.group import Group, GroupShown, Members
 from service.storage.diagnosis_document import finite
 from service.words.group import NO_SESSION
 
@@ -15,6 +17,38 @@ def group_document(group: Group, found: GroupDiagnosis | None, members: Members)
     left = [{"session": m.session, "reason": m.why} for m in members.without]
     whole = document | {"left_out": members.left_out, "not_pooled": left}
     return json.dumps(whole, separators=(",", ":"), allow_nan=False)
+
+
+def read_group(text: str) -> GroupShown:
+    """What `group_document` wrote."""
+    document = json.loads(text)
+    return GroupShown(
+        sessions=document["sessions"],
+        left_out=document["left_out"],
+        findings=tuple(map(_finding, document["findings"])),
+        limits=tuple(map(_limit, document["limits"])),
+        equations=tuple(term["equation"] for term in document["terms"]),
+        notes=tuple(document["notes"]),
+    )
+
+
+def _finding(entry: dict[str, Any]) -> GroupFinding:
+    """Lists are the tuples that they were."""
+    own: dict[str, Any] = {name: tuple(value) if isinstance(value, list) else value for name, value in entry.items()}
+    own["rivals"] = tuple(Rival(**rival | {"sensors": tuple(rival["sensors"])}) for rival in entry["rivals"])
+    own["sessions"] = tuple(
+        SessionAmplitude(s["started_at"], s["unit"], tuple(s["amplitude"]), tuple(s["sigma"]))
+        for s in entry["sessions"]
+    )
+    return GroupFinding(**own)
+
+
+def _limit(entry: dict[str, Any]) -> PoolLimit:
+    of_pool, of_one = (
+        Limit(entry["cause"], None if size is None else tuple(size), tuple(entry["units"]), entry["reason"])
+        for size in (entry["amplitude"], entry["one_session"])
+    )
+    return PoolLimit(of_pool, of_one)
 
 
 def _empty(group: Group) -> dict[str, Any]:

@@ -1,8 +1,9 @@
 """How large a cause is, and where it sits, in people's measures."""
 
 import re
-from collections.abc import Iterator
-from math import isfinite
+from collections.abc import Iterator, Sequence
+from math import isfinite, nan
+from typing import Protocol
 
 from estimator.causes import find
 from estimator.diagnosis import Finding
@@ -13,11 +14,27 @@ NUMBERED = re.compile(r" \d+$")
 """What tells two nonlinear parameters of one unit apart: ``row 1``, ``row 2``."""
 
 
-def amplitudes_of(finding: Finding) -> Iterator[str]:
+class Sized(Protocol):
+    """What has amplitudes: a finding of a session or of a group."""
+
+    @property
+    def cause(self) -> str: ...
+    @property
+    def sensors(self) -> tuple[str, ...]: ...
+    @property
+    def amplitude(self) -> tuple[float, ...]: ...
+    @property
+    def sigma(self) -> Sequence[float | None]: ...
+    @property
+    def units(self) -> tuple[str, ...]: ...
+
+
+def amplitudes_of(finding: Sized) -> Iterator[str]:
     """Every amplitude ± U; named by sensor where several share the cause."""
     each = max(1, len(finding.amplitude) // max(1, len(finding.sensors)))
     stated = zip(finding.amplitude, finding.sigma, finding.units, strict=False)
-    for k, (value, sigma, si_unit) in enumerate(stated):
+    for k, (value, known, si_unit) in enumerate(stated):
+        sigma = nan if known is None else known
         if not _is_stated(value) and not _is_stated(sigma):
             continue
         expanded = COVERAGE * sigma

@@ -34,7 +34,7 @@ class BlindCauses:
 def seen_causes(limits: Sequence[Limit], kinds: Collection[str]) -> tuple[SeenCause, ...]:
     """Causes that a session would find, with the size from which on, at sensors of these kinds."""
     kind = leading_kind(kinds)
-    return tuple(SeenCause(cause_name(limit.cause), _size(limit, kind)) for limit in limits if limit.amplitude)
+    return tuple(SeenCause(cause_name(limit.cause), size_of(limit, kind)) for limit in limits if limit.amplitude)
 
 
 def blind_causes(limits: Sequence[Limit]) -> tuple[BlindCauses, ...]:
@@ -46,7 +46,7 @@ def blind_causes(limits: Sequence[Limit]) -> tuple[BlindCauses, ...]:
     return tuple(BlindCauses(", ".join(causes), reason) for reason, causes in names.items())
 
 
-def _size(limit: Limit, kind: str) -> str:
+def size_of(limit: Limit, kind: str) -> str:
     """Every amplitude once: two that agree to a tenth are one number."""
     stated = zip(limit.amplitude or (), limit.units, strict=False)
     shown = (_amplitude(limit.cause, value, _unit(limit.cause, si_unit, kind)) for value, si_unit in stated)
