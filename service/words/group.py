@@ -30,12 +30,8 @@ def summary_of_group(sessions: int, findings: Sequence[GroupFinding], *, unexpla
 
 
 def statement(finding: GroupFinding) -> str:
-    """What is wrong, or the choice that cannot be made."""
+    """What is wrong, and what it may be instead: ``A2 bends with the cube, unless it is odd quadratic.``"""
     if not finding.alternatives:
         return finding.sentence
-    names = (finding.cause, *finding.alternatives)
-    return f"Cannot tell which: {' or '.join(dict.fromkeys(map(cause_name, names)))}{_on(finding.sensors)}."
-
-
-def _on(sensors: Sequence[str]) -> str:
-    return f" ({', '.join(sensors)})" if sensors and "*" not in sensors else ""
+    others = " or ".join(dict.fromkeys(map(cause_name, finding.alternatives)))
+    return f"{finding.sentence.removesuffix('.')}, unless it is {others}."
