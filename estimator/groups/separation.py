@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.calibration.calibrate import averaged
-from estimator.diagnosis.explanation.next_measurement import proposals
+from estimator.diagnosis.explanation.next_measurement import other_schedules
 from estimator.diagnosis.explanation.rivals import DISTINGUISHED
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
@@ -17,8 +17,8 @@ from estimator.groups.selection import Selection
 from estimator.groups.statistics import Block
 from estimator.session import Array, CalibrationSession
 
-MOST = 1000
-"""Sessions beyond which nobody would wait for an answer."""
+MOST = 60
+"""Sessions beyond which nobody would wait for an answer: five years of one a month."""
 
 AGAIN = "more sessions of the same programme"
 
@@ -91,6 +91,6 @@ class Plan:
 
 
 def planned(session: CalibrationSession) -> list[Plan]:
-    """The same session again, and every proposal of another one."""
+    """The same session again, and every proposal of another one; sessions that are many anyway are not averaged too."""
     baseline = baseline_of(averaged(session))
-    return [Plan.of(AGAIN, baseline), *(Plan.of(words, b) for words, b in proposals(baseline))]
+    return [Plan.of(AGAIN, baseline), *(Plan.of(words, b) for words, b in other_schedules(baseline))]

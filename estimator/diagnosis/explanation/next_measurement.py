@@ -25,6 +25,13 @@ Proposal = Callable[[Baseline], Iterator[tuple[str, Baseline]]]
 
 def proposals(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
     """Every proposal for a session on a stand, in the order in which a technician would rather make them."""
+    yield from other_schedules(baseline)
+    if baseline.session.programme == TWO_AXIS_STAND:
+        yield from repeated(baseline)
+
+
+def other_schedules(baseline: Baseline) -> Iterator[tuple[str, Baseline]]:
+    """Those of them that measure otherwise, and not only more often."""
     if baseline.session.programme == TWO_AXIS_STAND:
         for proposal in PROPOSALS:
             yield from proposal(baseline)
@@ -145,6 +152,5 @@ PROPOSALS: tuple[Proposal, ...] = (
     more_positions,
     temperature_cycle,
     other_elevation,
-    repeated,
 )
-"""In the order in which a technician would rather make them."""
+"""Of another schedule, in the order in which a technician would rather make them."""
