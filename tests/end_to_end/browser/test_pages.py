@@ -61,7 +61,8 @@ class Seen:
 
 OVERFLOW = "document.documentElement.scrollWidth - window.innerWidth"
 LEVELS = "[...document.querySelectorAll('h1,h2,h3')].map((h) => +h.tagName[1])"
-NAMELESS = "[...document.querySelectorAll('input:not([type=hidden]),select')].filter((e) => !e.labels.length).length"
+CONTROLS = "[...document.querySelectorAll('input:not([type=hidden]),select')]"
+NAMELESS = f"{CONTROLS}.filter((e) => !e.labels.length && !e.ariaLabel).length"
 
 
 def visit(browser: Browser, site: Site, path: str, width: int) -> Seen:

@@ -19,7 +19,8 @@ from tests.service.sessions import session_bytes
 from tests.serving import http_client, running
 
 HTML = {"Accept": "text/html"}
-MOST_QUERIES = 10
+MOST_QUERIES = 12
+"""Of the unit page, which shows most: unit, history, flags, notes, dates, and what its sessions show together."""
 
 
 def post(client: httpx.Client, content: bytes, **headers: str) -> httpx.Response:
