@@ -26,6 +26,14 @@ ENDINGS = ((XLSX, "xlsx"), (PARQUET, "parquet"), (HDF5, "h5"), (MAT, "mat"))
 LONGEST_MAPPING = 1024 * 1024
 """Bytes; ten thousand columns take less."""
 PARTS = 2
+UNREADABLE = (
+    BadZipFile,  # a broken header
+    ValueError,  # a place before the beginning, or a name in no code
+    EOFError,  # its end comes too soon
+    RuntimeError,  # a part that claims to be encrypted
+    NotImplementedError,  # zipfile's word for a version or a way of packing that it does not know
+)
+"""What zipfile ends in at an archive that anybody may have made."""
 
 
 def wrapped(mapping: Mapping[str, Any], content: bytes) -> bytes:
@@ -59,7 +67,7 @@ def unwrapped(content: bytes, filename: str) -> tuple[dict[str, Any], bytes]:
             if len(parts) != PARTS or any(part.compress_type != ZIP_STORED for part in parts):
                 raise refusal(filename, f"must hold two parts that are not compressed: {MAPPING} and the table")
             text, table = (archive.read(part) for part in parts)
-    except (BadZipFile, OSError, EOFError, RuntimeError, NotImplementedError, UnicodeError) as error:
+    except UNREADABLE as error:
         raise refusal(filename, "is damaged; upload the table and its mapping again") from error
     return mapping_of(text, filename), table
 

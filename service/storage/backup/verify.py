@@ -9,9 +9,14 @@ from pathlib import Path
 from service.errors import DamagedError
 from service.storage.backup.manifest import Manifest, TableContents, file_member, opened, read_manifest
 
-UNREADABLE = (zipfile.BadZipFile, zlib.error, EOFError, KeyError, NotImplementedError)
-"""What reading a changed member ends in: a broken header, a broken stream, its end too soon, a member that is missing,
-and a way of packing that a changed byte made up."""
+UNREADABLE = (
+    zipfile.BadZipFile,  # a broken header
+    zlib.error,  # a broken stream
+    EOFError,  # its end comes too soon
+    KeyError,  # a member is missing
+    NotImplementedError,  # zipfile's word for a way of packing that a changed byte made up
+)
+"""What reading a changed member ends in."""
 
 
 def verified(file: Path) -> Manifest:

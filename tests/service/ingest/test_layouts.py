@@ -1,6 +1,7 @@
 """Tables of people's own layout: whatever wrote them, the same content is the same session."""
 
 import zipfile
+from contextlib import suppress
 from io import BytesIO
 
 import pytest
@@ -242,3 +243,11 @@ def test_a_fault_of_a_mapping_is_named(mapping, field):
     with pytest.raises(FormatError) as caught:
         read_upload(wrapped(mapping, b"a;b\n1;2\n"), "x")
     assert field in [problem.field for problem in caught.value.problems]
+
+
+def test_a_damaged_envelope_is_refused_whatever_was_changed() -> None:
+    content = wrapped({"format": "imu-mapping/1"}, b"x;y\n1;2\n")
+    for place in range(len(content)):
+        for byte in (0, 128, 255):
+            with suppress(FormatError):
+                unwrapped(content[:place] + bytes([byte]) + content[place + 1 :], "x.zip")
