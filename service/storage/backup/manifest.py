@@ -9,6 +9,7 @@ is written last.
 """
 
 import zipfile
+import zlib
 from datetime import datetime
 from pathlib import Path
 from typing import IO, Literal
@@ -19,6 +20,15 @@ from service.errors import ServiceError
 
 MANIFEST = "manifest.json"
 HASH = "^[0-9a-f]{64}$"
+UNREADABLE = (
+    zipfile.BadZipFile,  # a broken header
+    zlib.error,  # a broken stream
+    OSError,  # a place before the beginning
+    EOFError,  # its end comes too soon
+    KeyError,  # a member is missing
+    NotImplementedError,  # zipfile's word for a way of packing that a changed byte made up
+)
+"""What reading a changed backup ends in."""
 
 
 class _Part(BaseModel):
@@ -71,7 +81,9 @@ def opened(file: Path) -> zipfile.ZipFile:
     """A backup to read; ServiceError where it is none, or is not whole."""
     try:
         return zipfile.ZipFile(file)
-    except zipfile.BadZipFile as fault:
+    except (FileNotFoundError, PermissionError):
+        raise
+    except UNREADABLE as fault:
         raise ServiceError(f"{file} is not a backup, or was cut off: {fault}.") from fault
 
 
@@ -79,7 +91,7 @@ def read_manifest(archive: zipfile.ZipFile) -> Manifest:
     """What the backup says of itself; ServiceError where it says nothing that this version understands."""
     try:
         manifest = Manifest.model_validate_json(archive.read(MANIFEST))
-    except (KeyError, ValidationError) as fault:
+    except (*UNREADABLE, ValidationError) as fault:
         raise ServiceError(f"{archive.filename} is no backup that this version understands.") from fault
     return manifest
 

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import zipfile
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -132,6 +133,16 @@ def test_a_backup_that_was_cut_off_or_changed_is_refused(full: Settings, tmp_pat
     backup.write_bytes(content[:place] + bytes([content[place] ^ 1]) + content[place + 1 :])
     with pytest.raises(ServiceError):
         verified(backup)
+
+
+@one_engine
+def test_no_byte_of_its_manifest_and_index_changes_without_an_answer(full: Settings, tmp_path: Path) -> None:
+    backup = backup_of(full, tmp_path)
+    content = backup.read_bytes()
+    for place in range(len(content) - 3000, len(content), 13):
+        backup.write_bytes(content[:place] + bytes([content[place] ^ 128]) + content[place + 1 :])
+        with suppress(ServiceError):
+            verified(backup)
 
 
 @one_engine
