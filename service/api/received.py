@@ -9,7 +9,7 @@ from fastapi import Depends, Query, Request
 from estimator.errors import Problem, SessionError
 from service.admission import PersonOf
 from service.api.schemas.fields import LongText, Text
-from service.api.schemas.sessions import SessionFile
+from service.api.schemas.session_file import SESSION_FILE
 from service.arriving import Arriving, ArrivingOf, LandedFile
 from service.errors import ForbiddenError, RefusedError
 from service.ingest.layout.envelope import mapping_of
@@ -100,7 +100,7 @@ REQUEST_BODY: dict[str, Any] = {
         "required": True,
         "description": "A session file, as the body or as the part `file` of a form.",
         "content": {
-            "application/json": {"schema": SessionFile.model_json_schema()},
+            "application/json": {"schema": SESSION_FILE},
             "text/csv": {"schema": {"type": "string", "description": "imu-session/1 as CSV with metadata."}},
             "multipart/form-data": {
                 "schema": {

@@ -7,7 +7,7 @@ from fastapi import APIRouter, Query, Request, Response
 from service.admission import PersonOf
 from service.api.exports import as_csv, as_parquet, history_table
 from service.api.flags import WantedState, flag_page
-from service.api.schemas.fields import Moment, Serial, Text, WantedText, WantedVerdict, WindowOf
+from service.api.schemas.fields import Bound, Moment, Serial, Text, WantedText, WantedVerdict, WindowOf
 from service.api.schemas.flags import FlagPage
 from service.api.schemas.history import HistoryAsked, HistoryPage, HistoryPointSchema
 from service.api.schemas.models import RecalibratedSchema
@@ -45,7 +45,7 @@ def list_units(
     text: WantedText = None,
     reserved: Annotated[bool | None, Query(description="Only those whose verdict has a reservation, or none.")] = None,
     *,
-    due_before: Annotated[Moment | None, Query(description="Only those whose next calibration is due before.")] = None,
+    due_before: Annotated[Bound | None, Query(description="Only those whose next calibration is due before.")] = None,
     unit_type: Annotated[Text | None, Query(description="Only those of this type.")] = None,
     stand: Annotated[Text | None, Query(description="Only those last measured on this stand.")] = None,
     lot: Annotated[Text | None, Query(description="Only those of this production lot.")] = None,

@@ -16,11 +16,20 @@ NUMBER = re.compile(r"\s*[-+]?[\d._]+(e[-+]?\d+)?\s*", re.IGNORECASE)
 EARLIEST, LATEST = datetime(1900, 1, 1, tzinfo=UTC), datetime(2200, 1, 1, tzinfo=UTC)
 
 
+def _aware(moment: datetime) -> datetime:
+    return moment if moment.tzinfo else moment.replace(tzinfo=UTC)
+
+
 def _in_utc(moment: datetime) -> datetime:
-    aware = moment if moment.tzinfo else moment.replace(tzinfo=UTC)
+    aware = _aware(moment)
     if not EARLIEST <= aware < LATEST:
         raise ValueError("must lie between 1900 and 2200")
     return aware.astimezone(UTC)
+
+
+def _bounded(moment: datetime) -> datetime:
+    """Nothing is kept from before 1900 or after 2200: a bound beyond asks for the same."""
+    return min(max(_aware(moment), EARLIEST), LATEST).astimezone(UTC)
 
 
 def _written(given: object) -> object:
@@ -38,6 +47,8 @@ def _day_written(given: object) -> object:
 
 Moment = Annotated[datetime, BeforeValidator(_written), AfterValidator(_in_utc)]
 """A time; without a zone it is UTC."""
+Bound = Annotated[datetime, BeforeValidator(_written), AfterValidator(_bounded)]
+"""A time that a list begins or ends at; without a zone it is UTC."""
 Day = Annotated[date, BeforeValidator(_day_written)]
 """A day, as on a calendar."""
 Text = Annotated[str, StringConstraints(pattern=TEXT, max_length=200)]

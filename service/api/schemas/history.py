@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from service.api.schemas.fields import Moment, Text, Window
+from service.api.schemas.fields import Bound, Text, Window
 from service.records.decision import Verdict
 from service.storage.queries.history import HistoryQuery
 
@@ -17,8 +17,8 @@ class HistoryAsked(BaseModel):
         None, description="Only this parameter."
     )
     sensor: Text | None = Field(None, description="Only this sensor.")
-    since: Moment | None = Field(None, description="Measured at or after this time.")
-    until: Moment | None = Field(None, description="Measured before this time.")
+    since: Bound | None = Field(None, description="Measured at or after this time.")
+    until: Bound | None = Field(None, description="Measured before this time.")
     format: Literal["json", "csv", "parquet"] = Field("json", description="Form of the answer.")
     revision: Annotated[int, Field(ge=0, le=2_000_000_000)] | None = Field(
         None, description="Under this model revision instead of the one in force; 0: baseline."

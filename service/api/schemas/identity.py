@@ -49,7 +49,10 @@ class NewAccount(BaseModel):
         extra="forbid", json_schema_extra={"example": {"login": "k.ito", "name": "K. Ito", "role": "crew"}}
     )
 
-    login: Said = Field(description="Letters a to z, digits and . _ @ -; at most 60.")
+    login: Said = Field(
+        description="Letters a to z, digits and . _ @ -; at most 60. Capitals are made small.",
+        json_schema_extra={"pattern": r"^[A-Za-z0-9][A-Za-z0-9._@-]{0,59}$"},
+    )
     name: Text = Field(default="", description="As papers name the person; the login without it.")
     role: Role = Field(description="What the person may do.")
 

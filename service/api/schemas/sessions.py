@@ -160,16 +160,3 @@ class CalibrationDocument(BaseModel):
     gauge: str = Field(description="What holds the block's frame.")
     covariance: dict[str, Any] = Field(description="Names and units of all elements; total and repeatability.")
     residuals: dict[str, Any] = Field(description="Measured minus modelled, row by row, at the input.")
-
-
-class SessionFile(BaseModel):
-    """imu-session/1: one calibration session. The convention of fields is in the documentation."""
-
-    model_config = ConfigDict(extra="allow")
-
-    format: str = Field(description="`imu-session/1`.")
-    unit: str = Field(description="Serial number of the unit.")
-    block: str = Field(description="`accelerometer` or `gyroscope`.")
-    programme: str = Field(description="`two-axis-stand`, `arbitrary-orientations`, …")
-    sensors: list[dict[str, Any]] = Field(description="Name, nominal axis, nominal scale and reading unit of each.")
-    table: dict[str, Any] = Field(description="Columns of equal length: one row a reading, in the order measured.")

@@ -23,7 +23,10 @@ class NewWebhook(BaseModel):
         },
     )
 
-    url: Url = Field(description="Where messages are sent; its host must be among those that the operator allows.")
+    url: Url = Field(
+        description="Where messages are sent; its host must be among those that the operator allows.",
+        json_schema_extra={"pattern": r"^https?://([A-Za-z0-9.-]+|\[[0-9A-Fa-f:.]+\])(:[0-9]{1,5})?(/[!-~]*)?$"},
+    )
     secret: Secret = Field(description="What messages are signed with, 16 characters or more; never shown again.")
     by: Name = Field(description="Who registers it.")
 

@@ -52,6 +52,12 @@ def test_history_is_cut_by_date(measured: httpx.Client) -> None:
     assert [p["at"] for p in points] == ["2026-05-01T09:00:00Z"]
 
 
+def test_a_bound_beyond_what_is_kept_cuts_nothing(measured: httpx.Client) -> None:
+    cut = {"since": "0001-01-01T00:00:00+14:00", "until": "9999-12-31T23:59:59-12:00"}
+    history = measured.get(f"{UNIT}/history")
+    assert measured.get(f"{UNIT}/history", params=cut).json() == history.json()
+
+
 def test_history_as_csv_and_parquet_holds_the_same(measured: httpx.Client) -> None:
     json = measured.get(f"{UNIT}/history").json()["points"]
     csv = pl.read_csv(measured.get(f"{UNIT}/history?format=csv").content)

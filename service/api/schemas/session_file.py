@@ -1,0 +1,143 @@
+"""imu-session/1 as JSON Schema: what of docs/session-file.md a schema can say. The reader says the rest."""
+
+from typing import Any
+
+from estimator.reading.keys import SIGMA
+
+JsonSchema = dict[str, Any]
+KINDS = ["accelerometer", "gyroscope"]
+NULL = {"type": "null"}
+"""Means the same as leaving a field out."""
+
+
+def _text(description: str) -> JsonSchema:
+    return {"type": "string", "minLength": 1, "description": description}
+
+
+def _number(description: str, **bounds: float) -> JsonSchema:
+    return {"type": "number", "description": description} | bounds
+
+
+def _vector(description: str) -> JsonSchema:
+    return {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3, "description": description}
+
+
+def _column(description: str, *kinds: str) -> JsonSchema:
+    return {"type": "array", "items": {"type": [*kinds]}, "description": description}
+
+
+def _optional(properties: dict[str, JsonSchema]) -> dict[str, JsonSchema]:
+    """Each of them or null."""
+    return {
+        name: {"description": schema["description"], "anyOf": [schema, NULL]} for name, schema in properties.items()
+    }
+
+
+SITE: JsonSchema = {
+    "type": "object",
+    "description": "Where it was measured.",
+    "properties": _optional(
+        {
+            "latitude_deg": _number("Geodetic latitude, degrees.", minimum=-90, maximum=90),
+            "height_m": _number("Height above the ellipsoid, m; 0 unless given.", minimum=-500, maximum=9000),
+            "gravity_m_s2": _number("Measured gravity, m/s², in place of the formula's.", minimum=9.7, maximum=9.9),
+        }
+    ),
+}
+STAND: JsonSchema = {
+    "type": "object",
+    "description": "The stand and how it was set.",
+    "properties": _optional(
+        {
+            "id": _text("Name or number of the stand."),
+            "alpha_deg": _number("Elevation of the head's axis above the horizon, degrees; for accelerometers."),
+            "chi_deg": _number("Its elevation above the plane orthogonal to the Earth's axis; for gyroscopes."),
+            "sigma_arcsec": {
+                "type": "object",
+                "description": "One-sigma errors of the stand, arc seconds; 0 unless given.",
+                "properties": _optional({name: _number("One sigma, arc seconds.", minimum=0) for name in SIGMA}),
+            },
+            "sigma_count_time_s": _number("One-sigma error of the count time, s.", minimum=0),
+        }
+    ),
+}
+SENSOR: JsonSchema = {
+    "type": "object",
+    "required": ["name", "nominal_axis", "nominal_scale", "reading_unit"],
+    "properties": {
+        "name": _text("Name of the sensor and of its column."),
+        "nominal_axis": _vector("Unit vector of the input axis, block axes."),
+        "nominal_scale": _number(
+            "Reading units per m/s² or rad/s; of a pulse gyro pulses per rad.", exclusiveMinimum=0
+        ),
+        "reading_unit": _text("Unit of the readings, such as V, mA or count."),
+    }
+    | _optional(
+        {
+            "kind": {"enum": KINDS, "description": "Where it differs from `block`."},
+            "nominal_offset": _number("Reading at zero input, reading units."),
+            "bias_repeatability_m_s2": _number(
+                "One sigma of an accelerometer's zero from position to position.", minimum=0
+            ),
+            "bias_repeatability_rad_s": _number("The same of a gyroscope.", minimum=0),
+            "position_m": _vector("Where the sensor sits, m, block axes."),
+        }
+    ),
+}
+TABLE: JsonSchema = {
+    "type": "object",
+    "description": "Columns of equal length: one row a reading, in the order measured. Each sensor has a column of its "
+    "name, and `<sensor>_se` for the standard errors of averaged readings.",
+    "properties": _optional(
+        {
+            "run": {"type": "array", "items": {"enum": ["direct", "flipped"]}, "description": "Of the two-axis stand."},
+            "beta_deg": _column("Turn of the head, degrees.", "number"),
+            "time_s": _column("Time since the start, s; never runs backwards.", "number"),
+            "temperature_c": _column("Temperature, °C.", "number"),
+            "vibration_m_s2": _column("Rms about the mean while the row is averaged, m/s².", "number"),
+            "turn_angle_deg": _column("Angle of the turntable at the end of the row, degrees.", "number"),
+            "turn_rate_deg_s": _column("Rate of the table during the row, degrees a second.", "number"),
+            "position": _column("Position that the row belongs to; -1 or null: none.", "integer", "string", "null"),
+        }
+        | {
+            f"direction_{axis}": _column(f"Roughly known direction of the specific force, {axis}.", "number", "null")
+            for axis in "xyz"
+        }
+    ),
+    "additionalProperties": {"type": ["array", "null"]},
+}
+SESSION_FILE: JsonSchema = {
+    "title": "imu-session/1",
+    "type": "object",
+    "description": "One calibration session: a block of a unit, measured once. Fields of your own are left unread.",
+    "required": ["format", "unit", "block", "programme", "sensors", "table"],
+    "properties": {
+        "format": {"const": "imu-session/1", "description": "Always that."},
+        "unit": _text("Serial number of the unit."),
+        "block": {"enum": KINDS, "description": "Kind of every sensor that does not state its own."},
+        "programme": _text(
+            "`two-axis-stand`, `arbitrary-orientations`, `rotation-alignment`, `rate-table` or `in-service`."
+        ),
+        "sensors": {"type": "array", "items": SENSOR, "minItems": 3, "description": "At least three of each kind."},
+        "table": TABLE,
+    }
+    | _optional(
+        {
+            "unit_type": _text("Kind of unit, whose tolerances apply."),
+            "started_at": {"type": "string", "format": "date-time", "description": "When, with its offset from UTC."},
+            "operator": {"type": "string", "description": "Who measured."},
+            "notes": {"type": "string", "description": "Free text."},
+            "stage": {"enum": ["as-found", "as-left"], "description": "Before or after the unit was worked on."},
+            "site": SITE,
+            "stand": STAND,
+            "mounting": {
+                "type": "array", "items": _vector("A row."), "minItems": 3, "maxItems": 3,
+                "description": "Rotation from platform axes to block axes; identity unless given.",
+            },
+            "count_time_s": _number("Readings of gyros are pulse counts over this time, s.", exclusiveMinimum=0),
+            "counter": {"enum": ["free-running", "reset"], "description": "How pulses are counted."},
+            "sample_rate_hz": _number("The rows are samples at this rate, Hz.", exclusiveMinimum=0),
+            "direction_sigma_deg": _number("One sigma of the stated directions, degrees.", exclusiveMinimum=0),
+        }
+    ),
+}  # fmt: skip
