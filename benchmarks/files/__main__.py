@@ -27,7 +27,7 @@ def main() -> None:
     parser.add_argument("--only", default="", help="only files whose name holds this")
     parser.add_argument("--rows", type=int, default=ROWS, help="of the long logs")
     options = parser.parse_args()
-    with TemporaryDirectory() as folder, service(Path(folder)) as running:
+    with TemporaryDirectory() as folder, service(Path(folder), as_parquet("U-first")) as running:
         rows = list(_measured(running, options.only))
     with TemporaryDirectory() as folder:
         long = list(long_logs(Path(folder), options.rows))

@@ -74,10 +74,10 @@ Where more cells are allowed, more memory must be: about 60 bytes a cell. Readin
 {_long(long)}
 ## Measured
 
-Against a running service: peak memory over idle of the service and its readers together (proportional set size, so
-that shared pages count once), and the longest that `/healthz` took to answer meanwhile. Hostile files come first, all
-made by code in `benchmarks/files/hostile.py`; then the heaviest files that are allowed, stored with verdict and
-diagnosis.
+Against a running service: peak memory over idle of the service, its readers and what diagnoses together (proportional
+set size, so that shared pages count once), and the longest that `/healthz` took to answer meanwhile; the seconds are
+those of the answer. Hostile files come first, all made by code in `benchmarks/files/hostile.py`; then the heaviest
+files that are allowed, watched until nothing is left to do for them.
 
 Worst single file: {worst:.0f} MiB over idle. Longest wait for `/healthz`: {wait:.2f} s.
 

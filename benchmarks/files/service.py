@@ -18,7 +18,7 @@ BETWEEN = 0.02
 SERVE = "from service.cli import main; main()"
 """As the command does."""
 NOTHING = 10.0
-"""Seconds for which the service is watched while nothing is sent."""
+"""Seconds after which a service has nothing to do any more, and for which it is watched while nothing is sent."""
 MEBIBYTE = 1024**2
 
 
@@ -31,7 +31,8 @@ class Cost:
     """The sentence of the first answer."""
     seconds: float
     memory: float
-    """Peak over idle of the service and its readers together, MiB; shared pages are counted once."""
+    """Peak over idle of the service and all its processes until the file is diagnosed, MiB; shared pages are counted
+    once."""
     wait: float
     """Longest of /healthz, s."""
 
@@ -44,6 +45,8 @@ class Service:
     process: psutil.Process
     idle: float
     """MiB."""
+    processes: int
+    """That it has started and keeps."""
     client: httpx.Client
     """One, because to make one takes longer than an answer."""
 
@@ -58,6 +61,7 @@ class Service:
             watcher.start()
         began, answers = time.monotonic(), self._sent(contents)
         seconds = time.monotonic() - began
+        self.rest()
         done.set()
         for watcher in watchers:
             watcher.join()
@@ -66,6 +70,11 @@ class Service:
         problems = answers[0].json().get("problems") or [{"message": answers[0].json().get("detail", "")}]
         codes = tuple(sorted(answer.status_code for answer in answers))
         return Cost(codes, problems[0]["message"], seconds, max(peaks) - self.idle, max(waits))
+
+    def rest(self) -> None:
+        """Waits until nothing reads or diagnoses any more: each does so in a process of its own."""
+        while len(self.process.children(recursive=True)) > self.processes:
+            time.sleep(BETWEEN)
 
     def _sent(self, contents: list[bytes]) -> list[httpx.Response]:
         answers: list[httpx.Response] = []
@@ -107,8 +116,8 @@ def memory(process: psutil.Process) -> float:
 
 
 @contextmanager
-def service(folder: Path) -> Iterator[Service]:
-    """A service on an empty database, once its readers have been started."""
+def service(folder: Path, first: bytes) -> Iterator[Service]:
+    """A service that holds one session, once its readers and what diagnoses have been started."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
@@ -120,9 +129,17 @@ def service(folder: Path) -> Iterator[Service]:
             httpx.post(f"{address}/api/v1/sessions", content=b"PAR1", timeout=60)
             own = psutil.Process(process.pid)
             with httpx.Client(timeout=300) as client:
-                yield Service(address, own, memory(own), client)
+                answer = client.post(f"{address}/api/v1/sessions", files={"file": ("file", first)}).raise_for_status()
+                _diagnosed(client, answer.json()["url"])
+                yield Service(address, own, memory(own), len(own.children(recursive=True)), client)
         finally:
             process.terminate()
+
+
+def _diagnosed(client: httpx.Client, session: str) -> None:
+    while client.get(f"{session}/diagnosis").raise_for_status().status_code == httpx.codes.ACCEPTED:
+        time.sleep(BETWEEN)
+    time.sleep(NOTHING)
 
 
 def _wait_for(address: str) -> None:
