@@ -6,6 +6,9 @@ STAMP := .venv/.complete
 # Sessions are small matrices: several threads of BLAS only get in each other's way.
 export OPENBLAS_NUM_THREADS ?= 1
 
+# Tests wait now and then, for a browser or a process: one worker more than cores keeps these at work.
+WORKERS ?= $(shell n=$$(nproc 2>/dev/null || echo 2); echo $$((n < 7 ? n + 1 : 8)))
+
 .PHONY: setup run test lint format bench papers study backtest stands pictures browser lock clean
 
 setup: $(STAMP)
@@ -25,7 +28,7 @@ browser:
 	@sh tests/install_chromium.sh
 
 test: setup browser
-	$(BIN)/pytest -n auto --maxprocesses 8 --dist worksteal
+	$(BIN)/pytest -n $(WORKERS) --dist worksteal
 
 lint: setup
 	$(BIN)/ruff format --check .

@@ -53,7 +53,8 @@ def _upload_member(storage: Storage, member: Member, coverage_factor: float, adv
         at = file.at + UPLOADED_AFTER
         latest = upload(
             storage, file.content, file.name, at,
-            coverage_factor=coverage_factor, simulated=True, who=WHO, outlook=file is files[-1],
+            coverage_factor=coverage_factor, simulated=True, who=WHO,
+            outlook=file is files[-1], is_dated_later=False,
         )  # fmt: skip
         advance()
     # The service diagnoses the earlier ones beside its first requests.

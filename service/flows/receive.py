@@ -96,7 +96,7 @@ def upload(
     who: str = "crew",
     replaces: Replaced | None = None,
     outlook: bool = True,
-    is_dated_later: bool = False,
+    is_dated_later: bool = True,
 ) -> Receipt:
     """Stores a session file with its calibration and verdict; the same content again gives the same receipt.
 

@@ -3,11 +3,11 @@
 from datetime import UTC, datetime, timedelta
 
 from service.background.flag_overdue import flag_overdue
-from service.flows.receive import upload
 from service.records.flag import FlagState, Matter
 from service.storage import Storage
 from service.storage.queries.flags import FlagQuery
 from service.views.outlook import outlook_of
+from tests.service.dated import upload_and_date
 from tests.service.sessions import session_bytes
 
 NOW = datetime(2026, 3, 2, tzinfo=UTC)
@@ -24,7 +24,7 @@ def due_date(storage: Storage) -> datetime | None:
 
 
 def test_it_is_raised_once_when_the_day_has_passed_and_resolved_by_a_calibration(storage: Storage) -> None:
-    upload(storage, session_bytes(), "a.json", NOW)
+    upload_and_date(storage, session_bytes(), "a.json", NOW)
     due = due_date(storage)
     assert due is not None
     flag_overdue(storage, due - timedelta(days=1))
@@ -33,14 +33,14 @@ def test_it_is_raised_once_when_the_day_has_passed_and_resolved_by_a_calibration
         flag_overdue(storage, due + timedelta(days=late))
     assert states(storage) == [(Matter.OVERDUE, FlagState.RAISED)]
     at = (due + timedelta(days=3)).isoformat()
-    upload(storage, session_bytes(seed=2, started_at=at), "b.json", due + timedelta(days=3))
+    upload_and_date(storage, session_bytes(seed=2, started_at=at), "b.json", due + timedelta(days=3))
     assert states(storage) == [(Matter.OVERDUE, FlagState.RESOLVED)]
     flag_overdue(storage, due + timedelta(days=4))
     assert states(storage) == [(Matter.OVERDUE, FlagState.RESOLVED)]
 
 
 def test_a_unit_that_is_no_longer_due_is_flagged_no_more(storage: Storage) -> None:
-    upload(storage, session_bytes(), "a.json", NOW)
+    upload_and_date(storage, session_bytes(), "a.json", NOW)
     due = due_date(storage)
     assert due is not None
     flag_overdue(storage, due + timedelta(days=1))
@@ -49,13 +49,13 @@ def test_a_unit_that_is_no_longer_due_is_flagged_no_more(storage: Storage) -> No
 
 
 def test_a_calibration_that_finds_the_unit_out_of_tolerance_leaves_the_one_flag_open(storage: Storage) -> None:
-    upload(storage, session_bytes(), "a.json", NOW)
+    upload_and_date(storage, session_bytes(), "a.json", NOW)
     due = due_date(storage)
     assert due is not None
     flag_overdue(storage, due + timedelta(days=1))
     for month, late in enumerate((2, 3)):
         at = due + timedelta(days=late)
         session = session_bytes(seed=2 + month, a3_moved=300.0, started_at=at.isoformat())
-        upload(storage, session, "b.json", at + timedelta(hours=1))
+        upload_and_date(storage, session, "b.json", at + timedelta(hours=1))
         flag_overdue(storage, at + timedelta(days=1))
     assert [matter for matter, _ in states(storage)].count(Matter.OVERDUE) == 1

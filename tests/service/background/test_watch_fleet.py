@@ -10,12 +10,12 @@ import pytest
 from sqlalchemy import text
 
 from service.background.watch_fleet import Pace, look, watch_fleet
-from service.flows.receive import upload
 from service.metrics import Metrics
 from service.records.flag import Matter
 from service.storage import Storage
 from service.storage.queries.flags import FlagQuery
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
+from tests.service.dated import upload_and_date
 from tests.service.sessions import session_bytes
 from tests.service.test_log import lines
 from tests.service.views.test_stands import measure
@@ -57,7 +57,7 @@ def watched(storage: Storage, metrics: Metrics) -> Iterator[tuple[Thread, Event]
 @pytest.fixture
 def two_units(storage: Storage) -> Storage:
     for number in range(2):
-        upload(storage, session_bytes(unit=f"BA-{number}", seed=number), "a.json", LATE)
+        upload_and_date(storage, session_bytes(unit=f"BA-{number}", seed=number), "a.json", LATE)
     return storage
 
 

@@ -15,7 +15,6 @@ from hypothesis import strategies as st
 
 from service.flows.accept_session import accept_session
 from service.flows.choose_reference import choose_reference
-from service.flows.receive import upload
 from service.flows.record_service import record_service
 from service.flows.withdraw_service import withdraw_service
 from service.flows.withdraw_session import withdraw_session
@@ -25,6 +24,7 @@ from service.records.state import RecordState
 from service.storage import Database, Files, Storage
 from tests.databases import Databases
 from tests.estimator.test_reading_csv import csv_of
+from tests.service.dated import upload_and_date
 from tests.service.records import NOW, state_of, step, way
 from tests.service.sessions import session_bytes, session_id
 
@@ -53,12 +53,12 @@ class Crew:
         """A session, perhaps taken back and accepted again, or sent twice in two formats."""
         id = session_id(content(month))
         if month == 6 and detour == "corrected":
-            wrong = upload(self.storage, WRONG, "wrong.json", NOW).id
-            upload(self.storage, content(6), "a.json", NOW, replaces=Replaced(wrong, "K. Ito", "other unit"))
+            wrong = upload_and_date(self.storage, WRONG, "wrong.json", NOW).id
+            upload_and_date(self.storage, content(6), "a.json", NOW, replaces=Replaced(wrong, "K. Ito", "other unit"))
             return
-        upload(self.storage, content(month), "a.json", NOW)
+        upload_and_date(self.storage, content(month), "a.json", NOW)
         if detour == "twice":
-            upload(self.storage, csv_of(json.loads(content(month))), "a.csv", NOW)
+            upload_and_date(self.storage, csv_of(json.loads(content(month))), "a.csv", NOW)
         if detour == "chosen" and month < SERVICE.at.month:
             self.chosen(id)
         if detour == "withdrawn":

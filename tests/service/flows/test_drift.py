@@ -5,13 +5,13 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from service.background.relearn import relearn
-from service.flows.receive import upload
 from service.records.flag import Matter
 from service.records.outlook import Action, ParameterTrend, UnitOutlook
 from service.storage import Storage
 from service.storage.queries.flags import FlagQuery
 from service.views.outlook import outlook_of
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
+from tests.service.dated import upload_and_date
 from tests.service.recordings import recording_bytes
 from tests.service.sessions import MICRO_G, session_bytes
 
@@ -21,7 +21,7 @@ NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 def measure(storage: Storage, moved: dict[int, float], unit: str = "BA-017") -> None:
     """Sessions by month of 2026, with how far A3's bias has moved, µg; 50 are allowed."""
     for month, micro_g in moved.items():
-        upload(storage, session_bytes(seed=month, month=month, a3_moved=micro_g, unit=unit), "a.json", NOW)
+        upload_and_date(storage, session_bytes(seed=month, month=month, a3_moved=micro_g, unit=unit), "a.json", NOW)
 
 
 def outlook(storage: Storage, unit: str = "BA-017") -> UnitOutlook:
@@ -66,10 +66,10 @@ def test_a_unit_found_unfit_needs_a_hand_and_no_date(storage: Storage) -> None:
 
 
 def test_an_undecided_session_is_repeated_with_what_to_measure(storage: Storage) -> None:
-    upload(storage, session_bytes(month=1), "a.json", NOW)
+    upload_and_date(storage, session_bytes(month=1), "a.json", NOW)
     sigmas = dict.fromkeys(("theta_x", "theta_y", "alpha", "beta"), 600.0)
     coarse = {"id": "S-2", "alpha_deg": 40.0, "sigma_arcsec": sigmas}
-    upload(storage, session_bytes(seed=2, month=2, stand=coarse), "b.json", NOW)
+    upload_and_date(storage, session_bytes(seed=2, month=2, stand=coarse), "b.json", NOW)
     found = outlook(storage)
     assert (found.action, found.due) == (Action.REPEAT, None)
     assert "measure" in found.reason
@@ -77,7 +77,7 @@ def test_an_undecided_session_is_repeated_with_what_to_measure(storage: Storage)
 
 def test_a_recording_in_service_that_finds_a_unit_unfit_leaves_it_no_date(storage: Storage) -> None:
     measure(storage, {1: 0.0, 3: 0.0})
-    upload(storage, recording_bytes(a3_moved=130.0), "flight.json", NOW)
+    upload_and_date(storage, recording_bytes(a3_moved=130.0), "flight.json", NOW)
     found = outlook(storage)
     assert (found.action, found.due) == (Action.NOW, None)
     assert found.reason.startswith("Found out of tolerance on 1 May 2026")
@@ -96,6 +96,6 @@ def test_a_fleet_does_not_depend_on_the_order_in_which_its_sessions_came(storage
 
 
 def test_the_temperature_of_a_session_is_kept(storage: Storage) -> None:
-    id = upload(storage, session_bytes(), "a.json", NOW).id
+    id = upload_and_date(storage, session_bytes(), "a.json", NOW).id
     with storage.database.reading() as store:
         assert store.sessions.get(id).temperature == 21.0

@@ -4,6 +4,7 @@ import os
 import signal
 import threading
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import replace
 from io import BytesIO
 
@@ -59,17 +60,19 @@ def test_a_process_that_is_ended_from_outside_is_started_again():
 
 def test_a_fork_that_is_ended_is_a_refusal_and_harms_no_other(limited):
     limited(seconds=20)
-    own = server()
+    own, refused = server(), threading.Event()
 
-    def end_the_fork():
-        while not (forks := own.children()):
-            pass
-        forks[0].send_signal(signal.SIGSEGV)
+    def end_the_forks():
+        while not refused.is_set():
+            for fork in own.children():  # one that has ended may still be listed
+                with suppress(psutil.NoSuchProcess):
+                    fork.send_signal(signal.SIGSEGV)
 
-    killer = threading.Thread(target=end_the_fork)
+    killer = threading.Thread(target=end_the_forks)
     killer.start()
     with open(ENDLESS, "rb") as file, pytest.raises(FormatError, match="cannot be read with"):
         read_upload(file.read(), "x")
+    refused.set()
     killer.join()
     assert read_upload(parquet_bytes(SMALL), "x").unit == SMALL["unit"]
 

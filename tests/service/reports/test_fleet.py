@@ -7,13 +7,13 @@ import httpx
 import polars as pl
 import pytest
 
-from service.flows.receive import upload
 from service.reports.fleet_paper import fleet_pdf
 from service.reports.fleet_workbook import MOST_HISTORY_ROWS, fleet_xlsx
 from service.storage import Storage
 from service.storage.store import Store
 from service.views.fleet_report import fleet_report
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
+from tests.service.dated import upload_and_date
 from tests.service.reports.documents import pages_of, text_of
 from tests.service.sessions import session_bytes
 from tests.service.views.test_queries import queries
@@ -26,9 +26,9 @@ FORMULA = '=HYPERLINK("http://127.0.0.1/","BA-018")'
 def fleet(storage: Storage, client: httpx.Client) -> httpx.Client:
     """A unit that failed, one that passed, and one whose names a spreadsheet would work out."""
     for unit, moved in (("BA-017", 200.0), ("BA-020", 0.0)):
-        upload(storage, session_bytes(unit=unit, seed=1), "a.json", NOW)
-        upload(storage, session_bytes(unit=unit, seed=2, month=5, a3_moved=moved), "b.json", NOW)
-    upload(storage, session_bytes(unit=FORMULA, seed=3, unit_type="@SUM(A1)"), "c.json", NOW)
+        upload_and_date(storage, session_bytes(unit=unit, seed=1), "a.json", NOW)
+        upload_and_date(storage, session_bytes(unit=unit, seed=2, month=5, a3_moved=moved), "b.json", NOW)
+    upload_and_date(storage, session_bytes(unit=FORMULA, seed=3, unit_type="@SUM(A1)"), "c.json", NOW)
     return client
 
 
@@ -108,8 +108,8 @@ def test_queries_do_not_grow_with_the_fleet(storage: Storage) -> None:
         fleet_pdf(store, report)
 
     def add(unit: str, moved: float) -> None:
-        upload(storage, session_bytes(unit=unit, seed=1), "a.json", NOW)
-        upload(storage, session_bytes(unit=unit, seed=2, month=5, a3_moved=moved), "b.json", NOW)
+        upload_and_date(storage, session_bytes(unit=unit, seed=1), "a.json", NOW)
+        upload_and_date(storage, session_bytes(unit=unit, seed=2, month=5, a3_moved=moved), "b.json", NOW)
 
     add("BA-000", 200.0)
     few = queries(storage, both)
@@ -120,7 +120,7 @@ def test_queries_do_not_grow_with_the_fleet(storage: Storage) -> None:
 
 def test_histories_share_the_sheet_alike(storage: Storage, monkeypatch: pytest.MonkeyPatch) -> None:
     for month in range(1, 6):
-        upload(storage, session_bytes(seed=month, month=month), "a.json", NOW)
+        upload_and_date(storage, session_bytes(seed=month, month=month), "a.json", NOW)
     monkeypatch.setattr("service.reports.fleet_workbook.MOST_HISTORY_ROWS", 24 * 2)
     assert MOST_HISTORY_ROWS > 24 * 5
     with storage.database.reading() as store:

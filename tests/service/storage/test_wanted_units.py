@@ -5,10 +5,10 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from service.flows.receive import upload
 from service.flows.set_lot import set_lot
 from service.records.fleet import FleetChoices, FleetQuery, Order
 from service.storage import Storage
+from tests.service.dated import upload_and_date
 from tests.service.sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
@@ -20,8 +20,8 @@ ALL = FleetQuery()
 def fleet(storage: Storage) -> Storage:
     """C-1 is unfit since April, A-1 fit since February, B-1 measured once, in March, on another stand."""
     for unit, month, moved in (("C-1", 1, 0.0), ("C-1", 4, 200.0), ("A-1", 1, 0.0), ("A-1", 2, 0.0)):
-        upload(storage, session_bytes(seed=month, month=month, unit=unit, a3_moved=moved), "a.json", NOW)
-    upload(storage, session_bytes(month=3, unit="B-1", stand=STAND), "b.json", NOW)
+        upload_and_date(storage, session_bytes(seed=month, month=month, unit=unit, a3_moved=moved), "a.json", NOW)
+    upload_and_date(storage, session_bytes(month=3, unit="B-1", stand=STAND), "b.json", NOW)
     set_lot(storage, "A-1", "L7", NOW, who="K. Ito")
     return storage
 

@@ -5,13 +5,13 @@ from datetime import UTC, datetime, timedelta
 import httpx
 import pytest
 
-from service.flows.receive import upload
 from service.flows.record_service import record_service
 from service.records.event import NewService
 from service.records.outlook import UnitOutlook
 from service.storage import Storage
 from service.views.outlook import fleet_outlook, outlook_of
 from tests.databases import one_engine
+from tests.service.dated import upload_and_date
 from tests.service.sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
@@ -21,7 +21,7 @@ def measure(storage: Storage, months: dict[int, float], unit: str = "BA-017", **
     """Sessions of a unit by month of 2026, with how far A3's bias has moved, µg."""
     for month, moved in months.items():
         content = session_bytes(seed=month, month=month, a3_moved=moved, unit=unit, **changes)  # type: ignore[arg-type]
-        upload(storage, content, "a.json", NOW, outlook=month == max(months))
+        upload_and_date(storage, content, "a.json", NOW, outlook=month == max(months))
 
 
 def outlook(storage: Storage, now: datetime) -> UnitOutlook:
