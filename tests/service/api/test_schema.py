@@ -49,10 +49,20 @@ def test_generated_requests_are_answered_as_described(
     """Requests that keep the description, and requests that break it wherever it can be broken."""
     operations = [found.ok() for found in description.get_all_operations()]
     assert len(operations) > 15
-    for operation in operations:
+    for operation in operations if mode is GenerationMode.POSITIVE else asking_for_more(operations):
         # Where nothing is asked for, nothing can be broken.
         with suppress(Unsatisfiable) if mode is GenerationMode.NEGATIVE else nullcontext():
             assert_conforming(operation, mode)
+
+
+def asking_for_more(operations: list[schemathesis.APIOperation]) -> Iterator[schemathesis.APIOperation]:
+    """Those with a body, or with a parameter that none before them has: what is declared once is broken once."""
+    known: set[str] = set()
+    for operation in operations:
+        asked = {repr(parameter.definition) for parameter in operation.iter_parameters()}
+        if operation.body or asked - known:
+            yield operation
+        known |= asked
 
 
 def assert_conforming(operation: schemathesis.APIOperation, mode: GenerationMode) -> None:
