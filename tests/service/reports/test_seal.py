@@ -2,6 +2,8 @@
 
 import base64
 import io
+import re
+import shutil
 import subprocess
 from concurrent.futures import ThreadPoolExecutor
 from copy import deepcopy
@@ -36,6 +38,7 @@ from tests.service.reports.test_dcc_schema import broken, needs_schemas, schema
 from tests.service.reports.test_signatures import approve, paper, settings, signed, staff, storage  # noqa: F401 - fixtures
 
 DS = "{http://www.w3.org/2000/09/xmldsig#}"
+REPORTS = (Path(__file__).parents[3] / "docs" / "reports.md").read_text(encoding="utf-8")
 C14N11 = "http://www.w3.org/2006/12/xml-c14n11"
 
 
@@ -159,6 +162,17 @@ def test_one_changed_word_of_an_xml_is_noticed(key_file: Path, said: bytes, othe
     assert is_signed(dcc)
     assert said in dcc
     assert not is_signed(dcc.replace(said, other, 1))
+
+
+@pytest.mark.skipif(shutil.which("xmlsec1") is None, reason="needs xmlsec1: apt-get install xmlsec1")
+@pytest.mark.parametrize(("written", "holds"), [(b">pass<", True), (b">fail<", False)])
+def test_xmlsec1_checks_an_xml_as_the_page_says(key_file: Path, tmp_path: Path, written: bytes, holds: bool) -> None:
+    dcc = sealed(key_file).xml(b'<a xmlns="https://ptb.de/dcc"><b>pass</b></a>').replace(b">pass<", written)
+    (tmp_path / "certificate.xml").write_bytes(dcc)
+    _, certificate = key_file.read_text().split("-----BEGIN CERTIFICATE")
+    (tmp_path / "seal-certificate.pem").write_text(f"-----BEGIN CERTIFICATE{certificate}")
+    [command] = re.findall(r"^xmlsec1 .*$", REPORTS, flags=re.MULTILINE)
+    assert (subprocess.run(command.split(), cwd=tmp_path, capture_output=True).returncode == 0) is holds
 
 
 def test_the_same_bytes_are_handed_out_again(settings: Settings, staff: Staff, key_file: Path) -> None:  # noqa: F811
