@@ -27,11 +27,16 @@ GET /oidc/callback
 VIEWER = f"""
 GET /
 GET /units/{{serial:path}}
+GET /sessions
+GET /compare
 GET /sessions/{{id}}
 GET /sessions/{{id}}/diagnosis
 GET /sessions/{{id}}/certificate
 GET /flags
-GET /stand-certificates
+GET /unit-types
+GET /unit-types/{{name:path}}
+GET /stands
+GET /stands/{{name:path}}
 GET /plan
 GET /account
 POST /account/password
@@ -114,7 +119,7 @@ POST /sessions/{{id}}/accept
 POST /sessions/{{id}}/correct
 POST /sessions/{{id}}/reference
 POST /services/{{id}}/withdraw
-POST /stand-certificates
+POST /stands/{{name:path}}/certificates
 POST {SESSION}/withdraw
 POST {SESSION}/certificate/signatures
 POST {SESSION}/accept

@@ -23,6 +23,9 @@ from service.pages import (
     plan_routes,
     record_routes,
     routes,
+    session_routes,
+    stand_routes,
+    type_routes,
 )
 from service.pages.headers import SecurityHeaders
 from service.pages.problem import ProblemPages, unexpected_pages
@@ -40,6 +43,9 @@ PARTS = (
     paper_routes,
     oidc_routes,
     plan_routes,
+    session_routes,
+    stand_routes,
+    type_routes,
     assets,
 )
 """Every file of addresses."""

@@ -46,6 +46,11 @@ class FlagCard:
     """What happened and the word for it, newest first."""
 
     @property
+    def stand(self) -> str:
+        """The stand that it finds at fault; empty where it is about something else."""
+        return self.flag.place if self.flag.matter in (Matter.STAND, Matter.SHIFTED) else ""
+
+    @property
     def is_open(self) -> bool:
         """Whether somebody has yet to act."""
         return self.flag.state is not FlagState.RESOLVED

@@ -1,18 +1,15 @@
 """Which flags a visitor asked to see: it stands in the address."""
 
 from dataclasses import dataclass
-from typing import Annotated
-from urllib.parse import urlencode
 
-from pydantic import BaseModel, Field
+from pydantic import BaseModel
 
-from service.pages.forms import NO_NUL
+from service.pages.list_view import Asked, address_of
 from service.records.flag import FlagState, Matter
 from service.storage.queries.flags import FlagQuery
 
 STATES = {FlagState.RAISED.value: "Not acknowledged", FlagState.ACKNOWLEDGED.value: "Acknowledged"}
 """Choices, in words."""
-Asked = Annotated[str, Field(max_length=200, pattern=NO_NUL)]
 
 
 class FlagsAsked(BaseModel):
@@ -43,8 +40,7 @@ class FlagsView:
     def url(self, path: str) -> str:
         """The address of this view."""
         asked = {"q": self.text, "matter": self.matter, "state": self.state}
-        kept = {name: value for name, value in asked.items() if value}
-        return f"{path}?{urlencode(kept)}" if kept else path
+        return address_of(path, asked)
 
     def query(self, limit: int) -> FlagQuery:
         """What the store is asked."""

@@ -124,7 +124,7 @@ def fleet_page(
             _tile(condition_of(v), n, condition.reserved.get(v, 0), view)
             for v, n in reversed(condition.verdicts.items())
         ),
-        rows=tuple(_row(unit, now) for unit in units[:PAGE_SIZE]),
+        rows=tuple(fleet_row(unit, now) for unit in units[:PAGE_SIZE]),
         total=condition.units,
         more=len(units) > PAGE_SIZE,
         simulated=condition.simulated,
@@ -154,7 +154,8 @@ def worst_in_words(unit: UnitSummary) -> str:
     return f"{unit.worst_sensor or ''} {unit.worst_parameter or ''}".strip()
 
 
-def _row(unit: UnitSummary, now: datetime) -> FleetRow:
+def fleet_row(unit: UnitSummary, now: datetime) -> FleetRow:
+    """One unit of a list."""
     condition = condition_of(unit.verdict, is_reference=unit.is_reference)
     return FleetRow(
         serial=unit.serial,

@@ -1,13 +1,12 @@
-"""What a visitor of the fleet page asked to see: it stands in the address, so that it can be kept and sent on."""
+"""What a visitor of the fleet page asked to see."""
 
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Annotated
-from urllib.parse import urlencode
 
 from pydantic import BaseModel, Field
 
-from service.pages.forms import NO_NUL
+from service.pages.list_view import Asked, ListView, known_order
 from service.records.decision import Verdict
 from service.records.fleet import FleetQuery, Order
 from service.words.conditions import RESERVED
@@ -23,9 +22,15 @@ ORDERS: dict[str, str] = {
     Order.TYPE.value: "by type",
     Order.LAST.value: "by last session",
 }
-
-
-Asked = Annotated[str, Field(max_length=200, pattern=NO_NUL)]
+NAMES = {
+    "text": "q", "condition": "condition", "due": "due", "unit_type": "type", "stand": "stand", "lot": "lot",
+    "flagged": "flagged", "sort": "sort", "page": "page",
+}  # fmt: skip
+"""Fields of a view as they are called in an address."""
+PLAIN = {"page": 1, "sort": Order.CONDITION.value}
+"""What an address need not say."""
+FIRST = {"page": 1}
+"""What leads to the first page."""
 
 
 class FleetAsked(BaseModel):
@@ -43,9 +48,15 @@ class FleetAsked(BaseModel):
 
 
 @dataclass(frozen=True)
-class FleetView:
-    """Empty where nothing is asked."""
+class FleetView(ListView):
+    """Units."""
 
+    PATH = "/"
+    NAMES = NAMES
+    PLAIN = PLAIN
+    FIRST = FIRST
+    ORDERS = ORDERS
+    sort: str = Order.CONDITION.value
     text: str = ""
     condition: str = ""
     due: str = ""
@@ -53,14 +64,13 @@ class FleetView:
     stand: str = ""
     lot: str = ""
     flagged: str = ""
-    sort: str = Order.CONDITION.value
-    """Of `Order`, with ``-`` before it where backwards."""
     page: int = 1
 
     @classmethod
     def of(cls, asked: FleetAsked) -> "FleetView":
         """The view of an address; what it asks that nobody knows is left out."""
         return cls(
+            sort=known_order(asked.sort, ORDERS, Order.CONDITION.value),
             text=asked.q.strip(),
             condition=asked.condition if asked.condition in {*Verdict, RESERVED.key} else "",
             due=asked.due if asked.due in DUE else "",
@@ -68,39 +78,8 @@ class FleetView:
             stand=asked.stand,
             lot=asked.lot,
             flagged=asked.flagged,
-            sort=asked.sort if asked.sort.removeprefix("-") in set(Order) else Order.CONDITION.value,
             page=asked.page,
         )
-
-    @property
-    def order(self) -> Order:
-        """What the list is ordered by."""
-        return Order(self.sort.removeprefix("-"))
-
-    @property
-    def backwards(self) -> bool:
-        """Whether the last comes first."""
-        return self.sort.startswith("-")
-
-    @property
-    def narrows(self) -> bool:
-        """Whether it leaves units out."""
-        return any((self.text, self.condition, self.due, self.unit_type, self.stand, self.lot, self.flagged))
-
-    @property
-    def order_in_words(self) -> str:
-        """``by condition, least margin to tolerance first``."""
-        return ORDERS[self.order.value] + (", backwards" if self.backwards else "")
-
-    def url(self, **changes: str | int) -> str:
-        """The address of this view with something changed."""
-        asked = {name: {**vars(self), **changes}[field] for field, name in NAMES.items()}
-        kept = {k: v for k, v in asked.items() if v and (k, v) not in PLAIN}
-        return "/?" + urlencode(kept) if kept else "/"
-
-    def sorted_by(self, order: str) -> str:
-        """The address of the list in another order, or backwards where it has this one."""
-        return self.url(sort=f"-{order}" if self.sort == order else order, page=1)
 
     def query(self, now: datetime) -> FleetQuery:
         """What the store is asked: one unit more than fit on the page, which says whether there is a next one."""
@@ -117,15 +96,6 @@ class FleetView:
             stand=self.stand or None,
             lot=self.lot or None,
             flagged=bool(self.flagged),
-            order=self.order,
+            order=Order(self.order),
             backwards=self.backwards,
         )
-
-
-NAMES = {
-    "text": "q", "condition": "condition", "due": "due", "unit_type": "type", "stand": "stand", "lot": "lot",
-    "flagged": "flagged", "sort": "sort", "page": "page",
-}  # fmt: skip
-"""Fields of a view as they are called in an address."""
-PLAIN = (("page", 1), ("sort", Order.CONDITION.value))
-"""What an address need not say."""

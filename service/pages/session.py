@@ -176,19 +176,21 @@ def _sensor(
 
 def _cell(sensor: SensorCalibration, parameter: str, decision: Decision | None, coverage: float) -> Cell:
     observable = sensor.observable.get(parameter, False)
-    unseen = "not observable" if parameter in sensor.observable else ""
     return Cell(
         parameter=parameter,
         observable=observable,
-        value=_value(sensor, parameter, coverage) if observable else unseen,
-        deviation=_deviation(decision),
-        tolerance=_tolerance(decision),
+        value=value_in_words(sensor, parameter, coverage),
+        deviation=deviation_in_words(decision),
+        tolerance=tolerance_in_words(decision),
         probability=_probability(decision),
         condition=None if decision is None else condition_of(decision.verdict),
     )
 
 
-def _value(sensor: SensorCalibration, parameter: str, coverage: float) -> str:
+def value_in_words(sensor: SensorCalibration, parameter: str, coverage: float) -> str:
+    """A parameter ± U, or that the session does not tell it; empty where it does not speak of it."""
+    if not sensor.observable.get(parameter, False):
+        return "not observable" if parameter in sensor.observable else ""
     if parameter == "axis":
         return _axis(sensor, coverage)
     estimate: Estimate = getattr(sensor, parameter)
@@ -222,22 +224,25 @@ def _axis(sensor: SensorCalibration, coverage: float) -> str:
     return f"({vector}) ±{HARD}{number(share, decimals(share))}{THIN}{measure.label}"
 
 
-def _decision_measure(decision: Decision) -> Measure:
+def decision_measure(decision: Decision) -> Measure:
+    """That deviation, uncertainty and tolerance are all read in."""
     sizes = (decision.deviation, decision.expanded, decision.tolerance)
     return deviation_measure(decision.kind, decision.parameter, max(abs(x or 0.0) for x in sizes))
 
 
-def _deviation(decision: Decision | None) -> str:
+def deviation_in_words(decision: Decision | None) -> str:
+    """The change ± U."""
     if decision is None or decision.deviation is None:
         return ""
     write = measured if decision.parameter == "axis" else signed
-    return write(decision.deviation, decision.expanded, _decision_measure(decision))
+    return write(decision.deviation, decision.expanded, decision_measure(decision))
 
 
-def _tolerance(decision: Decision | None) -> str:
+def tolerance_in_words(decision: Decision | None) -> str:
+    """``±40 µg``."""
     if decision is None:
         return ""
-    return limit(decision.tolerance, _decision_measure(decision), decision.parameter == "axis")
+    return limit(decision.tolerance, decision_measure(decision), decision.parameter == "axis")
 
 
 def _probability(decision: Decision | None) -> str:

@@ -9,14 +9,14 @@ from service.charts.history import history_charts
 from service.charts.tracks import Track, TrackPoint, tolerance_text, tracks_of
 from service.pages.events import KINDS, Event, StageTable, events_of, stage_table
 from service.pages.flags import FlagCard, flag_cards
+from service.pages.session_lines import SessionLine, session_lines
 from service.records.event import Note, Service
 from service.records.flag import Flag
 from service.records.history import HistoryPoint
 from service.records.outlook import ParameterTrend, UnitOutlook
-from service.records.session import StoredSession
 from service.records.unit import UnitReport
 from service.views.found_and_left import FoundAndLeft
-from service.words.conditions import NOT_JUDGED, Condition, condition_of, said_with
+from service.words.conditions import NOT_JUDGED, Condition, condition_of
 from service.words.group_finding import GroupView
 from service.words.names import day_of, heading
 from service.words.outlook import NextCalibration, next_calibration
@@ -58,14 +58,6 @@ class ParameterSection:
     charts: ChartSet
     sensors: tuple[str, ...]
     rows: tuple[TableRow, ...]
-
-
-@dataclass(frozen=True)
-class SessionLine:
-    """One session in the list."""
-
-    session: StoredSession
-    condition: Condition
 
 
 @dataclass(frozen=True)
@@ -120,7 +112,7 @@ def unit_page(
         report=report,
         condition=condition_of(report.summary.verdict, is_reference=report.summary.is_reference),
         sections=tuple(_section(tracks, report.services, valid, trends, several=len(kinds) > 1) for tracks in groups),
-        sessions=tuple(SessionLine(s, _condition(s)) for s in report.sessions),
+        sessions=session_lines(report.sessions),
         reference=_reference(report),
         drawn=len({point.session for point in history}),
         flags=flag_cards(flags),
@@ -132,11 +124,6 @@ def unit_page(
         group=group,
         follow=follow,
     )
-
-
-def _condition(session: StoredSession) -> Condition:
-    plain = condition_of(session.verdict, is_reference=session.is_reference)
-    return said_with(plain, session.reservations)
 
 
 def _reference(report: UnitReport) -> str:

@@ -42,6 +42,19 @@ class MotionOnStand:
 
 
 @dataclass(frozen=True)
+class StandUse:
+    """How much a stand is used."""
+
+    stand: str
+    sessions: int
+    """Accepted ones."""
+    units: int
+    """That they measured."""
+    last_at: datetime | None
+    """Of the latest of them; None where none is accepted."""
+
+
+@dataclass(frozen=True)
 class StandEvidence:
     """What the units say of one quantity on one stand: a shift, or the most evident one that chance may explain."""
 

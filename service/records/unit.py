@@ -44,6 +44,25 @@ class UnitType:
 
 
 @dataclass(frozen=True)
+class ToleranceRevision:
+    """Tolerances of a type as they held from a time on."""
+
+    revision: int
+    since: datetime
+    tolerances: Tolerances
+    gyro_tolerances: Tolerances | None
+
+
+@dataclass(frozen=True)
+class TypeUse:
+    """The units of a type by their condition."""
+
+    units: int
+    verdicts: dict[Verdict, int]
+    """Of units with an accepted session; every verdict is a key."""
+
+
+@dataclass(frozen=True)
 class UnitSummary:
     """One line of the fleet page."""
 

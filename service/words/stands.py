@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from estimator.health.common_motion import AXES
+from estimator.session import ACCELEROMETER
 from service.measures import COVERAGE, deviation_measure, in_words, measured, signed
 from service.records.stand import StandEvidence, StandSeating
 from service.words.names import day_of
@@ -31,10 +32,26 @@ def _shift(shift: StandEvidence) -> str:
     if shift.until is not None:
         when = f"from {day_of(shift.since)} until before {day_of(shift.until)}"
     if shift.quantity == AXES:
-        size = measured(shift.size, COVERAGE * shift.sigma, deviation_measure(shift.kind, "axis", shift.size))
-        return f"It turn{_s(shift)} every block by {size}, {seen} {when}."
-    size = signed(shift.size, COVERAGE * shift.sigma, deviation_measure(shift.kind, "scale", shift.size))
-    return f"It change{_s(shift)} every scale factor by {size}, {seen} {when}."
+        return f"It turn{_s(shift)} every block by {size_of_shift(shift)}, {seen} {when}."
+    return f"It change{_s(shift)} every scale factor by {size_of_shift(shift)}, {seen} {when}."
+
+
+def size_of_shift(shift: StandEvidence) -> str:
+    """``15.3 ± 0.4 arcsec``, ± U."""
+    parameter, write = ("axis", measured) if shift.quantity == AXES else ("scale", signed)
+    return write(shift.size, COVERAGE * shift.sigma, deviation_measure(shift.kind, parameter, shift.size))
+
+
+def kind_of_shift(kind: str, quantity: str) -> str:
+    """``Turn of every block``: what a stand does, by the sensors that show it."""
+    what = "Turn of every block" if quantity == AXES else "Change of every scale factor"
+    return what if kind == ACCELEROMETER else f"{what}, by gyros"
+
+
+def scatter_of(own: StandSeating) -> str:
+    """``±0.4 arcsec about each axis``: from one mounting to the next, ± U."""
+    parameter, of = ("axis", "about each axis") if own.quantity == AXES else ("scale", "of all scale factors")
+    return f"±{in_words(own.kind, parameter, COVERAGE * own.tau)} {of}"
 
 
 def _s(shift: StandEvidence) -> str:
@@ -47,8 +64,7 @@ def _s(shift: StandEvidence) -> str:
 def _seating(seating: Sequence[StandSeating]) -> list[str]:
     """How blocks are seated, ± U."""
     return [
-        f"From one mounting to the next a block sits within ±{in_words(own.kind, 'axis', COVERAGE * own.tau)}"
-        " about each axis."
+        f"From one mounting to the next a block sits within {scatter_of(own)}."
         for own in seating
         if own.quantity == AXES
     ][:1]

@@ -5,6 +5,7 @@ just before their transaction commits, one transaction after the other.
 """
 
 import json
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from hashlib import sha256
 from typing import Any
@@ -59,6 +60,13 @@ class Audit(Queries):
         if subject is not None:
             wanted = wanted.where(AuditRow.subject == subject)
         return tuple(_line(row) for row in self._session.scalars(wanted))
+
+    def who_did(self, action: str, subject: str, times: Sequence[datetime]) -> dict[datetime, str]:
+        """Who did something to a subject, by when; times at which nobody did have no key."""
+        done = select(AuditRow.at, AuditRow.who).where(
+            AuditRow.action == action, AuditRow.subject == subject, AuditRow.at.in_(times)
+        )
+        return {at: who for at, who in self._session.execute(done)}  # noqa: C416 - rows are no pairs
 
     def check(self) -> AuditCheck:
         """Works out the chain again, from the first line."""

@@ -26,6 +26,10 @@ class FlagQuery:
     text: str | None = None
     """Part of the unit's serial number, small and capital letters alike."""
     unresolved: bool = False
+    matters: tuple[Matter, ...] = ()
+    """Any of these; empty where any will do."""
+    place: str | None = None
+    """The sensor or the stand that it is about."""
 
 
 def _wanted(wanted: FlagQuery) -> Iterator[ColumnElement[bool]]:
@@ -37,6 +41,10 @@ def _wanted(wanted: FlagQuery) -> Iterator[ColumnElement[bool]]:
         yield FlagRow.state == wanted.state
     if wanted.matter is not None:
         yield FlagRow.matter == wanted.matter
+    if wanted.matters:
+        yield FlagRow.matter.in_(wanted.matters)
+    if wanted.place is not None:
+        yield FlagRow.place == wanted.place
     if wanted.unresolved:
         yield FlagRow.state != FlagState.RESOLVED
 
@@ -50,10 +58,10 @@ class Flags(Queries):
         found = self._session.execute(query.where(FlagRow.unit_id == unit, FlagRow.state != FlagState.RESOLVED))
         return tuple(_flag(row, serial) for row, serial in found)
 
-    def open_about(self, matter: Matter) -> tuple[Flag, ...]:
-        """All flags on a matter that are not resolved, without their lives."""
+    def open_about(self, *matters: Matter) -> tuple[Flag, ...]:
+        """All flags on some matters that are not resolved, without their lives."""
         query = select(FlagRow, UnitRow.serial).join(UnitRow, UnitRow.id == FlagRow.unit_id)
-        found = self._session.execute(query.where(FlagRow.matter == matter, FlagRow.state != FlagState.RESOLVED))
+        found = self._session.execute(query.where(FlagRow.matter.in_(matters), FlagRow.state != FlagState.RESOLVED))
         return tuple(_flag(row, serial) for row, serial in found)
 
     def unit_of(self, id: int) -> str:

@@ -1,6 +1,6 @@
 """Sessions and their decisions."""
 
-from dataclasses import asdict, fields
+from dataclasses import asdict, fields, replace
 from datetime import datetime
 from typing import Any
 
@@ -12,9 +12,11 @@ from service.errors import NotFoundError
 from service.records.decision import Decision, Verdict
 from service.records.diagnosis import DiagnosisState
 from service.records.session import StoredSession
+from service.records.session_list import SessionQuery
 from service.records.state import RecordState
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
+from service.storage.queries.wanted_sessions import KEYS, beyond, conditions, ordered
 from service.storage.reservation_document import reservations_from_list
 from service.storage.tables import (
     CommonMotionRow,
@@ -37,20 +39,20 @@ class Sessions(Queries):
 
     def by_hash(self, sha256: str) -> StoredSession | None:
         """The session made of these bytes, if they were uploaded before."""
-        found = self._session.execute(_sessions().where(SessionRow.sha256 == sha256)).one_or_none()
-        return None if found is None else _session_record(*found)
+        found = self._session.execute(session_rows().where(SessionRow.sha256 == sha256)).one_or_none()
+        return None if found is None else session_record(*found)
 
     def by_digest(self, digest: str) -> StoredSession | None:
         """The session of this content, whatever the format of its file."""
-        found = self._session.execute(_sessions().where(SessionRow.content_digest == digest)).first()
-        return None if found is None else _session_record(*found)
+        found = self._session.execute(session_rows().where(SessionRow.content_digest == digest)).first()
+        return None if found is None else session_record(*found)
 
     def get(self, id: str) -> StoredSession:
         """One session."""
-        found = self._session.execute(_sessions().where(SessionRow.id == id)).one_or_none()
+        found = self._session.execute(session_rows().where(SessionRow.id == id)).one_or_none()
         if found is None:
             raise NotFoundError(f"There is no session {id!r}.")
-        return _session_record(*found)
+        return session_record(*found)
 
     def all_simulated(self) -> bool:
         """Whether there is a demonstration to look at, and nothing else."""
@@ -60,10 +62,30 @@ class Sessions(Queries):
 
     def page(self, unit: str | None, offset: int, limit: int) -> tuple[StoredSession, ...]:
         """Sessions, newest measurement first, of one unit or of all."""
-        query = _sessions().order_by(SessionRow.started_at.desc(), SessionRow.id.desc())
+        query = session_rows().order_by(SessionRow.started_at.desc(), SessionRow.id.desc())
         if unit is not None:
             query = query.where(UnitRow.serial == unit)
-        return tuple(_session_record(*found) for found in self._session.execute(query.offset(offset).limit(limit)))
+        return tuple(session_record(*found) for found in self._session.execute(query.offset(offset).limit(limit)))
+
+    def wanted(self, query: SessionQuery) -> tuple[StoredSession, ...]:
+        """The wanted sessions in the wanted order; one more query where the list goes on from a session."""
+        place = self._place(query)
+        if place is None:
+            query = replace(query, after=None, before=None)
+        rows = session_rows().where(*conditions(query)).order_by(*ordered(query)).limit(query.limit)
+        if place is not None:
+            rows = rows.where(beyond(query, place))
+        found = tuple(session_record(*row) for row in self._session.execute(rows))
+        return found if query.before is None else found[::-1]
+
+    def _place(self, query: SessionQuery) -> tuple[Any, ...] | None:
+        """Keys of the session that a list goes on from."""
+        named = query.after if query.before is None else query.before
+        if named is None:
+            return None
+        keys = select(*KEYS[query.order]).select_from(SessionRow).join(UnitRow, UnitRow.id == SessionRow.unit_id)
+        row = self._session.execute(keys.where(SessionRow.id == named)).one_or_none()
+        return None if row is None else tuple(row)
 
     def reference(
         self,
@@ -103,12 +125,12 @@ class Sessions(Queries):
 
     def of_unit(self, serial: str) -> tuple[StoredSession, ...]:
         """All sessions of a unit, oldest first."""
-        query = _sessions().where(UnitRow.serial == serial).order_by(SessionRow.started_at, SessionRow.id)
-        return tuple(_session_record(*found) for found in self._session.execute(query))
+        query = session_rows().where(UnitRow.serial == serial).order_by(SessionRow.started_at, SessionRow.id)
+        return tuple(session_record(*found) for found in self._session.execute(query))
 
     def latest_like(self, serial: str | None, unit_type: str | None) -> StoredSession | None:
         """The last accepted session of a unit, or of a type's units, calibrations first; of all units with neither."""
-        query = _sessions().where(IS_ACCEPTED)
+        query = session_rows().where(IS_ACCEPTED)
         if serial is not None:
             query = query.where(UnitRow.serial == serial)
         if unit_type is not None:
@@ -118,11 +140,11 @@ class Sessions(Queries):
         found = self._session.execute(
             query.order_by(calibrates.desc(), SessionRow.started_at.desc(), SessionRow.id).limit(1)
         ).first()
-        return None if found is None else _session_record(*found)
+        return None if found is None else session_record(*found)
 
     def before(self, session: StoredSession, since: datetime | None, most: int) -> tuple[StoredSession, ...]:
         """The last sessions of the unit's same programme before one and not before a time, oldest first."""
-        query = _sessions().where(
+        query = session_rows().where(
             UnitRow.serial == session.unit,
             SessionRow.programme == session.programme,
             SessionRow.started_at < session.started_at,
@@ -131,11 +153,11 @@ class Sessions(Queries):
         if since is not None:
             query = query.where(SessionRow.started_at >= since)
         latest = query.order_by(SessionRow.started_at.desc(), SessionRow.id.desc()).limit(most)
-        return tuple(_session_record(*found) for found in self._session.execute(latest))[::-1]
+        return tuple(session_record(*found) for found in self._session.execute(latest))[::-1]
 
     def corrected(self, session: StoredSession) -> tuple[str, ...]:
         """Accepted sessions that were uploaded later than one, of the same unit, programme and date."""
-        query = _sessions().where(
+        query = session_rows().where(
             UnitRow.serial == session.unit,
             SessionRow.programme == session.programme,
             SessionRow.started_at == session.started_at,
@@ -203,7 +225,8 @@ def worst_columns(worst: Decision | None) -> dict[str, str | float | None]:
     return {"worst_sensor": worst.sensor, "worst_parameter": worst.parameter, "margin": worst.margin}
 
 
-def _sessions() -> Select[SessionRow, str, str, str | None, list[Any] | None]:
+def session_rows() -> Select[SessionRow, str, str, str | None, list[Any] | None]:
+    """Sessions with what their records hold besides."""
     return (
         select(SessionRow, UnitRow.serial, StandRow.name, DiagnosisRow.session_id, DiagnosisRow.reservations)
         .join(UnitRow, UnitRow.id == SessionRow.unit_id)
@@ -212,9 +235,10 @@ def _sessions() -> Select[SessionRow, str, str, str | None, list[Any] | None]:
     )
 
 
-def _session_record(
+def session_record(
     row: SessionRow, unit: str, stand: str | None, diagnosed: str | None, reservations: list[Any] | None
 ) -> StoredSession:
+    """A stored session, of a row of `session_rows`."""
     own = {f.name: getattr(row, f.name) for f in fields(StoredSession) if f.name not in ELSEWHERE}
     verdict, state = Verdict(row.verdict), RecordState(row.state)
     said_with = reservations_from_list(diagnosed, reservations)

@@ -3,10 +3,11 @@
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Integer, cast, func, select
+from sqlalchemy import Integer, Select, cast, func, select
 
 from estimator.health.common_motion import SEPARATED
-from service.records.stand import STILL, MotionOnStand
+from service.errors import NotFoundError
+from service.records.stand import STILL, MotionOnStand, StandUse
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
 from service.storage.tables import CommonMotionRow, ConditionRow, SessionRow, StandRow, UnitRow
@@ -28,6 +29,17 @@ class Stands(Queries):
             .where(StandRow.name == stand, SessionRow.started_at >= since)
         )
         return tuple(self._session.scalars(query.order_by(UnitRow.serial)))
+
+    def uses(self) -> tuple[StandUse, ...]:
+        """How much each stand is used, by name, in one query."""
+        return tuple(StandUse(*row) for row in self._session.execute(_uses().order_by(StandRow.name)))
+
+    def use(self, stand: str) -> StandUse:
+        """How much one stand is used; NotFoundError where there is none of that name."""
+        found = self._session.execute(_uses().where(StandRow.name == stand)).one_or_none()
+        if found is None:
+            raise NotFoundError(f"There is no stand {stand!r}: no session was measured on one of that name.")
+        return StandUse(*found)
 
     def motions(self) -> tuple[MotionOnStand, ...]:
         """The newest common motions on any stand, oldest first, in one query; a reference session's is zero."""
@@ -55,6 +67,16 @@ class Stands(Queries):
         for session, stand, unit, number, motion in self._session.execute(query):
             found += _motions(session, stand, unit, number, motion)
         return tuple(reversed(found))
+
+
+def _uses() -> Select[str, int, int, datetime | None]:
+    """As the fields of `StandUse`."""
+    units, last = func.count(SessionRow.unit_id.distinct()), func.max(SessionRow.started_at)
+    return (
+        select(StandRow.name, func.count(SessionRow.id), units, last)
+        .outerjoin(SessionRow, (SessionRow.stand_id == StandRow.id) & IS_ACCEPTED)
+        .group_by(StandRow.name)
+    )
 
 
 def _motions(

@@ -1,14 +1,18 @@
 """Unit types and the revisions of their tolerances."""
 
+from collections.abc import Mapping
 from dataclasses import asdict
 from datetime import datetime
 
-from sqlalchemy import Select, select
+from sqlalchemy import Select, func, select
 
+from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
-from service.records.unit import Tolerances, UnitType
+from service.records.decision import Verdict
+from service.records.unit import ToleranceRevision, Tolerances, TypeUse, UnitType
+from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
-from service.storage.tables import ToleranceRow, UnitRow, UnitTypeRow
+from service.storage.tables import ConditionRow, ParameterRow, SessionRow, ToleranceRow, UnitRow, UnitTypeRow
 
 
 class UnitTypes(Queries):
@@ -59,6 +63,41 @@ class UnitTypes(Queries):
         """Types by name."""
         rows = self._session.execute(_with_tolerances().order_by(UnitTypeRow.name).offset(offset).limit(limit))
         return tuple(unit_type_of(row, tolerances) for row, tolerances in rows)
+
+    def revisions(self, name: str) -> tuple[ToleranceRevision, ...]:
+        """Every revision of a type's tolerances, oldest first."""
+        query = select(ToleranceRow).join(UnitTypeRow).where(UnitTypeRow.name == name).order_by(ToleranceRow.revision)
+        return tuple(
+            ToleranceRevision(row.revision, row.since, *_tolerances(row)) for row in self._session.scalars(query)
+        )
+
+    def uses(self, name: str | None = None) -> dict[str, TypeUse]:
+        """Units of every type, or of one, by condition, in one query."""
+        query = (
+            select(UnitTypeRow.name, ConditionRow.severity, func.count(UnitRow.id))
+            .outerjoin(UnitRow, UnitRow.unit_type_id == UnitTypeRow.id)
+            .outerjoin(ConditionRow, ConditionRow.unit_id == UnitRow.id)
+            .group_by(UnitTypeRow.name, ConditionRow.severity)
+        )
+        if name is not None:
+            query = query.where(UnitTypeRow.name == name)
+        found: dict[str, dict[int | None, int]] = {}
+        for of_type, severity, count in self._session.execute(query):
+            found.setdefault(of_type, {})[severity] = count
+        return {of_type: _use(counts) for of_type, counts in found.items()}
+
+    def kinds(self, name: str) -> dict[str, str]:
+        """The kind of every sensor, as the latest calibration of a unit of the type says."""
+        latest = (
+            select(SessionRow.id)
+            .join(UnitRow, UnitRow.id == SessionRow.unit_id)
+            .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+            .where(UnitTypeRow.name == name, IS_ACCEPTED, SessionRow.programme.in_(CALIBRATIONS))
+            .order_by(SessionRow.started_at.desc(), SessionRow.id)
+            .limit(1)
+        )
+        said = select(ParameterRow.sensor, ParameterRow.kind).where(ParameterRow.session_id == latest.scalar_subquery())
+        return {sensor: kind for sensor, kind in self._session.execute(said.distinct())}  # noqa: C416 - rows are no pairs
 
     def hold(self, name: str) -> UnitType:
         """The type, held until the transaction ends: its revisions are made one after another."""
@@ -117,17 +156,27 @@ def _missing(name: str) -> NotFoundError:
     return NotFoundError(f"There is no unit type {name!r}.")
 
 
+def _use(counts: Mapping[int | None, int]) -> TypeUse:
+    return TypeUse(sum(counts.values()), {verdict: counts.get(verdict.severity, 0) for verdict in Verdict})
+
+
+def _tolerances(row: ToleranceRow) -> tuple[Tolerances, Tolerances | None]:
+    """Of the block, and of the gyros of a mixed one."""
+    gyro = row.gyro_tolerances
+    return Tolerances(**row.tolerances), None if gyro is None else Tolerances(**gyro)
+
+
 def unit_type_of(row: UnitTypeRow, tolerances: ToleranceRow) -> UnitType:
     """The record of a type with one revision of its tolerances."""
-    gyro = tolerances.gyro_tolerances
+    of_block, gyro = _tolerances(tolerances)
     return UnitType(
         name=row.name,
         block=row.block,
         sensors=tuple(row.sensors),
         nominal_axes=tuple(tuple(axis) for axis in row.nominal_axes),
         nominal_scales=tuple(row.nominal_scales),
-        tolerances=Tolerances(**tolerances.tolerances),
-        gyro_tolerances=None if gyro is None else Tolerances(**gyro),
+        tolerances=of_block,
+        gyro_tolerances=gyro,
         revision=row.revision,
         maximum_interval_days=row.maximum_interval_days,
     )

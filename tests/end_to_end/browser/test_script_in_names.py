@@ -22,6 +22,7 @@ SCRIPT = "<img src=x onerror=window.hit=1>"
 """Run wherever it is taken for markup."""
 TEMPLATE = "{{7*191}}${7*191}"
 """Becomes 1337 wherever it is taken for a template."""
+STAND, TYPE = f"stand {SCRIPT}", f"type {SCRIPT}"
 
 
 BREAK = "\u200b"
@@ -44,11 +45,11 @@ def hostile(unit: str, started: str) -> Document:
     table = {rename(column, names): cells for column, cells in document["table"].items()}
     return document | {
         "unit": unit,
-        "unit_type": f"type {SCRIPT}",
+        "unit_type": TYPE,
         "operator": f"{SCRIPT} {TEMPLATE}",
         "notes": f"</script><script>window.hit=1</script>{SCRIPT}",
         "started_at": started,
-        "stand": document["stand"] | {"id": f"stand {SCRIPT}"},
+        "stand": document["stand"] | {"id": STAND},
         "sensors": [sensor | {"name": names[sensor["name"]]} for sensor in document["sensors"]],
         "table": table,
     }
@@ -80,7 +81,9 @@ def planted(settings: Settings) -> Iterator[Planted]:
         ):
             answer = client.post(f"/api/v1/units/{serial}/{what}", json=said)
             assert answer.status_code < 300, answer.text
-        pages = ("/", "/flags", "/stand-certificates", "/audit", f"/units/{serial}")
+        lists = ("/", "/flags", "/stands", "/unit-types", "/audit")
+        own = [quote(name, safe="") for name in (STAND, TYPE)]
+        pages = (*lists, f"/units/{serial}", f"/stands/{own[0]}", f"/unit-types/{own[1]}")
         sessions = [f"/sessions/{id}{page}" for id in ids for page in ("", "/diagnosis")]
         papers = (f"/api/v1/sessions/{ids[0]}/certificate", f"/api/v1/units/{serial}/label.pdf")
         yield Planted(url, (*pages, *sessions), papers)
@@ -104,7 +107,7 @@ def test_a_browser_runs_nothing_that_a_name_says(chromium: Browser, planted: Pla
 
 def test_the_tip_of_a_mark_shows_a_name_as_text(chromium: Browser, planted: Planted) -> None:
     with opened(chromium) as (_, page):
-        page.goto(planted.url + planted.paths[4])
+        page.goto(planted.url + planted.paths[5])
         draw_all(page)
         tips = set()
         for mark in page.locator(".chart [aria-roledescription='point'], .chart .mark-symbol path").all()[:40]:

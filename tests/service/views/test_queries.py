@@ -9,13 +9,16 @@ from sqlalchemy import event
 
 from service.flows.receive import upload
 from service.records.fleet import FleetQuery
+from service.records.session_list import SessionQuery
 from service.storage import Storage
 from service.storage.queries.flags import FlagQuery
 from service.storage.queries.history import HistoryQuery
 from service.storage.store import Store
 from service.views.outlook import outlook_of, outlooks_of_fleet
 from service.views.session_report import session_report
+from service.views.stand_report import every_stand, stand_report
 from service.views.stands import stand_conditions
+from service.views.type_report import every_type, type_report
 from service.views.unit_report import unit_report
 from tests.service.sessions import session_bytes
 
@@ -33,6 +36,11 @@ PAGES: dict[str, tuple[int, Page]] = {
     "outlooks": (2, lambda store: outlooks_of_fleet(store, NOW)),
     "stands": (1, stand_conditions),
     "types": (1, lambda store: store.unit_types.page(0, 100)),
+    "list of sessions": (1, lambda store: store.sessions.wanted(SessionQuery())),
+    "list of stands": (4, every_stand),
+    "stand": (7, lambda store: stand_report(store, "ODG-1")),
+    "list of types": (2, every_type),
+    "type": (8, lambda store: type_report(store, "accelerometer × 6, V")),
 }
 
 

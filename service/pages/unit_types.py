@@ -1,0 +1,158 @@
+"""The pages of unit types: what is allowed and who allowed it, the nominal model, and the units with their states."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from estimator.session import ACCELEROMETER, GYROSCOPE
+from service.measures import deviation_measure, in_measure, limit, number, scale_measure
+from service.pages.accepted_causes import AcceptedCause, accepted_causes
+from service.pages.fleet import FleetRow, fleet_row
+from service.pages.fleet_view import FleetView
+from service.records.session import PARAMETERS
+from service.records.unit import ToleranceRevision, Tolerances, TypeUse, UnitType
+from service.views.type_report import MOST, TypeLine, TypeReport
+from service.words.conditions import Condition, condition_of
+from service.words.names import heading
+
+DEFAULTS = "the service's own, with the first session of the type"
+"""Who set tolerances that nobody set."""
+NOT_JUDGED = "not judged"
+
+
+@dataclass(frozen=True)
+class TypeTile:
+    """How many units of a type are in one condition; a click shows them."""
+
+    condition: Condition
+    count: int
+    url: str
+
+
+@dataclass(frozen=True)
+class TypeRow:
+    """One type in the list."""
+
+    name: str
+    block: str
+    units: int
+    tiles: tuple[TypeTile, ...]
+    """Worst first, none without a unit."""
+    tolerances: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class TypesPage:
+    """Everything the list of types shows."""
+
+    rows: tuple[TypeRow, ...]
+
+
+@dataclass(frozen=True)
+class SensorModel:
+    """A sensor as its maker describes it."""
+
+    name: str
+    kind: str
+    axis: str
+    scale: str
+
+
+@dataclass(frozen=True)
+class RevisionRow:
+    """One revision of the tolerances, by parameter and kind."""
+
+    revision: int
+    since: datetime
+    who: str
+    limits: tuple[tuple[str, str], ...]
+    """What is allowed of what."""
+
+
+@dataclass(frozen=True)
+class TypePage:
+    """Everything the page of one type shows."""
+
+    row: TypeRow
+    interval: str
+    revisions: tuple[RevisionRow, ...]
+    """Newest first: the first one holds."""
+    sensors: tuple[SensorModel, ...]
+    units: tuple[FleetRow, ...]
+    more: bool
+    """Whether there are units that are not listed."""
+    causes: tuple[AcceptedCause, ...]
+
+
+def types_page(types: Sequence[TypeLine]) -> TypesPage:
+    """The list of types."""
+    return TypesPage(tuple(map(_row, types)))
+
+
+def type_page(report: TypeReport, now: datetime) -> TypePage:
+    """The page of one type."""
+    known = report.line.unit_type
+    kinds = {name: report.kinds.get(name, known.block) for name in known.sensors}
+    return TypePage(
+        row=_row(report.line),
+        interval=f"{known.maximum_interval_days:.0f} days",
+        revisions=tuple(_revision(one, known, report) for one in reversed(report.revisions)),
+        sensors=tuple(
+            _sensor(name, kinds[name], axis, scale)
+            for name, axis, scale in zip(known.sensors, known.nominal_axes, known.nominal_scales, strict=True)
+        ),
+        units=tuple(fleet_row(unit, now) for unit in report.units[:MOST]),
+        more=len(report.units) > MOST,
+        causes=accepted_causes(report.models),
+    )
+
+
+def _row(line: TypeLine) -> TypeRow:
+    known = line.unit_type
+    current = _limits(known.tolerances, known.gyro_tolerances, known.block)
+    named = [f"{what} {text}" for what, text in current if text != NOT_JUDGED]
+    return TypeRow(known.name, _block(known), line.use.units, _tiles(known.name, line.use), tuple(named))
+
+
+def _block(known: UnitType) -> str:
+    """``6 accelerometers``."""
+    count = len(known.sensors)
+    if known.gyro_tolerances is not None:
+        return f"{count} accelerometers and gyros"
+    kind = {ACCELEROMETER: "accelerometer", GYROSCOPE: "gyro"}.get(known.block, known.block)
+    return f"{count} {kind}{'' if count == 1 else 's'}"
+
+
+def _tiles(name: str, use: TypeUse) -> tuple[TypeTile, ...]:
+    return tuple(
+        TypeTile(condition_of(verdict), count, FleetView(condition=verdict.value, unit_type=name).url())
+        for verdict, count in reversed(use.verdicts.items())
+        if count
+    )
+
+
+def _revision(one: ToleranceRevision, known: UnitType, report: TypeReport) -> RevisionRow:
+    who = report.setters.get(one.since, DEFAULTS if one.revision == 1 else "not recorded")
+    return RevisionRow(one.revision, one.since, who, _limits(one.tolerances, one.gyro_tolerances, known.block))
+
+
+def _limits(of_block: Tolerances, of_gyros: Tolerances | None, block: str) -> tuple[tuple[str, str], ...]:
+    """Of a mixed block each kind of sensor has its own."""
+    stated = ((block, of_block),) if of_gyros is None else ((ACCELEROMETER, of_block), (GYROSCOPE, of_gyros))
+    return tuple(
+        (heading(name) if of_gyros is None else f"{heading(name)}, {kind}s", _limit(kind, name, getattr(given, name)))
+        for kind, given in stated
+        for name in PARAMETERS
+    )
+
+
+def _limit(kind: str, parameter: str, tolerance: float | None) -> str:
+    if tolerance is None:
+        return NOT_JUDGED
+    return limit(tolerance, deviation_measure(kind, parameter, tolerance), parameter == "axis")
+
+
+def _sensor(name: str, kind: str, axis: tuple[float, float, float], scale: float) -> SensorModel:
+    measure = scale_measure(kind)
+    vector = ", ".join(number(x, 4) for x in axis)
+    return SensorModel(name, kind, f"({vector})", f"{number(in_measure(scale, measure))} {measure.label}")

@@ -1,0 +1,83 @@
+"""Everything that is known of stands: what units show of them, their certificates, flags, sessions and units."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from service.judging.model_in_force import in_force
+from service.records.flag import Flag, Matter
+from service.records.fleet import FleetQuery, Order
+from service.records.model import ModelRevision, Scope
+from service.records.paper import StandCertificate
+from service.records.session import StoredSession
+from service.records.session_list import SessionQuery
+from service.records.stand import StandCondition, StandUse
+from service.records.unit import UnitSummary
+from service.storage.queries.flags import FlagQuery
+from service.storage.store import Store
+from service.views.stands import stand_conditions
+
+AT_FAULT = (Matter.STAND, Matter.SHIFTED)
+"""Of flags that find a stand at fault; their place is its name."""
+MOST = 25
+"""Flags, sessions and units that the page of one stand lists: a screen of each; the lists themselves have all."""
+
+
+@dataclass(frozen=True)
+class StandLine:
+    """One stand in the list."""
+
+    use: StandUse
+    condition: StandCondition | None
+    """None where no session tells of it."""
+    certificates: tuple[StandCertificate, ...]
+    """Oldest issue first."""
+    flags: int
+    """How many are open that find it at fault."""
+
+
+@dataclass(frozen=True)
+class StandReport:
+    """One stand; one flag, unit or session more than are listed says that there are others."""
+
+    line: StandLine
+    flags: tuple[Flag, ...]
+    units: tuple[UnitSummary, ...]
+    """Whose latest session was measured on it, the latest first."""
+    sessions: tuple[StoredSession, ...]
+    """Newest first."""
+    models: tuple[ModelRevision, ...]
+    """Causes that engineers accepted into its model, and that hold."""
+
+
+def every_stand(store: Store) -> tuple[StandLine, ...]:
+    """All stands, by name, in four queries."""
+    certificates, flags = store.stand_certificates.every(), store.flags.open_about(*AT_FAULT)
+    conditions = stand_conditions(store)
+    return tuple(
+        StandLine(
+            use=use,
+            condition=_condition(conditions, use.stand),
+            certificates=certificates.get(use.stand, ()),
+            flags=sum(flag.place == use.stand for flag in flags),
+        )
+        for use in store.stands.uses()
+    )
+
+
+def stand_report(store: Store, name: str) -> StandReport:
+    """One stand; NotFoundError where there is none of that name."""
+    use = store.stands.use(name)
+    flags = store.flags.page(FlagQuery(unresolved=True, matters=AT_FAULT, place=name, limit=MOST + 1))
+    return StandReport(
+        line=StandLine(
+            use, _condition(stand_conditions(store), name), store.stand_certificates.of_stand(name), len(flags)
+        ),
+        flags=flags,
+        units=store.fleet.units(FleetQuery(stand=name, order=Order.LAST, backwards=True, limit=MOST + 1)),
+        sessions=store.sessions.wanted(SessionQuery(stand=name, limit=MOST + 1)),
+        models=in_force(store.models.of_subject(Scope.STAND, name)),
+    )
+
+
+def _condition(conditions: Sequence[StandCondition], name: str) -> StandCondition | None:
+    return next((one for one in conditions if one.stand == name), None)

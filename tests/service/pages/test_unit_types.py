@@ -1,0 +1,70 @@
+"""The pages of unit types: what is allowed and who allowed it, the nominal model, and the units."""
+
+import json
+
+import httpx
+import pytest
+
+from service.pages.unit_types import type_page, types_page
+from service.records.decision import Verdict
+from service.records.unit import ToleranceRevision, Tolerances, TypeUse, UnitType
+from service.views.type_report import TypeLine, TypeReport
+from tests.builders import mixed_block
+from tests.conftest import Holding
+from tests.databases import one_engine
+from tests.service.pages.records import NOON
+from tests.service.sessions import session_bytes
+
+TOLERANCES = {"scale": 5e-5, "bias": 4e-4, "quadratic": None, "axis": 1e-4}
+G = 9.80665
+KIND = UnitType(
+    "RA-6", "accelerometer", ("A1",), ((0.0, 1.0, 0.0),), (0.12,), Tolerances(1e-4, 50e-6 * G, None, 1e-4), None, 2
+)
+
+
+def use(**counts: int) -> TypeUse:
+    verdicts = {verdict: counts.get(verdict.name.lower(), 0) for verdict in Verdict}
+    return TypeUse(sum(counts.values()), verdicts)
+
+
+def test_a_type_is_listed_with_its_limits_and_the_worst_units_first() -> None:
+    [row] = types_page([TypeLine(KIND, use(passed=0, fail=1, undecidable=2))]).rows
+    assert (row.block, row.units) == ("1 accelerometer", 3)
+    assert [(tile.condition.word, tile.count) for tile in row.tiles] == [("Unfit", 1), ("Undecided", 2)]
+    assert row.tiles[0].url == "/?condition=fail&type=RA-6"
+    assert row.tolerances == ("Scale factor ±100\u202fppm", "Bias ±50\u202fµg", "Input axis 20.63\u202farcsec")
+
+
+def test_the_first_tolerances_are_the_service_s_own() -> None:
+    revisions = tuple(ToleranceRevision(n, NOON, KIND.tolerances, None) for n in (1, 2))
+    report = TypeReport(TypeLine(KIND, use(fail=1)), {}, revisions[:1], {}, (), ())
+    assert "the service's own" in type_page(report, NOON).revisions[0].who
+    report = TypeReport(TypeLine(KIND, use(fail=1)), {}, revisions[1:], {NOON: "K. Ito"}, (), ())
+    assert type_page(report, NOON).revisions[0].who == "K. Ito"
+
+
+def test_a_type_s_page_says_who_changed_its_tolerances(client: httpx.Client) -> None:
+    client.post("/api/v1/sessions", content=session_bytes(unit_type="RA/6"))
+    assert "the service&#39;s own" in client.get("/unit-types/RA/6").text
+    client.put("/api/v1/unit-types/RA/6", json={"tolerances": TOLERANCES}).raise_for_status()
+    page = client.get("/unit-types/RA/6").text
+    assert "Revision 2, since" in page
+    assert "set by crew" in page
+    assert "Every revision" in page
+    assert '<a href="/units/BA-017">BA-017</a>' in page
+    assert '<a href="/unit-types/RA/6">RA/6</a>' in client.get("/unit-types").text
+    assert '<a href="/unit-types/RA/6">RA/6</a>' in client.get("/units/BA-017").text
+    assert client.get("/unit-types/none").status_code == 404
+
+
+def test_a_mixed_block_s_sensors_have_the_kinds_that_a_session_told(holding: Holding) -> None:
+    page = holding(json.dumps(mixed_block() | {"unit_type": "MX"}).encode()).get("/unit-types/MX").text
+    assert page.count('<td data-label="Kind">accelerometer</td>') == 3
+    assert page.count('<td data-label="Kind">gyroscope</td>') == 3
+    assert "per °/s" in page
+
+
+@one_engine
+@pytest.mark.parametrize(("path", "said"), [("/stands", "on a stand yet"), ("/unit-types", "No unit type yet")])
+def test_an_empty_service_says_so(client: httpx.Client, path: str, said: str) -> None:
+    assert said in client.get(path).text
