@@ -1,6 +1,7 @@
 """What an operator sets, by environment variables that start with IMU_HEALTH_."""
 
 import os
+from enum import StrEnum
 from importlib.metadata import version
 from ipaddress import ip_address
 from pathlib import Path
@@ -23,6 +24,15 @@ def default_data_folder() -> Path:
 def cores_left() -> int:
     """One core answers requests; a machine with one shares it."""
     return max(1, (os.cpu_count() or 1) - 1)
+
+
+class Origin(StrEnum):
+    """Where the value of a setting comes from."""
+
+    DEFAULT = "default"
+    ENVIRONMENT = "environment"
+    START = "start"
+    """An option of the command that started the service."""
 
 
 class Settings(BaseSettings):
@@ -219,3 +229,12 @@ class Settings(BaseSettings):
     def files(self) -> Path:
         """The folder of uploaded bytes."""
         return self.data_folder / "files"
+
+    def origin_of(self, name: str) -> Origin:
+        """Where the value of a setting comes from; an option of the command line comes before the environment."""
+        if name not in self.model_fields_set:
+            return Origin.DEFAULT
+        surroundings = Settings()
+        is_set = name in surroundings.model_fields_set
+        same = getattr(surroundings, name) == getattr(self, name)
+        return Origin.ENVIRONMENT if is_set and same else Origin.START

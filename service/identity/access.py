@@ -38,6 +38,8 @@ GET /unit-types/{{name:path}}
 GET /stands
 GET /stands/{{name:path}}
 GET /plan
+GET /help
+GET /api-reference
 GET /account
 POST /account/password
 POST /account/tokens
@@ -86,6 +88,8 @@ DELETE {API}/tokens/{{id}}
 
 CREW = f"""
 GET /upload
+GET /uploads
+GET /uploads/{{id}}
 GET /sessions/{{id}}/outcome
 POST /upload
 POST /upload/layout
@@ -143,6 +147,7 @@ POST /accounts
 POST /accounts/{{login}}
 POST /accounts/{{login}}/link
 GET /audit
+GET /settings
 GET {API}/accounts
 POST {API}/accounts
 PUT {API}/accounts/{{login}}

@@ -12,11 +12,13 @@ from service.admission import ADMITTED
 from service.pages import (
     account_routes,
     admin_routes,
+    arrival_routes,
     assets,
     certificate_routes,
     diagnosis_routes,
     event_routes,
     flag_routes,
+    help_routes,
     layout_routes,
     oidc_routes,
     paper_routes,
@@ -46,6 +48,8 @@ PARTS = (
     session_routes,
     stand_routes,
     type_routes,
+    arrival_routes,
+    help_routes,
     assets,
 )
 """Every file of addresses."""

@@ -57,7 +57,6 @@ class StandPage:
     reasons: tuple[str, ...]
     certificates: tuple[tuple[str, str, str, str], ...]
     """Number, issued by, issued on, valid until; the latest first."""
-    certificate: str
     flags: tuple[FlagCard, ...]
     shifts: tuple[ShiftRow, ...]
     seating: tuple[tuple[str, str], ...]
@@ -87,7 +86,6 @@ def stand_page(report: StandReport, now: datetime) -> StandPage:
         word=_word(line, now),
         reasons=(certificate, condition_in_words(condition)),
         certificates=tuple(map(_certificate, reversed(line.certificates))),
-        certificate=certificate,
         flags=flag_cards(report.flags[:MOST]),
         shifts=() if condition is None else _shifts(condition),
         seating=() if condition is None else _seating(condition),

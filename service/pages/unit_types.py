@@ -1,23 +1,26 @@
 """The pages of unit types: what is allowed and who allowed it, the nominal model, and the units with their states."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 
 from estimator.session import ACCELEROMETER, GYROSCOPE
+from service.judging.tolerances import tolerances_of
 from service.measures import deviation_measure, in_measure, limit, number, scale_measure
 from service.pages.accepted_causes import AcceptedCause, accepted_causes
 from service.pages.fleet import FleetRow, fleet_row
 from service.pages.fleet_view import FleetView
 from service.records.session import PARAMETERS
-from service.records.unit import ToleranceRevision, Tolerances, TypeUse, UnitType
+from service.records.unit import ToleranceRevision, TypeUse, UnitType
 from service.views.type_report import MOST, TypeLine, TypeReport
 from service.words.conditions import Condition, condition_of
 from service.words.names import heading
 
-DEFAULTS = "the service's own, with the first session of the type"
+DEFAULTS = "the service itself, with the first session of the type"
 """Who set tolerances that nobody set."""
 NOT_JUDGED = "not judged"
+KINDS = {ACCELEROMETER: "accelerometer", GYROSCOPE: "gyro"}
+"""Of sensors, as people call them."""
 
 
 @dataclass(frozen=True)
@@ -109,8 +112,7 @@ def type_page(report: TypeReport, now: datetime) -> TypePage:
 
 def _row(line: TypeLine) -> TypeRow:
     known = line.unit_type
-    current = _limits(known.tolerances, known.gyro_tolerances, known.block)
-    named = [f"{what} {text}" for what, text in current if text != NOT_JUDGED]
+    named = [f"{what} {text}" for what, text in _limits(known) if text != NOT_JUDGED]
     return TypeRow(known.name, _block(known), line.use.units, _tiles(known.name, line.use), tuple(named))
 
 
@@ -119,7 +121,7 @@ def _block(known: UnitType) -> str:
     count = len(known.sensors)
     if known.gyro_tolerances is not None:
         return f"{count} accelerometers and gyros"
-    kind = {ACCELEROMETER: "accelerometer", GYROSCOPE: "gyro"}.get(known.block, known.block)
+    kind = KINDS.get(known.block, known.block)
     return f"{count} {kind}{'' if count == 1 else 's'}"
 
 
@@ -133,15 +135,18 @@ def _tiles(name: str, use: TypeUse) -> tuple[TypeTile, ...]:
 
 def _revision(one: ToleranceRevision, known: UnitType, report: TypeReport) -> RevisionRow:
     who = report.setters.get(one.since, DEFAULTS if one.revision == 1 else "not recorded")
-    return RevisionRow(one.revision, one.since, who, _limits(one.tolerances, one.gyro_tolerances, known.block))
+    held = replace(known, tolerances=one.tolerances, gyro_tolerances=one.gyro_tolerances)
+    return RevisionRow(one.revision, one.since, who, _limits(held))
 
 
-def _limits(of_block: Tolerances, of_gyros: Tolerances | None, block: str) -> tuple[tuple[str, str], ...]:
-    """Of a mixed block each kind of sensor has its own."""
-    stated = ((block, of_block),) if of_gyros is None else ((ACCELEROMETER, of_block), (GYROSCOPE, of_gyros))
+def _limits(known: UnitType) -> tuple[tuple[str, str], ...]:
+    """What units are judged by; of a mixed block each kind of sensor has its own."""
+    allowed = tolerances_of(known)
+    kinds = (known.block,) if known.gyro_tolerances is None else (ACCELEROMETER, GYROSCOPE)
+    of = {kind: f", {KINDS.get(kind, kind)}s" if len(kinds) > 1 else "" for kind in kinds}
     return tuple(
-        (heading(name) if of_gyros is None else f"{heading(name)}, {kind}s", _limit(kind, name, getattr(given, name)))
-        for kind, given in stated
+        (f"{heading(name)}{of[kind]}", _limit(kind, name, allowed.get((kind, name))))
+        for kind in kinds
         for name in PARAMETERS
     )
 
@@ -155,4 +160,6 @@ def _limit(kind: str, parameter: str, tolerance: float | None) -> str:
 def _sensor(name: str, kind: str, axis: tuple[float, float, float], scale: float) -> SensorModel:
     measure = scale_measure(kind)
     vector = ", ".join(number(x, 4) for x in axis)
-    return SensorModel(name, kind, f"({vector})", f"{number(in_measure(scale, measure))} {measure.label}")
+    return SensorModel(
+        name, KINDS.get(kind, kind), f"({vector})", f"{number(in_measure(scale, measure))} {measure.label}"
+    )

@@ -39,6 +39,11 @@ def normal_url(url: str) -> URL:
     return parsed
 
 
+def shown_url(url: str) -> str:
+    """The URL as people may read it: without its password, and without options, which may hold another."""
+    return normal_url(url).set(query={}).render_as_string(hide_password=True)
+
+
 def _unknown(fault: str) -> ServiceError:
     """The address itself may hold a password and is not repeated."""
     return ServiceError(f"{fault}: a database's address is sqlite:///path or postgresql://user:password@host/name.")

@@ -5,6 +5,7 @@ from functools import cached_property
 from sqlalchemy.orm import Session
 
 from service.storage.queries.accounts import Accounts
+from service.storage.queries.arrivals import Arrivals
 from service.storage.queries.attempts import Attempts
 from service.storage.queries.audit import Audit
 from service.storage.queries.calibrations import Calibrations
@@ -185,6 +186,11 @@ class Store:
     def log(self) -> Log:
         """Refused uploads."""
         return Log(self._session)
+
+    @cached_property
+    def arrivals(self) -> Arrivals:
+        """Uploads, stored or refused."""
+        return Arrivals(self._session)
 
     @cached_property
     def audit(self) -> Audit:

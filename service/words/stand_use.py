@@ -31,7 +31,7 @@ class StandWord:
 READY = StandWord("pass", "Ready to use", "Nothing that is on record speaks against it.")
 SOON_OVER = StandWord("conditional-pass", "Ready to use", "Its certificate ends soon: have the stand calibrated.")
 NOT_STATED = StandWord("undecidable", "Usable, traceability not stated", "Record the certificate of the stand.")
-CHECK = StandWord("conditional-fail", "Check before use", "Check stand and fixture, then look at its flags.")
+CHECK = StandWord("conditional-fail", "Check before use", "Check stand and fixture before a unit is mounted.")
 EXPIRED_TODAY = StandWord("fail", "Not traceable today", "Have the stand calibrated, or record its new certificate.")
 WORDS = (EXPIRED_TODAY, CHECK, NOT_STATED, SOON_OVER, READY)
 """Worst first."""

@@ -41,6 +41,8 @@ class Site:
     """Where the service is, and what it holds."""
 
     url: str
+    first_session: str
+    """Of the unit that is unfit since."""
     unfit_session: str
     loose_session: str
     swayed_session: str
@@ -77,14 +79,13 @@ def upload(url: str, document: Document) -> str:
 def site(sqlite: Databases, stock_of: StockOf) -> Iterator[Site]:
     """A service with seven units: drifted, two fit, measured by hand, on a bad stand, aligned on a turntable, flown."""
     with stock_of(sqlite).holding() as settings, serving(settings) as url, stores(settings) as storage:
-        for document in earlier():
-            receive(storage, json.dumps(document).encode(), "earlier.json", NOW)
+        before = [receive(storage, json.dumps(one).encode(), "earlier.json", NOW).id for one in earlier()]
         unfit = upload(url, drifting(6))
         loose = upload(url, arbitrary_orientations() | {"unit": "HAND-1"})
         swayed = upload(url, swaying_stand())
         aligned = upload(url, json.loads(alignment_bytes(seed=2, month=4)))
         flown = upload(url, recording_document(unit="FL-1", a3_moved=400.0))
-        yield Site(url, unfit, loose, swayed, aligned, flown)
+        yield Site(url, before[0], unfit, loose, swayed, aligned, flown)
 
 
 @pytest.fixture(scope="session")

@@ -28,6 +28,12 @@ PATHS = (
     "/flags",
     "/stands",
     "/stands/ODG-1",
+    "/sessions",
+    "/compare?a={first}&b={unfit}",
+    "/uploads",
+    "/help",
+    "/api-reference",
+    "/settings",
     "/unit-types",
     "/unit-types/accelerometer × 6, V",
     "/upload",
@@ -43,7 +49,9 @@ PATHS = (
 
 def address(site: Site, path: str) -> str:
     sessions = {"unfit": site.unfit_session, "loose": site.loose_session, "swayed": site.swayed_session}
-    return site.url + path.format(**sessions, aligned=site.aligned_session, flown=site.flown_session)
+    return site.url + path.format(
+        **sessions, first=site.first_session, aligned=site.aligned_session, flown=site.flown_session
+    )
 
 
 @dataclass(frozen=True)

@@ -70,7 +70,7 @@ def test_a_certificate_is_recorded_on_the_stand_s_page(flagged: httpx.Client) ->
 def test_a_stand_s_page_leads_to_its_units_and_sessions(flagged: httpx.Client) -> None:
     page = flagged.get("/stands/ODG-1").text
     assert '<a href="/units/BA-017">BA-017</a>' in page
-    assert page.count('class="text" href="/sessions/') == 2
-    session = page.partition('class="text" href="')[2].partition('"')[0]
+    assert page.count('class="text nowrap" href="/sessions/') == 2
+    session = page.partition('class="text nowrap" href="')[2].partition('"')[0]
     assert '<a href="/stands/ODG-1">ODG-1</a>' in flagged.get(session).text
     assert flagged.get("/stands/none").status_code == 404

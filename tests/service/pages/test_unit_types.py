@@ -1,6 +1,7 @@
 """The pages of unit types: what is allowed and who allowed it, the nominal model, and the units."""
 
 import json
+from dataclasses import replace
 
 import httpx
 import pytest
@@ -38,14 +39,14 @@ def test_a_type_is_listed_with_its_limits_and_the_worst_units_first() -> None:
 def test_the_first_tolerances_are_the_service_s_own() -> None:
     revisions = tuple(ToleranceRevision(n, NOON, KIND.tolerances, None) for n in (1, 2))
     report = TypeReport(TypeLine(KIND, use(fail=1)), {}, revisions[:1], {}, (), ())
-    assert "the service's own" in type_page(report, NOON).revisions[0].who
+    assert "the service itself" in type_page(report, NOON).revisions[0].who
     report = TypeReport(TypeLine(KIND, use(fail=1)), {}, revisions[1:], {NOON: "K. Ito"}, (), ())
     assert type_page(report, NOON).revisions[0].who == "K. Ito"
 
 
 def test_a_type_s_page_says_who_changed_its_tolerances(client: httpx.Client) -> None:
     client.post("/api/v1/sessions", content=session_bytes(unit_type="RA/6"))
-    assert "the service&#39;s own" in client.get("/unit-types/RA/6").text
+    assert "set by the service itself" in client.get("/unit-types/RA/6").text
     client.put("/api/v1/unit-types/RA/6", json={"tolerances": TOLERANCES}).raise_for_status()
     page = client.get("/unit-types/RA/6").text
     assert "Revision 2, since" in page
@@ -60,8 +61,16 @@ def test_a_type_s_page_says_who_changed_its_tolerances(client: httpx.Client) -> 
 def test_a_mixed_block_s_sensors_have_the_kinds_that_a_session_told(holding: Holding) -> None:
     page = holding(json.dumps(mixed_block() | {"unit_type": "MX"}).encode()).get("/unit-types/MX").text
     assert page.count('<td data-label="Kind">accelerometer</td>') == 3
-    assert page.count('<td data-label="Kind">gyroscope</td>') == 3
+    assert page.count('<td data-label="Kind">gyro</td>') == 3
     assert "per °/s" in page
+
+
+def test_a_block_of_gyros_with_accelerometers_shows_what_each_is_judged_by() -> None:
+    gyros = Tolerances(1e-3, 2e-7, None, 1e-4)
+    mixed = replace(KIND, block="gyroscope", tolerances=gyros, gyro_tolerances=gyros)
+    [row] = types_page([TypeLine(mixed, use(fail=1))]).rows
+    assert "Bias, accelerometers ±50\u202fµg" in row.tolerances
+    assert "Bias, gyros ±0.04125\u202f°/h" in row.tolerances
 
 
 @one_engine

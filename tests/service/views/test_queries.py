@@ -8,6 +8,7 @@ import pytest
 from sqlalchemy import event
 
 from service.flows.receive import upload
+from service.records.arrival import ArrivalQuery
 from service.records.fleet import FleetQuery
 from service.records.session_list import SessionQuery
 from service.storage import Storage
@@ -39,6 +40,7 @@ PAGES: dict[str, tuple[int, Page]] = {
     "list of sessions": (1, lambda store: store.sessions.wanted(SessionQuery())),
     "list of stands": (4, every_stand),
     "stand": (7, lambda store: stand_report(store, "ODG-1")),
+    "uploads": (2, lambda store: store.arrivals.page(ArrivalQuery())),
     "list of types": (2, every_type),
     "type": (8, lambda store: type_report(store, "accelerometer × 6, V")),
 }
