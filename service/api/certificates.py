@@ -15,6 +15,8 @@ from service.flows.identity.attempts import Attempt
 from service.flows.sign_certificate import Signing
 from service.records.paper import NOT_STATED
 from service.reports.desk import HandedOut, hand_out, hand_out_approved, sign
+from service.reports.onboard import FORMS, System
+from service.reports.onboard.stored import given_of
 from service.reports.signatures import papers_of
 from service.views.correction import correction_document
 
@@ -23,6 +25,8 @@ PDF, XML = "application/pdf", "application/xml"
 """Media types of the two forms."""
 BYTES = {"schema": {"type": "string", "format": "binary"}}
 """How OpenAPI describes a file."""
+PLAIN = "text/plain; charset=utf-8"
+TEXT_FILE: dict[int | str, dict[str, Any]] = {200: {"content": {"text/plain": {"schema": {"type": "string"}}}}}
 FILES: dict[int | str, dict[str, Any]] = {200: {"content": {PDF: BYTES, XML: {"schema": {"type": "string"}}}}}
 Format = Annotated[
     Literal["pdf", "dcc"], Query(description="For people, or as a Digital Calibration Certificate for programs.")
@@ -103,3 +107,15 @@ def _file(paper: HandedOut, format: str) -> Response:
 def read_correction(id: SessionId, storage: StorageOf) -> CorrectionDocument:
     """The correction for firmware: formula, numbers of every sensor, matrix and a worked example, imu-correction/1."""
     return CorrectionDocument.model_validate(correction_document(storage, id))
+
+
+@router.get("/{id}/export", responses={**TEXT_FILE, **errors(404, 422)}, response_class=Response)
+def read_export(
+    id: SessionId,
+    storage: StorageOf,
+    system: Annotated[System, Query(description="PX4, ArduPilot, Kalibr or ROS 2.", examples=["px4"])],
+) -> Response:
+    """The correction as another system's parameters, with what that system cannot hold."""
+    given, form = given_of(storage, id), FORMS[system]
+    name = f"{given.unit}-{given.session[:8]}-{system}.{form.ending}"
+    return as_file(form.written(given).encode(), PLAIN, name)

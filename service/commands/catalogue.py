@@ -71,6 +71,7 @@ CATALOGUE = {
         "Record the certificate of a stand's own calibration, which every session on it hangs on.",
     ),
     "correction": Entry("certificate.correction", "Write the correction that firmware applies to readings, as JSON."),
+    "export": Entry("certificate.export", "Write the correction as parameters of PX4, ArduPilot, Kalibr or ROS 2."),
     "simulate": Entry(
         "simulate.simulate_files",
         "Write session files of a simulated block: six accelerometers on a two-axis stand unless told otherwise.",

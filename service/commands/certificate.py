@@ -1,4 +1,4 @@
-"""`imu-health certificate` and `correction`: what is handed on of a stored session, from a running service."""
+"""`imu-health certificate`, `correction`, `export`: what is handed on of a stored session, by a running service."""
 
 import json
 from enum import StrEnum
@@ -9,6 +9,15 @@ import typer
 
 from service.commands.client import connected
 from service.commands.console import DEFAULT_SERVER, Out, Server, deliver
+
+
+class System(StrEnum):
+    """Whose parameters."""
+
+    PX4 = "px4"
+    ARDUPILOT = "ardupilot"
+    KALIBR = "kalibr"
+    ROS2 = "ros2"
 
 
 class Form(StrEnum):
@@ -43,3 +52,15 @@ def correction(session: Session, server: Server = DEFAULT_SERVER, out: Out = Non
     with connected(server) as client:
         found = client.get(f"/sessions/{quote(session, safe='')}/correction").json()
     deliver((json.dumps(found, indent=1, ensure_ascii=False) + "\n").encode(), out)
+
+
+def export(
+    session: Session,
+    system: Annotated[System, typer.Option("--system", help="px4, ardupilot, kalibr or ros2.")],
+    server: Server = DEFAULT_SERVER,
+    out: Out = None,
+) -> None:
+    """Write the correction as parameters of PX4, ArduPilot, Kalibr or ROS 2."""
+    with connected(server) as client:
+        found = client.get(f"/sessions/{quote(session, safe='')}/export", system=system.value)
+    deliver(found.content, out)

@@ -52,6 +52,7 @@ GET {SESSION}/states
 GET {SESSION}/certificates
 GET {SESSION}/certificates/{{number}}
 GET {SESSION}/correction
+GET {SESSION}/export
 GET {SESSION}/diagnosis
 GET {API}/units
 GET {UNIT}

@@ -1,6 +1,7 @@
 """The correction that a session's calibration gives, for firmware: formula, numbers and a worked example."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -35,8 +36,21 @@ DIGITS = 9
 """Of the worked example's numbers in words."""
 
 
-def correction_document(storage: Storage, id: str) -> dict[str, Any]:
-    """imu-correction/1; NotFoundError where the session's programme gives none."""
+@dataclass(frozen=True, eq=False)
+class Corrected:
+    """A stored session with the correction that it gives."""
+
+    stored: StoredSession
+    calibration: Calibration
+    session: CalibrationSession
+    """Averaged."""
+    found: Correction
+    revisions: tuple[ModelRevision, ...]
+    """Accepted causes that the parameters were estimated with."""
+
+
+def corrected(storage: Storage, id: str) -> Corrected:
+    """The correction of a session; NotFoundError where its programme gives none."""
     with storage.database.reading() as store:
         stored, calibration = store.sessions.get(id), store.calibrations.get(id)
         revisions = tuple(r for r in store.models.of_session(id) if r.id <= stored.revision)
@@ -46,13 +60,19 @@ def correction_document(storage: Storage, id: str) -> dict[str, Any]:
     found = correction_of(session, calibration)
     if not found.blocks:
         raise NotFoundError(f"Session {id!r} gives no correction: {'; '.join(_reasons(found))}.")
+    return Corrected(stored, calibration, session, found, revisions)
+
+
+def correction_document(storage: Storage, id: str) -> dict[str, Any]:
+    """imu-correction/1; NotFoundError where the session's programme gives none."""
+    one = corrected(storage, id)
     return {
-        **_identity(stored, calibration),
+        **_identity(one.stored, one.calibration),
         "formula": list(FORMULA),
-        "blocks": [_block(block, session) for block in found.blocks],
-        "left_out": [{"sensor": name, "why": why} for name, why in found.left_out],
-        "not_corrected": list(ALWAYS_LEFT) + [_assumed(block) for block in found.blocks if _assumed(block)],
-        "extended_model": [_revision(revision) for revision in revisions],
+        "blocks": [_block(block, one.session) for block in one.found.blocks],
+        "left_out": [{"sensor": name, "why": why} for name, why in one.found.left_out],
+        "not_corrected": list(ALWAYS_LEFT) + [_assumed(block) for block in one.found.blocks if _assumed(block)],
+        "extended_model": [_revision(revision) for revision in one.revisions],
     }
 
 

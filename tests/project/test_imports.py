@@ -39,7 +39,7 @@ ESTIMATOR_LAYERS = (
     {"causes"},
     {"simulate", "calibration", "alignment", "parity"},
     {"correction", "diagnosis", "health", "programmes"},
-    {"groups", "planning"},
+    {"groups", "nominal_vector", "planning"},
     {"published"},
 )
 HOMES = {
