@@ -13,6 +13,7 @@ from estimator.diagnosis.explanation.rivals import CREDIBLE, alternatives, ranki
 from estimator.diagnosis.explanation.sensor_or_stand import parity_split
 from estimator.diagnosis.results import Course, Finding, NoiseScale, Structure
 from estimator.diagnosis.selection.excess_noise import sensor_scatter
+from estimator.diagnosis.selection.noise_claim import BEYOND_NOISE
 from estimator.diagnosis.selection.search_state import Found, SearchState
 from estimator.diagnosis.signatures.applied_course import AppliedCourse
 from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance, NoiseClaim, UnlikeNoise
@@ -21,10 +22,6 @@ from estimator.session import ACCELEROMETER
 
 UNEXPLAINED = "unexplained"
 """Among alternatives: what acts may be none of the catalogue's causes."""
-
-BEYOND_NOISE = 30.0
-"""Times the stated standard errors from which on scatter is no misjudged noise: stated ones were seen to be four to
-twenty times too small."""
 
 
 def findings(state: SearchState, fitted: Amplitudes, new: Sequence[bool | None]) -> tuple[Finding, ...]:
@@ -161,6 +158,7 @@ def beyond_noise(state: SearchState) -> Iterator[Structure]:
 def unlike_noise(state: SearchState, unlike: UnlikeNoise) -> Structure:
     """A sensor whose scatter is not that of noise."""
     where = "scatter that is not distributed as noise is" if unlike.of_its_kind else "scatter far beyond its kind's"
+    where = "readings that switch between levels from row to row" if unlike.switches else where
     return Structure(where, (state.names[unlike.sensor],), unlike.p_value, unlike.strength)
 
 

@@ -6,7 +6,13 @@ from estimator.diagnosis.selection.borne_out import hold, too_sure
 from estimator.diagnosis.selection.chosen_again import without_unpredictive
 from estimator.diagnosis.selection.common_or_own import common_or_own
 from estimator.diagnosis.selection.lack_of_fit import with_unlike_noise, without_common_rows, without_misfits
-from estimator.diagnosis.selection.noise_claim import doubted, of_whole_kinds, sensors_of, with_unknown_scale
+from estimator.diagnosis.selection.noise_claim import (
+    doubted,
+    of_whole_kinds,
+    sensors_of,
+    with_unknown_scale,
+    without_names_in_no_noise,
+)
 from estimator.diagnosis.selection.refinement import with_refined_shapes
 from estimator.diagnosis.selection.search import search
 from estimator.diagnosis.selection.search_state import SearchState
@@ -20,7 +26,7 @@ def accepted(start: SearchState) -> SearchState:
         state = believed(start)
         claims = doubted(state)
     rival = whatever_the_scale(start, claims) if claims else None
-    return borne_out(start, rival or state or believed(start))
+    return without_names_in_no_noise(borne_out(start, rival or state or believed(start)))
 
 
 def borne_out(start: SearchState, state: SearchState) -> SearchState:

@@ -40,6 +40,12 @@ NEEDLESS = 4.0
 since drift has the free parameters to take up what any other effect leaves."""
 
 
+def weighed(state: SearchState) -> float:
+    """ln evidence of the names and structures found together against nothing, every further one paid for."""
+    number = len(state.found) + len(state.structures)
+    return joint_log_evidence(state) - FURTHER * max(number - 1, 0)
+
+
 def backward_elimination(state: SearchState) -> SearchState:
     """Every finding keeps its significance beside all others, or goes, the weakest first."""
     while state.found:

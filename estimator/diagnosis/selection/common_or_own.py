@@ -15,12 +15,11 @@ from scipy.special import expit
 
 from estimator.diagnosis.residuals.likelihood import log_likelihood_ratio
 from estimator.diagnosis.residuals.refitted import refitted
-from estimator.diagnosis.selection.backward import FURTHER
+from estimator.diagnosis.selection.backward import FURTHER, weighed
 from estimator.diagnosis.selection.crowd import crowded, without_crowd
 from estimator.diagnosis.selection.excess_noise import sensor_scatter
 from estimator.diagnosis.selection.lack_of_fit import MISFIT
 from estimator.diagnosis.selection.parity_space import in_parity_space
-from estimator.diagnosis.selection.ranking import joint_log_evidence
 from estimator.diagnosis.selection.search_state import Found, SearchState
 from estimator.diagnosis.selection.start import begun_with
 from estimator.diagnosis.signatures.applied_course import SIZE, AppliedCourse, applied_course
@@ -40,12 +39,6 @@ LEAST = 5.0
 LEAK = 0.025
 """Share of the energy of a common course below which what parity space shows of a sensor may be what is not linear in
 the course, or what an unseen change of all scale factors leaves of it."""
-
-
-def weighed(state: SearchState) -> float:
-    """ln evidence of the names and structures found together against nothing, every further one paid for."""
-    number = len(state.found) + len(state.structures)
-    return joint_log_evidence(state) - FURTHER * max(number - 1, 0)
 
 
 def nearly(state: SearchState) -> float:
@@ -69,7 +62,8 @@ def settled(start: SearchState, state: SearchState, unknown: Array) -> tuple[Sea
     variance = np.where(unknown, state.baseline.variance * left, start.baseline.variance)
     known = replace(start.baseline, variance=variance, unstated=start.baseline.unstated & ~unknown)
     as_stated = not (unknown & ~start.baseline.unstated).any()
-    past = (start if as_stated else state).history if any(f.best.cause.between for f in state.found) else ()
+    between = any(f.best.cause.between for f in (*state.found, *state.structures))
+    past = (start if as_stated else state).history if between else ()
     begun = begun_with(replace(start, history=past), refitted(known))
     found, structures = seen_from(begun, state.found), seen_from(begun, state.structures)
     seen = replace(begun, found=found, structures=structures)

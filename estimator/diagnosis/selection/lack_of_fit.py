@@ -7,7 +7,6 @@ for scatter that is no noise. Where it holds structure that is no small part of 
 from dataclasses import replace
 
 import numpy as np
-from scipy.special import ndtr
 from scipy.stats import shapiro
 
 from estimator.diagnosis.residuals.baseline import Baseline
@@ -15,8 +14,8 @@ from estimator.diagnosis.selection.excess_noise import with_autocorrelation
 from estimator.diagnosis.selection.forward import with_structures
 from estimator.diagnosis.selection.ranking import extended_basis
 from estimator.diagnosis.selection.search_state import LEVEL, Found, SearchState
-from estimator.diagnosis.signatures.noise import UnlikeNoise
-from estimator.session import Array
+from estimator.diagnosis.signatures.noise import ExcessVariance, UnlikeNoise
+from estimator.diagnosis.signatures.switching import switching
 
 MISFIT = 0.05
 """Share of the energy of names that structure beside them may hold: beyond a fifth in rms it is another effect that
@@ -43,7 +42,8 @@ def without_misfits(state: SearchState) -> SearchState:
     """The state without names beside which structure is left that they should have explained."""
     for place in dict.fromkeys(f.best.sensors for f in state.found):
         names = tuple(f for f in state.found if f.best.sensors == place)
-        left = energy_left(state, place)
+        drifted = any(f.best.cause.moves_parameters for f in names)
+        left = energy_left(state, place) - (changed(state, place) if drifted else 0.0)
         if left > MISFIT * explained(state, names):
             rest = replace(state, found=tuple(f for f in state.found if f not in names))
             again = with_autocorrelation(with_structures(replace(rest, structures=elsewhere(rest, place))))
@@ -71,6 +71,11 @@ def energy_left(state: SearchState, place: tuple[int, ...]) -> float:
     return patterns + sum(a.strength**2 for a in state.autocorrelated if (a.sensor,) == place and a.plain)
 
 
+def changed(state: SearchState, place: tuple[int, ...]) -> float:
+    """χ² of a change of a sensor's parameters since the history that has no name: beside its drift it is more of it."""
+    return sum(s.best.statistic for s in state.structures if s.best.sensors == place and s.best.cause.between)
+
+
 def explained(state: SearchState, names: tuple[Found, ...]) -> float:
     """χ² that some names explain together, given all that was found beside them."""
     others = replace(
@@ -84,38 +89,40 @@ def explained(state: SearchState, names: tuple[Found, ...]) -> float:
 
 def with_unlike_noise(state: SearchState) -> SearchState:
     """Sensors whose scatter, larger than stated or of unstated size, is not distributed as noise: no excess noise."""
-    residuals, remaining = state.residuals, state.remaining
-    freedom = residuals.row_freedom - (state.attributed()[: residuals.rows] ** 2).sum(axis=1)
     excess, unlike = {e.sensor: e for e in state.excess}, list(state.unlike_noise)
     for i in np.flatnonzero(state.baseline.unstated).tolist():
-        own = (residuals.sensor_of_row[: residuals.rows] == i) & (freedom > KNOWN)
-        if own.sum() < FEWEST:
-            continue
-        y = remaining[: residuals.rows][own] / np.sqrt(freedom[own])
-        if unlike_its_kind(state.baseline, i, float(np.mean(y**2))):
-            unlike.append(UnlikeNoise(i, 0.0, float(np.mean(y**2)), of_its_kind=False))
-            continue
-        p_value = min(1.0, 2 * min(float(shapiro(y).pvalue), two_valued(y)))
-        if p_value < (DOUBTFUL if i in excess else LEVEL / state.sensor_count):
+        found = unlike_noise(state, i, excess.get(i))
+        if found is not None:
+            unlike.append(found)
+        if found is not None and found.of_its_kind:
             excess.pop(i, None)
-            unlike.append(UnlikeNoise(i, p_value, float(np.abs(y).max() / np.sqrt(np.mean(y**2)))))
-        elif i in excess:
+        elif found is None and i in excess:
             excess[i] = replace(excess[i], doubtful=excess[i].ratio > UNUSUAL)
     coursing = {s.best.sensors for s in state.structures} | {(a.sensor,) for a in state.autocorrelated if a.plain}
     noisy = tuple(e for e in excess.values() if (e.sensor,) not in coursing)
     return replace(state, excess=noisy, unlike_noise=tuple(unlike))
 
 
+def unlike_noise(state: SearchState, sensor: int, excess: ExcessVariance | None) -> UnlikeNoise | None:
+    """How a sensor's scatter differs from noise; None where it does not, or where too few rows tell."""
+    residuals, attributed = state.residuals, state.attributed()
+    freedom = residuals.row_freedom - (attributed[: residuals.rows] ** 2).sum(axis=1)
+    own = (residuals.sensor_of_row[: residuals.rows] == sensor) & (freedom > KNOWN)
+    if own.sum() < FEWEST:
+        return None
+    y = state.remaining[: residuals.rows][own] / np.sqrt(freedom[own])
+    variance = float(np.mean(y**2))
+    if unlike_its_kind(state.baseline, sensor, variance):
+        return UnlikeNoise(sensor, 0.0, variance, of_its_kind=False)
+    noise = 0.0 if excess is None else float(np.median(state.stated[:, sensor] / state.baseline.variance[:, sensor]))
+    switches = float(np.exp(-max(switching(residuals, attributed, sensor, noise), 0.0)))
+    p_value = min(1.0, 2 * min(float(shapiro(y).pvalue), switches))
+    if p_value >= (LEVEL / state.sensor_count if excess is None else DOUBTFUL):
+        return None
+    return UnlikeNoise(sensor, p_value, float(np.abs(y).max() / np.sqrt(variance)), switches=2 * switches <= p_value)
+
+
 def unlike_its_kind(baseline: Baseline, sensor: int, variance: float) -> bool:
     """Whether a sensor of no stated noise scatters far beyond the others of its kind; ``variance`` of its residual."""
     usual = 0.0 if baseline.expected_ratio is None else float(baseline.expected_ratio[sensor])
     return usual > 0 and variance > OUTSIDER * usual
-
-
-def two_valued(y: Array) -> float:
-    """p-value of residuals y (n,), any unit, that crowd at two values: mean deviation over standard deviation.
-
-    Normal in large samples, of mean √(2/π) and variance (1 − 3/π)/n (Geary 1936, Biometrika 28, 295).
-    """
-    ratio = float(np.abs(y).mean() / np.sqrt(np.mean(y**2)))
-    return float(ndtr(-(ratio - np.sqrt(2 / np.pi)) * np.sqrt(len(y) / (1 - 3 / np.pi))))

@@ -50,6 +50,10 @@ LINEAR = 1e-4
 SMALLEST = 1e-8
 """Variance over the stated one below which none is told apart: readings simulated without noise leave rounding."""
 
+BEYOND_NOISE = 30.0
+"""Times the stated standard errors from which on scatter is no misjudged noise: stated ones were seen to be four to
+twenty times too small."""
+
 ENOUGH = 20
 """Degrees of freedom of a sensor from which on its own readings tell its factor to a sixth."""
 
@@ -154,6 +158,13 @@ def of_whole_kinds(state: SearchState, claims: Iterable[NoiseClaim]) -> tuple[No
 def sensors_of(claims: Iterable[NoiseClaim]) -> set[int]:
     """All that some claims are about."""
     return {i for claim in claims for i in claim.sensors}
+
+
+def without_names_in_no_noise(state: SearchState) -> SearchState:
+    """The state without names of sensors, or common to all, that scatter as no noise does: it tells no cause."""
+    lost = {i for claim in state.noise_claims if claim.ratio > BEYOND_NOISE**2 for i in claim.sensors}
+    kept = tuple(f for f in state.found if not lost or (f.best.sensors and lost.isdisjoint(f.best.sensors)))
+    return replace(state, found=kept)
 
 
 def groups_of(claim: NoiseClaim) -> list[tuple[int, ...]]:

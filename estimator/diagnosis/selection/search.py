@@ -11,6 +11,7 @@ from itertools import combinations
 from estimator.diagnosis.selection.backward import (
     NAMELESS,
     backward_elimination,
+    weighed,
     without_names_on_courses,
     without_needless_drift,
 )
@@ -70,15 +71,16 @@ def best_common_pair(state: SearchState) -> SearchState:
 def structures_or_names(state: SearchState) -> SearchState:
     """Withdraw names when structure without them explains the session better.
 
-    Tried for every name alone, for all names of one sensor together, for those of no sensor, and for all names; in a
-    block of many sensors only where structure was left.
+    Every further name, or structure, is a misfortune of its own. Tried for every name alone, for all names of one
+    sensor together, for those of no sensor, and for all names; in a block of many sensors only where structure was
+    left.
     """
     crowded = state.sensor_count > MANY
     for group in groups(state):
         if not all(f in state.found for f in group) or (crowded and not overlaps(group, state.structures)):
             continue
         rival = without_names(state, group)
-        if rival.structures and joint_log_evidence(rival) > joint_log_evidence(state) + NAMELESS:
+        if rival.structures and weighed(rival) > weighed(state) + NAMELESS:
             state = rival
     return state
 

@@ -1,6 +1,6 @@
 """A search with nothing found yet: the residuals of a session and the traces of every cause in them."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +14,7 @@ from estimator.diagnosis.selection.search_state import NEW_DIRECTION, SearchStat
 from estimator.diagnosis.signatures.lasting import traces_of
 from estimator.diagnosis.signatures.noise import Autocorrelation, ExcessVariance
 from estimator.diagnosis.signatures.patterns import PATTERNS
-from estimator.diagnosis.signatures.traces import INVISIBLE
+from estimator.diagnosis.signatures.traces import INVISIBLE, Traces
 from estimator.session import Array
 
 ROUNDS = 20
@@ -34,9 +34,23 @@ def begin(baseline: Baseline, history: Sequence[Baseline], catalogue: Sequence[C
         tuple(catalogue),
         residuals,
         tuple(traces_of(residuals, signatures)),
-        tuple(traces_of(residuals, PATTERNS)),
+        tuple(pattern_traces(residuals)),
         baseline.variance,
     )
+
+
+def pattern_traces(residuals: WhitenedResiduals) -> Iterator[Traces]:
+    """The traces of structure without a name.
+
+    Whether a sensor changed since the history is asked in stated noise only: one that is estimated from what is left
+    would be smaller for two structures than for the one cause that they stand in for.
+    """
+    stated = ~residuals.baseline.unstated
+    for traces in traces_of(residuals, PATTERNS):
+        asked = range(len(traces.shapes))
+        own = [k for k in asked if stated[traces.sensor[k]]] if traces.cause.between else asked
+        if own:
+            yield traces if len(own) == len(asked) else traces.chosen(list(own))
 
 
 def since(baseline: Baseline, history: Sequence[Baseline]) -> Baseline:

@@ -3,7 +3,8 @@
 Theory
 ------
 A residual y (n,), white under noise, is weighed against courses that are smooth along an order of the rows: the
-order measured, temperature, β (in each run for itself, or together with order or temperature), the sensor's own input.
+order measured, temperature, β (in each run for itself, or together with order or temperature), the sensor's own input,
+the vibration where it was recorded.
 A course is a Gaussian process of covariance λ·G: a Wiener
 process (what wanders), a Matérn process (what bends), or one of alternating sign. With G = U·diag(d)·U' and v = U'y
 the Bayes factor against noise of unknown variance (Jeffreys' prior) is
@@ -25,6 +26,7 @@ import numpy as np
 from scipy.linalg.lapack import dsytrd
 
 from estimator.arrays import eigh
+from estimator.causes.contract import varies
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.noise import Autocorrelation
 from estimator.session import Array
@@ -46,8 +48,9 @@ USUAL = {
     "β, each run for itself": 0.1,
     "β and the order measured": 0.05,
     "β and temperature": 0.05,
+    "the vibration": 0.1,
 }
-"""Prior share of the orders: what wanders, wanders in time."""
+"""Prior share of the orders, in proportion: what wanders, wanders in time. Those that a session lacks have none."""
 
 ROUND = (0.4, 1.0)
 """Length, rad, over which a course around β keeps its value: some six harmonics, or two."""
@@ -65,6 +68,8 @@ def orders(residuals: WhitenedResiduals, sensor: int) -> dict[str, Array]:
         keys["temperature"] = setting.temperature
     if setting.beta is not None:
         keys["β"] = np.mod(setting.beta, 2 * np.pi)
+    if setting.vibration is not None and varies(setting.vibration[:, [sensor]]):
+        keys["the vibration"] = np.sqrt(setting.vibration[:, sensor])
     return {name: (key - key.min()) / np.ptp(key) for name, key in keys.items() if np.ptp(key) > 0}
 
 
@@ -117,6 +122,19 @@ def own_covariance(residuals: WhitenedResiduals, attributed: Array, sensor: int)
     return np.asarray(np.diag(known) - used @ used.T)
 
 
+def own_residual(residuals: WhitenedResiduals, attributed: Array, sensor: int) -> tuple[Array, Array]:
+    """(R, n) root of one sensor's `own_covariance`, dimensionless, and (n,) its residual, white under noise.
+
+    ``attributed`` (n, f) orthonormal traces of the findings. Directions that hardly show are left out.
+    """
+    R, m = residuals.baseline.residual.shape
+    remaining = residuals.z - attributed @ (attributed.T @ residuals.z)
+    size, turn = eigh(own_covariance(residuals, attributed, sensor))
+    kept = size > KEPT_NOISE
+    y = (turn[:, kept] / np.sqrt(size[kept])).T @ remaining[: R * m].reshape(R, m)[:, sensor]
+    return turn[:, kept] * np.sqrt(size[kept]), y
+
+
 def autocorrelation(
     residuals: WhitenedResiduals, attributed: Array, sensor: int, *, known: bool
 ) -> Autocorrelation | None:
@@ -125,14 +143,9 @@ def autocorrelation(
     ``attributed`` (n, f) orthonormal traces of the findings, dimensionless, which are projected out; ``known``: whether
     the noise is taken as stated.
     """
-    R, m = residuals.baseline.residual.shape
-    remaining = residuals.z - attributed @ (attributed.T @ residuals.z)
-    size, turn = eigh(own_covariance(residuals, attributed, sensor))
-    kept = size > KEPT_NOISE
-    if int(kept.sum()) < FEWEST:
+    root, y = own_residual(residuals, attributed, sensor)
+    if len(y) < FEWEST:
         return None
-    root = turn[:, kept] * np.sqrt(size[kept])
-    y = (turn[:, kept] / np.sqrt(size[kept])).T @ remaining[: R * m].reshape(R, m)[:, sensor]
     tried = kernels(residuals, sensor)
     each = bayes_factors(root.T @ np.concatenate(list(tried.values())) @ root, y, known=known)
     ends = np.cumsum([len(own) for own in tried.values()])

@@ -71,11 +71,13 @@ class UnlikeNoise:
 
     sensor: int
     p_value: float
-    """Of normal noise at least as far from normal (Shapiro & Wilk 1965)."""
+    """Of normal noise at least as far from normal (Shapiro & Wilk 1965), or as much like switching (`switching`)."""
     largest: float
     """The largest residual over their root mean square."""
     of_its_kind: bool = True
     """Whether the others of its kind, where it states no noise, scatter as it does."""
+    switches: bool = False
+    """Whether its readings switch between levels from row to row."""
 
     @property
     def strength(self) -> float:

@@ -10,6 +10,7 @@ import numpy as np
 
 from estimator.causes.contract import Setting, Shape, Signature
 from estimator.causes.stand import harmonic
+from estimator.forward import jacobian
 from estimator.session import Array
 
 HIGHEST = 8
@@ -212,6 +213,27 @@ class CommonPeriodic(Pattern):
                 yield Shape((), setting.through(turn[..., None] * both[:, None, None, :]), (float(periods),))
 
 
+class OwnChange(Pattern):
+    """A change of one sensor's parameters since the history: with the quadratic term or without, or of that alone."""
+
+    identifier = "own-change"
+    needs = frozenset({"history"})
+    between = True
+    sentence = "the sensor's parameters, changed since the earlier sessions"
+
+    moves = ([0, 1, 3, 4], [2], [0, 1, 2, 3, 4])
+    """Scale, bias and axis; the quadratic term alone; everything. Of the first three one alone is no cheaper than a
+    cause beside a change that is left open."""
+
+    def shapes(self, setting: Setting) -> Iterator[Shape]:
+        changes = jacobian(setting.parameters, setting.n, setting.norm)
+        for i in range(len(setting.kinds)):
+            for number, moved in enumerate(self.moves):
+                columns = np.zeros((setting.rows, len(setting.kinds), 5))
+                columns[:, i, moved] = changes[:, i, moved]
+                yield Shape((i,), columns, (float(number),))
+
+
 PATTERNS: tuple[Pattern, ...] = (
     SensorHarmonic(),
     RunHarmonic(),
@@ -225,4 +247,5 @@ PATTERNS: tuple[Pattern, ...] = (
     TurningScale(),
     CommonHarmonic(),
     CommonPeriodic(),
+    OwnChange(),
 )

@@ -1,5 +1,6 @@
 """What a signature leaves in the residuals: the traces of a cause's shapes, and one shape with its score."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -47,7 +48,10 @@ class Traces:
 
     def at(self, sensors: tuple[int, ...]) -> "Traces":
         """The shapes on some sensors, and those of no sensor; the prior is still shared among all."""
-        own = [k for k, s in enumerate(self.shapes) if s.sensors in ((), sensors)]
+        return self.chosen([k for k, s in enumerate(self.shapes) if s.sensors in ((), sensors)])
+
+    def chosen(self, own: Sequence[int]) -> "Traces":
+        """Some of the shapes, by number; the prior is still shared among all."""
         shapes, lasting = tuple(self.shapes[k] for k in own), tuple(self.lasting[k] for k in own)
         columns, products = np.moveaxis(np.moveaxis(self.columns, 1, 0)[:, own], 0, 1), self.products.at(own)
         return replace(self, shapes=shapes, lasting=lasting, columns=columns, raw=self.raw[own], products=products)

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 
 from estimator import diagnose, read_session
+from estimator.causes import CATALOGUE
 from estimator.causes.contract import varies
 from estimator.session import ACCELEROMETER
 from tests.builders import Document, raw_log, true_sensors
-from tests.estimator.causes.hiding import scene
+from tests.estimator.causes.hiding import scene, spoilt
 
 
 def shaken_log(rectified: float, seed: int = 0) -> Document:
@@ -28,6 +29,14 @@ def test_a_zero_that_follows_the_vibration_of_a_raw_log_is_named_with_its_coeffi
     (finding,) = diagnose(read_session(shaken_log(0.02))).findings
     assert (finding.cause, finding.sensors) == ("vibration-rectification", ("A2",))
     assert abs(finding.amplitude[0] - 0.02) < 4 * finding.sigma[0]
+
+
+def test_a_zero_that_follows_the_vibration_in_a_way_unknown_lives_there() -> None:
+    where = scene(ACCELEROMETER, 0)
+    session = spoilt("vibration-rectification", where.measured(1), where, np.random.default_rng(1))
+    told = diagnose(session, catalogue=[c for c in CATALOGUE if c.identifier != "vibration-rectification"])
+    assert told.findings == ()
+    assert [s.where for s in told.structures] == ["smooth along the vibration, in no pattern known"]
 
 
 def test_vibration_alone_is_no_cause() -> None:

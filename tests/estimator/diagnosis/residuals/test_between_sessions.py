@@ -10,7 +10,7 @@ from estimator.diagnosis.residuals.between_sessions import inverse_root, paramet
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.session import ACCELEROMETER
 from tests.builders import arbitrary_orientations, true_sensors
-from tests.estimator.causes.hiding import found, scene
+from tests.estimator.causes.hiding import found, scene, with_readings
 
 WHERE = scene(ACCELEROMETER, 2)
 
@@ -45,6 +45,16 @@ def test_no_history_is_no_move() -> None:
 @pytest.mark.parametrize("cause", ["remount-rotation", "gravity-entry", "alpha-entry"])
 def test_a_common_move_is_no_drift_of_a_sensor(cause: str) -> None:
     assert "sensor-drift" not in {f.cause for f in found(cause).findings}
+
+
+def test_a_quadratic_term_that_changed_is_structure_of_its_sensor_and_no_cause() -> None:
+    session = WHERE.measured(1)
+    bent = 2e-5 * session.readings[:, 2] ** 2 / 0.12
+    told = diagnose(with_readings(session, bent[:, None] * np.eye(6)[2]), WHERE.earlier(1))
+    assert told.findings == ()
+    assert [(s.where, s.sensors) for s in told.structures] == [
+        ("the sensor's parameters, changed since the earlier sessions", ("A3",))
+    ]
 
 
 HAND = true_sensors(6, bias=1e-2, tilt=1e-2)

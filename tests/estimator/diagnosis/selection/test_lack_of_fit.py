@@ -8,7 +8,6 @@ import pytest
 from estimator.diagnosis.selection.forward import with_structures
 from estimator.diagnosis.selection.lack_of_fit import (
     explained,
-    two_valued,
     with_unlike_noise,
     without_common_rows,
     without_misfits,
@@ -52,6 +51,7 @@ def test_what_a_name_explains_is_its_statistic() -> None:
     [
         pytest.param(NOISE, False, id="normal"),
         pytest.param(np.where(np.arange(ROWS) == 7, 60.0, NOISE), True, id="one row far out"),
+        pytest.param(np.sign(NOISE), True, id="one of two values"),
     ],
 )
 def test_scatter_that_is_not_distributed_as_noise_is_no_excess_noise(course: np.ndarray, unlike: bool) -> None:
@@ -62,13 +62,6 @@ def test_scatter_that_is_not_distributed_as_noise_is_no_excess_noise(course: np.
     left = with_unlike_noise(replace(state, excess=(ExcessVariance(SENSOR, 400.0, 19.0, 50.0, 1e-20),)))
     assert bool(left.unlike_noise) == unlike
     assert bool(left.excess) != unlike
-
-
-def test_two_values_are_told_from_normal_noise() -> None:
-    rng = np.random.default_rng(6)
-    assert two_valued(np.sign(rng.standard_normal(40)) + 0.1 * rng.standard_normal(40)) < 1e-8
-    marks = [two_valued(rng.standard_normal(40)) < 0.05 for _ in range(400)]
-    assert 0.02 < np.mean(marks) < 0.08
 
 
 def test_rows_in_which_most_sensors_stand_out_are_no_matter_of_the_sensors() -> None:

@@ -7,15 +7,16 @@ import pytest
 
 from estimator import diagnose, read_session
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.selection.noise_claim import doubted, pure_error
+from estimator.diagnosis.selection.noise_claim import doubted, pure_error, without_names_in_no_noise
 from estimator.diagnosis.selection.start import begin
-from estimator.session import CalibrationSession
+from estimator.diagnosis.signatures.noise import NoiseClaim
+from estimator.session import ACCELEROMETER, CalibrationSession
 from tests.blind.cases import draw_case
 from tests.estimator.calibration.cases import accelerometers, block
 from tests.estimator.causes.hiding import Scene
 from tests.estimator.causes.physics import World
 from tests.estimator.causes.worlds import truth_of, wandering
-from tests.estimator.diagnosis.selection.small import effect, measured
+from tests.estimator.diagnosis.selection.small import SENSOR, candidate, effect, measured, start
 from tests.estimator.diagnosis.selection.test_common_or_own import swaying
 
 
@@ -136,3 +137,11 @@ def test_repeats_that_contradict_the_stated_noise_do_not_save_it() -> None:
     found = diagnose(stated(repeated().measured(1), 0.2))
     assert not found.findings
     assert [scale.factor for scale in found.noise] == pytest.approx([5.0], rel=0.2)
+
+
+@pytest.mark.parametrize(("ratio", "kept"), [(100.0, 2), (1000.0, 1)])
+def test_no_cause_is_told_from_scatter_that_is_no_noise(ratio: float, kept: int) -> None:
+    state = start(("bias-ramp",), effect("bias-ramp") + effect("bias-ramp", 3))
+    named = tuple(candidate(state, "bias-ramp", (sensor,)) for sensor in (SENSOR, 3))
+    claim = NoiseClaim(ACCELEROMETER, (SENSOR,), ratio, 20.0)
+    assert len(without_names_in_no_noise(replace(state, found=named, noise_claims=(claim,))).found) == kept
