@@ -7,7 +7,7 @@ from estimator.causes import CATALOGUE, Correction
 from estimator.diagnosis.record.turned import expected_axes, turned_record
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.session import ACCELEROMETER
-from tests.estimator.causes.hiding import scene
+from tests.estimator.causes.hiding import scene, with_readings
 
 WHERE = scene(ACCELEROMETER, 2)
 TURNED = [c for c in CATALOGUE if isinstance(c, Correction) and c.between]
@@ -26,6 +26,14 @@ def test_a_turned_record_is_found_and_put_right(error: Correction) -> None:
 def test_a_sound_record_is_left_alone() -> None:
     session = WHERE.measured(1)
     assert turned_record(baseline_of(session), expected_axes([], session), TURNED) is None
+
+
+@pytest.mark.parametrize("step", [-9.0, -22.0], ids=lambda step: f"{step} m/s²")
+def test_a_sensor_that_steps_as_its_input_changes_sign_is_not_turned_over(step: float) -> None:
+    session = WHERE.measured(1)
+    jumps = 0.12 * step * np.sign(session.readings[:, 2])
+    stepping = with_readings(session, jumps[:, None] * np.eye(6)[2])
+    assert turned_record(baseline_of(stepping), expected_axes([], stepping), TURNED) is None
 
 
 def test_the_axes_to_expect_are_those_of_the_history() -> None:
