@@ -107,6 +107,16 @@ def _counted(some: list[Flown]) -> Iterator[object]:
     yield f"{1e3 * float(np.median(sizes)) / G:.3g}" if sizes else "–"
 
 
+def targets(flights: list[Flown]) -> str:
+    """What is asked of sound and of changed blocks, whatever the recording holds."""
+    changed = [(f.changed.isolated, f.sensor) for f in flights if f.changed is not None]
+    rows = [
+        ("a sound block that moves: a sensor named", "≤ 1 %", rate([said(f.sound) == "named" for f in flights])),
+        ("one sensor changed by the isolable size: named", "95 %", rate([who == sensor for who, sensor in changed])),
+    ]
+    return table(("figure", "target", "measured"), rows)
+
+
 def isolable(flights: list[Flown]) -> str:
     """Whether the stated size is isolated, by kind."""
     rows = []
@@ -149,6 +159,7 @@ def tables(sessions: int, seed: int) -> str:
     """Markdown: what is said, whether the isolable size holds, and pulse counters."""
     flights = [flown(seed * 10_000 + k, rest) for rest in (True, False) for k in range(sessions)]
     parts = [
+        targets(flights),
         "### What is said of a block that moves", reach(flights),
         "### Whether the isolable size holds", isolable(flights),
         "### Pulse counters", counted(4 * sessions, seed),
