@@ -93,14 +93,18 @@ def overlaps(group: tuple[Found, ...], structures: tuple[Found, ...]) -> bool:
 def without_names(state: SearchState, names: tuple[Found, ...]) -> SearchState:
     """The search without some findings, and structure where they were; elsewhere as it was.
 
-    What stand or fixture does is replaced by structure common to all sensors, not by a patchwork of single ones.
+    What stand or fixture does is replaced by structure common to all sensors, not by a patchwork of single ones. A
+    sensor's drift is not replaced by a change of no name, which is more of the same.
     """
     kept, touched = tuple(f for f in state.found if f not in names), {f.best.sensors for f in names}
+    drifts = any(f.best.cause.moves_parameters for f in names)
+    asked = tuple(t for t in state.patterns if not (drifts and t.cause.between))
     if len(touched) > 1:
-        return with_structures(replace(state, found=kept, structures=()))
+        searched = with_structures(replace(state, found=kept, structures=(), patterns=asked))
+        return replace(searched, patterns=state.patterns)
     (own,) = touched
     elsewhere = tuple(s for s in state.structures if s.best.sensors != own)
-    there = tuple(t.at(own) for t in state.patterns if own or t.common)
+    there = tuple(t.at(own) for t in asked if own or t.common)
     searched = with_structures(replace(state, found=kept, structures=elsewhere, patterns=there))
     return replace(searched, patterns=state.patterns)
 
