@@ -59,7 +59,7 @@ def test_a_quadratic_term_that_changed_is_structure_of_its_sensor_and_no_cause()
 
 def test_a_sensor_that_drifted_in_its_quadratic_term_too_has_drifted() -> None:
     session = WHERE.measured(1)
-    bent = 2e-5 * session.readings[:, 2] ** 2 / 0.12 + 0.12 * 2e-3
+    bent = 3e-4 * session.readings[:, 2] ** 2 / 0.12 + 0.12 * 2e-3
     told = diagnose(with_readings(session, bent[:, None] * np.eye(6)[2]), WHERE.earlier(1))
     assert [(f.cause, f.sensors) for f in told.findings] == [("sensor-drift", ("A3",))]
 
