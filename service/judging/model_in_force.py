@@ -13,6 +13,11 @@ def in_force(revisions: Sequence[ModelRevision]) -> tuple[ModelRevision, ...]:
     return tuple(r for r in revisions if r.withdraws is None and r.id not in withdrawn)
 
 
+def model_as_of(revisions: Sequence[ModelRevision], number: int) -> tuple[ModelRevision, ...]:
+    """The accepted causes that held when a revision was the latest."""
+    return in_force([revision for revision in revisions if revision.id <= number])
+
+
 def model_of(revisions: Sequence[ModelRevision]) -> Model:
     """The model that revisions add up to; the same cause on the same sensors counts once."""
     causes = dict.fromkeys((revision.cause, revision.sensors) for revision in in_force(revisions))

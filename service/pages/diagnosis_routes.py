@@ -1,7 +1,7 @@
 """The addresses of diagnoses: the page, and the forms that accept a cause or compute a unit's sessions again."""
 
 from typing import Annotated
-from urllib.parse import quote
+from urllib.parse import quote, urlencode
 
 from fastapi import APIRouter, Form, Path, Request
 from fastapi.responses import HTMLResponse, RedirectResponse
@@ -62,5 +62,6 @@ def withdraw(
 @router.post("/units/{serial:path}/recalibrate")
 def recalibrate_unit(serial: Key, storage: StorageOf, settings: SettingsOf, now: Now) -> RedirectResponse:
     """Computes a unit's sessions again under the model in force, and shows the unit."""
-    recalibrate(storage, serial, now, coverage_factor=settings.coverage_factor)
-    return RedirectResponse(f"/units/{quote(serial)}", SEE_OTHER)
+    done = recalibrate(storage, serial, now, coverage_factor=settings.coverage_factor)
+    told = {"recomputed": done.recomputed, "unchanged": done.unchanged, "left": done.left}
+    return RedirectResponse(f"/units/{quote(serial)}?{urlencode(told)}", SEE_OTHER)

@@ -4,12 +4,14 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import HTMLResponse
+from pydantic import BaseModel, Field
 
 from service.dependencies import Now, Reading, ReceptionOf, SettingsOf, StorageOf
 from service.flows.correct_session import correction_of
 from service.flows.receive import receive_all
 from service.flows.refresh_group import current
 from service.ingest import is_own_layout
+from service.judging.model_in_force import model_as_of
 from service.pages.fleet import fleet_page
 from service.pages.fleet_view import FleetAsked, FleetView
 from service.pages.follow import SOONEST, follow_seconds
@@ -35,6 +37,7 @@ from service.views.stands import stand_conditions
 from service.views.traceability import traceability_of
 from service.views.unit_report import unit_report
 from service.words.group_finding import GroupView, group_view
+from service.words.recalibrated import recalibrated_in_words
 
 MOST_QUESTIONED = 20
 """Sessions that the fleet page names; the latest."""
@@ -69,9 +72,23 @@ def show_fleet(
     return render(request, "fleet.html", shown)
 
 
+class UnitAsked(BaseModel):
+    """An address of a unit's page as it came; the counts are of sessions that its form just had computed again."""
+
+    raw: bool = False
+    recomputed: Annotated[int, Field(ge=0, le=1_000_000)] = 0
+    unchanged: Annotated[int, Field(ge=0, le=1_000_000)] = 0
+    left: Annotated[int, Field(ge=0, le=1_000_000)] = 0
+
+
 @router.get("/units/{serial:path}")
 def show_unit(
-    request: Request, store: Reading, settings: SettingsOf, now: Now, serial: Key, raw: bool = False
+    request: Request,
+    store: Reading,
+    settings: SettingsOf,
+    now: Now,
+    serial: Key,
+    asked: Annotated[UnitAsked, Query()],
 ) -> HTMLResponse:
     """One unit with the history of its parameters; ``raw``: what the whole block did is left in."""
     report = unit_report(store, serial, now)
@@ -80,14 +97,15 @@ def show_unit(
         "unit.html",
         unit_page(
             report,
-            recent_history(store, serial, HISTORY_LIMIT, raw=raw),
+            recent_history(store, serial, HISTORY_LIMIT, raw=asked.raw),
             now=now,
-            raw=raw,
+            raw=asked.raw,
             flags=store.flags.page(FlagQuery(serial, limit=FLAG_LIMIT)),
             notes=store.notes.of_unit(serial),
             pair=found_and_left(store, report.unit_type, report.sessions, report.services, settings.coverage_factor),
             outlook=own_outlook(store, serial, now),
             group=_together(store, serial),
+            recalibrated=recalibrated_in_words(asked.recomputed, asked.unchanged, asked.left),
             follow=SOONEST if report.summary.is_undated and settings.diagnosis_workers else None,
         ),
     )
@@ -113,6 +131,8 @@ def show_session(
         traceability_of(store, report.session),
         correction=correction_of(storage, id) if questioned else "",
         follow=None if made else follow_seconds(report.session.uploaded_at, now, settings.diagnosis_workers),
+        model=model_as_of(store.models.of_session(id), report.session.revision),
+        computed=store.calibrations.revisions(id),
     )
     return render(request, "session.html", page)
 

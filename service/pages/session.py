@@ -1,6 +1,6 @@
 """The page of one session: the verdict and why, the parameters behind it, and how model and readings agree."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from estimator.results import Calibration, Estimate, SensorCalibration
@@ -27,11 +27,13 @@ from service.pages.parity import ParityView, parity_view
 from service.pages.residual_table import ResidualTable, residual_table
 from service.records.decision import Decision, Verdict, nominal_factor_of
 from service.records.diagnosis import DiagnosisSummary
+from service.records.model import ModelRevision
 from service.records.paper import Traceability
 from service.records.reservation import Reservations
 from service.records.session import ALL_PARAMETERS, SessionReport, StoredSession
 from service.records.state import RecordState
 from service.storage.parity_document import parity_from_dict
+from service.words.causes import cause_on
 from service.words.conditions import Condition, condition_of
 from service.words.coverage import coverage_in_words
 from service.words.fit import FitWords, bands_in_words, fit_in_words
@@ -103,6 +105,10 @@ class SessionPage:
     """What its numbers hang on."""
     follow: int | None
     """Seconds after which the page looks again whether it is diagnosed; None where it is."""
+    causes: tuple[str, ...] = ()
+    """In the model that its calibration in force was made under."""
+    earlier: tuple[int, ...] = ()
+    """Model revisions that it was calibrated under before."""
 
 
 def session_page(
@@ -112,8 +118,10 @@ def session_page(
     *,
     correction: str = "",
     follow: int | None = None,
+    model: Sequence[ModelRevision] = (),
+    computed: Sequence[int] = (),
 ) -> SessionPage:
-    """The page of a session."""
+    """The page of a session; ``model``: the causes that it was calibrated with, ``computed``: under which revisions."""
     calibration, decisions = report.calibration, report.decisions
     judged = {(d.sensor, d.parameter): d for d in decisions}
     parameters = parameters_of(calibration)
@@ -143,6 +151,8 @@ def session_page(
         correction=correction,
         traceability=traceability,
         follow=follow,
+        causes=tuple(cause_on(one.cause, one.sensors) for one in model),
+        earlier=tuple(revision for revision in computed if revision != report.session.revision),
     )
 
 

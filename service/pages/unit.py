@@ -88,6 +88,8 @@ class UnitPage:
     """What its sessions show together; None where that is not made of its records of now."""
     follow: int | None
     """Seconds after which the page looks again whether its dates are worked out; None where they are."""
+    recalibrated: str = ""
+    """What became of its sessions, where they were just computed again."""
 
 
 def unit_page(
@@ -102,6 +104,7 @@ def unit_page(
     outlook: UnitOutlook | None = None,
     group: GroupView | None = None,
     follow: int | None = None,
+    recalibrated: str = "",
 ) -> UnitPage:
     """The page of a unit with its history, flags and notes, as found and as left, and when it must come back."""
     trends = () if outlook is None or raw else outlook.trends
@@ -123,6 +126,7 @@ def unit_page(
         raw=raw,
         group=group,
         follow=follow,
+        recalibrated=recalibrated,
     )
 
 

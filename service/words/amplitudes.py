@@ -7,11 +7,15 @@ from typing import Protocol
 
 from estimator.causes import find
 from estimator.diagnosis import Finding
-from service.measures import COVERAGE, THIN, measured, number
+from service.measures import COVERAGE, HARD, THIN, decimals, measured, number
 from service.words.amplitude_measures import amplitude_measure
 
 NUMBERED = re.compile(r" \d+$")
 """What tells two nonlinear parameters of one unit apart: ``row 1``, ``row 2``."""
+
+
+FINE = 0.01
+"""Of a measure: an uncertainty below it is read in a finer one, where there is one."""
 
 
 class Sized(Protocol):
@@ -38,10 +42,21 @@ def amplitudes_of(finding: Sized) -> Iterator[str]:
         if not _is_stated(value) and not _is_stated(sigma):
             continue
         expanded = COVERAGE * sigma
-        largest = max(abs(x) if isfinite(x) else 0.0 for x in (value, expanded))
         who = f"{finding.sensors[k // each]}: " if len(finding.sensors) > 1 else ""
         which = f"{_part(finding.cause, k % each)} " if each > 1 else ""
-        yield f"{who}{which}{measured(value, expanded, amplitude_measure(finding.cause, si_unit, largest))}"
+        yield f"{who}{which}{_size(finding.cause, si_unit, value, expanded)}"
+
+
+def _size(cause: str, si_unit: str, value: float, expanded: float) -> str:
+    """``12.3 ± 1.4 µg``; what is known far better than its own measure shows has its ± in the finer one:
+    ``42.66433° ± 1.2 arcsec``."""
+    largest = max(abs(x) if isfinite(x) else 0.0 for x in (value, expanded))
+    measure, finer = amplitude_measure(cause, si_unit, largest), amplitude_measure(cause, si_unit, expanded)
+    if measure == finer or not isfinite(expanded) or expanded * measure.factor >= FINE:
+        return measured(value, expanded, measure)
+    shown = number(value * measure.factor, decimals(expanded * measure.factor))
+    spread = expanded * finer.factor
+    return f"{shown}{THIN}{measure.label}{HARD}±{HARD}{number(spread, decimals(spread))}{THIN}{finer.label}"
 
 
 def _is_stated(value: float) -> bool:

@@ -106,11 +106,11 @@ def _chance(p_value: float) -> str:
     if not isfinite(p_value):
         return "no probability is known"
     if p_value < SURE:
-        return "as much by chance in fewer than 1 of 10¹² sound sessions"
+        return "by chance alone in fewer than 1 of 10¹² sound sessions"
     if p_value < 1e-3:
         exponent = str(floor(-log10(p_value))).translate(SUPERSCRIPT)
-        return f"as much by chance in fewer than 1 of 10{exponent} sound sessions"
-    return f"as much by chance in {number(100 * p_value, 2)}{HARD}% of sound sessions"
+        return f"by chance alone in fewer than 1 of 10{exponent} sound sessions"
+    return f"by chance alone in {number(100 * p_value, 2)}{HARD}% of sound sessions"
 
 
 def _parity(split: ParitySplit | None) -> str:

@@ -12,7 +12,7 @@ SENTENCES = {
     "Something common to all sensors": "service.words.structures",
     "stated standard errors": "service.words.noise_claims",
     "one that is not in the catalogue": "service.words.causes",
-    "as much by chance": "service.words.finding",
+    "by chance alone in": "service.words.finding",
     "a sound model would give this much": "service.words.fit",
     "cannot be seen without motion": "service.words.in_service",
     "with one another as they did": "service.words.in_service",

@@ -140,7 +140,7 @@ def test_a_cause_that_this_version_does_not_know_is_shown_by_its_identifier(sett
         text = page(client, id)
         again = client.post(f"/api/v1/sessions/{id}/diagnosis/accept", json=ACCEPT | {"cause": "bias-hum"})
     assert "bias hum (A5)" in text
-    assert "not a property that a model can hold" in text
+    assert "cannot be accepted into a model" in text
     assert again.status_code == 422
 
 

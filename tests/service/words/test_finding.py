@@ -106,9 +106,9 @@ def test_a_size_that_is_not_known_is_left_out() -> None:
 @pytest.mark.parametrize(
     ("p_value", "chance"),
     [
-        (0.02, "as much by chance in 2.00\u00a0% of sound sessions"),
-        (2.5e-5, "as much by chance in fewer than 1 of 10⁴ sound sessions"),
-        (1e-30, "as much by chance in fewer than 1 of 10¹² sound sessions"),
+        (0.02, "by chance alone in 2.00\u00a0% of sound sessions"),
+        (2.5e-5, "by chance alone in fewer than 1 of 10⁴ sound sessions"),
+        (1e-30, "by chance alone in fewer than 1 of 10¹² sound sessions"),
         (nan, "no probability is known"),
     ],
 )
@@ -130,3 +130,9 @@ def test_a_measurement_that_would_not_help_is_not_proposed() -> None:
 def test_redundancy_says_stand_or_sensor() -> None:
     assert finding_view(JUMP).parity.startswith("χ² in parity space 900 → 40, along the axes 800 → 30.")
     assert finding_view(replace(JUMP, parity=None)).parity == ""
+
+
+def test_an_angle_known_to_arcseconds_has_its_uncertainty_in_them() -> None:
+    known = replace(JUMP, cause="mounting", sensors=(), amplitude=(0.7446330,), sigma=(2.8e-6,), units=("rad",))
+    assert list(amplitudes_of(known)) == ["42.66433\u202f°\u00a0±\u00a01.2\u202farcsec"]
+    assert list(amplitudes_of(replace(known, sigma=(5e-3,)))) == ["42.66\u00a0±\u00a00.57\u202f°"]
