@@ -9,6 +9,7 @@ from service.pages.session import (
     decision_measure,
     deviation_in_words,
     parameters_of,
+    reading_units,
     tolerance_in_words,
     value_in_words,
 )
@@ -96,13 +97,14 @@ def _row(
     way: tuple[Comparison, float],
 ) -> ChangeRow:
     found, k = way
+    units = reading_units(found.after)
     own = found.own.get((now.name, parameter))
     known = decision if decision is not None and decision.deviation is not None else None
     return ChangeRow(
         sensor=now.name,
         parameter=PARAMETER_NAMES[parameter],
-        before="–" if then is None else value_in_words(then, parameter, k),
-        after=value_in_words(now, parameter, k),
+        before="–" if then is None else value_in_words(then, parameter, k, units.get(now.name, "")),
+        after=value_in_words(now, parameter, k, units.get(now.name, "")),
         change=NOT_COMPARED if known is None else deviation_in_words(known),
         on_one_stand="" if known is None or own is None else _own(known, own),
         tolerance=tolerance_in_words(decision),

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from estimator.reading.sensors import PULSES
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import CALIBRATIONS
 from service.charts import ChartSet
@@ -123,6 +124,7 @@ def session_page(
 ) -> SessionPage:
     """The page of a session; ``model``: the causes that it was calibrated with, ``computed``: under which revisions."""
     calibration, decisions = report.calibration, report.decisions
+    units = reading_units(calibration)
     judged = {(d.sensor, d.parameter): d for d in decisions}
     parameters = parameters_of(calibration)
     coverage = nominal_factor_of(decisions)
@@ -133,7 +135,7 @@ def session_page(
         condition=condition_of(report.session.verdict, is_reference=report.session.is_reference),
         reservations=report.session.reservations,
         parameters=parameters,
-        sensors=tuple(_sensor(s, parameters, judged, coverage) for s in calibration.sensors),
+        sensors=tuple(_sensor(s, parameters, judged, (coverage, units.get(s.name, ""))) for s in calibration.sensors),
         fit=fit_in_words(calibration) if parity is None else agreement_in_words(parity),
         parity=None if parity is None else parity_view(parity),
         charts=residual_charts(calibration),
@@ -174,22 +176,22 @@ def _sensor(
     sensor: SensorCalibration,
     parameters: tuple[str, ...],
     judged: Mapping[tuple[str, str], Decision],
-    coverage: float,
+    way: tuple[float, str],
 ) -> SensorRow:
+    """``way``: coverage factor and reading unit."""
     return SensorRow(
         name=sensor.name,
         kind=sensor.kind,
-        cells=tuple(_cell(sensor, p, judged.get((sensor.name, p)), coverage) for p in parameters),
+        cells=tuple(_cell(sensor, p, judged.get((sensor.name, p)), way) for p in parameters),
         known=tuple(combination_in_words(k, sensor.kind) for k in sensor.known),
     )
 
 
-def _cell(sensor: SensorCalibration, parameter: str, decision: Decision | None, coverage: float) -> Cell:
-    observable = sensor.observable.get(parameter, False)
+def _cell(sensor: SensorCalibration, parameter: str, decision: Decision | None, way: tuple[float, str]) -> Cell:
     return Cell(
         parameter=parameter,
-        observable=observable,
-        value=value_in_words(sensor, parameter, coverage),
+        observable=sensor.observable.get(parameter, False),
+        value=value_in_words(sensor, parameter, *way),
         deviation=deviation_in_words(decision),
         tolerance=tolerance_in_words(decision),
         probability=_probability(decision),
@@ -197,7 +199,14 @@ def _cell(sensor: SensorCalibration, parameter: str, decision: Decision | None, 
     )
 
 
-def value_in_words(sensor: SensorCalibration, parameter: str, coverage: float) -> str:
+def reading_units(calibration: Calibration) -> dict[str, str]:
+    """What each sensor is read in, from the unit of its scale factor, ``V/(m/s²)``; pulses are counted over time."""
+    units = dict(zip(calibration.names, calibration.units, strict=True))
+    found = {s.name: units.get(f"{s.name}.scale", "").partition("/(")[::2] for s in calibration.sensors}
+    return {name: f"{unit}/s" if unit.lower() in PULSES else unit for name, (unit, per) in found.items() if per}
+
+
+def value_in_words(sensor: SensorCalibration, parameter: str, coverage: float, reading_unit: str) -> str:
     """A parameter ± U, or that the session does not tell it; empty where it does not speak of it."""
     if not sensor.observable.get(parameter, False):
         return "not observable" if parameter in sensor.observable else ""
@@ -206,14 +215,15 @@ def value_in_words(sensor: SensorCalibration, parameter: str, coverage: float) -
     estimate: Estimate = getattr(sensor, parameter)
     spread = None if estimate.sigma is None else estimate.factor(coverage) * estimate.sigma
     if parameter == "scale":
-        return _scale(estimate.value, spread, sensor.kind)
+        return _scale(estimate.value, spread, sensor.kind, reading_unit)
     largest = max(abs(estimate.value or 0.0), spread or 0.0)
     return measured(estimate.value, spread, value_measure(sensor.kind, parameter, largest))
 
 
-def _scale(value: float | None, spread: float | None, kind: str) -> str:
-    """A scale factor is read with its relative uncertainty: ``1.1792038 per g ± 4.0 ppm``."""
-    measure = value_measure(kind, "scale", 0.0)
+def _scale(value: float | None, spread: float | None, kind: str, reading_unit: str) -> str:
+    """A scale factor is read with its relative uncertainty: ``1.1792038 V per g ± 4.0 ppm``."""
+    plain = value_measure(kind, "scale", 0.0)
+    measure = Measure(f"{reading_unit} {plain.label}".strip(), plain.factor)
     if value is None or not spread or not value:
         return measured(value, None, measure)
     relative = deviation_measure(kind, "scale", spread / abs(value))

@@ -9,7 +9,7 @@ from estimator.results import KnownCombination
 from service.pages.session import session_page
 from service.words.fit import fit_in_words
 from service.words.known import combination_in_words
-from tests.builders import accelerometer_block
+from tests.builders import Document, accelerometer_block, gyro_block
 from tests.service.pages.records import session_report
 
 
@@ -25,8 +25,16 @@ def test_cell_shows_value_deviation_tolerance_and_verdict() -> None:
 
 def test_scale_is_written_with_its_relative_uncertainty() -> None:
     scale = session_page(session_report()).sensors[0].cells[0]
-    assert "per g ±" in scale.value
+    assert "V per g ±" in scale.value
     assert scale.value.endswith("ppm")
+
+
+@pytest.mark.parametrize(
+    ("document", "unit"), [(gyro_block(), "pulse/s per °/s"), (gyro_block(count_time_s=None), "V per °/s")]
+)
+def test_a_gyro_s_scale_is_in_what_it_is_read_in(document: Document, unit: str) -> None:
+    scale = session_page(session_report(document)).sensors[0].cells[0]
+    assert f"{unit} ±" in scale.value
 
 
 def test_what_is_not_observable_is_said_with_what_is_known() -> None:
