@@ -8,7 +8,7 @@ from fastapi.responses import FileResponse
 from service.admission import PersonOf
 from service.api.received import REQUEST_BODY, FileOf
 from service.api.schemas.events import NewStage
-from service.api.schemas.fields import Revision, SessionId, Text, WindowOf
+from service.api.schemas.fields import Bound, Revision, SessionId, Text, WindowOf
 from service.api.schemas.papers import TraceabilitySchema
 from service.api.schemas.problem import errors
 from service.api.schemas.sessions import (
@@ -25,9 +25,14 @@ from service.flows.receive import receive
 from service.flows.receive_mapped import receive_mapped
 from service.flows.set_stage import set_stage
 from service.ingest.layout.envelope import is_wrapped, unwrapped
+from service.records.decision import Verdict
+from service.records.session_list import SessionOrder, SessionQuery
+from service.records.state import RecordState
 from service.views.traceability import traceability_of
 
 router = APIRouter(prefix="/sessions", tags=["sessions"])
+NEWEST = SessionOrder.MEASURED
+"""The order of a list that asks for none."""
 BYTES = "application/octet-stream"
 ANY_BYTES = {BYTES: {"schema": {"type": "string", "format": "binary"}}}
 """How OpenAPI describes a file."""
@@ -63,10 +68,22 @@ def list_sessions(
     store: Reading,
     window: WindowOf,
     unit: Annotated[Text | None, Query(description="Only sessions of this serial number.")] = None,
+    *,
+    unit_type: Annotated[Text | None, Query(description="Only those of units of this type.")] = None,
+    stand: Annotated[Text | None, Query(description="Only those measured on this stand.")] = None,
+    since: Annotated[Bound | None, Query(description="Only those measured then or later.")] = None,
+    until: Annotated[Bound | None, Query(description="Only those measured before.")] = None,
+    state: Annotated[RecordState | None, Query(description="Only those in this state.")] = None,
+    verdict: Annotated[Verdict | None, Query(description="Only those with this verdict.")] = None,
+    order: Annotated[SessionOrder, Query(description="By date of measurement newest first, by upload …")] = NEWEST,
+    backwards: Annotated[bool, Query(description="The same order, last first.")] = False,
 ) -> SessionPage:
-    """Sessions, newest measurement first."""
-    found = store.sessions.page(unit, window.offset, window.limit)
-    listed = [SessionSchema.model_validate(session) for session in found]
+    """Sessions, newest measurement first unless another order is asked for."""
+    wanted = SessionQuery(
+        unit=unit, unit_type=unit_type, stand=stand, since=since, until=until, state=state, verdict=verdict,
+        order=order, backwards=backwards, offset=window.offset, limit=window.limit,
+    )  # fmt: skip
+    listed = [SessionSchema.model_validate(session) for session in store.sessions.wanted(wanted)]
     return SessionPage(sessions=listed, page=window.page, limit=window.limit, next_page=window.next_after(len(listed)))
 
 

@@ -26,6 +26,8 @@ class SessionQuery:
 
     text: str | None = None
     """Part of the unit's serial number, small and capital letters alike."""
+    unit: str | None = None
+    """The whole serial number."""
     unit_type: str | None = None
     stand: str | None = None
     since: datetime | None = None
@@ -44,4 +46,6 @@ class SessionQuery:
     """The session that the list goes on after; one that is not there begins the list anew."""
     before: str | None = None
     """The session that it ends before."""
+    offset: int = 0
+    """How many are left out first, where a page has a number instead of a place."""
     limit: int = 100

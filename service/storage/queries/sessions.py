@@ -72,7 +72,9 @@ class Sessions(Queries):
         place = self._place(query)
         if place is None:
             query = replace(query, after=None, before=None)
-        rows = session_rows().where(*conditions(query)).order_by(*ordered(query)).limit(query.limit)
+        rows = (
+            session_rows().where(*conditions(query)).order_by(*ordered(query)).offset(query.offset).limit(query.limit)
+        )
         if place is not None:
             rows = rows.where(beyond(query, place))
         found = tuple(session_record(*row) for row in self._session.execute(rows))

@@ -55,6 +55,8 @@ def ordered(wanted: SessionQuery) -> list[ColumnElement[Any]]:
 def _by_unit(wanted: SessionQuery) -> Iterator[ColumnElement[bool]]:
     if wanted.text:
         yield UnitRow.serial.icontains(wanted.text, autoescape=True)
+    if wanted.unit is not None:
+        yield UnitRow.serial == wanted.unit
     if wanted.unit_type is not None:
         of_type = select(UnitTypeRow.id).where(UnitTypeRow.name == wanted.unit_type)
         yield UnitRow.unit_type_id == of_type.scalar_subquery()

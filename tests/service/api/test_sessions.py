@@ -13,7 +13,7 @@ from service.settings import Settings
 from service.storage import Files, Storage
 from tests.builders import accelerometer_block
 from tests.conftest import Holding
-from tests.service.sessions import session_bytes, session_id
+from tests.service.sessions import FAILED, session_bytes, session_id
 
 SESSIONS = "/api/v1/sessions"
 
@@ -134,3 +134,18 @@ def test_a_stored_file_that_was_changed_is_never_given_out_and_the_same_upload_p
     assert client.get(file).content == content
     assert 'imu_health_file_faults_total{fault="damaged"} 1.0' in client.get("/metrics").text
     assert 'imu_health_file_faults_total{fault="put back"} 1.0' in client.get("/metrics").text
+
+
+def test_a_list_of_sessions_is_narrowed_and_ordered(flagged: httpx.Client) -> None:
+    ids = [session_id(content) for content in FAILED]
+
+    def listed(**asked: str) -> list[str]:
+        found = flagged.get("/api/v1/sessions", params=asked).raise_for_status().json()["sessions"]
+        return [session["id"] for session in found]
+
+    assert listed(backwards="true") == ids
+    assert listed(order="verdict", limit="1") == listed(verdict="fail") == ids[1:]
+    assert listed(since="2026-01-02T00:00:00Z") == ids[1:]
+    assert listed(until="2026-01-02T00:00:00Z") == ids[:1]
+    assert listed(state="withdrawn") == listed(stand="none") == listed(unit_type="none") == listed(unit="none") == []
+    assert listed(page="2", limit="1") == ids[:1]
