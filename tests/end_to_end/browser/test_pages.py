@@ -180,3 +180,13 @@ def test_everything_can_be_reached_by_keyboard(chromium: Browser, site: Site) ->
         assert page.evaluate("document.activeElement.textContent") == "Skip to the content"
         page.keyboard.press("Enter")
         page.wait_for_url("**/#content")
+
+
+def test_two_sessions_are_chosen_on_the_unit_s_page(chromium: Browser, site: Site) -> None:
+    with opened(chromium) as (_, page):
+        page.goto(f"{site.url}/units/BA-017")
+        page.locator("#compare select[name=a]").select_option(site.first_session)
+        page.locator("#compare button").click()
+        page.wait_for_url("**/compare?**")
+        assert "A3 bias moved −8" in page.locator("main").inner_text()
+        assert page.locator("tr.fail th").all_inner_texts() == ["A3 bias"]
