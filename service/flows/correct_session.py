@@ -17,7 +17,7 @@ from service.flows.receive import Reception, receive
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
 from service.judging.plausible import doubts
-from service.records.doubt import Correction, Remedy
+from service.records.doubt import Correction, Doubt, Remedies, Remedy
 from service.records.received import Replaced, SentFile
 from service.records.session import Receipt
 from service.records.state import RecordState
@@ -37,24 +37,31 @@ def correct_session(reception: Reception, id: str, by: str, now: datetime) -> Re
     return receive(reception, SentFile(f"{id}-corrected.json", content, Replaced(id, by, f"corrected: {done}")), now)
 
 
-def correction_of(storage: Storage, id: str) -> str:
-    """What the corrected file of a questioned session would hold otherwise; empty where nothing is known, or where its
-    file is lost."""
+def remedies_of(storage: Storage, id: str) -> Remedies:
+    """What would put a questioned session right; nothing where nothing is known, or where its file is lost."""
     try:
-        return ", ".join(correction.text for correction in _corrections(storage, id)[1])
+        _, found = _doubted(storage, id)
     except LOST:
-        return ""
+        return Remedies()
+    correction = ", ".join(doubt.correction.text for doubt in found if doubt.correction is not None)
+    return Remedies(correction, next((doubt.stands_for for doubt in found if doubt.stands_for is not None), None))
 
 
 def _corrections(storage: Storage, id: str) -> tuple[CalibrationSession, tuple[Correction, ...]]:
     """The session as its file has it, and what would put it right."""
+    source, found = _doubted(storage, id)
+    return source, tuple(doubt.correction for doubt in found if doubt.correction is not None)
+
+
+def _doubted(storage: Storage, id: str) -> tuple[CalibrationSession, tuple[Doubt, ...]]:
+    """The session as its file has it, and what is in doubt of it."""
     with storage.database.reading() as store:
         stored, calibration = store.sessions.get(id), store.calibrations.get(id)
         if stored.state is not RecordState.QUESTIONED:
             raise ConflictError(f"Session {id} is not questioned, so there is nothing to correct.")
         source = read_upload(storage.files.content(stored.sha256), stored.filename)
-        found = doubts(store, as_checked(source, stored.started_at), calibration)
-    return source, tuple(doubt.correction for doubt in found if doubt.correction is not None)
+        found = doubts(store, as_checked(source, stored.started_at), calibration, (id,))
+    return source, found
 
 
 def corrected(session: CalibrationSession, corrections: Iterable[Correction], note: str) -> CalibrationSession:
@@ -65,10 +72,10 @@ def corrected(session: CalibrationSession, corrections: Iterable[Correction], no
         own = [names.index(name) for name in correction.sensors]
         if correction.remedy is Remedy.EXCHANGE:
             readings[:, own], errors[:, own] = readings[:, own[::-1]], errors[:, own[::-1]]
-        elif correction.remedy is Remedy.READINGS:
+        if correction.remedy in (Remedy.READINGS, Remedy.BOTH):
             readings[:, own] *= correction.factor
             errors[:, own] *= np.abs(correction.factor)
-        else:
+        if correction.remedy in (Remedy.NOMINAL, Remedy.BOTH):
             for i in own:
                 sensors[i] = replace(sensors[i], nominal_scale=sensors[i].nominal_scale * correction.factor)
     notes = f"{session.notes} {note}".strip()

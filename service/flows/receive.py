@@ -152,7 +152,7 @@ def _store(store: Store, way: Deriving, received: Received, new: Calibrated, rep
     store.sessions.add(record, unit, stand, new.checked.session.block, digest)
     store.pending.add((record.id,), received.at)
     keep(store, unit, record, new.calibration, received.at)
-    doubted = doubts(store, new.checked, new.calibration)
+    doubted = doubts(store, new.checked, new.calibration, {record.id} | ({replaces.session} if replaces else set()))
     if doubted:
         question(store, way, record, " ".join(doubt.text for doubt in doubted))
     old = None if replaces is None else give_way(store, way.at, replaces, record)

@@ -2,13 +2,18 @@
 
 from datetime import datetime
 
+from estimator.errors import SessionError
 from service.errors import ConflictError
 from service.flows.change_state import change
 from service.flows.derive_again import Derived, Deriving, derive_again
+from service.ingest import read_upload
+from service.ingest.checked import as_checked
+from service.judging.plausible import doubts
 from service.records.received import Replaced
 from service.records.session import StoredSession
-from service.records.state import RecordState, Step
+from service.records.state import RecordKind, RecordState, Step
 from service.storage import Storage
+from service.storage.files import LOST
 from service.storage.store import Store
 
 REPLACEABLE = (RecordState.ACCEPTED, RecordState.QUESTIONED)
@@ -24,8 +29,24 @@ def supersede_session(storage: Storage, way: Deriving, replaced: Replaced, by: s
 
 def supersede(store: Store, way: Deriving, replaced: Replaced, by: StoredSession) -> Derived:
     """The same within a transaction; derives what is known of the unit of the session that gives way."""
+    is_settled = _is_settled(store, way, replaced.session, by)
     known = give_way(store, way.at, replaced, by)
+    if is_settled:
+        change(store, by, RecordState.ACCEPTED, Step(replaced.who, way.at, replaced.why))
     return derive_again(store, way, known.unit, known.started_at, (known.id, by.id))
+
+
+def _is_settled(store: Store, way: Deriving, replaced: str, by: StoredSession) -> bool:
+    """Whether a questioned session was in doubt for nothing but the session that it stands for now."""
+    if by.state is not RecordState.QUESTIONED:
+        return False
+    try:
+        source = read_upload(way.files.content(by.sha256), by.filename)
+    except (*LOST, SessionError):
+        return False
+    found = doubts(store, as_checked(source, by.started_at), store.calibrations.get(by.id), (by.id,))
+    asked = store.states.of(RecordKind.SESSION, by.id)[-1].why
+    return [doubt.stands_for for doubt in found] == [replaced] and asked == found[0].text
 
 
 def give_way(store: Store, at: datetime, replaced: Replaced, by: StoredSession) -> StoredSession:

@@ -122,6 +122,7 @@ POST /sessions/{{id}}/withdraw
 POST /sessions/{{id}}/certificate/signatures
 POST /sessions/{{id}}/accept
 POST /sessions/{{id}}/correct
+POST /sessions/{{id}}/stand
 POST /sessions/{{id}}/reference
 POST /services/{{id}}/withdraw
 POST /stands/{{name:path}}/certificates

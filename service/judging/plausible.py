@@ -1,12 +1,13 @@
 """Step: before a session is judged or becomes a reference: can it be as its file says?
 
-Scale factors, axes, signs, noise and date against the file's own nominal values and the unit's reference; temperature
-and gravity are held against what the Earth allows when the file is read. Only what no sensor and no stand can do is
-doubted: a doubt is a slip of writing down, not a fault of the unit, which its tolerances judge.
+Scale factors, axes, signs, noise and date against the file's own nominal values and the unit's reference, or, before it
+has one, against the other units of its type (`beside_type`); its date against the unit's other sessions
+(`moments`); temperature and gravity are held against what the Earth allows when the file is read. Only what no
+sensor and no stand can do is doubted: a doubt is a slip of writing down, not a fault of the unit, which its tolerances
+judge.
 """
 
-from collections.abc import Iterator
-from datetime import UTC, datetime
+from collections.abc import Collection, Iterator, Sequence
 
 import numpy as np
 
@@ -14,7 +15,10 @@ from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.results import Calibration, SensorCalibration
 from estimator.session import CALIBRATIONS, Array, Sensor
 from service.ingest.checked import Checked
+from service.judging.beside_type import MOST, beside_type, type_of_references
+from service.judging.moments import of_date, of_moment
 from service.judging.reference import reference_of
+from service.judging.tolerances import tolerances_of
 from service.records.doubt import Correction, Doubt, Remedy
 from service.storage.store import Store
 
@@ -29,30 +33,26 @@ FAR, NEAR = np.cos(np.radians(20.0)), np.cos(np.radians(10.0))
 """An input axis lies within some degrees of its nominal one: beyond 20° it is another one, within 10° it is that."""
 TOO_QUIET = 1e-5
 """χ² a degree of freedom: standard errors that are stated 300 times larger than the readings scatter."""
-FIRST_CLOCK = datetime(1980, 1, 7, tzinfo=UTC)
-"""Clocks that lost their time start in 1970, or in 1980 with GPS; there was no session file then."""
 
 
-def doubts(store: Store, new: Checked, calibration: Calibration) -> tuple[Doubt, ...]:
-    """Everything that cannot be as the file says; none where all is plausible."""
-    return (*_of_date(new), *_of_calibration(store, new, calibration))
-
-
-def _of_date(new: Checked) -> Iterator[Doubt]:
-    if new.measured_at < FIRST_CLOCK:
-        day = f"{new.measured_at:%Y-%m-%d}"
-        yield Doubt(f"It is dated {day}", "the clock had lost its time; put the date of the measurement into the file")
+def doubts(store: Store, new: Checked, calibration: Calibration, but: Collection[str]) -> tuple[Doubt, ...]:
+    """Everything that cannot be as the file says; none where all is plausible. ``but`` are sessions that it may share
+    its moment with: itself, and the one that it replaces."""
+    return (*of_date(store, new, but), *_of_calibration(store, new, calibration), *of_moment(store, new, but))
 
 
 def _of_calibration(store: Store, new: Checked, calibration: Calibration) -> Iterator[Doubt]:
     if new.session.programme not in CALIBRATIONS:
         return
     found = list(zip(new.session.sensors, calibration.sensors, strict=True))
-    scales = tuple(_of_scale(found, "nominal value", {s.name: s.nominal_scale for s, _ in found}))
-    yield from scales
-    if not scales:
-        yield from _of_scale(found, "value at the unit's reference", _known_scales(store, new))
-    yield from _of_axes(found)
+    reference = _reference(store, new)
+    beyond = (*_of_scale(found, "nominal value", {s.name: s.nominal_scale for s, _ in found}), *_of_axes(found))
+    yield from beyond
+    if not beyond and reference is None:
+        yield from _beside_its_type(store, new, found, calibration)
+    elif not beyond and reference is not None:
+        known = _scales(store.calibrations.get(reference).sensors)
+        yield from _of_scale(found, "value at the unit's reference", known, Remedy.BOTH)
     fit = calibration.fit
     if fit.dof > 0 and 0 < fit.chi2 / fit.dof < TOO_QUIET and new.session.standard_errors is not None:
         times = (fit.dof / fit.chi2) ** 0.5
@@ -62,8 +62,21 @@ def _of_calibration(store: Store, new: Checked, calibration: Calibration) -> Ite
 Found = list[tuple[Sensor, SensorCalibration]]
 
 
-def _of_scale(found: Found, what: str, known: dict[str, float]) -> Iterator[Doubt]:
-    """Scale factors far from known ones; sensors that are off alike together."""
+def _beside_its_type(store: Store, new: Checked, found: Found, calibration: Calibration) -> Iterator[Doubt]:
+    """What no other unit of its type has; nothing where too few are known."""
+    serial = new.session.unit
+    kind = store.unit_types.of_unit(serial)
+    values = store.history.references_of_type(kind.name, serial, MOST)
+    others = type_of_references(values, tolerances_of(kind))
+    scales = tuple(_of_scale(found, "value in the type's other units", others.scales(), Remedy.BOTH))
+    yield from scales
+    if not scales:
+        yield from beside_type(calibration.sensors, others)
+
+
+def _of_scale(found: Found, what: str, known: dict[str, float], remedy: Remedy = Remedy.READINGS) -> Iterator[Doubt]:
+    """Scale factors far from known ones; sensors that are off alike together. ``remedy`` is what puts right readings in
+    another unit: with nominal values that agree with them, both."""
     ratios = {
         sensor.name: abs(own.scale.value / known[sensor.name])
         for sensor, own in found
@@ -74,17 +87,19 @@ def _of_scale(found: Found, what: str, known: dict[str, float]) -> Iterator[Doub
         ratio = next(iter(off.values()))
         alike = tuple(name for name, r in off.items() if ratio / LIKE < r < ratio * LIKE)
         off = {name: r for name, r in off.items() if name not in alike}
-        slip, correction = _slip(ratio, alike)
+        slip, correction = _slip(ratio, alike, remedy)
         who = "Every scale factor is" if len(alike) == len(ratios) else f"The scale factor of {', '.join(alike)} is"
         yield Doubt(f"{who} {ratio:.4g} times its {what}", slip, correction)
 
 
-def _slip(ratio: float, sensors: tuple[str, ...]) -> tuple[str, Correction | None]:
+def _slip(ratio: float, sensors: tuple[str, ...], remedy: Remedy) -> tuple[str, Correction | None]:
     """What makes such a ratio, and what takes it back."""
     for factor in THOUSANDS:
         if factor / LIKE < ratio < factor * LIKE:
             slip = "the readings are in another unit than the file says, such as mV for V"
-            return slip, Correction(Remedy.READINGS, sensors, 1 / factor)
+            return slip, Correction(remedy, sensors, 1 / factor)
+    if remedy is Remedy.BOTH:
+        return "unit or sensor is another one than the file says", None
     for factors, slip in ((IN_G, "g and m/s² were taken for one another"), (IN_DEGREES, "degrees stand for radians")):
         for factor in factors:
             if factor / LIKE < ratio < factor * LIKE:
@@ -92,14 +107,16 @@ def _slip(ratio: float, sensors: tuple[str, ...]) -> tuple[str, Correction | Non
     return "unit, sensor or nominal scale factor is another one than the file says", None
 
 
-def _known_scales(store: Store, new: Checked) -> dict[str, float]:
-    """Scale factors of the reference in force when the session was measured; none before the first."""
+def _reference(store: Store, new: Checked) -> str | None:
+    """The reference in force when the session was measured; None before the first."""
     session = new.session
     if not store.units.exists(session.unit):
-        return {}
+        return None
     unit = store.units.key(session.unit)
-    reference = reference_of(store, unit, session.block, session.programme, new.measured_at).session
-    sensors = () if reference is None else store.calibrations.get(reference).sensors
+    return reference_of(store, unit, session.block, session.programme, new.measured_at).session
+
+
+def _scales(sensors: Sequence[SensorCalibration]) -> dict[str, float]:
     return {s.name: s.scale.value for s in sensors if s.scale.value and s.observable.get("scale")}
 
 

@@ -7,7 +7,7 @@ from fastapi.responses import HTMLResponse
 from pydantic import BaseModel, Field
 
 from service.dependencies import Now, Reading, ReceptionOf, SettingsOf, StorageOf
-from service.flows.correct_session import correction_of
+from service.flows.correct_session import remedies_of
 from service.flows.receive import receive_all
 from service.flows.refresh_group import current
 from service.ingest import is_own_layout
@@ -21,6 +21,7 @@ from service.pages.render import render
 from service.pages.session import session_page
 from service.pages.unit import unit_page
 from service.pages.upload import outcome_of, outcomes_of, table_outcome, upload_page
+from service.records.doubt import Remedies
 from service.records.group import Level
 from service.records.received import where
 from service.records.state import RecordState
@@ -129,7 +130,7 @@ def show_session(
         report,
         made,
         traceability_of(store, report.session),
-        correction=correction_of(storage, id) if questioned else "",
+        remedies=remedies_of(storage, id) if questioned else Remedies(),
         follow=None if made else follow_seconds(report.session.uploaded_at, now, settings.diagnosis_workers),
         model=model_as_of(store.models.of_session(id), report.session.revision),
         computed=store.calibrations.revisions(id),

@@ -28,6 +28,7 @@ from service.pages.parity import ParityView, parity_view
 from service.pages.residual_table import ResidualTable, residual_table
 from service.records.decision import Decision, Verdict, nominal_factor_of
 from service.records.diagnosis import DiagnosisSummary
+from service.records.doubt import Remedies
 from service.records.model import ModelRevision
 from service.records.paper import Traceability
 from service.records.reservation import Reservations
@@ -43,6 +44,9 @@ from service.words.motion import MotionLine, motions_in_words
 from service.words.names import method_name
 from service.words.parity import agreement_in_words
 from service.words.states import MEANINGS, STATES, state_in_words
+
+NOTHING_KNOWN = Remedies()
+"""Of a session that counts."""
 
 
 @dataclass(frozen=True)
@@ -100,8 +104,8 @@ class SessionPage:
     """What became of it, said before everything else; empty where it counts."""
     states: tuple[str, ...]
     """Its life, newest first."""
-    correction: str
-    """What a corrected file would hold otherwise; empty where it is not questioned, or nothing is known."""
+    remedies: Remedies
+    """What would put it right, where it is questioned."""
     traceability: Traceability | None
     """What its numbers hang on."""
     follow: int | None
@@ -117,7 +121,7 @@ def session_page(
     diagnosis: DiagnosisSummary | None = None,
     traceability: Traceability | None = None,
     *,
-    correction: str = "",
+    remedies: Remedies = NOTHING_KNOWN,
     follow: int | None = None,
     model: Sequence[ModelRevision] = (),
     computed: Sequence[int] = (),
@@ -150,7 +154,7 @@ def session_page(
         motions=motions_in_words(report.motions, coverage),
         state=_state(report),
         states=tuple(state_in_words(line) for line in reversed(report.states)),
-        correction=correction,
+        remedies=remedies,
         traceability=traceability,
         follow=follow,
         causes=tuple(cause_on(one.cause, one.sensors) for one in model),

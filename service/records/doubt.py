@@ -11,6 +11,8 @@ class Remedy(StrEnum):
     """The readings of some sensors, and their standard errors, times a factor."""
     NOMINAL = "nominal scale"
     """The nominal scale factor of some sensors times a factor."""
+    BOTH = "readings and nominal scale"
+    """Both times a factor."""
     EXCHANGE = "exchange"
     """The readings of two sensors, one for the other."""
 
@@ -42,9 +44,23 @@ class Doubt:
     """What has probably happened."""
     correction: Correction | None = None
     """None where no factor and no exchange puts it right."""
+    stands_for: str | None = None
+    """The session that this one counts twice with, and could stand for."""
 
     @property
     def text(self) -> str:
         """In a sentence or two."""
         remedy = "" if self.correction is None else f" A file with the {self.correction.text} would put it right."
+        if self.stands_for is not None:
+            remedy = " Together they would count twice: say which one counts."
         return f"{self.what}: {self.slip}.{remedy}"
+
+
+@dataclass(frozen=True)
+class Remedies:
+    """What would put a questioned session right."""
+
+    correction: str = ""
+    """What a corrected file would hold otherwise; empty where nothing is known."""
+    stands_for: str | None = None
+    """The session that it could stand for."""

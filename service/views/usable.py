@@ -1,9 +1,13 @@
-"""May a unit be used? By its latest judged session, its due date and its open flags; in doubt it may not."""
+"""May a unit be used? By its latest judged session, or by a sound reference that nothing was held against yet, by its
+due date and its open flags; in doubt it may not."""
 
 from collections.abc import Iterator
 from datetime import datetime, timedelta
 
 from estimator.session import CALIBRATIONS
+from service.judging.sound_reference import left_uncertain
+from service.judging.tolerances import tolerances_of
+from service.measures import COVERAGE
 from service.records.decision import Verdict
 from service.records.flag import Flag, Matter
 from service.records.session import StoredSession
@@ -21,6 +25,8 @@ FIT = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
 FORBIDDING = (Matter.TOLERANCE,)
 """Flags that forbid the use until they are resolved, acknowledged or not: others are reservations. That a calibration
 is overdue is asked of the clock, because its flag is raised once an hour only."""
+MOST_NAMED = 4
+"""Parameters, by name, before the rest are counted."""
 SLACK = timedelta(days=1)
 """A clock may be in another zone than it says."""
 
@@ -30,13 +36,16 @@ def usable(store: Store, serial: str, now: datetime) -> Usable:
     report = unit_report(store, serial, now)
     flags = store.flags.open_of(store.units.key(serial))
     session, since = _latest_judged(report, now), _last_service(report, now)
-    against = tuple(_against(report, session, flags, now))
+    reference = _reference(report, since) if session is None else None
+    told = session or reference
+    coarse = () if reference is None else _left_uncertain(store, report, reference)
+    against = (*coarse, *_against(report, told, flags, now))
     undated = (words.DATES_PENDING,) if report.summary.is_undated else ()
     return Usable(
         usable=not against,
-        why=against[0] if against else words.on(words.YES, _at(session), due=_day(report.summary.due)),
+        why=against[0] if against else _yes(report, session, _at(told)),
         reasons=against,
-        reservations=(*_reservations(store, session, flags), *_waiting(report, session), *undated),
+        reservations=(*_unproven(reference), *_reservations(store, told, flags), *_waiting(report, told), *undated),
         until=report.summary.due,
         verdict=None if session is None else session.verdict,
         session=None if session is None else session.id,
@@ -53,6 +62,28 @@ def _latest_judged(report: UnitReport, now: datetime) -> StoredSession | None:
     """The latest session that was held against a reference, since the last service."""
     since = _last_service(report, now)
     return next((s for s in _accepted(report, since) if not s.is_reference), None)
+
+
+def _reference(report: UnitReport, since: datetime | None) -> StoredSession | None:
+    """The reference calibration since the last service, against which nothing was held yet."""
+    return next((s for s in _accepted(report, since) if s.is_reference and s.programme in CALIBRATIONS), None)
+
+
+def _left_uncertain(store: Store, report: UnitReport, reference: StoredSession) -> Iterator[str]:
+    """That a reference tells too little to be used by itself."""
+    found = tuple(left_uncertain(store.calibrations.get(reference.id), tolerances_of(report.unit_type), COVERAGE))
+    if found:
+        more = f" and {len(found) - MOST_NAMED} more" if len(found) > MOST_NAMED else ""
+        yield words.on(words.TOO_COARSE, reference.started_at, what=f"{', '.join(found[:MOST_NAMED])}{more}")
+
+
+def _yes(report: UnitReport, session: StoredSession | None, at: datetime) -> str:
+    return words.on(words.BY_REFERENCE if session is None else words.YES, at, due=_day(report.summary.due))
+
+
+def _unproven(reference: StoredSession | None) -> Iterator[str]:
+    if reference is not None:
+        yield words.on(words.UNPROVEN, reference.started_at)
 
 
 def _correction(report: UnitReport, since: datetime | None) -> str | None:
@@ -79,7 +110,7 @@ def _against(
     due = report.summary.due
     if due is not None and due < now:
         yield words.OVERDUE.format(due=day_of(due))
-    elif due is None and session is not None and session.verdict in FIT:
+    elif due is None and session is not None and (session.is_reference or session.verdict in FIT):
         yield words.DATES_PENDING if report.summary.is_undated else words.NO_DUE
 
 
@@ -92,9 +123,9 @@ def _nothing_judged(report: UnitReport, now: datetime) -> str:
 
 def _of_session(session: StoredSession, now: datetime) -> Iterator[str]:
     at = session.started_at
-    if session.verdict is Verdict.UNDECIDABLE:
+    if session.verdict is Verdict.UNDECIDABLE and not session.is_reference:
         yield words.on(words.UNDECIDED, at, reason=session.reason)
-    elif session.verdict not in FIT:
+    elif session.verdict not in FIT and not session.is_reference:
         yield words.on(words.NOT_FIT, at, reason=session.reason)
     if at > now + SLACK:
         yield words.on(words.FUTURE, at)

@@ -9,6 +9,7 @@ from service.measures import deviation_measure, measured, number, signed
 
 SIGNIFICANT = 0.01
 """Chance of saying so of a block that did not move."""
+JUDGED = "The sensors are judged without it."
 NEARLY = 0.94
 """Cosine of 20°: a turn this near to an axis of the block is named after it."""
 
@@ -46,11 +47,11 @@ def _together(motion: CommonMotion, coverage: float, whose: str) -> str:
         size = measured(motion.size, coverage * motion.sigma, deviation_measure(motion.kind, "axis", motion.size))
         return (
             f"The whole block{whose} turned by {size} about {_about(motion)} since the reference: "
-            "that is of mounting or stand."
+            f"it sits otherwise, or the stand has turned. {JUDGED}"
         )
     size = signed(motion.size, coverage * motion.sigma, deviation_measure(motion.kind, "scale", motion.size))
     cause = "gravity or the stand's elevation" if motion.kind == "accelerometer" else "the stand or its clock"
-    return f"All scale factors{whose} changed together by {size} since the reference: that is of {cause}."
+    return f"All scale factors{whose} changed together by {size} since the reference: that is of {cause}. {JUDGED}"
 
 
 def _about(motion: CommonMotion) -> str:

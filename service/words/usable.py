@@ -8,13 +8,16 @@ from service.words.names import day_of
 
 YES = "Fit by its session of {day}, and not due before {due}."
 NO_SESSION = "No session is stored: calibrate the unit."
-NOTHING_JUDGED = (
-    "Nothing was judged yet: its sessions are references only. Measure one more, which is held against them."
+BY_REFERENCE = "Its reference was measured on {day}, nothing speaks against it, and it is not due before {due}."
+UNPROVEN = (
+    "No session was held against the reference of {day} yet: whether the unit keeps its values shows with the next one."
 )
-SINCE_SERVICE = (
-    "Nothing was judged since the service of {day}: measure the new reference, if that was not done, and one session "
-    "that is held against it."
+TOO_COARSE = (
+    "Its reference of {day} leaves {what} uncertain by more than the tolerance, or does not show it: measure more "
+    "positions."
 )
+NOTHING_JUDGED = "None of its sessions counts as a calibration: calibrate the unit."
+SINCE_SERVICE = "Nothing was measured since the service of {day}: calibrate the unit, which sets its new reference."
 NOT_FIT = "Not fit by its session of {day}: {reason}"
 UNDECIDED = "Not decided by its session of {day}: {reason}"
 OVERDUE = "Its calibration was due on {due}: calibrate it."

@@ -12,7 +12,7 @@ from service.records.history import HistoryPoint
 from service.records.session import ParameterValue, StoredSession
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
-from service.storage.tables import CalibrationRow, DecisionRow, ParameterRow, SessionRow
+from service.storage.tables import CalibrationRow, DecisionRow, ParameterRow, SessionRow, UnitRow, UnitTypeRow
 
 DECIDED = (
     (DecisionRow.session_id == ParameterRow.session_id)
@@ -94,6 +94,28 @@ class History(Queries):
             for row in self._session.execute(query.offset(wanted.offset).limit(wanted.limit))
         ]
         return tuple(reversed(found)) if wanted.newest else tuple(found)
+
+    def references_of_type(self, name: str, but: str, most: int) -> tuple[ParameterValue, ...]:
+        """The parameters of the newest reference sessions of a type's units, without one unit."""
+        newest = (
+            select(SessionRow.id, SessionRow.revision)
+            .join(UnitRow, UnitRow.id == SessionRow.unit_id)
+            .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+            .where(UnitTypeRow.name == name, UnitRow.serial != but, SessionRow.is_reference, IS_ACCEPTED)
+            .order_by(SessionRow.started_at.desc(), SessionRow.id)
+            .limit(most)
+            .subquery()
+        )
+        own = (ParameterRow.session_id == newest.c.id) & (ParameterRow.revision == newest.c.revision)
+        rows = self._session.scalars(select(ParameterRow).join(newest, own))
+        return tuple(_parameter_value(row) for row in rows)
+
+
+def _parameter_value(row: ParameterRow) -> ParameterValue:
+    axis = None
+    if row.axis_x is not None and row.axis_y is not None and row.axis_z is not None:
+        axis = (row.axis_x, row.axis_y, row.axis_z)
+    return ParameterValue(row.sensor, row.sensor_index, row.kind, row.parameter, row.value, row.u, axis)
 
 
 def _revision(wanted: int | None) -> ColumnElement[int]:

@@ -1,10 +1,11 @@
 """Sessions and their decisions."""
 
+from collections.abc import Collection
 from dataclasses import asdict, fields, replace
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Select, and_, or_, select, update
+from sqlalchemy import Select, and_, func, or_, select, update
 
 from estimator.health.common_motion import CommonMotion
 from estimator.session import CALIBRATIONS
@@ -157,15 +158,31 @@ class Sessions(Queries):
         latest = query.order_by(SessionRow.started_at.desc(), SessionRow.id.desc()).limit(most)
         return tuple(session_record(*found) for found in self._session.execute(latest))[::-1]
 
+    def first_at(self, unit: int, but: Collection[str]) -> datetime | None:
+        """When a unit was first measured, by its accepted sessions without some; None without any."""
+        query = select(func.min(SessionRow.started_at)).where(SessionRow.unit_id == unit, IS_ACCEPTED)
+        return self._session.scalar(query.where(SessionRow.id.not_in(but)))
+
+    def at_moment(self, unit: int, block: str, programme: str, at: datetime) -> tuple[StoredSession, ...]:
+        """Accepted sessions of a unit's block and programme that were measured at one moment."""
+        query = session_rows().where(
+            SessionRow.unit_id == unit,
+            SessionRow.block == block,
+            SessionRow.programme == programme,
+            SessionRow.started_at == at,
+            IS_ACCEPTED,
+        )
+        return tuple(session_record(*found) for found in self._session.execute(query.order_by(SessionRow.id)))
+
     def corrected(self, session: StoredSession) -> tuple[str, ...]:
-        """Accepted sessions that were uploaded later than one, of the same unit, programme and date."""
+        """Sessions, accepted or questioned, that were uploaded later than one, of the same unit, programme and date."""
         query = session_rows().where(
             UnitRow.serial == session.unit,
             SessionRow.programme == session.programme,
             SessionRow.started_at == session.started_at,
             SessionRow.uploaded_at >= session.uploaded_at,
             SessionRow.id != session.id,
-            IS_ACCEPTED,
+            SessionRow.state.in_((RecordState.ACCEPTED, RecordState.QUESTIONED)),
         )
         return tuple(row.id for row, *_ in self._session.execute(query.order_by(SessionRow.id)))
 

@@ -62,11 +62,30 @@ def test_past_due_it_may_not(asked: Asking) -> None:
     assert "Its calibration was due on" in found["why"]
 
 
-def test_a_reference_alone_decides_nothing(asked: Asking) -> None:
+def test_a_sound_reference_alone_may_be_used_with_a_reservation(asked: Asking) -> None:
     found = asked(FIT[0])
-    assert (found["usable"], found["session"]) == (False, None)
-    assert "Measure one more" in found["why"]
+    assert (found["usable"], found["verdict"], found["session"]) == (True, None, None)
+    assert found["why"].startswith("Its reference was measured on 1 Jan 2026, nothing speaks against it")
+    assert "No session was held against the reference of 1 Jan 2026 yet" in found["reservation"]
+    assert found["until"][:10] == found["next_calibration"] > "2026-02-05"
     assert found["correction"] == f"/api/v1/sessions/{session_id(FIT[0])}/correction"
+
+
+def test_a_reference_that_is_coarser_than_the_tolerance_may_not(asked: Asking) -> None:
+    def tightened(client: httpx.Client) -> None:
+        name = client.get("/api/v1/unit-types").json()["unit_types"][0]["name"]
+        tight = {"tolerances": {"scale": None, "bias": 1e-9, "quadratic": None, "axis": None}}
+        client.put(f"/api/v1/unit-types/{name}", json=tight).raise_for_status()
+
+    found = asked(FIT[0], first=tightened)
+    assert not found["usable"]
+    assert "leaves A1 bias, A2 bias, A3 bias, A4 bias and 2 more uncertain by more than the tolerance" in found["why"]
+
+
+def test_after_a_repair_the_new_reference_is_enough(asked: Asking) -> None:
+    repair = {"kind": "repair", "at": "2026-01-20T12:00:00Z"}
+    found = asked(*FAILED, first=lambda client: client.post("/api/v1/units/BA-017/services", json=repair))
+    assert found["why"].startswith("Its reference was measured on 1 Feb 2026")
 
 
 def test_what_cannot_be_decided_says_what_to_measure(asked: Asking) -> None:
@@ -86,7 +105,7 @@ def test_after_a_service_nothing_is_judged_yet(asked: Asking) -> None:
     repair = {"kind": "repair", "at": "2026-02-03T12:00:00Z"}
     found = asked(*FIT, first=lambda client: client.post("/api/v1/units/BA-017/services", json=repair))
     assert (found["usable"], found["correction"]) == (False, None)
-    assert "Nothing was judged since the service of 3 Feb 2026" in found["why"]
+    assert "Nothing was measured since the service of 3 Feb 2026" in found["why"]
 
 
 def test_a_flag_forbids_although_the_next_session_is_fit(asked: Asking) -> None:

@@ -130,6 +130,14 @@ def states(storage: Storage, id: str) -> list[RecordState]:
         return [line.state for line in store.states.of(RecordKind.SESSION, id)]
 
 
+@pytest.mark.parametrize("date", ["1970-01-01T00:00:00Z", "2000-01-03T00:00:00Z", "2006-05-01T00:00:00Z"])
+def test_a_date_before_the_unit_existed_is_questioned(storage: Storage, date: str) -> None:
+    """2006: a GPS receiver whose weeks began anew."""
+    upload(storage, session_bytes(), "a.json", NOW)
+    receipt = upload(storage, session_bytes(seed=2, started_at=date), "b.json", NOW)
+    assert (receipt.state, "the clock had lost its time" in receipt.reason) == (RecordState.QUESTIONED, True)
+
+
 def test_a_unit_that_is_merely_out_of_tolerance_is_judged(storage: Storage) -> None:
     upload(storage, session_bytes(), "a.json", NOW)
     receipt = upload(storage, session_bytes(seed=2, month=5, a3_moved=5000.0), "b.json", NOW)

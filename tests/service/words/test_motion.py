@@ -20,7 +20,7 @@ def said(motion: CommonMotion) -> list[str]:
 def test_a_turn_names_size_axis_and_cause() -> None:
     assert said(TURNED) == [
         "The whole block turned by 12.0\u00a0±\u00a01.0\u202farcsec about −Y since the reference: "
-        "that is of mounting or stand."
+        "it sits otherwise, or the stand has turned. The sensors are judged without it."
     ]
 
 
@@ -39,7 +39,8 @@ def test_a_common_factor_is_gravity_or_stand() -> None:
     scaled = CommonMotion("accelerometer", "scales", "separated", (35e-6,), ((4e-12,),), 1e-9, NAMES, ("A3",))
     assert said(scaled) == [
         "All scale factors changed together by +35.0\u00a0±\u00a04.0\u202fppm since the reference: "
-        "that is of gravity or the stand's elevation. Beside that, the scale factor of A3 moved on its own."
+        "that is of gravity or the stand's elevation. The sensors are judged without it. "
+        "Beside that, the scale factor of A3 moved on its own."
     ]
 
 

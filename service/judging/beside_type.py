@@ -1,0 +1,130 @@
+"""Step: a session that would become a reference beside the other units of its type: can it be one of them?
+
+Sensor by sensor against the references of the type's other units: scale factor, zero, nonlinearity, direction and how
+well they are known. A type whose units differ says so itself: what counts as far is counted in its own spread (robust,
+what the sessions are uncertain of taken off) and in the tolerance, whichever is wider.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimator.health.population import spread
+from estimator.results import SensorCalibration
+from estimator.session import Array
+from service.measures import MEASURES, in_words
+from service.records.doubt import Doubt
+from service.records.session import ParameterValue
+
+FEWEST = 5
+"""Other units: with fewer, two unlike ones would be most of the type."""
+MOST = 60
+"""References, the newest: enough for a spread, and a millisecond to read."""
+FAR = 50.0
+"""Spreads, and tolerances, that no unit of a type lies apart: a slip of a factor is a hundred and more, and what a
+unit may do by itself, its tolerances judge later."""
+COARSE = 100.0
+"""Ratio of uncertainties beyond what more positions or longer averages can do: ten thousand times the readings."""
+RAYLEIGH = 1.1774
+"""Median of the length of a two-vector, in sigmas of a component."""
+NEAR = float(np.cos(np.radians(10.0)))
+"""Within it an axis is that of a sensor."""
+ANOTHER = "the readings hold an offset, or another sensor is connected than the file says"
+Tolerances = Mapping[tuple[str, str], float]
+"""By kind of sensor and parameter, SI or relative."""
+
+
+@dataclass(frozen=True)
+class Type:
+    """What the references of other units say."""
+
+    values: Mapping[tuple[str, str], tuple[ParameterValue, ...]]
+    """By sensor and parameter; of those with enough units only."""
+    tolerances: Tolerances
+
+    def scales(self) -> dict[str, float]:
+        """The median scale factor of each sensor."""
+        return {name: float(np.median([v.value for v in own])) for (name, what), own in self.values.items()
+                if what == "scale"}  # fmt: skip
+
+    def far(self, kind: str, parameter: str, width: float) -> float:
+        """What no unit lies apart, unit of the parameter."""
+        return FAR * max(width, self.tolerances.get((kind, parameter), 0.0))
+
+
+def type_of_references(values: Sequence[ParameterValue], tolerances: Tolerances) -> Type:
+    """Of the values of other units' references."""
+    grouped: dict[tuple[str, str], list[ParameterValue]] = {}
+    for value in values:
+        if value.value is not None or value.axis is not None:
+            grouped.setdefault((value.sensor, value.parameter), []).append(value)
+    return Type({key: tuple(own) for key, own in grouped.items() if len(own) >= FEWEST}, tolerances)
+
+
+def beside_type(sensors: Sequence[SensorCalibration], of: Type) -> Iterator[Doubt]:
+    """What no unit of the type has; the scale factors apart."""
+    for parameter, name in (("bias", "zero"), ("quadratic", "quadratic term")):
+        away = {s.name: d for s in sensors if (d := _distance(s, parameter, of)) is not None}
+        if away:
+            kind = next(s.kind for s in sensors if s.name in away)
+            who, most = ", ".join(away), in_words(kind, parameter, max(away.values(), key=abs))
+            yield Doubt(f"The {name} of {who} lies {most} from those of the type's other units", ANOTHER)
+    yield from _directions(sensors, of)
+    yield from _uncertainties(sensors, of)
+
+
+def _distance(sensor: SensorCalibration, parameter: str, of: Type) -> float | None:
+    """From the type's median, SI, of a value that is too far from it."""
+    known, own = of.values.get((sensor.name, parameter), ()), getattr(sensor, parameter)
+    if not known or own.value is None or (sensor.kind, parameter) not in MEASURES:
+        return None
+    centre, width = spread(np.array([v.value for v in known]), np.array([v.u or 0.0 for v in known]))
+    away = float(own.value - centre)
+    return away if abs(away) > of.far(sensor.kind, parameter, float(np.hypot(width, own.sigma or 0.0))) else None
+
+
+def _directions(sensors: Sequence[SensorCalibration], of: Type) -> Iterator[Doubt]:
+    """Axes that point where the type's do not."""
+    means = {name: _mean(own) for (name, what), own in of.values.items() if what == "axis"}
+    for sensor in sensors:
+        if sensor.axis is None or sensor.name not in means:
+            continue
+        angle = _angle(sensor.axis, means[sensor.name])
+        others = [_angle(np.array(v.axis), means[sensor.name]) for v in of.values[sensor.name, "axis"]]
+        if angle <= of.far(sensor.kind, "axis", float(np.median(others)) / RAYLEIGH):
+            continue
+        other = next((o for o, mean in means.items() if o != sensor.name and sensor.axis @ mean > NEAR), None)
+        where = "" if other is None else f", along that of {other}"
+        yield Doubt(
+            f"{sensor.name} points {in_words(sensor.kind, 'axis', angle)} from where it does in the type's other units"
+            f"{where}",
+            "sensors or axes are named otherwise than in the type" if other else "nominal axis or mounting is wrong",
+        )
+
+
+def _uncertainties(sensors: Sequence[SensorCalibration], of: Type) -> Iterator[Doubt]:
+    """Zeros that are known hundreds of times better or worse."""
+    ratios = []
+    for sensor in sensors:
+        usual = [v.u for v in of.values.get((sensor.name, "bias"), ()) if v.u]
+        if usual and sensor.bias.sigma:
+            ratios.append(sensor.bias.sigma / float(np.median(usual)))
+    ratio = float(np.median(ratios)) if ratios else 1.0
+    if not 1 / COARSE < ratio < COARSE:
+        times = f"{max(ratio, 1 / ratio):.0f} times {'less' if ratio > 1 else 'more'} certain"
+        yield Doubt(
+            f"Its zeros are {times} than those of the type's other units",
+            "standard errors are stated in another unit, or the readings are not what was measured",
+        )
+
+
+def _mean(own: Sequence[ParameterValue]) -> Array:
+    """(3,) direction about which a sensor's axes lie, dimensionless."""
+    middle = np.median(np.array([v.axis for v in own]), axis=0)
+    return np.asarray(middle / np.linalg.norm(middle))
+
+
+def _angle(axis: Array, mean: Array) -> float:
+    """rad."""
+    return float(np.arctan2(np.linalg.norm(np.cross(axis, mean)), axis @ mean))

@@ -1,0 +1,58 @@
+"""Step: can a session have been measured when its file says?
+
+Clocks that lost their time start somewhere in the past. And was a block measured twice at one moment? One of the two
+files is then a copy of the other, or its correction. A file that says no moment of its own has none to share. As found
+and as left are two measurements, however they are dated, and so are those of other sensors.
+"""
+
+from collections.abc import Collection, Iterator
+from datetime import UTC, datetime, timedelta
+
+from service.ingest.checked import Checked
+from service.records.doubt import Doubt
+from service.records.session import StoredSession
+from service.storage.store import Store
+
+FIRST_CLOCK = datetime(1980, 1, 7, tzinfo=UTC)
+"""Clocks that lost their time start in 1970, or in 1980 with GPS; there was no session file then."""
+MILLENNIUM, RUNNING = datetime(2000, 1, 1, tzinfo=UTC), timedelta(days=31)
+"""Where the clocks of loggers start that lost their time, and how long such a clock runs before somebody sets it."""
+LONGEST_LIFE = timedelta(days=3653)
+"""Before a unit's first session: of older ones the records are missing, or the date is wrong."""
+LOST = "the clock had lost its time; put the date of the measurement into the file"
+
+
+def of_date(store: Store, new: Checked, but: Collection[str]) -> Iterator[Doubt]:
+    """A doubt for a date before the unit existed; ``but`` are sessions that say nothing of that."""
+    at, day = new.measured_at, f"{new.measured_at:%Y-%m-%d}"
+    if at < FIRST_CLOCK or MILLENNIUM <= at < MILLENNIUM + RUNNING:
+        yield Doubt(f"It is dated {day}", LOST)
+        return
+    first = store.sessions.first_at(store.units.key(new.session.unit), but)
+    if first is not None and first - at > LONGEST_LIFE:
+        years = (first - at).days // 365
+        yield Doubt(f"It is dated {day}, {years} years before the unit's first session", LOST)
+
+
+def of_moment(store: Store, new: Checked, but: Collection[str]) -> Iterator[Doubt]:
+    """A doubt for an accepted session of the same block, programme and moment, other than ``but``."""
+    session = new.session
+    if session.started_at is None:
+        return
+    unit = store.units.key(session.unit)
+    for rival in store.sessions.at_moment(unit, session.block, session.programme, new.measured_at):
+        if rival.id not in but and not _are_apart(store, rival, new):
+            yield Doubt(
+                f"The session of {rival.filename} was measured at the same moment, {new.measured_at:%Y-%m-%d %H:%M:%S}",
+                "this file corrects that one or is a copy of it, or one of both has a wrong time",
+                stands_for=rival.id,
+            )
+            return
+
+
+def _are_apart(store: Store, rival: StoredSession, new: Checked) -> bool:
+    """Whether both can be, at one moment."""
+    if {rival.stage, new.session.stage} == {"as-found", "as-left"}:
+        return True
+    measured = {sensor.name for sensor in store.calibrations.get(rival.id).sensors}
+    return measured.isdisjoint(sensor.name for sensor in new.session.sensors)
