@@ -2,20 +2,22 @@
 
 import numpy as np
 
-from benchmarks.backtest.histories import History, Plan, dates, history
+from benchmarks.backtest.histories import History, Plan
 from benchmarks.backtest.rivals import EVENTS, RIVALS, Rule, figures, optimum
 from benchmarks.backtest.units import PARAMETERS
+from benchmarks.backtest.worlds import FIRST, World
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
 from estimator.health.detection import detect
-from estimator.health.fits import Readings
+from estimator.health.fits import Readings, fits
+from estimator.health.odds import mixture, odds
+from estimator.health.shapes import shapes
 from estimator.session import Array
 
 LEVEL = 0.05
 SINGLE = float(-np.expm1(np.log1p(-LEVEL) / PARAMETERS))
 """Of one parameter, at 5 % over all of a unit."""
-PLANS = {"6 to 16 sessions": Plan(since=1), "17 to 60 sessions": Plan(sessions=(17, 60), since=1)}
-"""A change may show in the last session alone."""
+OURS = "the likelihood of all changes (ours)"
 LEVELS = (0.01, 0.05, 0.2, 0.5, 0.8)
 
 
@@ -31,42 +33,72 @@ def suspicion(one: History) -> float:
     return float(-np.log(max(p_value(one), 1e-300)))
 
 
-def made(kind: str, count: int, plan: Plan, rng: np.random.Generator) -> list[History]:
-    """So many histories of a kind."""
-    return [history(kind, dates(plan, rng), plan, rng) for _ in range(count)]
+def log_odds(one: History) -> float:
+    """Of any change against none, by the estimator: not yet made into a p-value of the history's own schedule."""
+    n = len(one.time)
+    readings = Readings(one.time, one.value[:, None], one.sigma[:, None], np.ones((n, 1)), np.ones(1))
+    null = fits(readings, shapes(one.time), np.zeros(1))
+    tells = (null.information[0] > 0).all(axis=0)
+    return odds(mixture(null, one.time, tells), null.z[0]).total
+
+
+def made(world: World, kind: str, of: tuple[int, Plan], rng: np.random.Generator) -> list[History]:
+    """So many histories of a kind, by a plan."""
+    count, plan = of
+    return [world.made(kind, plan, rng) for _ in range(count)]
 
 
 def found(kind: str, count: int, rng: np.random.Generator) -> list[bool]:
     """Whether a change is found at 5 % over all parameters of its unit."""
-    return [p_value(one) < SINGLE for one in made(kind, count, PLANS["6 to 16 sessions"], rng)]
+    return [p_value(one) < SINGLE for one in made(FIRST, kind, (count, FIRST.plan), rng)]
 
 
-def alarms_page(count: int, rng: np.random.Generator) -> str:
+def alarms_page(world: World, count: int, rng: np.random.Generator) -> str:
     """Markdown: p-values where nothing happens."""
     rows = []
-    for name, plan in {"3 to 5 sessions": Plan(sessions=(3, 5)), **PLANS}.items():
-        p = np.array([p_value(one) for one in made("stable", count, plan, rng)])
-        rows.append((name, *(str(rate([bool(x) for x in p < level])) for level in LEVELS)))
-    head = ("stable", *(f"p < {level:g}" for level in LEVELS))
-    return "## Are p-values what they say?\n\nWhere nothing happens.\n\n" + table(head, rows)
+    for plan in (world.planned((3, 5)), world.plan, world.long):
+        p = np.array([p_value(one) for one in made(world, world.still, (count, plan), rng)])
+        rows.append((_sessions(plan), *(str(rate([bool(x) for x in p < level])) for level in LEVELS)))
+    head = (world.still, *(f"p < {level:g}" for level in LEVELS))
+    return "### Are p-values what they say?\n\nWhere nothing happens.\n\n" + table(head, rows)
 
 
-def rivals_page(count: int, rng: np.random.Generator) -> tuple[str, dict[str, tuple[float, float]]]:
-    """Markdown, and of every event what is found by the estimator and by the optimum, 0 … 1."""
-    plan = PLANS["6 to 16 sessions"]
-    still = made("stable", 2 * count, plan, rng)
-    events = {kind: made(kind, count, plan, rng) for kind in EVENTS}
-    rules: dict[str, Rule] = {"the likelihood of all changes (ours)": suspicion, "the optimum": optimum, **RIVALS}
+def _sessions(plan: Plan) -> str:
+    fewest, most = plan.sessions
+    return f"{fewest} to {most} sessions"
+
+
+def beside_page(world: World, count: int, rng: np.random.Generator) -> str:
+    """Markdown: what the estimator finds and what the rules find that are used instead, at equal false alarms."""
+    still = made(world, world.still, (2 * count, world.plan), rng)
+    events = {kind: made(world, kind, (count, world.plan), rng) for kind in world.kinds[1:]}
+    rules: dict[str, Rule] = {OURS: suspicion, "the odds behind ours": log_odds, **RIVALS}
+    rows = [(name, *(str(rate(hit)) for hit in _hits(rule, still, events).values())) for name, rule in rules.items()]
+    return "### Beside other rules, at equal false alarms\n\n" + table(("rule", *events), rows)
+
+
+def _hits(rule: Rule, still: list[History], events: dict[str, list[History]]) -> dict[str, list[bool]]:
+    """Of every kind what a rule finds while it raises an alarm in 5 % of still histories."""
+    threshold = float(np.quantile(figures(rule, still), 1 - LEVEL))
+    return {kind: [bool(x) for x in figures(rule, one) > threshold] for kind, one in events.items()}
+
+
+def rivals_page(count: int, rng: np.random.Generator) -> tuple[str, dict[str, tuple[float, ...]]]:
+    """Markdown, and of every event what is found by the estimator, by its odds and by the optimum, %."""
+    still = made(FIRST, FIRST.still, (2 * count, FIRST.plan), rng)
+    events = {kind: made(FIRST, kind, (count, FIRST.plan), rng) for kind in EVENTS}
+    rules: dict[str, Rule] = {OURS: suspicion, "the optimum": optimum, "the odds behind ours": log_odds, **RIVALS}
     rows, shares = [], list[Array]()
     for name, rule in rules.items():
-        threshold = float(np.quantile(figures(rule, still), 1 - LEVEL))
-        hits = {kind: figures(rule, one) > threshold for kind, one in events.items()}
-        shares.append(np.array([hit.mean() for hit in hits.values()]))
-        rows.append((name, *(str(rate([bool(x) for x in hit])) for hit in hits.values())))
+        hits = _hits(rule, still, events)
+        shares.append(np.array([np.mean(hit) for hit in hits.values()]))
+        rows.append((name, *(str(rate(hit)) for hit in hits.values())))
     text = (
-        "## Beside other rules, at equal false alarms\n\n"
+        "### Beside other rules, at equal false alarms\n\n"
         f"Every rule has the threshold at which {100 * LEVEL:.0f} % of stable histories raise an alarm. The optimum "
-        "knows the generator's own changes and their shares; no rule finds more of their mixture.\n\n"
+        "knows the generator's own changes and their shares; no rule finds more of their mixture. Ours is a p-value, "
+        "uniform in every history by itself: it spends its false alarms alike on histories that can show something and "
+        "on those that cannot. The odds behind it have one threshold for all histories, as the optimum has.\n\n"
     )
-    both = {kind: (float(shares[0][i]), float(shares[1][i])) for i, kind in enumerate(EVENTS)}
+    both = {kind: tuple(100 * float(shares[rule][i]) for rule in (0, 2, 1)) for i, kind in enumerate(EVENTS)}
     return text + table(("rule", *EVENTS), rows), both

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.backtest.histories import DESCRIBED, KINDS, History, Plan
+from benchmarks.backtest.histories import History
 from benchmarks.backtest.units import PARAMETERS, Unit, learned, outlook, track, unit
+from benchmarks.backtest.worlds import World
 from benchmarks.study.rates import Rate, rate
 from benchmarks.study.report import table
 from estimator.health.forecast import AHEAD, RISK_LEVEL, reach
@@ -15,12 +16,10 @@ from estimator.health.prognosis import prognosis
 
 LONGEST = 1.0
 """Years; the longest interval of the unit type."""
-FLEET = ("stable",) * 14 + KINDS[1:]
-"""Twenty units: of six, one parameter does something."""
-DATED = Plan(sessions=(6, 14), since=2)
-"""Steps and late ramps begin two sessions back or more."""
-SESSIONS = {"2 to 3": (2, 3), "4 to 5": (4, 5), "6 to 7": (6, 7), "8 to 16": (8, 16)}
-"""Of the units whose due date is looked at."""
+DATED = (6, 14)
+"""Sessions of units whose stated dates are looked at; what changes begins two sessions back or more."""
+SIZED = (4, 5)
+"""Sessions of units in types of many sizes."""
 SIZES = (1, 5, 20, 200)
 """Units of a type."""
 
@@ -42,14 +41,16 @@ class Reached:
     kind: str
     early: float
     passed: float
+    is_found: bool
+    """Whether a change was found in it."""
 
 
-def dues(types: int, rng: np.random.Generator) -> list[Due]:
+def dues(world: World, types: int, rng: np.random.Generator) -> list[Due]:
     """Of types of twenty units, so many for every number of sessions; units that are out already are left out."""
     rows = []
-    for name, sessions in SESSIONS.items():
+    for name, sessions in world.sessions.items():
         for _ in range(types):
-            rows += _dues_of(name, [unit(kind, Plan(sessions=sessions), rng) for kind in FLEET])
+            rows += _dues_of(name, [unit(world, kind, world.planned(sessions), rng) for kind in world.fleet])
     return rows
 
 
@@ -63,19 +64,19 @@ def due_of(one: Unit, prior: Prior) -> float:
     return min(float(reach(outlook(one, prior).risk[None], RISK_LEVEL)[0]), LONGEST)
 
 
-def dates_reached(types: int, rng: np.random.Generator) -> list[Reached]:
-    """Of types of 21 units in which all kinds are alike."""
-    found = []
+def dates_reached(world: World, types: int, rng: np.random.Generator) -> list[Reached]:
+    """Of types in which all kinds are alike, three units of each."""
+    found, plan = list[Reached](), world.planned(DATED, since=2)
     for _ in range(types):
-        units = [unit(kind, DATED, rng) for kind in KINDS * 3]
+        units = [unit(world, kind, plan, rng) for kind in world.kinds * 3]
         prior = learned(units)
         found += [_reached(one.kind, one.parameters[0], prior) for one in units if one.parameters[0].passed > 0]
     return found
 
 
 def _reached(kind: str, one: History, prior: Prior) -> Reached:
-    early = prognosis([track(one)], [prior], np.zeros(1)).outlooks[0].reach_90
-    return Reached(kind, early, one.passed)
+    found = prognosis([track(one)], [prior], np.zeros(1)).outlooks[0]
+    return Reached(kind, found.reach_90, one.passed, bool(found.changes))
 
 
 def before(found: Sequence[Reached]) -> Rate:
@@ -84,34 +85,37 @@ def before(found: Sequence[Reached]) -> Rate:
     return rate([one.passed < one.early for one in found if one.early < horizon])
 
 
-def sizes_page(types: int, rng: np.random.Generator, sizes: Sequence[int]) -> str:
-    """Markdown: a stable unit with four to five sessions, in types of many sizes."""
+def sizes_page(world: World, types: int, rng: np.random.Generator, sizes: Sequence[int]) -> str:
+    """Markdown: a stable unit with few sessions, in types of many sizes."""
     rows = []
     for size in sizes:
         days = []
         for _ in range(types if size < max(SIZES) else 1):
-            plan = Plan(sessions=SESSIONS["4 to 5"])
-            units = [unit(kind, plan, rng) for kind in (FLEET * 10)[:size]]
+            units = [unit(world, kind, world.planned(SIZED), rng) for kind in (world.fleet * 10)[:size]]
             prior = learned(units)
-            days += [365 * due_of(one, prior) for one in units[:10] if one.kind == "stable"]
+            days += [365 * due_of(one, prior) for one in units[:10] if one.kind == world.still]
         low, middle, high = np.percentile(days, (10, 50, 90))
         rows.append((size, len(days), f"{low:.0f}", f"{middle:.0f}", f"{high:.0f}"))
-    head = ("units of the type", "stable units", "days to due: 10 %", "median", "90 %")
-    return "## What a type of few units costs\n\nUnits with four to five sessions.\n\n" + table(head, rows)
+    head = ("units of the type", f"{world.still} units", "days to due: 10 %", "median", "90 %")
+    return "### What a type of few units costs\n\nUnits with four to five sessions.\n\n" + table(head, rows)
 
 
-def due_page(found: Sequence[Due]) -> str:
+def due_page(world: World, found: Sequence[Due]) -> str:
     """Markdown: when units come back."""
     rows = []
-    for name in SESSIONS:
+    for name in world.sessions:
         own = [one for one in found if one.known == name]
-        days = [365 * one.due for one in own if one.kind == "stable"]
+        days = [365 * one.due for one in own if one.kind == world.still]
         rows.append((name, f"{np.median(days):.0f}", str(rate([one.passed < one.due for one in own]))))
-    head = ("sessions", "days to due, stable units, median", "passed before due, all units")
-    kinds = [(kind, DESCRIBED[kind], str(rate([o.passed < o.due for o in found if o.kind == kind]))) for kind in KINDS]
+    head = ("sessions", f"days to due, {world.still} units, median", "passed before due, all units")
+    kinds = [
+        (kind, text, str(rate([one.passed < one.due for one in found if one.kind == kind])))
+        for kind, text in world.described.items()
+    ]
     return (
-        "## When units come back\n\n"
-        f"Types of twenty units with {PARAMETERS} parameters each; in six units one parameter does something. The "
+        "### When units come back\n\n"
+        f"Types of twenty units with {PARAMETERS} parameters each; in {len(world.kinds) - 1} units one parameter does "
+        "something. The "
         "longest interval is 365 days; at the due date 5 % may be out.\n\n"
         + table(head, rows)
         + "\n\n"
@@ -119,13 +123,16 @@ def due_page(found: Sequence[Due]) -> str:
     )
 
 
-def reached_page(found: Sequence[Reached]) -> str:
+def reached_page(world: World, found: Sequence[Reached]) -> str:
     """Markdown: whether 10 % is 10 %."""
-    rows = [("**all**", str(before(found)))]
-    rows += [(kind, str(before([one for one in found if one.kind == kind]))) for kind in KINDS]
+    seen = [one for one in found if one.is_found]
+    rows = [("**all**", str(before(found)), str(before(seen)))]
+    for kind in world.kinds:
+        of_kind = ([one for one in group if one.kind == kind] for group in (found, seen))
+        rows.append((kind, *(str(before(own)) for own in of_kind)))
     return (
-        "## Is 10 % ten percent?\n\n"
+        "### Is 10 % ten percent?\n\n"
         "How often the tolerance was passed before *reach 90*, where a date within twelve years was stated, of types "
-        "in which all kinds are alike; steps and late ramps began two sessions back or more.\n\n"
-        + table(("the parameter", "passed before reach 90"), rows)
+        "in which all kinds are alike; what changes one day did so two sessions back or more.\n\n"
+        + table(("the parameter", "passed before reach 90", "where a change was found"), rows)
     )

@@ -14,7 +14,6 @@ STEP = 0.02
 """Years between points of a truth."""
 YEARS = 20.0
 """Of a truth: the longest history and what comes after."""
-KINDS = ("stable", "step", "ramp", "late ramp", "aging", "walk", "seasonal")
 DESCRIBED = {
     "stable": "nothing moves",
     "step": "0.4 to 1.2 T, once, between two sessions or at a service that nobody recorded",

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.backtest.histories import History, Plan, dates, history
+from benchmarks.backtest.histories import History, Plan
+from benchmarks.backtest.worlds import World
 from estimator.health.pooled import Prior, learn
 from estimator.health.prognosis import Prognosis, Track, evidence, prognosis
 from estimator.session import Array
@@ -29,11 +30,11 @@ class Unit:
         return min(one.passed for one in self.parameters)
 
 
-def unit(kind: str, plan: Plan, rng: np.random.Generator) -> Unit:
+def unit(world: World, kind: str, plan: Plan, rng: np.random.Generator) -> Unit:
     """Measured once for all its parameters."""
-    time = dates(plan, rng)
-    kinds = (kind, *["stable"] * (PARAMETERS - 1))
-    return Unit(kind, tuple(history(one, time, plan, rng) for one in kinds))
+    time = world.dates(plan, rng)
+    kinds = (kind, *[world.still] * (PARAMETERS - 1))
+    return Unit(kind, tuple(world.history(one, time, plan, rng) for one in kinds))
 
 
 def track(one: History) -> Track:

@@ -2,9 +2,9 @@
 
 Null: noise of the stated covariance and the walk that half of the type's parameters do not exceed (`pooled`). Its rival
 is one change of any kind, time and size (`odds`); the p-value is the chance of odds so high where nothing happens. The
-kind is the likeliest, its time and size are those of the largest likelihood. Where noise is estimated, readings shrink
-to what the best t statistic would be with known noise, with the degrees of freedom of its own weights (Welch &
-Satterthwaite). A change that is found is taken into the base, and the next is looked for.
+kind is the likeliest, and so is its time, a priori anywhere alike; the size is that of the largest likelihood. Where
+noise is estimated, readings shrink to what the best t statistic would be with known noise, with the degrees of freedom
+of its own weights (Welch & Satterthwaite). A change that is found is taken into the base, and the next is looked for.
 
 Temperature is a regressor where sessions span it: b·(T − T̄). It is looked for first, at the walk that makes it and the
 readings together most likely, and taken in where its own p-value is small and it explains more than any change.
@@ -163,8 +163,9 @@ def most_likely(readings: Readings, walk: float, dof: Array) -> Change | None:
     shrunk = _shrunk(float(squared[best]), k, float(_freedom(null, readings, dof)[best]))
     found = odds(mixture(null, readings.time, tells), null.z[0] * shrunk)
     kind = _kind(found)
-    squared = np.where(tells & _alike(family.kind, kind), squared, -1.0)
-    best = int(np.argmax(squared >= squared.max() * (1 - 1e-9)))
+    likely = squared / 2 + np.log(np.maximum(family.share, 1e-300))
+    likely = np.where(tells & _alike(family.kind, kind), likely, -np.inf)
+    best = int(np.argmax(likely >= likely.max() - 1e-9))
     return Change(
         kind=Kind(int(family.kind[best])),
         gap=int(family.gap[best]),

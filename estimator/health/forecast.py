@@ -29,6 +29,8 @@ AHEAD = np.concatenate([[0.0], np.geomspace(0.02, 12.0, 30)])
 """(31,) years at which the chance is worked out; between them it is interpolated. Twelve years outlast any interval."""
 MEDIAN, EARLY = 0.5, 0.1
 """Chances whose dates are stated: as likely as not, and the 90 % bound."""
+WHICHEVER = 0.2
+"""Chance of reaching the tolerance before the 90 % bound of a history that turns out to drift: twice that of all."""
 RISK_LEVEL = 0.05
 """Chance of a unit being out of tolerance that its next calibration must come before."""
 DISTANCES = np.linspace(0.0, 1.0, 41)
@@ -51,7 +53,33 @@ def followed(draws: Draws, ahead: Array, rng: np.random.Generator) -> Array:
 
 
 def passage(draws: Draws, prior: Prior, swing: float, rng: np.random.Generator) -> Array:
-    """(h,) probability, never falling, that the tolerance has been reached by `AHEAD`.
+    """(h,) probability, never falling, that the tolerance has been reached by `AHEAD`; arguments are those of
+    `staying`."""
+    return passed(draws.weight, staying(draws, prior, swing, rng))
+
+
+def passed(weight: Array, stays: Array) -> Array:
+    """(h,) probability, never falling, of draws with weights (N,) that stay within with chances (N, h)."""
+    return np.asarray(np.maximum.accumulate(np.clip(1 - weight @ stays, 0.0, 1.0)))
+
+
+def earliest(draws: Draws, stays: Array) -> float:
+    """Years before which the tolerance is reached with the chance `EARLY`, and with `WHICHEVER` at most of a drift, and
+    of an aging, that the history leaves open.
+
+    Over all that a history may be, one that goes on hides behind those that do not: at a share s of it the chance
+    `EARLY` of all may be `EARLY`/s of its own. A kind with a share below `EARLY` cannot break the claim.
+    """
+    found = [float(reach(passed(draws.weight, stays)[None], EARLY)[0])]
+    for going in (draws.rate, draws.aging):
+        own = draws.weight * going.any(axis=1)
+        if own.sum() >= EARLY:
+            found.append(float(reach(passed(own / own.sum(), stays)[None], WHICHEVER)[0]))
+    return min(found)
+
+
+def staying(draws: Draws, prior: Prior, swing: float, rng: np.random.Generator) -> Array:
+    """(N, h) chance of every draw to be within the tolerance at all times up to `AHEAD`.
 
     Parameters
     ----------
@@ -62,8 +90,7 @@ def passage(draws: Draws, prior: Prior, swing: float, rng: np.random.Generator) 
     spread = draws.walk[:, None] ** 2 * np.diff(AHEAD) + 1e-12
     stays = -np.expm1(-2 * inside[:, :-1] * inside[:, 1:] / spread)
     within = np.cumprod(np.concatenate([(inside[:, :1] > 0).astype(float), stays], axis=1), axis=1)
-    chance = 1 - draws.mean(within * np.exp(-_hazard(np.minimum(length, 1.0), prior, draws.level.shape[1])))
-    return np.maximum.accumulate(np.clip(chance, 0.0, 1.0))
+    return np.asarray(within * np.exp(-_hazard(np.minimum(length, 1.0), prior, draws.level.shape[1])))
 
 
 def _hazard(length: Array, prior: Prior, k: int) -> Array:

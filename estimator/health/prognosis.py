@@ -10,7 +10,7 @@ import numpy as np
 
 from estimator.health.detection import LEVEL, Change, Detected, Warmth, detect, tells_of_temperature, warmed
 from estimator.health.fits import Readings, fits
-from estimator.health.forecast import AHEAD, EARLY, MEDIAN, Future, future, passage, reach, together
+from estimator.health.forecast import AHEAD, MEDIAN, Future, earliest, future, passed, reach, staying, together
 from estimator.health.pooled import Evidence, Prior
 from estimator.health.posterior import Draws, draw
 from estimator.health.shapes import DRIFTS, Kind, shapes
@@ -64,7 +64,7 @@ class Outlook:
     reach_50: float
     """Years after the last session; infinite beyond the horizon."""
     reach_90: float
-    """Before it the tolerance is reached with 10 % probability."""
+    """Before it the tolerance is reached with 10 % probability, and with 20 % at most if what is there is a drift."""
     is_known: bool
     """Whether the level is known well enough for the forecast to mean anything."""
     direction: Array
@@ -149,7 +149,8 @@ def _outlook(track: Track, prior: Prior, ahead: Array, of: tuple[int, float]) ->
     detected = detect(_readings(track), prior.usual_walk, *_conditions(track), level)
     family = shapes(detected.readings.time)
     draws = draw(detected.readings, family, prior, rng)
-    chance = passage(draws, prior, _swing(detected.warmth, track), rng)
+    stays = staying(draws, prior, _swing(detected.warmth, track), rng)
+    chance = passed(draws.weight, stays)
     way = direction(track)
     middle, sigma = _moments(draws, way)
     rate, rate_sigma = _rate(detected, draws, prior, way)
@@ -164,7 +165,7 @@ def _outlook(track: Track, prior: Prior, ahead: Array, of: tuple[int, float]) ->
         warmth=detected.warmth,
         chance=chance,
         reach_50=float(reach(chance[None], MEDIAN)[0]),
-        reach_90=float(reach(chance[None], EARLY)[0]),
+        reach_90=earliest(draws, stays),
         is_known=sigma < KNOWN,
         direction=way,
         fan=future(draws, prior, ahead, rng),

@@ -150,7 +150,7 @@ def _alikeness(found: Seating) -> float:
     """ν, from units that are all taken to be seated alike on a stand."""
     sums = _sums(found)[0]
     dof = freedoms(found)
-    some = (dof >= 1) & (sums.square > 0)
+    some = (dof >= 1) & (sums.square > 0) & (sums.trace > 0)
     if some.sum() < FEWEST_CELLS:
         return LEAST_ALIKE
     half = dof[some] / 2

@@ -2,12 +2,14 @@
 
 Times t_0 < … < t_{n−1} of the sessions in years since the first, one column a hypothesis, per unit of its size:
 
-    jump at the gap before session k       1[t ≥ t_k]                        k = 1 … n−1
+    jump at the gap before session k       1[t ≥ t_k]                               k = 1 … n−1
     drift from the start                   t
-    drift that began in the gap before k   max(t − (t_{k−1} + t_k)/2, 0)     k = 1 … n−1
-    aging                                  ln(1 + t/τ)/ln(1 + 1/τ)           τ of `AGES`
+    drift that began in the gap before k   max(t − t_{k−1} − u(t_k − t_{k−1}), 0)   k = 1 … n−1, u of `BEGINS`
+    aging                                  ln(1 + t/τ)/ln(1 + 1/τ)                  τ of `AGES`
 
-A drift may begin anywhere within its gap; the middle is wrong by half a gap at most. Aging is fast at first and slows
+A drift begins anywhere within its gap, each time alike, so its likelihood is the mean over u. With m nodes u is wrong
+by 1/2m of a gap d at most, the course by r·d/2m: of a young drift that has to stay below a session's own uncertainty,
+or a walk, which fits anything, takes the drift's place and its rate is not carried on. Aging is fast at first and slows
 down as stresses relax and volatiles leave (logarithmic, as of quartz and electronics; Primak 1955); its unit is the
 change of the first year.
 """
@@ -21,6 +23,9 @@ from estimator.session import Array
 
 AGES = (0.03, 0.3, 1.0)
 """τ, years: from days, as after an assembly, to a year."""
+BEGINS = (0.125, 0.375, 0.625, 0.875)
+"""u, parts of a gap: the middles of quarters. At half a tolerance a year and half a year between sessions a drift is
+then wrong by 0.03 T at most, as much as a good session is uncertain of."""
 BARELY = 1e-9
 """Years; sessions nearer than that are of one date, and nothing begins between them."""
 
@@ -64,17 +69,17 @@ def shapes(time: Array) -> Shapes:
     gap = np.diff(time)
     places = 1 + np.flatnonzero(gap > BARELY)
     among = gap[places - 1] / max(gap[places - 1].sum(), BARELY)
-    middle = (time[places - 1] + time[places]) / 2
+    begins = (time[places - 1][:, None] + gap[places - 1][:, None] * np.array(BEGINS)).ravel()
     jumps = (time[:, None] >= time[places]).astype(float)
-    late = np.maximum(time[:, None] - middle, 0.0)
+    late = np.maximum(time[:, None] - begins, 0.0)
     aging = np.stack([course(time, age) for age in AGES], axis=1)
-    m, a = len(places), len(AGES)
+    m, a, b = len(places), len(AGES), len(BEGINS)
     return Shapes(
         columns=np.concatenate([jumps, late, time[:, None], aging], axis=1),
-        kind=np.repeat([Kind.JUMP, Kind.LATE, Kind.START, Kind.AGING], [m, m, 1, a]),
-        gap=np.concatenate([places, places, np.zeros(1 + a, dtype=int)]),
-        share=np.concatenate([among, among, [1.0], np.full(a, 1 / a)]),
-        constant=np.concatenate([np.ones(2 * m + 1), AGES]),
+        kind=np.repeat([Kind.JUMP, Kind.LATE, Kind.START, Kind.AGING], [m, b * m, 1, a]),
+        gap=np.concatenate([places, np.repeat(places, b), np.zeros(1 + a, dtype=int)]),
+        share=np.concatenate([among, np.repeat(among, b) / b, [1.0], np.full(a, 1 / a)]),
+        constant=np.concatenate([np.ones((1 + b) * m + 1), AGES]),
     )
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy import stats
+from scipy.special import logsumexp
 
 from estimator.health.fits import PARTS, WALKS, Readings, fits
 from estimator.health.shapes import Kind, shapes
@@ -53,3 +54,20 @@ def test_the_last_level_is_that_of_the_joint_distribution(q: float) -> None:
     gain = prior @ np.linalg.inv(prior + np.diag(of.sigma[:, 0] ** 2))
     assert found.gain[0, 0] @ of.value[:, 0] == pytest.approx((gain @ of.value[:, 0])[-1], abs=1e-4)
     assert found.variance[0, 0] == pytest.approx((prior - gain @ prior)[-1, -1], rel=1e-3)
+
+
+def test_a_drift_begins_anywhere_within_its_gap() -> None:
+    """The mean over its beginnings on a fine grid; the middle of the gap alone has e^−9 of it."""
+    t = np.array([0.0, 0.5, 1.0, 1.5, 2.0])
+    one = readings(measured(np.random.default_rng(1), t, 0.8 * np.maximum(t - 1.45, 0.0), 0.03))
+    family = shapes(t)
+    part = next(p for p, (kind, size) in enumerate(PARTS) if kind is Kind.LATE and size == 0.9)
+    own = fits(one, family, np.zeros(1)).log_ratios(part)[0][family.gap[family.kind == Kind.LATE] == 3]
+
+    def likelihood(onset: float, size: float = 0.9) -> float:
+        of = stats.multivariate_normal(np.zeros(5), joint(one, 0.0, np.maximum(t - onset, 0.0), size))
+        return float(of.logpdf(one.value[:, 0]))
+
+    exact = logsumexp([likelihood(onset) for onset in np.linspace(1.0, 1.5, 101)]) - np.log(101) - likelihood(9.0)
+    assert logsumexp(own) - np.log(len(own)) == pytest.approx(exact, abs=1.0)
+    assert likelihood(1.25) - likelihood(9.0) < exact - 9
