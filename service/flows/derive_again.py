@@ -25,7 +25,7 @@ from service.judging.calibrate import Comparison
 from service.judging.epochs import Place, needs_judging, placed
 from service.judging.judge import judge, judge_recording
 from service.judging.parameter_values import parameter_values
-from service.records.decision import Judged
+from service.records.decision import Judged, Opening
 from service.records.derivation import Counted
 from service.records.session import StoredSession
 from service.storage import Files
@@ -145,8 +145,8 @@ def _calibration(store: Store, way: Deriving, session: StoredSession, place: Pla
     """By the tolerances that held when it was computed."""
     against = None if place.is_reference or place.reference is None else known.get(place.reference.id)
     unit_type = store.unit_types.of_unit_at(session.unit, store.derivations.computed_at(session.id))
-    after_service = place.since is not None
-    return judge(known.get(session.id), against, unit_type, way.coverage_factor, after_service=after_service)
+    opening = Opening.CHOSEN if place.is_chosen else Opening.SERVICE if place.since is not None else Opening.FIRST
+    return judge(known.get(session.id), against, unit_type, way.coverage_factor, opening=opening)
 
 
 def _recording(store: Store, way: Deriving, session: StoredSession, place: Place, known: _Known) -> Judged:

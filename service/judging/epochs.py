@@ -27,6 +27,8 @@ class Place:
     """That it is judged against; itself where it is the reference, None where the epoch has none."""
     since: datetime | None
     """When its epoch began; None in the unit's first one."""
+    is_chosen: bool = False
+    """Whether an engineer ever chose it for the reference."""
 
     @property
     def is_reference(self) -> bool:
@@ -38,7 +40,8 @@ class Place:
         """Everything that its verdict rests on: where this is another one, it is judged again."""
         own, known = self.session, self.reference
         against = "-" if known is None else f"{known.id}@{known.revision}"
-        return f"{against} {own.revision} {'-' if self.since is None else self.since.isoformat()}"
+        chosen = " chosen" if self.is_chosen and self.is_reference else ""
+        return f"{against} {own.revision} {'-' if self.since is None else self.since.isoformat()}{chosen}"
 
 
 def placed(
@@ -59,7 +62,7 @@ def placed(
     rank = {id: number for number, id in enumerate(chosen)}
     references = {group: _reference(own, rank, is_blind) for group, own in groups.items()}
     return tuple(
-        Place(one, references.get(_group(one, breaks)), _since(one.at, breaks))
+        Place(one, references.get(_group(one, breaks)), _since(one.at, breaks), one.id in rank)
         for one in sorted(sessions, key=lambda s: (s.at, s.id))
     )
 

@@ -11,7 +11,7 @@ from estimator.health.rule import RULE
 from estimator.results import Calibration
 from service.judging.calibrate import Comparison
 from service.judging.tolerances import tolerances_of
-from service.records.decision import Decision, Judged, Verdict
+from service.records.decision import Decision, Judged, Opening, Verdict
 from service.records.unit import UnitType
 from service.words.advice import too_few
 from service.words.in_service import reason as recording_in_words
@@ -24,7 +24,7 @@ def judge(
     unit_type: UnitType,
     coverage_factor: float,
     *,
-    after_service: bool = False,
+    opening: Opening = Opening.FIRST,
 ) -> Judged:
     """Every parameter judged, and the session by its worst.
 
@@ -39,7 +39,7 @@ def judge(
     return Judged(
         calibration=calibration,
         decisions=decisions,
-        reason=first_in_words(calibration, after_service=after_service) if first else reason(decisions, blind),
+        reason=first_in_words(calibration, opening) if first else reason(decisions, blind),
         is_reference=first,
         motions=tuple(split.motion for split in splits),
     )

@@ -24,6 +24,16 @@ class Verdict(StrEnum):
         return list(Verdict).index(self)
 
 
+class Opening(StrEnum):
+    """How a session came to be a reference."""
+
+    FIRST = "first"
+    SERVICE = "service"
+    """The first after one."""
+    CHOSEN = "chosen"
+    """By an engineer."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Decision(Judgement):
     """The estimator's judgement of one parameter, with the rule it rests on: all that the store and the API keep."""

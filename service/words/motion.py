@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from estimator.health.common_motion import AXES, SEPARATED, UNCLEAR, CommonMotion
 from estimator.wording import few
-from service.measures import deviation_measure, measured, number, signed
+from service.measures import COARSE_MEASURES, DEGREE, Measure, deviation_measure, measured, number, signed
 
 SIGNIFICANT = 0.01
 """Chance of saying so of a block that did not move."""
@@ -44,7 +44,7 @@ def _line(motion: CommonMotion, coverage: float, whose: str) -> MotionLine | Non
 
 def _together(motion: CommonMotion, coverage: float, whose: str) -> str:
     if motion.quantity == AXES:
-        size = measured(motion.size, coverage * motion.sigma, deviation_measure(motion.kind, "axis", motion.size))
+        size = measured(motion.size, coverage * motion.sigma, _turn_measure(motion))
         return (
             f"The whole block{whose} turned by {size} about {_about(motion)} since the reference: "
             f"it sits otherwise, or the stand has turned. {JUDGED}"
@@ -52,6 +52,13 @@ def _together(motion: CommonMotion, coverage: float, whose: str) -> str:
     size = signed(motion.size, coverage * motion.sigma, deviation_measure(motion.kind, "scale", motion.size))
     cause = "gravity or the stand's elevation" if motion.kind == "accelerometer" else "the stand or its clock"
     return f"All scale factors{whose} changed together by {size} since the reference: that is of {cause}. {JUDGED}"
+
+
+def _turn_measure(motion: CommonMotion) -> Measure:
+    """Of a block that was mounted otherwise, degrees."""
+    if motion.size >= DEGREE:
+        return COARSE_MEASURES[motion.kind, "axis"]
+    return deviation_measure(motion.kind, "axis", motion.size)
 
 
 def _about(motion: CommonMotion) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from estimator.results import Calibration
 from service.measures import in_words
-from service.records.decision import Decision, Verdict, worst_of
+from service.records.decision import Decision, Opening, Verdict, worst_of
 from service.records.reservation import Doubt, Reservation, Reservations
 from service.records.unit import UnitSummary
 from service.words.advice import left_open
@@ -14,6 +14,8 @@ from service.words.reservation import LOOKING
 
 FIRST_SESSION = "First session of this unit: it is now the reference that later sessions are judged against."
 NEW_EPOCH = "First session after a service: it is now the reference that later sessions are judged against."
+CHOSEN = "Chosen as the reference: the unit's other sessions are judged against it."
+OPENINGS = {Opening.FIRST: FIRST_SESSION, Opening.SERVICE: NEW_EPOCH, Opening.CHOSEN: CHOSEN}
 STILL_LOOKING = f"; {LOOKING}"
 MOST_TOLD = 2
 """Reservations that a verdict is said with before the rest are counted: more are no longer read in one breath."""
@@ -50,9 +52,9 @@ def _advice(told: Sequence[Reservation]) -> tuple[str, ...]:
     return tuple(one for one in advice if not any(one in other for other in advice if other != one))
 
 
-def first_in_words(calibration: Calibration, *, after_service: bool) -> str:
+def first_in_words(calibration: Calibration, opening: Opening) -> str:
     """That a session is the reference, and what of the unit it leaves open."""
-    return " ".join(filter(None, (NEW_EPOCH if after_service else FIRST_SESSION, left_open(calibration))))
+    return " ".join(filter(None, (OPENINGS[opening], left_open(calibration))))
 
 
 def reason(decisions: tuple[Decision, ...], blind: str = "") -> str:
