@@ -12,6 +12,7 @@ from service.ingest.checked import Checked
 from service.records.doubt import Doubt
 from service.records.session import StoredSession
 from service.storage.store import Store
+from service.words.names import day_of
 
 FIRST_CLOCK = datetime(1980, 1, 7, tzinfo=UTC)
 """Clocks that lost their time start in 1970, or in 1980 with GPS; there was no session file then."""
@@ -24,7 +25,7 @@ LOST = "the clock had lost its time; put the date of the measurement into the fi
 
 def of_date(store: Store, new: Checked, but: Collection[str]) -> Iterator[Doubt]:
     """A doubt for a date before the unit existed; ``but`` are sessions that say nothing of that."""
-    at, day = new.measured_at, f"{new.measured_at:%Y-%m-%d}"
+    at, day = new.measured_at, day_of(new.measured_at)
     if at < FIRST_CLOCK or MILLENNIUM <= at < MILLENNIUM + RUNNING:
         yield Doubt(f"It is dated {day}", LOST)
         return
@@ -43,11 +44,16 @@ def of_moment(store: Store, new: Checked, but: Collection[str]) -> Iterator[Doub
     for rival in store.sessions.at_moment(unit, session.block, session.programme, new.measured_at):
         if rival.id not in but and not _are_apart(store, rival, new):
             yield Doubt(
-                f"The session of {rival.filename} was measured at the same moment, {new.measured_at:%Y-%m-%d %H:%M:%S}",
+                f"The session of {rival.filename} was measured at the same moment, {_moment(new.measured_at)}",
                 "this file corrects that one or is a copy of it, or one of both has a wrong time",
                 stands_for=rival.id,
             )
             return
+
+
+def _moment(at: datetime) -> str:
+    """``1 May 2026, 09:00:00 UTC``."""
+    return f"{day_of(at)}, {at:%H:%M:%S} UTC"
 
 
 def _are_apart(store: Store, rival: StoredSession, new: Checked) -> bool:

@@ -11,8 +11,9 @@ from service.records.diagnosis import DiagnosisSummary
 from service.records.received import SentFile
 from service.records.reservation import Reservations
 from service.records.session import Receipt, StoredSession
+from service.records.state import RecordState
 from service.settings import Settings
-from service.words.conditions import Condition, condition_of
+from service.words.conditions import QUESTIONED, Condition, condition_of
 
 
 @dataclass(frozen=True)
@@ -36,12 +37,16 @@ class Outcome:
         """Of the stored session; a refused file has none."""
         if self.receipt is None:
             return condition_of(None)
+        if self.receipt.state is RecordState.QUESTIONED:
+            return QUESTIONED
         return condition_of(self.receipt.verdict, is_reference=self.receipt.is_reference)
 
     @property
     def reservations(self) -> Reservations:
         """What the verdict is said with."""
-        return () if self.receipt is None else self.receipt.reservations
+        if self.receipt is None or self.receipt.state is RecordState.QUESTIONED:
+            return ()
+        return self.receipt.reservations
 
 
 @dataclass(frozen=True)

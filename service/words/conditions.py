@@ -48,6 +48,13 @@ REFERENCE = Condition(
     "The session that later ones are judged against; there was nothing to judge it by.",
 )  # fmt: skip
 NOT_MEASURED = Condition("none", "Not measured", "no session", "stroke", "No session has been uploaded yet.")
+QUESTIONED = Condition(
+    "none",
+    "Questioned",
+    "questioned",
+    "stroke",
+    "It cannot be as its file says, and counts once an engineer accepts it.",
+)
 NOT_JUDGED = Condition("none", "Not judged", "not judged", "circle", "No tolerance or no reference is set.")
 
 CONDITIONS = (UNFIT, PROBABLY_UNFIT, UNDECIDED, PROBABLY_FIT, FIT)

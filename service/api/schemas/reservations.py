@@ -6,7 +6,7 @@ from pydantic import BaseModel, ConfigDict, Field, computed_field, field_validat
 
 from service.records.decision import Verdict
 from service.records.reservation import Doubt, Reservation
-from service.words.conditions import condition_of
+from service.words.conditions import QUESTIONED, condition_of
 from service.words.reservation import AGAIN, LOOKING
 from service.words.verdict import verdict_in_words
 
@@ -52,10 +52,16 @@ class SaidVerdict(BaseModel):
     def _told(cls, known: Any) -> Any:
         return (STILL_LOOKING,) if known is None else known
 
+    def _is_questioned(self) -> bool:
+        """Whether it tells nothing until an engineer accepts it."""
+        return False
+
     @computed_field(description="The verdict in words, in one breath with its reservations.")  # type: ignore[prop-decorator]
     @property
     def said(self) -> str:
         """Made of the other fields."""
+        if self._is_questioned():
+            return QUESTIONED.word
         known = tuple(Reservation(r.kind, r.text, r.advice) for r in self.reservations)
         plain = None if Doubt.PENDING in (one.kind for one in known) else known
         return verdict_in_words(condition_of(self.verdict, is_reference=self.is_reference), plain)

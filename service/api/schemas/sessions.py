@@ -41,6 +41,9 @@ class ReceiptSchema(SaidVerdict):
     state: RecordState = Field(description="`questioned` where the file cannot be as it says; then it tells nothing.")
     url: str = Field(description="Where the session can be read.")
 
+    def _is_questioned(self) -> bool:
+        return self.state is RecordState.QUESTIONED
+
 
 class SessionSchema(SaidVerdict):
     """One stored session."""
@@ -66,6 +69,9 @@ class SessionSchema(SaidVerdict):
     stage: str | None = Field(description="`as-found`, `as-left`, or null where neither was said.")
     state: RecordState = Field(description="Only an accepted session tells of its unit.")
     superseded_by: str | None = Field(description="The session that stands for a superseded one.")
+
+    def _is_questioned(self) -> bool:
+        return self.state is RecordState.QUESTIONED
 
 
 class DecisionSchema(BaseModel):

@@ -17,7 +17,7 @@ from tests.service.sessions import session_bytes
 
 UNIT = "BA-017"
 FIRST, WRONG, RIGHT = session_bytes(), session_bytes(seed=2, month=5, a3_moved=300.0), session_bytes(seed=2, month=5)
-ASKED = "The session of wrong.json was measured at the same moment, 2026-05-01 09:00:00"
+ASKED = "The session of wrong.json was measured at the same moment, 1 May 2026, 09:00:00 UTC"
 
 
 def sent(storage: Storage, content: bytes, filename: str = "a.json") -> Receipt:

@@ -23,6 +23,8 @@ def test_a_questioned_session_waits_on_the_fleet_page_and_says_what_it_is(client
     assert "Questioned</h1>" in page
     assert "readings of A1–A6 × 0.001" in page
     assert "Undecided</h1>" not in page
+    assert client.get(f"/api/v1/sessions/{id}").json()["said"] == "Questioned"
+    assert "Undecided" not in client.get(f"/sessions/{id}/outcome").text
 
 
 def test_one_button_stores_the_corrected_file_in_its_place(client: httpx.Client) -> None:
