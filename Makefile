@@ -51,7 +51,7 @@ study: setup
 	$(BIN)/python -m benchmarks.study.groups --groups 40 --seed 2
 
 backtest: setup
-	$(BIN)/python -m benchmarks.backtest
+	$(BIN)/python -m benchmarks.backtest --seed 3
 
 stands: setup
 	$(BIN)/python -m benchmarks.stands

@@ -25,7 +25,7 @@ SHOCKS = 6.0
 HEATED = 1 / 3
 """Of the year in which the laboratory is kept warm; without heating it follows the weather."""
 DESCRIBED = {
-    "still": "nothing moves but 0.02 T to and fro",
+    "still": "nothing moves",
     "shock": "log-normal about 0.5 T, once, at a time of exponential law",
     "shock and back": "the same, and within two years the same back again",
     "creep": "log-normal about 0.3 T a year from the start",
@@ -92,6 +92,4 @@ def _course(kind: str, days: Array, of: tuple[float, Array], rng: np.random.Gene
     if kind == "small shocks":
         each = rng.uniform(0.1, 0.4) / np.sqrt(2 * SHOCKS)
         return np.cumsum(rng.laplace(0.0, each, len(days)) * (rng.uniform(size=len(days)) < SHOCKS * STEP))
-    if kind == "unheated":
-        return sign * rng.uniform(0.02, 0.06) * warmth
-    return 0.02 * np.sin(2 * np.pi * (days / rng.uniform(0.3, 3.0) + rng.uniform()))
+    return sign * rng.uniform(0.02, 0.06) * warmth if kind == "unheated" else np.zeros_like(days)
