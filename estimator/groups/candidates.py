@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from estimator.causes.catalogue import CATALOGUE
-from estimator.causes.contract import CommonCause, SensorCause, Setting, Signature
+from estimator.causes.contract import Cause, CommonCause, SensorCause, Setting, Signature
 from estimator.causes.stand import harmonic
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.groups.statistics import HARMONIC, Block
@@ -43,18 +43,23 @@ def lasts(cause: Signature) -> bool:
 
 def columns_of(baseline: Baseline) -> Iterator[tuple[Block, Array]]:
     """Every candidate of a session with its columns (R, m, q), m/s² (rad/s) per unit amplitude."""
-    setting = baseline.setting
-    names = tuple(s.name for s in baseline.session.sensors)
-    nominal = np.stack([s.nominal_axis for s in baseline.session.sensors])
-    framed = replace(setting, parameters=replace(setting.parameters, axis=nominal))
     for cause in lasting_causes():
-        if not cause.available(setting):
-            continue
-        if isinstance(cause, SensorCause):
-            yield from _of_sensors(cause, framed if cause.identifier in TANGENTIAL else setting, names)
-        elif isinstance(cause, CommonCause):
-            yield Block(cause.identifier, "", "", None, len(cause.units)), setting.through(cause.change(setting))
-    yield from _harmonics(setting, names)
+        yield from candidates_of(baseline, cause)
+    yield from _harmonics(baseline.setting, tuple(s.name for s in baseline.session.sensors))
+
+
+def candidates_of(baseline: Baseline, cause: Cause) -> Iterator[tuple[Block, Array]]:
+    """The same of one cause; nothing where the session does not provide what it needs."""
+    setting = baseline.setting
+    if not cause.available(setting):
+        return
+    if isinstance(cause, SensorCause):
+        nominal = np.stack([s.nominal_axis for s in baseline.session.sensors])
+        framed = replace(setting, parameters=replace(setting.parameters, axis=nominal))
+        names = tuple(s.name for s in baseline.session.sensors)
+        yield from _of_sensors(cause, framed if cause.identifier in TANGENTIAL else setting, names)
+    elif isinstance(cause, CommonCause):
+        yield Block(cause.identifier, "", "", None, len(cause.units)), setting.through(cause.change(setting))
 
 
 def _of_sensors(cause: SensorCause, setting: Setting, names: tuple[str, ...]) -> Iterator[tuple[Block, Array]]:

@@ -111,7 +111,7 @@ def merged(found: Sequence[GroupFinding]) -> list[GroupFinding]:
     kept: dict[tuple[object, ...], GroupFinding] = {}
     for f in found:
         dates = tuple((s.started_at, s.unit) for s in f.sessions)
-        key = (f.cause, f.level, f.subject, f.form, f.since, f.shape, dates, not f.sensors)
+        key = (f.cause, f.level, f.subject, f.kind, f.form, f.since, f.shape, dates)
         kept[key] = f if key not in kept else joined(kept[key], f)
     return list(kept.values())
 

@@ -74,6 +74,7 @@ def finding_of(selection: Selection, one: Told, measurements: Sequence[tuple[str
         level=h.level,
         subject=h.subject,
         sensors=sensors,
+        kind=h.kind,
         amplitude=tuple(one.mean.value.tolist()),
         sigma=tuple(s if s > 0 else None for s in one.mean.sigma.tolist()),
         units=known.units,

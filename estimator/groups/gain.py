@@ -10,9 +10,8 @@ import numpy as np
 from estimator.calibration.calibrate import averaged
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.groups.candidates import columns_of
 from estimator.groups.evidence import VARYING
-from estimator.groups.layout import EVERY
+from estimator.groups.fixed import added_by, fixed
 from estimator.groups.pool import Model, columns_in, extended, joint_columns
 from estimator.groups.results import GroupFinding, GroupGain, Moved
 from estimator.groups.scores import inverse
@@ -75,16 +74,11 @@ def moved(findings: Sequence[GroupFinding], session: CalibrationSession) -> tupl
     """How far the calibration of a session moves when the findings are modelled, what moves most first."""
     baseline = baseline_of(averaged(session))
     residuals, names = WhitenedResiduals.of(baseline), [s.name for s in session.sensors]
-    effect = np.zeros(baseline.residual.shape)
     subjects = (session.unit, session.unit_type, session.stand.id if session.stand else "")
-    for b, columns in columns_of(baseline):
-        for f in findings:
-            places = f.sensors or ("",)
-            if f.subject not in subjects or (f.cause, f.shape) != (b.cause, b.shape):
-                continue
-            for k, place in enumerate(places):
-                if place in (b.sensor, EVERY) and bool(place) == bool(b.sensor):
-                    effect += columns @ np.array(f.amplitude[k * b.width : (k + 1) * b.width])
+    added = added_by(baseline, [fixed(f) for f in findings if f.subject in subjects], ())
+    if added is None:
+        return ()
+    effect = added.columns @ added.amplitude
     change = -(residuals.response @ residuals.whitened(effect[..., None])[:, 0])
     sigma = np.sqrt(np.diagonal(baseline.covariance))
     factors = baseline.parameters.si_factors(baseline.setting.norm)

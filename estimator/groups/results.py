@@ -47,6 +47,8 @@ class GroupFinding:
     """Serial of the unit, name of the type, id of the stand."""
     sensors: tuple[str, ...]
     """``*`` for every sensor of a kind; none for a cause of stand or fixture."""
+    kind: str
+    """Of the sensors; empty without any."""
     amplitude: tuple[float, ...]
     sigma: tuple[float | None, ...]
     """None of an amplitude that the pool does not see."""
