@@ -7,9 +7,10 @@ from fastapi import APIRouter, Query
 from service.admission import PersonOf
 from service.api.schemas.fields import Number, Text, WindowOf
 from service.api.schemas.flags import Handling
-from service.api.schemas.models import ModelPage, ModelSchema
+from service.api.schemas.models import ModelAndRecomputations, ModelPage, ModelSchema
 from service.api.schemas.problem import errors
-from service.dependencies import Now, Reading, StorageOf
+from service.dependencies import Now, Reading, ReceptionOf
+from service.flows.recompute import recompute_beside
 from service.flows.withdraw_model import withdraw_model
 from service.records.model import Scope
 from service.storage.queries.models import ModelQuery
@@ -18,9 +19,19 @@ router = APIRouter(prefix="/models", tags=["models"])
 
 
 @router.post("/{id}/withdraw", status_code=201, responses=errors(400, 404, 409, 422))
-def withdraw_cause(id: Number, handling: Handling, storage: StorageOf, now: Now, person: PersonOf) -> ModelSchema:
-    """Take an accepted cause out of the model: a revision of its own; sessions from now on are calibrated without."""
-    return ModelSchema.model_validate(withdraw_model(storage, id, person.signs(handling.by), handling.why, now))
+def withdraw_cause(id: Number, handling: Handling, reception: ReceptionOf, now: Now, person: PersonOf) -> ModelSchema:
+    """Take an accepted cause out of the model: a revision of its own; sessions from now on are calibrated without.
+    What a group of sessions showed goes out of the stored ones too."""
+    made = withdraw_model(reception.storage, id, person.signs(handling.by), handling.why, now)
+    recompute_beside(reception, now)
+    return ModelSchema.model_validate(made)
+
+
+@router.get("/{id}", responses=errors(404, 422))
+def read_model(id: Number, store: Reading) -> ModelAndRecomputations:
+    """One revision, with what it moved in the sessions that it concerns."""
+    own = {**vars(store.models.get(id)), "recomputations": store.recomputations.of(id)}
+    return ModelAndRecomputations.model_validate(own, from_attributes=True)
 
 
 @router.get("", responses=errors(422))

@@ -1,4 +1,4 @@
-"""Work beside the requests: what a process that makes diagnoses and outlooks does, one after another."""
+"""Work beside the requests: what a process of its own makes, one after another."""
 
 from threading import Event
 
@@ -6,6 +6,7 @@ from service.background.diagnose_waiting import WORK, Diagnosing, diagnose_next
 from service.background.guard import Guard
 from service.background.helper import Helper
 from service.background.pool_waiting import pool_next
+from service.background.recompute_waiting import recompute_next
 from service.background.refresh_waiting import refresh_next
 
 LOOK_EVERY = 1.0
@@ -30,7 +31,8 @@ def work_beside(own: Diagnosing, stop: Event) -> None:
 
 
 def _work(own: Diagnosing, helper: Helper, stop: Event) -> bool:
-    """A diagnosis and an outlook, so that neither waits for all of the other; whether there was any. A group waits for
-    both: every diagnosis changes what it rests on."""
+    """A diagnosis, an outlook and a unit under another model, so that none waits for all of the others; whether there
+    was any. A group waits for all: every diagnosis changes what it rests on."""
     refreshed = refresh_next(own, helper, stop)
-    return diagnose_next(own, helper, stop) or refreshed or pool_next(own, helper, stop)
+    recomputed = recompute_next(own, helper, stop)
+    return diagnose_next(own, helper, stop) or refreshed or recomputed or pool_next(own, helper, stop)

@@ -114,9 +114,12 @@ BATCH = 500
 
 
 def ask_for_missing(storage: Storage, clock: Callable[[], datetime], metrics: Metrics, bell: Bell, stop: Event) -> None:
-    """At the start: asks for the diagnosis of every session that has none, or on which an older version failed."""
+    """At the start: asks for the diagnosis of every session that has none, or on which an older version failed; what
+    was given up of units' outlooks is tried again."""
     last = ""
     with Guard(metrics).alone(WORK, ""):
+        with storage.database.writing() as store:
+            store.pending_outlooks.try_again()
         while not stop.is_set():
             with storage.database.reading() as store:
                 missing = store.sessions.without_diagnosis(last, BATCH, VERSION)

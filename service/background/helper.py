@@ -1,5 +1,5 @@
-"""A process of its own that makes diagnoses, outlooks and what groups show: numerical work in threads stands in the way
-of requests.
+"""A process of its own that makes diagnoses, outlooks, what groups show and what follows from other models: numerical
+work in threads stands in the way of requests.
 
 It is forked from one that holds nothing but the loaded program (`forkserver`), so that it has no connection to the
 database, no lock and no file of the service's. It ends with the service: it reads the end of its pipe.
@@ -20,11 +20,13 @@ from estimator.errors import SessionError
 from service.background.guard import FAULTS
 from service.errors import ServiceError
 from service.flows.diagnose import diagnose
+from service.flows.recompute import recompute
 from service.flows.refresh_beside import refresh_beside
 from service.flows.refresh_group import refresh_group
 from service.ingest import limits
 from service.log import log, write_log
 from service.records.group import Group
+from service.records.recomputation import Task
 from service.settings import Settings
 from service.storage import Storage, open_storage
 from service.storage.faults import DATABASE_FAULTS
@@ -58,6 +60,8 @@ class Job(StrEnum):
     """Of a unit."""
     GROUP = "group"
     """What the sessions of a unit, a unit type or a stand show together."""
+    MODEL = "model"
+    """A unit's sessions under another model."""
 
 
 @dataclass(frozen=True)
@@ -100,7 +104,11 @@ class Helper:
         """The same for what a group of sessions shows."""
         return self._answer(Job.GROUP, group, now, still)
 
-    def _answer(self, job: Job, of: str | Group, now: datetime, still: Still) -> Failure | None:
+    def recompute(self, task: Task, now: datetime, still: Still) -> Failure | None:
+        """The same for a unit's sessions under another model."""
+        return self._answer(Job.MODEL, task, now, still)
+
+    def _answer(self, job: Job, of: str | Group | Task, now: datetime, still: Still) -> Failure | None:
         if not still():
             raise StoppingError(f"The {job} of {of} was not begun.")
         self.start()
@@ -149,6 +157,8 @@ def _made(storage: Storage, job: Job, of: Any, now: datetime, coverage_factor: f
             refresh_group(storage, of, now)
         elif job is Job.OUTLOOK:
             refresh_beside(storage, of, now)
+        elif job is Job.MODEL:
+            recompute(storage, of, now, coverage_factor)
         else:
             diagnose(storage, of, now, coverage_factor)
     except (ServiceError, SessionError, *DATABASE_FAULTS) as fault:

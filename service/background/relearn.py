@@ -40,9 +40,10 @@ def _relearned(storage: Storage, serial: str, now: datetime) -> bool:
 
 
 def _is_stale(store: Store, serial: str) -> bool:
-    """A unit of which no session is accepted has no outlook."""
+    """A unit of which no session is accepted has no outlook; one whose outlook is asked for is left to whoever makes
+    it, in a process of its own."""
     summary = store.fleet.unit(serial)
-    if summary is None or summary.last_session is None:
+    if summary is None or summary.last_session is None or summary.is_undated:
         return False
     unit = store.units.key(serial)
     return store.outlooks.rests_on(unit) != digest(of_type(store, unit))

@@ -46,6 +46,10 @@ CATALOGUE = {
         "Say whether a unit may be used: exit code 0 for yes, 1 for no, for a unit nobody knows, and in doubt.",
     ),
     "flags": Entry("flags.flags", "Show what somebody must look after; acknowledge or resolve it."),
+    "models": Entry(
+        "models.models",
+        "Show accepted causes and what they moved; accept what sessions show together, or withdraw it.",
+    ),
     "service": Entry(
         "events.record",
         "Record a service: a break, after which the unit's next session is its new reference.",

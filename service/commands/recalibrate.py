@@ -1,7 +1,7 @@
 """`imu-health recalibrate`: stored sessions computed again under the models in force, in the database itself."""
 
 from datetime import UTC, datetime
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -29,7 +29,7 @@ def recalibrate_units(
     with progress(len(wanted), "recalibrating") as advance:
         for serial in wanted:
             done = recalibrate(storage, serial, datetime.now(UTC), coverage_factor=settings.coverage_factor)
-            print_json(vars(done)) if as_json else _print_line(done)
+            print_json(_as_json(done)) if as_json else _print_line(done)
             advance()
     storage.database.close()
 
@@ -43,7 +43,14 @@ def _all_units(storage: Storage) -> list[str]:
     return found + [unit.serial for unit in page]
 
 
+def _as_json(done: Recalibrated) -> dict[str, Any]:
+    names = ("unit", "sessions", "recomputed", "unchanged", "left", "revision")
+    moved = [{"session": one.session, "before": one.before, "after": one.after} for one in done.verdicts]
+    return {name: getattr(done, name) for name in names} | {"verdicts": moved}
+
+
 def _print_line(done: Recalibrated) -> None:
     left = f", {done.left} cannot be computed under it" if done.left else ""
-    line = f"{done.recomputed} recomputed, {done.unchanged} unchanged{left}; model revision {done.revision}"
+    other = f", {len(done.verdicts)} with another verdict" if done.verdicts else ""
+    line = f"{done.recomputed} recomputed, {done.unchanged} unchanged{left}{other}; model revision {done.revision}"
     screen().print(f"[bold]{done.unit}[/]  {line}", highlight=False)

@@ -1,7 +1,7 @@
 """Flow: a unit's stored sessions, computed again under the model that is in force now; nothing is overwritten."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
@@ -14,9 +14,12 @@ from service.ingest import read_upload
 from service.ingest.checked import as_checked
 from service.judging.calibrate import Basis, calibrate, rests_on_model
 from service.judging.model_in_force import model_of
+from service.judging.moved import furthest, moved_parameters, moved_verdicts
 from service.records.model import Model
+from service.records.recomputation import MovedParameter, MovedVerdict
 from service.records.session import StoredSession
 from service.storage import Storage
+from service.storage.files import LOST
 from service.storage.store import Store
 
 UNCHANGED, LEFT = "unchanged", "left"
@@ -33,29 +36,67 @@ class Recalibrated:
     unchanged: int
     """Computed under this model before."""
     left: int
-    """Sessions that cannot be calibrated under it; they keep what they have."""
+    """Sessions that cannot be calibrated under it, or whose file is lost; they keep what they have."""
     revision: int
     """The latest revision that any of them rests on."""
+    verdicts: tuple[MovedVerdict, ...] = ()
+    """Sessions of the unit that have another verdict since."""
+    furthest: MovedParameter | None = None
+    """The parameter that moved most."""
+
+
+def nothing(store: Store, done: Recalibrated) -> None:
+    """What else is done with it unless somebody says so."""
 
 
 def recalibrate(
-    storage: Storage, serial: str, now: datetime, *, coverage_factor: float = 2.0, who: str = "engineer"
+    storage: Storage,
+    serial: str,
+    now: datetime,
+    *,
+    coverage_factor: float = 2.0,
+    who: str = "engineer",
+    until: int | None = None,
+    then: Callable[[Store, Recalibrated], None] = nothing,
 ) -> Recalibrated:
-    """Computes every session of a unit under its model, those that do not count too, and judges what rests on them."""
+    """Computes every session of a unit under its model, those that do not count too, and judges what rests on them.
+
+    ``until``: the last revision that counts, so that what each of several moved can be told apart; None for all.
+    ``then`` belongs to the transaction that puts it in force.
+    """
     with storage.database.reading() as store:
         store.units.key(serial)
         stored = store.sessions.of_unit(serial)
-    outcomes = [_recalibrated(storage, session) for session in stored]
+    outcomes = [_recalibrated(storage, session, until) for session in stored]
     made = [one for one in outcomes if isinstance(one, _Made)]
-    if made:
-        way = Deriving(storage.files, coverage_factor, now, at_once=None)
-        with storage.database.writing() as store:
-            _put_in_force(store, way, serial, made, who)
+    way = Deriving(storage.files, coverage_factor, now, at_once=None)
+    with storage.database.writing() as store:
+        moved = _put_in_force(store, way, serial, made, who) if made else ()
+        done = _told(serial, stored, outcomes, moved)
+        then(store, done)
+    return done
+
+
+def _told(
+    serial: str,
+    stored: Sequence[StoredSession],
+    outcomes: "Sequence[_Made | str]",
+    moved: tuple[MovedVerdict, ...],
+) -> Recalibrated:
     used = [
         one.model.revision if isinstance(one, _Made) else s.revision for one, s in zip(outcomes, stored, strict=True)
     ]
-    counted = Counter(one for one in outcomes if isinstance(one, str))
-    return Recalibrated(serial, len(stored), len(made), counted[UNCHANGED], counted[LEFT], max(used, default=0))
+    counted, made = Counter(o for o in outcomes if isinstance(o, str)), [o for o in outcomes if isinstance(o, _Made)]
+    return Recalibrated(
+        unit=serial,
+        sessions=len(stored),
+        recomputed=len(made),
+        unchanged=counted[UNCHANGED],
+        left=counted[LEFT],
+        revision=max(used, default=0),
+        verdicts=moved,
+        furthest=furthest([one for each in made for one in each.moved]),
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,39 +106,46 @@ class _Made:
     session: StoredSession
     model: Model
     calibration: Calibration
+    moved: tuple[MovedParameter, ...]
 
 
-def _recalibrated(storage: Storage, stored: StoredSession) -> _Made | str:
+def _recalibrated(storage: Storage, stored: StoredSession, until: int | None) -> _Made | str:
     """One session under the model in force, or what became of it instead.
 
     A recording keeps its calibration here: it is compared anew with the reference that was computed again.
     """
     with storage.database.reading() as store:
-        model = model_of(store.models.of_session(stored.id))
-        known = store.calibrations.get(stored.id) if stored.programme == IN_SERVICE else None
-    if model.revision == stored.revision or not rests_on_model(stored.programme):
+        revisions = [r for r in store.models.of_session(stored.id) if until is None or r.id <= until]
+        model, known = model_of(revisions, stored.started_at), store.calibrations.get(stored.id)
+    if model.revision <= stored.revision or not rests_on_model(stored.programme):
         return UNCHANGED
-    if known is not None:
-        return _Made(stored, model, known)
+    if stored.programme == IN_SERVICE:
+        return _Made(stored, model, known, ())
     try:
         session = read_upload(storage.files.content(stored.sha256), stored.filename)
-        return _Made(stored, model, calibrate(as_checked(session, stored.started_at), Basis(model, None)).calibration)
-    except SessionError:
+        found = calibrate(as_checked(session, stored.started_at), Basis(model, None)).calibration
+    except (*LOST, SessionError):
         return LEFT
+    return _Made(stored, model, found, tuple(moved_parameters(stored.id, known, found)))
 
 
-def _put_in_force(store: Store, way: Deriving, serial: str, made: Sequence[_Made], who: str) -> None:
-    """Other calibrations beside the ones before, in force from now on, with what follows from them."""
+def _put_in_force(
+    store: Store, way: Deriving, serial: str, made: Sequence[_Made], who: str
+) -> tuple[MovedVerdict, ...]:
+    """Other calibrations beside the ones before, in force from now on, with what follows from them; what moved, also
+    of sessions that are judged against one of them."""
     unit = store.units.hold(serial)
-    before = {one.session.id: store.sessions.get(one.session.id) for one in made}
+    before = {session.id: session for session in store.sessions.of_unit(serial)}
     new = [one for one in made if before[one.session.id].revision < one.model.revision]
     for one in new:
         store.derivations.put_revision(one.session.id, one.model.revision)
         keep(store, unit, store.sessions.get(one.session.id), one.calibration, way.at)
     if not new:
-        return
-    derive_again(store, way, serial, min(one.session.started_at for one in new), [s.id for s in before.values()])
+        return ()
+    touched = [one.session.id for one in made]
+    derive_again(store, way, serial, min(one.session.started_at for one in new), touched)
     for one in new:
         known, now = before[one.session.id], store.sessions.get(one.session.id)
         details = {"revision": now.revision, "verdict": now.verdict.value, "before": known.verdict.value}
         store.audit.write(way.at, who, "recalibrate", now.id, details)
+    return tuple(moved_verdicts(before, store.sessions.of_unit(serial)))

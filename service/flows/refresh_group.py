@@ -25,7 +25,7 @@ from service.storage.group_document import group_document
 from service.storage.store import Store
 from service.words.group import FAILED, summary_of_group
 
-RULE = b"1"
+RULE = b"2"
 """Version of what an answer says of its sessions: those made by an earlier one are made again."""
 
 
@@ -59,7 +59,10 @@ def refresh_group(storage: Storage, group: Group, now: datetime) -> GroupAnswer:
         asked, missing = store.pending_groups.asked(group), members_of(store, group).without
     for member in missing:
         with storage.database.writing() as store:
-            wanted = not store.diagnoses.has_failed(member.session) and store.statistics.begin(member.session, VERSION)
+            is_tried = not store.diagnoses.has_failed(member.session)
+            wanted = is_tried and store.statistics.begin(member.session, VERSION)
+            if is_tried and not wanted and not member.why:
+                store.pending_groups.blame_none(group)  # that session was, and is given up now
         if wanted:
             add_statistics(storage, member.session, member.sha256, member.filename)
     with storage.database.reading() as store:
@@ -72,6 +75,15 @@ def refresh_group(storage: Storage, group: Group, now: datetime) -> GroupAnswer:
             store.groups.put(group, answer)
         store.pending_groups.settle(asked)
     return answer
+
+
+def give_up(storage: Storage, group: Group, now: datetime) -> None:
+    """Stores of a group that no process outlived its answer; this version does not try again with these sessions."""
+    with storage.database.writing() as store:
+        asked = store.pending_groups.asked(group)
+        answer = GroupAnswer(digest(members_of(store, group)), 0, FAILED, None, VERSION, now)
+        store.groups.put(group, answer)
+        store.pending_groups.settle(asked)
 
 
 def _answered(

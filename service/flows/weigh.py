@@ -6,7 +6,7 @@ from estimator.errors import SessionError
 from estimator.session import CalibrationSession
 from service.ingest import read_upload
 from service.judging.cause_sizes import Yardstick
-from service.judging.model_in_force import in_force
+from service.judging.model_in_force import in_force, places_of
 from service.judging.reference import reference_of
 from service.judging.reservations import UNCHECKED, Doubted, reservations_of
 from service.judging.standing import Basis, Otherwise, verdicts_under_alternatives
@@ -52,11 +52,12 @@ def weighing_of(store: Store, id: str, block: str) -> Weighing:
     if is_judged and found is not None:
         basis = Basis(store.calibrations.get(found), unit_type, nominal_factor_of(decisions))
     accepted = in_force([r for r in store.models.of_session(id) if r.id <= stored.revision])
+    sensors = store.calibrations.get(id).sensors if accepted else ()
     return Weighing(
         verdict=stored.verdict if is_judged else None,
         basis=basis,
         tolerances=tolerances_of(unit_type),
-        known=frozenset((r.cause, sensor) for r in accepted for sensor in r.sensors or ("",)),
+        known=frozenset((r.cause, place) for r in accepted for place in places_of(r, sensors)),
     )
 
 

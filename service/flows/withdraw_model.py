@@ -1,10 +1,13 @@
-"""Flow: an engineer withdraws an accepted cause; a new revision says so, and the old one stays on record."""
+"""Flow: an engineer withdraws an accepted cause; a new revision says so, and the old one stays on record.
+
+What a group of sessions showed goes out of every session that it concerned.
+"""
 
 from dataclasses import replace
 from datetime import datetime
 
 from service.errors import ConflictError
-from service.judging.model_in_force import in_force
+from service.judging.model_in_force import in_force, pooled_of
 from service.records.model import ModelRevision
 from service.storage import Storage
 
@@ -18,6 +21,8 @@ def withdraw_model(storage: Storage, revision: int, by: str, why: str, now: date
         made = store.models.add(
             replace(known, evidence=None, accepted_by=by, note=why, accepted_at=now, withdraws=known.id)
         )
+        if pooled_of(known) is not None:
+            store.recomputations.ask(made.id, known.scope, known.subject, now)
         details = {"revision": made.id, "withdraws": known.id, "cause": known.cause, "why": why}
         store.audit.write(now, by, "withdraw model", f"{known.scope} {known.subject}", details)
         return made

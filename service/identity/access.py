@@ -37,6 +37,7 @@ GET /unit-types
 GET /unit-types/{{name:path}}
 GET /stands
 GET /stands/{{name:path}}
+GET /models/{{id}}
 GET /plan
 GET /help
 GET /api-reference
@@ -71,6 +72,7 @@ GET {API}/unit-types
 GET {API}/unit-types/{{name:path}}
 GET {API}/unit-types/{{name:path}}/diagnosis
 GET {API}/models
+GET {API}/models/{{id}}
 GET {API}/plan
 GET {API}/session-template
 GET {API}/stands
@@ -114,6 +116,8 @@ ENGINEER = f"""
 POST /sessions/{{id}}/diagnosis/accept
 POST /sessions/{{id}}/diagnosis/withdraw/{{revision}}
 POST /units/{{serial:path}}/recalibrate
+POST /groups/accept
+POST /models/{{id}}/withdraw
 POST /flags/acknowledge
 POST /flags/resolve
 POST /flags/{{id}}/acknowledge
@@ -134,6 +138,9 @@ POST {SESSION}/supersede
 POST {SESSION}/diagnosis/accept
 POST {UNIT}/reference
 POST {UNIT}/recalibrate
+POST {UNIT}/diagnosis/accept
+POST {API}/unit-types/{{name:path}}/diagnosis/accept
+POST {API}/stands/{{name:path}}/diagnosis/accept
 POST {API}/services/{{id}}/withdraw
 POST {API}/models/{{id}}/withdraw
 POST {API}/flags/{{id}}/acknowledge

@@ -6,7 +6,7 @@ what the recording shows.
 
 from dataclasses import dataclass
 
-from estimator.diagnosis.explanation.accepted import calibrate_extended
+from estimator.groups.fixed import calibrate_with
 from estimator.parity import ParityResult, parity_check
 from estimator.parity.as_calibration import parity_calibration
 from estimator.programmes import calibrate as calibrate_baseline
@@ -69,6 +69,6 @@ def rests_on_model(programme: str) -> bool:
 
 def _under(model: Model, session: CalibrationSession) -> Calibration:
     """Under a model; a session that a cause of it does not show is calibrated without that cause."""
-    if model.causes and session.programme in CALIBRATIONS:
-        return calibrate_extended(session, model.causes)
+    if (model.causes or model.fixed) and session.programme in CALIBRATIONS:
+        return calibrate_with(session, model.fixed, model.causes)
     return calibrate_baseline(session)

@@ -1,10 +1,18 @@
 """Step: the causes beyond the baseline that a session's calibration takes into account."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from datetime import UTC, datetime
 
+from estimator.groups.fixed import FixedEffect, in_one_session
+from estimator.groups.layout import EVERY
+from estimator.results import SensorCalibration
 from service.ingest.checked import Checked
-from service.records.model import Model, ModelRevision
+from service.records.model import Evidence, Model, ModelRevision, Pooled, Scope
 from service.storage.store import Store
+
+NARROWEST = (Scope.UNIT, Scope.UNIT_TYPE, Scope.STAND)
+"""Of one cause on one sensor the size found nearest to it counts: every group is pooled on the plain simulation, so
+each of them holds the whole effect."""
 
 
 def in_force(revisions: Sequence[ModelRevision]) -> tuple[ModelRevision, ...]:
@@ -18,12 +26,54 @@ def model_as_of(revisions: Sequence[ModelRevision], number: int) -> tuple[ModelR
     return in_force([revision for revision in revisions if revision.id <= number])
 
 
-def model_of(revisions: Sequence[ModelRevision]) -> Model:
-    """The model that revisions add up to; the same cause on the same sensors counts once."""
-    causes = dict.fromkeys((revision.cause, revision.sensors) for revision in in_force(revisions))
-    return Model(max((revision.id for revision in revisions), default=0), tuple(causes))
+def model_of(revisions: Sequence[ModelRevision], at: datetime) -> Model:
+    """The model that revisions add up to for a session of a time; the same cause on the same sensors counts once."""
+    holding = in_force(revisions)
+    causes = dict.fromkeys((r.cause, r.sensors) for r in holding if pooled_of(r) is None)
+    nearest = sorted(holding, key=lambda r: (NARROWEST.index(r.scope), -r.id))
+    return Model(max((r.id for r in revisions), default=0), tuple(causes), tuple(_fixed(nearest, at)))
 
 
 def model_for(store: Store, new: Checked) -> Model:
     """The model for a session that is not stored yet."""
-    return model_of(store.models.for_upload(new.session.unit, new.type_name, new.stand))
+    return model_of(store.models.for_upload(new.session.unit, new.type_name, new.stand), new.measured_at)
+
+
+def pooled_of(revision: ModelRevision) -> Pooled | None:
+    """What a group told of a revision's cause; None where a single session showed it."""
+    return None if revision.evidence is None else revision.evidence.pooled
+
+
+def places_of(revision: ModelRevision, sensors: Sequence[SensorCalibration]) -> tuple[str, ...]:
+    """The sensors of a block that a revision's cause acts on, by name; an empty name for one of stand or fixture."""
+    pooled = pooled_of(revision)
+    if EVERY in revision.sensors and pooled is not None:
+        return tuple(sensor.name for sensor in sensors if sensor.kind == pooled.kind)
+    return revision.sensors or ("",)
+
+
+def _fixed(revisions: Sequence[ModelRevision], at: datetime) -> Iterator[FixedEffect]:
+    """Of what groups showed; what began at a date is not in the sessions before it."""
+    for revision in revisions:
+        evidence, pooled = revision.evidence, pooled_of(revision)
+        if evidence is not None and pooled is not None and not _is_before(at, pooled.since):
+            yield _effect(revision, evidence, pooled)
+
+
+def _effect(revision: ModelRevision, evidence: Evidence, pooled: Pooled) -> FixedEffect:
+    return FixedEffect(
+        cause=revision.cause,
+        sensors=revision.sensors,
+        kind=pooled.kind,
+        amplitude=evidence.amplitude,
+        sigma=in_one_session(evidence.sigma, pooled.spread),
+        shape=pooled.shape,
+        varies=pooled.form == "varying",
+    )
+
+
+def _is_before(at: datetime, since: str | None) -> bool:
+    if since is None:
+        return False
+    began = datetime.fromisoformat(since)
+    return at < (began if began.tzinfo else began.replace(tzinfo=UTC))

@@ -9,13 +9,13 @@ from pydantic import BaseModel, Field
 from service.dependencies import Now, Reading, ReceptionOf, SettingsOf, StorageOf
 from service.flows.correct_session import remedies_of
 from service.flows.receive import receive_all
-from service.flows.refresh_group import current
 from service.ingest import is_own_layout
 from service.judging.model_in_force import model_as_of
 from service.pages.fleet import fleet_page
 from service.pages.fleet_view import FleetAsked, FleetView
 from service.pages.follow import SOONEST, follow_seconds
 from service.pages.forms import Key
+from service.pages.group import group_section
 from service.pages.received import FormFiles
 from service.pages.render import render
 from service.pages.session import session_page
@@ -25,9 +25,7 @@ from service.records.doubt import Remedies
 from service.records.group import Level
 from service.records.received import where
 from service.records.state import RecordState
-from service.storage.group_document import read_group
 from service.storage.queries.flags import FlagQuery
-from service.storage.store import Store
 from service.views.found_and_left import found_and_left
 from service.views.history import recent_history
 from service.views.outlook import own_outlook
@@ -37,7 +35,6 @@ from service.views.standouts import fleet_standouts
 from service.views.stands import stand_conditions
 from service.views.traceability import traceability_of
 from service.views.unit_report import unit_report
-from service.words.group_finding import GroupView, group_view
 from service.words.recalibrated import recalibrated_in_words
 
 MOST_QUESTIONED = 20
@@ -105,18 +102,11 @@ def show_unit(
             notes=store.notes.of_unit(serial),
             pair=found_and_left(store, report.unit_type, report.sessions, report.services, settings.coverage_factor),
             outlook=own_outlook(store, serial, now),
-            group=_together(store, serial),
+            group=group_section(store, Level.UNIT, serial),
             recalibrated=recalibrated_in_words(asked.recomputed, asked.unchanged, asked.left),
             follow=SOONEST if report.summary.is_undated and settings.diagnosis_workers else None,
         ),
     )
-
-
-def _together(store: Store, serial: str) -> GroupView | None:
-    """What a unit's sessions show together, where it is made of its records of now."""
-    answer = current(store, store.groups.find(Level.UNIT, serial))
-    shown = None if answer is None or answer.document is None else read_group(answer.document)
-    return None if answer is None or shown is None or not shown.sessions else group_view(answer, shown)
 
 
 @router.get("/sessions/{id}")

@@ -9,6 +9,7 @@ from service.charts.history import history_charts
 from service.charts.tracks import Track, TrackPoint, tolerance_text, tracks_of
 from service.pages.events import KINDS, Event, StageTable, events_of, stage_table
 from service.pages.flags import FlagCard, flag_cards
+from service.pages.group import GroupSection
 from service.pages.session_lines import SessionLine, session_lines
 from service.records.event import Note, Service
 from service.records.flag import Flag
@@ -17,7 +18,6 @@ from service.records.outlook import ParameterTrend, UnitOutlook
 from service.records.unit import UnitReport
 from service.views.found_and_left import FoundAndLeft
 from service.words.conditions import NOT_JUDGED, Condition, condition_of
-from service.words.group_finding import GroupView
 from service.words.names import day_of, heading
 from service.words.outlook import NextCalibration, next_calibration
 
@@ -84,7 +84,7 @@ class UnitPage:
     """None before a session was judged."""
     raw: bool
     """Whether what the whole block did is left in."""
-    group: GroupView | None
+    group: GroupSection | None
     """What its sessions show together; None where that is not made of its records of now."""
     follow: int | None
     """Seconds after which the page looks again whether its dates are worked out; None where they are."""
@@ -102,7 +102,7 @@ def unit_page(
     notes: Sequence[Note] = (),
     pair: FoundAndLeft | None = None,
     outlook: UnitOutlook | None = None,
-    group: GroupView | None = None,
+    group: GroupSection | None = None,
     follow: int | None = None,
     recalibrated: str = "",
 ) -> UnitPage:

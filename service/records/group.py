@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 
-from estimator.groups.results import GroupFinding, PoolLimit
+from estimator.groups.results import GroupFinding, GroupGain, PoolLimit
 
 
 class Level(StrEnum):
@@ -79,9 +79,12 @@ class GroupShown:
     """What imu-fleet-diagnosis/1 says, as pages show it."""
 
     sessions: int
+    first: str | None
+    last: str | None
     left_out: int
     findings: tuple[GroupFinding, ...]
     limits: tuple[PoolLimit, ...]
+    gain: GroupGain | None
     equations: tuple[str, ...]
     """Of empirical terms."""
     notes: tuple[str, ...]

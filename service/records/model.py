@@ -5,6 +5,7 @@ from datetime import datetime
 from enum import StrEnum
 
 from estimator.diagnosis.results import Gain
+from estimator.groups.fixed import FixedEffect
 
 
 class Scope(StrEnum):
@@ -26,6 +27,42 @@ class NewModel:
 
 
 @dataclass(frozen=True)
+class NewLasting:
+    """A lasting effect that an engineer accepts, as the group that shows it found it."""
+
+    cause: str
+    sensors: tuple[str, ...]
+    """Of the finding; empty where the cause alone says which one is meant."""
+    by: str
+    note: str
+
+
+@dataclass(frozen=True)
+class Pooled:
+    """What a group of sessions told of an effect beside its size: the size is not fitted again in any session."""
+
+    sessions: int
+    """That were pooled, from ``first`` to ``last``."""
+    first: str
+    last: str
+    form: str
+    """``same``, ``varying`` or ``since``."""
+    since: str | None
+    """Start of the first session that has it, where earlier ones had not."""
+    kind: str
+    """Of its sensors; empty without any."""
+    shape: float | None
+    spread: tuple[float, ...]
+    """τ of each sensor in turn, in the unit of its amplitudes."""
+    e_value: float
+    fitted: int
+    """Sessions that fixed the size when it was tried on the later ones; 0 where there were too few."""
+    held_out: int
+    log_score: float | None
+    """That those later ones gained."""
+
+
+@dataclass(frozen=True)
 class Evidence:
     """The finding that a cause was accepted on, and what naming it was worth."""
 
@@ -38,7 +75,10 @@ class Evidence:
     nonlinear: dict[str, float]
     alternatives: tuple[str, ...]
     sentence: str
-    gain: Gain
+    gain: Gain | None
+    """None of what a group of sessions showed."""
+    pooled: Pooled | None = None
+    """None of what a single session showed: there each session fits it."""
 
 
 @dataclass(frozen=True)
@@ -69,4 +109,6 @@ class Model:
     revision: int
     """The latest revision that concerns the session; 0 for the baseline alone."""
     causes: tuple[tuple[str, tuple[str, ...]], ...]
-    """Identifier and sensors of each."""
+    """Identifier and sensors of each that the session fits."""
+    fixed: tuple[FixedEffect, ...] = ()
+    """Those whose size groups of sessions fixed, the one that counts first before others of its cause."""

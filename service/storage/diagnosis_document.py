@@ -19,7 +19,7 @@ from estimator.diagnosis.results import (
     Transfer,
 )
 from service.records.diagnosis import Diagnosed
-from service.records.model import Evidence
+from service.records.model import Evidence, Pooled
 from service.storage.calibration_document import calibration_from_dict, residuals_from_dict
 from service.words.diagnosis import NOT_APPLICABLE
 
@@ -77,8 +77,13 @@ def evidence_from_dict(entry: dict[str, Any]) -> Evidence | None:
         nonlinear=_named(entry["nonlinear"]),
         alternatives=tuple(entry["alternatives"]),
         sentence=entry["sentence"],
-        gain=_gain(entry["gain"]),
+        gain=None if entry["gain"] is None else _gain(entry["gain"]),
+        pooled=_pooled(entry.get("pooled")),  # absent from earlier versions
     )
+
+
+def _pooled(entry: dict[str, Any] | None) -> Pooled | None:
+    return None if entry is None else Pooled(**entry | {"spread": tuple(entry["spread"])})
 
 
 def finite(value: Any) -> Any:

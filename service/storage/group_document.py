@@ -5,7 +5,7 @@ from typing import Any
 
 from estimator.diagnosis.results import Limit
 from estimator.groups import GroupDiagnosis
-from estimator.groups.results import GroupFinding, PoolLimit, Rival, SessionAmplitude
+from estimator.groups.results import GroupFinding, GroupGain, Moved, PoolLimit, Rival, SessionAmplitude
 from service.records.group import Group, GroupShown, Members
 from service.storage.diagnosis_document import finite
 from service.words.group import NO_SESSION
@@ -24,9 +24,12 @@ def read_group(text: str) -> GroupShown:
     document = json.loads(text)
     return GroupShown(
         sessions=document["sessions"],
+        first=document["first"],
+        last=document["last"],
         left_out=document["left_out"],
         findings=tuple(map(_finding, document["findings"])),
         limits=tuple(map(_limit, document["limits"])),
+        gain=None if document["gain"] is None else _gain(document["gain"]),
         equations=tuple(term["equation"] for term in document["terms"]),
         notes=tuple(document["notes"]),
     )
@@ -41,6 +44,10 @@ def _finding(entry: dict[str, Any]) -> GroupFinding:
         for s in entry["sessions"]
     )
     return GroupFinding(**own)
+
+
+def _gain(entry: dict[str, Any]) -> GroupGain:
+    return GroupGain(**entry | {"moved": tuple(Moved(**one) for one in entry["moved"])})
 
 
 def _limit(entry: dict[str, Any]) -> PoolLimit:

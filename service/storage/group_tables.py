@@ -55,3 +55,5 @@ class PendingGroupRow(Base):
     group_id: Mapped[int]
     asked_at: Mapped[datetime]
     claimed_until: Mapped[datetime | None]
+    attempts: Mapped[int]
+    """Claims that ended without a word: the process died."""

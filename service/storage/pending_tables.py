@@ -1,11 +1,14 @@
 """The table of the diagnoses that are still to be made; a line goes when its diagnosis is stored."""
 
-from datetime import datetime
+from datetime import UTC, datetime
 
 from sqlalchemy import ForeignKey, String
 from sqlalchemy.orm import Mapped, mapped_column
 
 from service.storage.tables import Base
+
+NEVER = datetime(9999, 1, 1, tzinfo=UTC)
+"""Until when nobody is at what was given up."""
 
 
 class PendingRow(Base):
@@ -33,3 +36,6 @@ class PendingOutlookRow(Base):
     ticket: Mapped[str] = mapped_column(String(32))
     """Another one whenever the unit's history changes: what was made under an older one is made again."""
     claimed_until: Mapped[datetime | None]
+    """`NEVER` where no process outlived it: then it waits for the unit's history to change, or for another start."""
+    attempts: Mapped[int]
+    """Claims that ended without a word: the process died."""

@@ -27,6 +27,7 @@ from service.storage.queries.outlooks import Outlooks
 from service.storage.queries.pending import PendingDiagnoses
 from service.storage.queries.pending_groups import PendingGroups
 from service.storage.queries.pending_outlooks import PendingOutlooks
+from service.storage.queries.recomputations import Recomputations
 from service.storage.queries.services import Services
 from service.storage.queries.sessions import Sessions
 from service.storage.queries.sign_ins import SignIns
@@ -121,6 +122,11 @@ class Store:
     def models(self) -> Models:
         """Causes that engineers accepted, as numbered revisions."""
         return Models(self._session)
+
+    @cached_property
+    def recomputations(self) -> Recomputations:
+        """What model revisions brought, unit by unit."""
+        return Recomputations(self._session)
 
     @cached_property
     def services(self) -> Services:

@@ -17,7 +17,7 @@ unit_types ──< tolerance_revisions          stands ──< stand_certificate
                    ├──1 diagnoses, pending_diagnoses, session_statistics
                    ├──< reference_choices     record_states   what became of sessions and services, append-only
                    ├──< certificates ──< certificate_signatures, certificate_files   papers issued, append-only
-                   └──< model_revisions       causes that engineers accepted, numbered through
+                   └──< model_revisions ──< recomputations   causes that engineers accepted, and what they moved
 group_diagnoses, pending_groups               what the sessions of a unit, a unit type or a stand show together
 accounts ──< tokens, sign_ins, sign_in_links, identities   who may sign in, and what they show for it; attempts
 """

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from math import isfinite, nan
 from typing import Protocol
 
@@ -31,6 +32,17 @@ class Sized(Protocol):
     def sigma(self) -> Sequence[float | None]: ...
     @property
     def units(self) -> tuple[str, ...]: ...
+
+
+@dataclass(frozen=True)
+class Amounts:
+    """Amplitudes alone."""
+
+    cause: str
+    sensors: tuple[str, ...]
+    amplitude: tuple[float, ...]
+    sigma: tuple[float, ...]
+    units: tuple[str, ...]
 
 
 def amplitudes_of(finding: Sized) -> Iterator[str]:

@@ -4,11 +4,14 @@ from collections.abc import Sequence
 
 from estimator.causes import find
 from estimator.diagnosis import Finding
+from estimator.groups.layout import EVERY
 from service.measures import HARD, number
 from service.words.names import spaced
 
 UNKNOWN_CAUSE = "unexplained"
 """Stands among the alternatives of a finding that a cause which is not in the catalogue explains as well."""
+EVERY_SENSOR = "every sensor of its kind"
+"""Where what a group shows acts on all of them."""
 ONE_NOT_KNOWN = "one that is not in the catalogue"
 COMPARABLE = 3.0
 """Times that one share of probability may be another's and both still pass for equally likely: evidence below that is
@@ -120,7 +123,8 @@ def at_once_with(finding: Finding, findings: Sequence[Finding]) -> tuple[str, ..
 
 
 def _on(sensors: Sequence[str]) -> str:
-    return f" ({', '.join(dict.fromkeys(sensors))})" if sensors else ""
+    names = (EVERY_SENSOR if sensor == EVERY else sensor for sensor in dict.fromkeys(sensors))
+    return f" ({', '.join(names)})" if sensors else ""
 
 
 def _listed(causes: Sequence[str]) -> str:

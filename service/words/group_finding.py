@@ -1,5 +1,6 @@
 """A lasting effect in words: how large, since when, told from what, and in which sessions."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 
@@ -7,6 +8,7 @@ from estimator.groups import GroupFinding
 from estimator.groups.results import PoolLimit, Rival, SessionAmplitude
 from estimator.session import ACCELEROMETER
 from service.records.group import GroupAnswer, GroupShown
+from service.records.model import ModelRevision, Scope
 from service.words.amplitudes import amplitudes_of
 from service.words.causes import cause_on, percent
 from service.words.finding import standard_errors
@@ -18,6 +20,8 @@ FORMS = {
     "same": "in all of these sessions",
     "varying": "in these sessions, but different every time",
 }
+SCOPES = {"unit": Scope.UNIT, "type": Scope.UNIT_TYPE, "stand": Scope.STAND}
+"""Whose model, by whose effect it is."""
 BLIND = "–"
 """In place of a size that no number of such sessions shows."""
 
@@ -47,6 +51,12 @@ class ForestRow:
 class LastingEffect:
     """A finding of a group, for people."""
 
+    cause: str
+    sensors: tuple[str, ...]
+    whose: str
+    """``unit BA-017``."""
+    accepted: tuple[int, ...]
+    """Revisions in force that hold it."""
     statement: str
     amplitudes: tuple[str, ...]
     since: str
@@ -71,22 +81,27 @@ class GroupView:
     """Cause, the smallest size that the pool would find, and that one session would."""
 
 
-def group_view(answer: GroupAnswer, shown: GroupShown) -> GroupView:
-    """What a technician and an engineer read of a group's answer."""
+def group_view(answer: GroupAnswer, shown: GroupShown, accepted: Sequence[ModelRevision] = ()) -> GroupView:
+    """What a technician and an engineer read of a group's answer; ``accepted``: the revisions that are in force."""
     return GroupView(
         heading=f"What the simulation gets wrong, {over(shown.sessions).lower()}",
         summary=answer.summary.partition(": ")[2].capitalize() if not shown.findings else "",
         left_out=shown.left_out,
-        effects=tuple(map(_effect, shown.findings)),
+        effects=tuple(_effect(finding, accepted) for finding in shown.findings),
         equations=shown.equations,
         notes=shown.notes,
         limits=tuple(_limit(limit) for limit in shown.limits if limit.pool.amplitude),
     )
 
 
-def _effect(finding: GroupFinding) -> LastingEffect:
-    since = FORMS.get(finding.form) or f"since {_day(finding.since or '')}"
+def _effect(finding: GroupFinding, accepted: Sequence[ModelRevision]) -> LastingEffect:
+    since = FORMS.get(finding.form) or f"since {day_in_words(finding.since or '')}"
+    scope = SCOPES[finding.level]
     return LastingEffect(
+        cause=finding.cause,
+        sensors=finding.sensors,
+        whose=f"{scope} {finding.subject}",
+        accepted=tuple(r.id for r in accepted if holds(r, finding)),
         statement=statement(finding),
         amplitudes=tuple(amplitudes_of(finding)),
         since=since,
@@ -95,6 +110,13 @@ def _effect(finding: GroupFinding) -> LastingEffect:
         choices=tuple(map(_choice, finding.rivals)),
         rows=tuple(_row(finding, one) for one in reversed(finding.sessions)),
     )
+
+
+def holds(revision: ModelRevision, finding: GroupFinding) -> bool:
+    """Whether a revision accepted what a group shows."""
+    own = (revision.scope, revision.subject, revision.cause)
+    theirs = (SCOPES[finding.level], finding.subject, finding.cause)
+    return own == theirs and set(finding.sensors) <= set(revision.sensors)
 
 
 def _choice(rival: Rival) -> Choice:
@@ -107,7 +129,7 @@ def _choice(rival: Rival) -> Choice:
 
 def _row(finding: GroupFinding, one: SessionAmplitude) -> ForestRow:
     own = replace(finding, amplitude=one.amplitude, sigma=one.sigma)
-    return ForestRow(_day(one.started_at), one.unit, "; ".join(amplitudes_of(own)) or BLIND)
+    return ForestRow(day_in_words(one.started_at), one.unit, "; ".join(amplitudes_of(own)) or BLIND)
 
 
 def _limit(limit: PoolLimit) -> tuple[str, str, str]:
@@ -115,5 +137,6 @@ def _limit(limit: PoolLimit) -> tuple[str, str, str]:
     return cause_on(limit.pool.cause, ()), size_of(limit.pool, ACCELEROMETER), of_one
 
 
-def _day(started_at: str) -> str:
+def day_in_words(started_at: str) -> str:
+    """``3 May 2026`` of what a file states."""
     return day_of(datetime.fromisoformat(started_at))

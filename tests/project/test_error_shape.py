@@ -32,6 +32,9 @@ QUERIES = {"/api/v1/plan": {"unit_type": "RA-6"}}
 """What makes a route ask the database; a plan for a cone does not."""
 BODIES: dict[str, Any] = {
     "/api/v1/sessions/{id}/diagnosis/accept": {"cause": "bias-ramp", "scope": "unit", "by": "K. Ito"},
+    "/api/v1/units/{serial}/diagnosis/accept": {"cause": "beta-eccentricity", "by": "K. Ito"},
+    "/api/v1/unit-types/{name}/diagnosis/accept": {"cause": "beta-eccentricity", "by": "K. Ito"},
+    "/api/v1/stands/{name}/diagnosis/accept": {"cause": "beta-eccentricity", "by": "K. Ito"},
     "/api/v1/models/{id}/withdraw": {"by": "K. Ito", "why": "seen in error"},
     "/api/v1/units/{serial}/services": {"kind": "repair"},
     "/api/v1/sessions/{id}/withdraw": {"by": "K. Ito", "why": "wrong unit"},

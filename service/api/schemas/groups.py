@@ -3,7 +3,9 @@
 from datetime import datetime
 from typing import Any
 
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, ConfigDict, Field
+
+from service.api.schemas.fields import LongText, Name
 
 
 class NotPooled(BaseModel):
@@ -46,6 +48,21 @@ class GroupDocument(BaseModel):
     summary: str = Field(description="The same in one line.")
     estimator_version: str = Field(description="Version of the program that made it.")
     created_at: datetime = Field(description="When, UTC.")
+
+
+class NewLastingSchema(BaseModel):
+    """A lasting effect that an engineer accepts into the model of the unit, the unit type or the stand that has it."""
+
+    model_config = ConfigDict(
+        extra="forbid", json_schema_extra={"example": {"cause": "beta-eccentricity", "by": "K. Ito", "note": "encoder"}}
+    )
+
+    cause: Name = Field(description="Identifier of a cause that the sessions show together.")
+    sensors: list[Name] = Field(
+        default=[], description="Of the finding, where the cause alone does not say which one is meant."
+    )
+    by: Name = Field(description="Who accepts it.")
+    note: LongText = Field(default="", description="Why.")
 
 
 class PendingGroup(BaseModel):

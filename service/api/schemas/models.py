@@ -9,6 +9,7 @@ from service.api.schemas.fields import LongText, Name
 from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState
 from service.records.model import Scope
+from service.records.recomputation import Progress
 from service.storage.diagnosis_document import evidence_to_dict
 
 
@@ -98,11 +99,69 @@ class ModelSchema(BaseModel):
     cause: str = Field(description="Identifier of the cause.")
     sensors: list[str] = Field(description="Sensors that it acts on; none for a cause of stand or fixture.")
     session: str = Field(description="The session that showed it.")
-    evidence: AnyEvidence = Field(description="p-value, strength, amplitude with sigma, and gain of the finding.")
+    evidence: AnyEvidence = Field(
+        description="p-value, strength, amplitude with sigma, and gain of the finding; `pooled`: what a group of "
+        "sessions told beside, null where a single session showed it."
+    )
     accepted_by: str = Field(description="Who accepted it.")
     note: str = Field(description="Why.")
     accepted_at: datetime = Field(description="When, UTC.")
     withdraws: int | None = Field(description="The revision that this one withdraws; null for an accepted cause.")
+
+
+class MovedVerdictSchema(BaseModel):
+    """A session that has another verdict since."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    session: str = Field(description="Id of the session.")
+    started_at: datetime = Field(description="When it was measured.")
+    before: Verdict = Field(description="Its verdict before.")
+    after: Verdict = Field(description="Its verdict since.")
+
+
+class MovedParameterSchema(BaseModel):
+    """The parameter of a unit that moved furthest, in its own standard uncertainty."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    session: str = Field(description="Id of the session.")
+    sensor: str = Field(description="Name of the sensor.")
+    kind: str = Field(description="`accelerometer` or `gyroscope`.")
+    parameter: str = Field(description="`scale`, `bias`, `quadratic`, `axis` or `misalignment`.")
+    change: float = Field(description="SI; relative of a scale factor, rad of an axis.")
+    u: float = Field(description="Its standard uncertainty.")
+
+
+class RecomputedSchema(BaseModel):
+    """What became of a unit's sessions."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    sessions: int = Field(description="How many it has.")
+    recomputed: int = Field(description="How many have another calibration.")
+    left: int = Field(description="How many cannot be calibrated under the model, and keep what they have.")
+    verdicts: list[MovedVerdictSchema] = Field(description="Sessions that have another verdict since.")
+    furthest: MovedParameterSchema | None = Field(description="What moved most; null where nothing moved.")
+
+
+class RecomputationSchema(BaseModel):
+    """A unit's part of what a revision brought."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    unit: str = Field(description="Serial number.")
+    state: Progress = Field(description="`waiting`, `done`, or `given up`: then its sessions keep what they had.")
+    done_at: datetime | None = Field(description="When, UTC; null while it waits.")
+    outcome: RecomputedSchema | None = Field(description="What became of its sessions; null until it is done.")
+
+
+class ModelAndRecomputations(ModelSchema):
+    """A revision with what it brought."""
+
+    recomputations: list[RecomputationSchema] = Field(
+        description="Units whose sessions are computed again because of it: of what groups of sessions show."
+    )
 
 
 class ModelPage(BaseModel):

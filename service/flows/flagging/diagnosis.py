@@ -8,7 +8,7 @@ from estimator.diagnosis import Finding
 from estimator.session import CALIBRATIONS
 from service.flows.flagging.fold import ANY, settle_sessions
 from service.flows.flagging.settle import Occasion
-from service.judging.model_in_force import in_force
+from service.judging.model_in_force import in_force, places_of
 from service.records.derivation import Told
 from service.records.diagnosis import Diagnosed, StoredDiagnosis
 from service.records.flag import Concern, Matter
@@ -48,7 +48,8 @@ def _clear(session: StoredSession) -> Iterator[tuple[str, str, str]]:
 
 def _concerns(found: Diagnosed, session: StoredSession, accepted: tuple[ModelRevision, ...]) -> Iterator[Concern]:
     """At most one a matter and place; what an engineer accepted into the model is known and raises nothing."""
-    known = {(revision.cause, sensor) for revision in accepted for sensor in revision.sensors or ("",)}
+    sensors = found.calibration.sensors
+    known = {(revision.cause, place) for revision in accepted for place in places_of(revision, sensors)}
     done: set[tuple[str, str]] = set()
     for finding in found.findings:
         for concern in _of_finding(finding, found.findings, session, known):

@@ -16,7 +16,7 @@ class PendingGroups(Queries):
 
     def ask(self, groups: Iterable[Group], now: datetime) -> None:
         """Asks for what groups show; what is being made of them now is looked at again."""
-        rows = [{"level": g.level.value, "group_id": g.key, "asked_at": now} for g in groups]
+        rows = [{"level": g.level.value, "group_id": g.key, "asked_at": now, "attempts": 0} for g in groups]
         if rows:
             self._session.execute(insert(PendingGroupRow), rows)
 
@@ -33,15 +33,33 @@ class PendingGroups(Queries):
         groups = Groups(self._session)
         return tuple(groups.by_key(Level(level), id) for level, id in self._session.execute(first))
 
-    def claim(self, group: Group, now: datetime, until: datetime) -> bool:
-        """Whether a group is ours until a time."""
+    def claim(self, group: Group, now: datetime, until: datetime) -> int | None:
+        """How often a group was claimed, with this time, since a claim ended with a word; None where another is at
+        it."""
         is_free = or_(PendingGroupRow.claimed_until.is_(None), PendingGroupRow.claimed_until <= now)
-        own = update(PendingGroupRow).where(*_of(group), is_free).values(claimed_until=until)
-        return bool(self._session.scalars(own.returning(PendingGroupRow.id)).all())
+        own = update(PendingGroupRow).where(*_of(group), is_free)
+        claimed = own.values(claimed_until=until, attempts=PendingGroupRow.attempts + 1)
+        return max(self._session.scalars(claimed.returning(PendingGroupRow.attempts)).all(), default=None)
+
+    def extend(self, group: Group, until: datetime) -> None:
+        """Whoever claimed it is still at it."""
+        self._session.execute(
+            update(PendingGroupRow)
+            .where(*_of(group), PendingGroupRow.claimed_until.is_not(None))
+            .values(claimed_until=until)
+        )
 
     def give_back(self, group: Group) -> None:
-        """Whoever was at it stops: the next one may begin at once."""
+        """Whoever was at it died: the next one may begin at once."""
         self._session.execute(update(PendingGroupRow).where(*_of(group)).values(claimed_until=None))
+
+    def put_off(self, group: Group, until: datetime | None) -> None:
+        """Gives a group back after a word of why: nobody begins it before a time."""
+        self._session.execute(update(PendingGroupRow).where(*_of(group)).values(claimed_until=until, attempts=0))
+
+    def blame_none(self, group: Group) -> None:
+        """What died was at fault for another reason that is known now: the tries are counted anew."""
+        self._session.execute(update(PendingGroupRow).where(*_of(group)).values(attempts=0))
 
     def settle(self, asked: Collection[int]) -> None:
         """Who asked has the answer; whoever asked since has not."""

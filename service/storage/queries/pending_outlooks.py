@@ -3,9 +3,9 @@
 from datetime import datetime
 from uuid import uuid4
 
-from sqlalchemy import ColumnElement, delete, or_, select, update
+from sqlalchemy import ColumnElement, Update, delete, or_, select, update
 
-from service.storage.pending_tables import PendingOutlookRow
+from service.storage.pending_tables import NEVER, PendingOutlookRow
 from service.storage.queries.base import Queries
 from service.storage.tables import UnitRow
 
@@ -16,9 +16,10 @@ class PendingOutlooks(Queries):
     def ask(self, unit: int, now: datetime) -> None:
         """Asks for a unit's outlook; what is being made of it now is made again."""
         ticket = uuid4().hex
-        if not self.insert_once(PendingOutlookRow, unit_id=unit, asked_at=now, ticket=ticket):
+        if not self.insert_once(PendingOutlookRow, unit_id=unit, asked_at=now, ticket=ticket, attempts=0):
             own = update(PendingOutlookRow).where(PendingOutlookRow.unit_id == unit)
             self._session.execute(own.values(ticket=ticket))
+            self._session.execute(own.where(_IS_GIVEN_UP).values(claimed_until=None, attempts=0))
 
     def ticket(self, serial: str) -> str | None:
         """Under which a unit's is asked for; None where it is as its history says."""
@@ -31,12 +32,32 @@ class PendingOutlooks(Queries):
         order = (PendingOutlookRow.asked_at, PendingOutlookRow.unit_id)
         return tuple(self._session.scalars(query.where(_is_free(now)).order_by(*order).limit(limit)))
 
-    def claim(self, serial: str, now: datetime, until: datetime) -> bool:
-        """Whether the unit is ours until a time."""
-        unit = select(UnitRow.id).where(UnitRow.serial == serial).scalar_subquery()
-        own = update(PendingOutlookRow).where(PendingOutlookRow.unit_id == unit, _is_free(now))
-        claimed = own.values(claimed_until=until).returning(PendingOutlookRow.unit_id)
-        return self._session.scalar(claimed) is not None
+    def claim(self, serial: str, now: datetime, until: datetime) -> int | None:
+        """How often the unit was claimed, with this time, since a claim ended with a word; None where another is at
+        it."""
+        claimed = _of(serial).where(_is_free(now)).values(claimed_until=until, attempts=PendingOutlookRow.attempts + 1)
+        return self._session.scalar(claimed.returning(PendingOutlookRow.attempts))
+
+    def extend(self, serial: str, until: datetime) -> None:
+        """Whoever claimed it is still at it."""
+        self._session.execute(_of(serial).values(claimed_until=until))
+
+    def give_back(self, serial: str) -> None:
+        """Whoever was at it died: the next one may begin at once."""
+        self._session.execute(_of(serial).values(claimed_until=None))
+
+    def put_off(self, serial: str, until: datetime | None) -> None:
+        """Gives a unit back after a word of why: nobody begins it before a time."""
+        self._session.execute(_of(serial).values(claimed_until=until, attempts=0))
+
+    def give_up(self, serial: str) -> None:
+        """No process outlived it: it is tried again when the unit's history changes, or at another start."""
+        self._session.execute(_of(serial).values(claimed_until=NEVER))
+
+    def try_again(self) -> None:
+        """At a start: this may be another version, or a machine that has what the last one lacked."""
+        own = update(PendingOutlookRow).where(_IS_GIVEN_UP)
+        self._session.execute(own.values(claimed_until=None, attempts=0))
 
     def holds(self, unit: int, ticket: str) -> bool:
         """Whether a unit is still asked for under a ticket; held until the transaction ends."""
@@ -46,6 +67,14 @@ class PendingOutlooks(Queries):
     def settle(self, unit: int) -> None:
         """A unit's is as its history says."""
         self._session.execute(delete(PendingOutlookRow).where(PendingOutlookRow.unit_id == unit))
+
+
+_IS_GIVEN_UP = PendingOutlookRow.claimed_until == NEVER
+
+
+def _of(serial: str) -> Update:
+    unit = select(UnitRow.id).where(UnitRow.serial == serial).scalar_subquery()
+    return update(PendingOutlookRow).where(PendingOutlookRow.unit_id == unit)
 
 
 def _is_free(now: datetime) -> ColumnElement[bool]:

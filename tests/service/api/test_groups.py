@@ -7,7 +7,7 @@ import pytest
 
 from service.app import create_app
 from service.background.bell import Bell
-from service.background.pool_waiting import CLAIM
+from service.background.diagnose_waiting import CLAIM
 from service.background.read_group import MOST_WAITING, GroupReader
 from service.flows.receive import upload
 from service.records.group import Level
@@ -47,6 +47,18 @@ def test_what_somebody_is_at_is_202_where_too_many_wait_for_it(settings: Setting
     with http_client(app) as client:
         answer = client.get("/api/v1/units/BA-017/diagnosis")
     assert (answer.status_code, "Retry-After" in answer.headers, answer.json()["status"]) == (202, True, "pending")
+
+
+@one_engine
+def test_what_a_group_shows_is_accepted_and_its_progress_told(holding: Holding) -> None:
+    client = holding(*GROUP)
+    new = {"cause": "cubic-nonlinearity", "by": "K. Ito", "note": "bench"}
+    made = client.post("/api/v1/units/BA-017/diagnosis/accept", json=new).raise_for_status().json()
+    assert (made["scope"], made["subject"], made["evidence"]["pooled"]["sessions"]) == ("unit", "BA-017", 12)
+    told = client.get(f"/api/v1/models/{made['id']}").json()["recomputations"]
+    assert [(one["unit"], one["state"], one["outcome"]["recomputed"]) for one in told] == [("BA-017", "done", 12)]
+    again = client.post("/api/v1/units/BA-017/diagnosis/accept", json=new | {"cause": "hysteresis"})
+    assert (again.status_code, again.json()["problems"][0]["field"]) == (422, "cause")
 
 
 @one_engine

@@ -12,7 +12,12 @@ from tests.service.grouped import GROUP
 
 def words(client: httpx.Client) -> str:
     """The text of the unit's page."""
-    text = client.get("/units/BA-017", headers={"Accept": "text/html"}).raise_for_status().text
+    return text_of(client, "/units/BA-017")
+
+
+def text_of(client: httpx.Client, path: str) -> str:
+    """The text of a page."""
+    text = client.get(path, headers={"Accept": "text/html"}).raise_for_status().text
     return " ".join(re.sub(r"<[^>]+>", " ", text).split())
 
 
@@ -41,6 +46,21 @@ def test_the_pool_finds_less_than_a_session_does(twelve: httpx.Client) -> None:
 
 
 @one_engine
+def test_an_engineer_accepts_it_and_sees_what_it_moved(twelve: httpx.Client) -> None:
+    form = {"level": "unit", "name": "BA-017", "cause": "cubic-nonlinearity", "sensors": ["A2"], "by": "K. Ito"}
+    made = twelve.post("/groups/accept", data=form, headers={"Accept": "text/html"})
+    assert made.status_code == 303
+    page = text_of(twelve, made.headers["Location"])
+    assert "Over 12 sessions, in all of these sessions" in page
+    assert "12 sessions of 1 of 1 unit computed again:" in page
+    assert re.search(r"BA-017 12 of 12 [a-z ]+ of A2 by .\d", page)
+    assert "In the model of unit BA-017: revision 1" in words(twelve)
+    ended = twelve.post("/models/1/withdraw", data={"by": "K. Ito", "why": "tilted"}, headers={"Accept": "text/html"})
+    assert "it withdraws revision 1" in text_of(twelve, ended.headers["Location"])
+    assert "Accept into the model of unit BA-017" in words(twelve)
+
+
+@one_engine
 def test_until_it_is_made_the_page_says_where_to_ask(holding: Holding) -> None:
     client = holding(*GROUP[:2])
-    assert "What its 2 sessions show together is not worked out with its latest records yet" in words(client)
+    assert "What its 2 sessions show together is not worked out with the latest records yet" in words(client)

@@ -1,0 +1,40 @@
+"""What a group of sessions shows, as a section of the page of its unit, unit type or stand."""
+
+from dataclasses import dataclass
+
+from service.flows.refresh_group import current
+from service.judging.model_in_force import in_force
+from service.records.group import Group, Level
+from service.storage.group_document import read_group
+from service.storage.queries.models import ModelQuery
+from service.storage.store import Store
+from service.words.group_finding import GroupView, group_view
+
+MOST_REVISIONS = 10_000
+"""More than anybody accepts."""
+
+
+@dataclass(frozen=True)
+class GroupSection:
+    """Everything the section shows."""
+
+    group: Group
+    view: GroupView | None
+    """None until it is made of the group's records of now."""
+    failed: str
+    """Why it cannot be made; empty else."""
+
+
+def group_section(store: Store, level: Level, name: str) -> GroupSection:
+    """What the sessions of a unit, a unit type or a stand show together, where it is made of its records of now."""
+    group = store.groups.find(level, name)
+    answer = current(store, group)
+    if answer is None:
+        return GroupSection(group, None, "")
+    if answer.document is None:
+        return GroupSection(group, None, answer.summary)
+    shown = read_group(answer.document)
+    if not shown.sessions:
+        return GroupSection(group, None, "")
+    accepted = in_force(store.models.page(ModelQuery(limit=MOST_REVISIONS))) if shown.findings else ()
+    return GroupSection(group, group_view(answer, shown, accepted), "")

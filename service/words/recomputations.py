@@ -1,0 +1,36 @@
+"""What another model moved in stored sessions, in words."""
+
+from collections.abc import Sequence
+
+from service.measures import COVERAGE, deviation_measure, measured
+from service.records.recomputation import MovedParameter, Progress, Recomputation
+from service.words.names import PARAMETER_NAMES
+
+GIVEN_UP = "The program failed at it, several times: its sessions keep what they had."
+UNTOUCHED = "no parameter moved"
+
+
+def progress_of(found: Sequence[Recomputation]) -> str:
+    """How far the sessions of all units have come, and what that moved; empty where none is computed again."""
+    if not found:
+        return ""
+    done = [one.outcome for one in found if one.outcome is not None]
+    waiting = sum(one.state is Progress.WAITING for one in found)
+    sessions, moved = sum(one.recomputed for one in done), sum(len(one.verdicts) for one in done)
+    units = f"{len(done)} of {_counted(len(found), 'unit')}"
+    verdicts = f"the verdict of {_counted(moved, 'session')} is another" if moved else "no verdict moved"
+    still = f" {_counted(waiting, 'unit')} still to come." if waiting else ""
+    return f"{_counted(sessions, 'session')} of {units} computed again: {verdicts}.{still}"
+
+
+def moved_in_words(moved: MovedParameter | None) -> str:
+    """``bias of A3 by 12 ± 30 µg``: the change beside the uncertainty of what changed."""
+    if moved is None:
+        return UNTOUCHED
+    u = COVERAGE * moved.u
+    measure = deviation_measure(moved.kind, moved.parameter, max(abs(moved.change), u))
+    return f"{PARAMETER_NAMES[moved.parameter]} of {moved.sensor} by {measured(moved.change, u, measure)}"
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}{'' if count == 1 else 's'}"

@@ -1,0 +1,145 @@
+"""Work that no process outlives is given up after some tries, said so, and goes on when there is something new."""
+
+import os
+import signal
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from threading import Event
+from typing import Any
+
+import pytest
+
+from service.background.bell import Bell
+from service.background.claimed import Work, work_next
+from service.background.diagnose_waiting import MOST_ATTEMPTS, Diagnosing
+from service.background.helper import Failure, Helper, Still
+from service.background.pool_waiting import GROUPS
+from service.background.recompute_waiting import MODELS
+from service.background.refresh_waiting import OUTLOOKS
+from service.flows.receive import upload
+from service.flows.refresh_group import current
+from service.metrics import Metrics
+from service.records.group import Level
+from service.records.model import Evidence, ModelRevision, Scope
+from service.records.recomputation import Progress
+from service.settings import Settings
+from service.storage import Storage
+from service.words.group import FAILED
+from tests.databases import one_engine
+from tests.service.grouped import GROUP
+from tests.service.sessions import session_id
+
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
+UNIT = "BA-017"
+
+
+@pytest.fixture
+def helper(settings: Settings) -> Iterator[Helper]:
+    """A process that makes what is asked for."""
+    started = Helper(settings)
+    yield started
+    started.end()
+
+
+@pytest.fixture
+def two(storage: Storage) -> Storage:
+    """A store of a unit with two sessions, whose outlook and groups are asked for."""
+    for content in GROUP[:2]:
+        upload(storage, content, "a.json", NOW, is_dated_later=True)
+    return storage
+
+
+def killed(helper: Helper, one: object, now: datetime, still: Still) -> Failure | None:
+    """The process dies at its work, as when the machine has no memory left."""
+    helper.start()
+    process = helper._process
+    assert process is not None
+    assert process.pid is not None
+    os.kill(process.pid, signal.SIGKILL)
+    return helper.refresh(UNIT, now, still)
+
+
+def tries(own: Diagnosing, helper: Helper, work: Work[Any]) -> int:
+    """How often it is begun until nothing of it waits."""
+    deadly = Work(work.name, work.queue, killed, work.give_up, work.most)
+    count = 0
+    while work_next(own, helper, Event(), deadly):
+        count += 1
+    return count
+
+
+def diagnosing(settings: Settings, storage: Storage) -> Diagnosing:
+    return Diagnosing(settings, storage, lambda: NOW, Metrics(), Bell())
+
+
+@one_engine
+def test_an_outlook_is_given_up_until_its_unit_s_history_changes(
+    settings: Settings, two: Storage, helper: Helper
+) -> None:
+    assert tries(diagnosing(settings, two), helper, OUTLOOKS) == MOST_ATTEMPTS + 1
+    upload(two, GROUP[2], "a.json", NOW, is_dated_later=True)
+    with two.database.reading() as store:
+        assert store.pending_outlooks.waiting(NOW, 10) == (UNIT,)
+
+
+@one_engine
+def test_another_start_tries_an_outlook_again(settings: Settings, two: Storage, helper: Helper) -> None:
+    tries(diagnosing(settings, two), helper, OUTLOOKS)
+    with two.database.writing() as store:
+        assert store.pending_outlooks.waiting(NOW, 10) == ()
+        store.pending_outlooks.try_again()
+        assert store.pending_outlooks.waiting(NOW, 10) == (UNIT,)
+
+
+@one_engine
+def test_a_group_is_given_up_with_these_sessions_and_says_so(settings: Settings, two: Storage, helper: Helper) -> None:
+    assert tries(diagnosing(settings, two), helper, GROUPS) == 3 * (MOST_ATTEMPTS + 2)
+    with two.database.reading() as store:
+        group = store.groups.find(Level.UNIT, UNIT)
+        answer = current(store, group)
+    assert answer is not None
+    assert (answer.summary, answer.document) == (FAILED, None)
+    upload(two, GROUP[2], "a.json", NOW, is_dated_later=True)
+    with two.database.reading() as store:
+        assert current(store, group) is None
+
+
+@one_engine
+def test_sessions_keep_what_they_had_where_no_process_outlives_their_model(
+    settings: Settings, two: Storage, helper: Helper
+) -> None:
+    with two.database.writing() as store:
+        revision = store.models.add(accepted())
+        store.recomputations.ask(revision.id, Scope.UNIT, UNIT, NOW)
+    assert tries(diagnosing(settings, two), helper, MODELS) == MOST_ATTEMPTS + 1
+    with two.database.reading() as store:
+        assert [one.state for one in store.recomputations.of(revision.id)] == [Progress.GIVEN_UP]
+        assert store.sessions.get(session_id(GROUP[0])).revision == 0
+
+
+def accepted() -> ModelRevision:
+    evidence = Evidence(1e-4, 7.0, (1e-8,), (1e-9,), ("(m/s²)⁻²",), {}, (), "", None)
+    return ModelRevision(
+        0, Scope.UNIT, UNIT, "cubic-nonlinearity", ("A2",), session_id(GROUP[0]), evidence, "K. Ito", "", NOW
+    )
+
+
+@one_engine
+def test_a_session_at_fault_is_not_blamed_on_its_group(storage: Storage, two: Storage) -> None:
+    with two.database.writing() as store:
+        group = store.groups.find(Level.UNIT, UNIT)
+        for _ in range(2):
+            store.pending_groups.claim(group, NOW, NOW)
+        store.pending_groups.blame_none(group)
+        assert store.pending_groups.claim(group, NOW, NOW) == 1
+
+
+@one_engine
+def test_what_fails_with_a_word_is_put_off_and_never_given_up(settings: Settings, two: Storage, helper: Helper) -> None:
+    def fails(helper: Helper, one: str, now: datetime, still: Still) -> Failure | None:
+        return Failure("ValueError", "no")
+
+    failing = Work(OUTLOOKS.name, OUTLOOKS.queue, fails, OUTLOOKS.give_up)
+    own = diagnosing(settings, two)
+    assert work_next(own, helper, Event(), failing)
+    assert not work_next(own, helper, Event(), failing)
