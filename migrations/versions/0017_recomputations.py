@@ -1,4 +1,4 @@
-"""Sessions that are computed again because a model changed, and what moved.
+"""Sessions that are computed again because a model changed, and what moved; what groups show, in a word.
 
 Revision: 0017, after 0016
 """
@@ -35,6 +35,8 @@ def upgrade() -> None:
         sqlite_where=sa.text("state = 'waiting'"),
         postgresql_where=sa.text("state = 'waiting'"),
     )
+    shows = sa.Column("shows", sa.String(20), nullable=False, server_default="nothing")
+    op.add_column("group_diagnoses", shows)
     op.add_column("pending_groups", sa.Column("attempts", sa.Integer(), nullable=False, server_default="0"))
     op.add_column("pending_outlooks", sa.Column("attempts", sa.Integer(), nullable=False, server_default="0"))
 
@@ -43,5 +45,6 @@ def downgrade() -> None:
     """What moved is in the audit too."""
     op.drop_column("pending_outlooks", "attempts")
     op.drop_column("pending_groups", "attempts")
+    op.drop_column("group_diagnoses", "shows")
     op.drop_index("ix_recomputations_waiting", "recomputations")
     op.drop_table("recomputations")

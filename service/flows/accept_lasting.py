@@ -8,6 +8,7 @@ from datetime import datetime
 from estimator.errors import Problem
 from estimator.groups import GroupFinding
 from service.errors import ConflictError, RefusedError
+from service.flows.flagging.lasting import settle_accepted
 from service.flows.refresh_group import current, members_of
 from service.records.group import Group, GroupShown
 from service.records.model import Evidence, ModelRevision, NewLasting, Pooled
@@ -46,6 +47,7 @@ def accept_lasting(storage: Storage, group: Group, new: NewLasting, now: datetim
                 accepted_at=now,
             )
         )
+        settle_accepted(store, revision, finding, now)
         units = store.recomputations.ask(revision.id, scope, finding.subject, now)
         details = {"revision": revision.id, "cause": finding.cause, "sensors": list(finding.sensors), "units": units}
         shows = {"group": f"{SCOPES[group.level.value]} {group.name}", "sessions": shown.sessions, "note": new.note}

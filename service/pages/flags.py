@@ -16,6 +16,7 @@ MATTERS = {
     Matter.SHIFTED: "Stand has shifted",
     Matter.JUMP: "Has jumped",
     Matter.DRIFT: "Drifting",
+    Matter.LASTING: "Sessions together",
     Matter.OVERDUE: "Calibration overdue",
 }
 STATES = {FlagState.RAISED: "open", FlagState.ACKNOWLEDGED: "acknowledged", FlagState.RESOLVED: "resolved"}

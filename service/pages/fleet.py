@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from service.pages.fleet_view import DUE, ORDERS, PAGE_SIZE, FleetView
+from service.pages.group import FoundLine
 from service.records.fleet import FleetChoices
 from service.records.reservation import Reservations
 from service.records.stand import StandCondition
@@ -85,6 +86,8 @@ class FleetPage:
     """Units and lots that drift unlike the others."""
     questioned: tuple[Questioned, ...]
     """Sessions that wait for an engineer, the latest first."""
+    together: FoundLine | None
+    """What sessions together show that none shows alone; None where they show nothing."""
     overdue: str
     """How many units are overdue, in words; empty where none is."""
     choices: FleetChoices
@@ -112,6 +115,7 @@ def fleet_page(
     now: datetime,
     *,
     overdue: int = 0,
+    together: FoundLine | None = None,
     unlike: Sequence[Standout] = (),
     stands: Sequence[StandCondition] = (),
     questioned: Sequence[Questioned] = (),
@@ -132,6 +136,7 @@ def fleet_page(
         stands=tuple(stand for stand in stands if stand.shifts),
         standouts=tuple(unlike[:MOST_STANDOUTS]),
         questioned=tuple(questioned),
+        together=together,
         overdue=f"{overdue} unit{'' if overdue == 1 else 's'} overdue for calibration" if overdue else "",
         choices=choices,
         dates=DUE,

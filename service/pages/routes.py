@@ -15,7 +15,7 @@ from service.pages.fleet import fleet_page
 from service.pages.fleet_view import FleetAsked, FleetView
 from service.pages.follow import SOONEST, follow_seconds
 from service.pages.forms import Key
-from service.pages.group import group_section
+from service.pages.group import found_line, group_section
 from service.pages.received import FormFiles
 from service.pages.render import render
 from service.pages.session import session_page
@@ -62,6 +62,7 @@ def show_fleet(
         view,
         now,
         overdue=store.outlooks.overdue(now),
+        together=found_line(store),
         unlike=fleet_standouts(store),
         stands=stand_conditions(store),
         questioned=store.states.questioned(MOST_QUESTIONED),

@@ -23,6 +23,8 @@ class Matter(StrEnum):
     """A parameter of a sensor within tolerance has jumped between two sessions."""
     DRIFT = "drift"
     """A parameter of a sensor within tolerance drifts, ages or moves at no steady rate."""
+    LASTING = "lasting"
+    """What the sessions of a unit, a unit type or a stand show together."""
     OVERDUE = "overdue"
     """The unit's calibration is overdue."""
 

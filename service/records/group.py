@@ -15,6 +15,14 @@ class Level(StrEnum):
     STAND = "stand"
 
 
+class Shows(StrEnum):
+    """What a group's sessions show together, in a word."""
+
+    NOTHING = "nothing"
+    NAMED = "named"
+    UNEXPLAINED = "unexplained"
+
+
 @dataclass(frozen=True)
 class Group:
     """A unit, a unit type or a stand."""
@@ -68,10 +76,19 @@ class GroupAnswer:
     """Digest of its sessions."""
     sessions: int
     summary: str
+    shows: Shows
     document: str | None
     """imu-fleet-diagnosis/1 with what the service adds; None where it could not be made."""
     estimator_version: str
     created_at: datetime
+
+
+@dataclass(frozen=True)
+class FoundTogether:
+    """A group whose sessions show something, in a line."""
+
+    group: Group
+    summary: str
 
 
 @dataclass(frozen=True)

@@ -36,6 +36,7 @@ class GroupDiagnosisRow(Base):
     """Digest of its sessions."""
     sessions: Mapped[int]
     summary: Mapped[str]
+    shows: Mapped[str] = mapped_column(String(20))
     document: Mapped[bytes | None]
     """None where it could not be made."""
     estimator_version: Mapped[str] = mapped_column(String(40))

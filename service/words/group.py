@@ -3,13 +3,16 @@
 from collections.abc import Sequence
 
 from estimator.groups import GroupFinding
-from service.words.causes import cause_name
+from service.records.model import Scope
+from service.words.causes import cause_name, cause_on
 
 NOT_MADE = "The program failed at it: a fault of the program, not of the session. The next version tries again."
 FAILED = (
     "The program failed at what these sessions show together: that is a fault of the program, not of the sessions. The "
     "next version of the program tries again."
 )
+LONGEST_PLACE = 200
+"""Characters that a flag keeps of its place."""
 NO_SESSION = "No accepted session calibrates a block."
 
 
@@ -35,3 +38,15 @@ def statement(finding: GroupFinding) -> str:
         return finding.sentence
     others = " or ".join(dict.fromkeys(map(cause_name, finding.alternatives)))
     return f"{finding.sentence.removesuffix('.')}, unless it is {others}."
+
+
+def lasting_place(scope: Scope, subject: str, finding: GroupFinding | None = None) -> str:
+    """``stand ODG-1: beta eccentricity``: where a flag on it is; without a finding how those of a group begin."""
+    whose = f"{scope} {subject}: "
+    return whose if finding is None else f"{whose}{cause_on(finding.cause, finding.sensors)}"[:LONGEST_PLACE]
+
+
+def lasting_summary(scope: Scope, finding: GroupFinding) -> str:
+    """``The sessions on stand ODG-1 show together: The angle scale of the head is off centre.``"""
+    at = "on" if scope is Scope.STAND else "of"
+    return f"The sessions {at} {scope} {finding.subject} show together: {statement(finding)}"

@@ -64,6 +64,13 @@ class Flags(Queries):
         found = self._session.execute(query.where(FlagRow.matter.in_(matters), FlagRow.state != FlagState.RESOLVED))
         return tuple(_flag(row, serial) for row, serial in found)
 
+    def of_group(self, matter: Matter, place: str) -> tuple[Flag, ...]:
+        """All flags on a matter at places that begin so, oldest first, without their lives."""
+        query = select(FlagRow, UnitRow.serial).join(UnitRow, UnitRow.id == FlagRow.unit_id)
+        own = (FlagRow.matter == matter, FlagRow.place.startswith(place, autoescape=True))
+        found = self._session.execute(query.where(*own).order_by(FlagRow.id))
+        return tuple(_flag(row, serial) for row, serial in found)
+
     def unit_of(self, id: int) -> str:
         """Serial number of a flag's unit."""
         query = select(UnitRow.serial).join(FlagRow, FlagRow.unit_id == UnitRow.id).where(FlagRow.id == id)

@@ -3,13 +3,13 @@
 import zlib
 from datetime import datetime
 
-from sqlalchemy import ColumnElement, Select, and_, delete, func, or_, select
+from sqlalchemy import ColumnElement, Select, and_, case, delete, func, or_, select
 
 from estimator.groups.statistics import FORMAT
 from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
-from service.records.group import Group, GroupAnswer, Level, Member, Members
-from service.storage.group_tables import GroupDiagnosisRow, SessionStatisticsRow
+from service.records.group import FoundTogether, Group, GroupAnswer, Level, Member, Members, Shows
+from service.storage.group_tables import GroupDiagnosisRow, PendingGroupRow, SessionStatisticsRow
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
 from service.storage.tables import SessionRow, StandRow, UnitRow, UnitTypeRow
@@ -17,6 +17,8 @@ from service.storage.tables import SessionRow, StandRow, UnitRow, UnitTypeRow
 MOST = 60
 """Sessions of a group that are pooled, the newest. An effect of one standard error in each reaches 8, at which it is
 named, at the 64th: fewer would miss what is worth a name. More would cost minutes, and tell of years ago."""
+WIDEST = (Level.STAND, Level.TYPE, Level.UNIT)
+"""What concerns most units first."""
 KEYS = {Level.UNIT: UnitRow.id, Level.TYPE: UnitTypeRow.id, Level.STAND: StandRow.id}
 CALLED = {Level.UNIT: UnitRow.serial, Level.TYPE: UnitTypeRow.name, Level.STAND: StandRow.name}
 WORDS = {Level.UNIT: "unit", Level.TYPE: "unit type", Level.STAND: "stand"}
@@ -87,7 +89,23 @@ class Groups(Queries):
         if row is None:
             return None
         document = None if row.document is None else zlib.decompress(row.document).decode()
-        return GroupAnswer(row.rests_on, row.sessions, row.summary, document, row.estimator_version, row.created_at)
+        shows = Shows(row.shows)
+        made = (row.estimator_version, row.created_at)
+        return GroupAnswer(row.rests_on, row.sessions, row.summary, shows, document, *made)
+
+    def found(self, limit: int) -> tuple[int, tuple[FoundTogether, ...]]:
+        """How many groups show something, and the first of them: stands before types before units. Those whose answer
+        is being made again are left out."""
+        row, asked = GroupDiagnosisRow, PendingGroupRow
+        again = select(asked.id).where(asked.level == row.level, asked.group_id == row.group_id).exists()
+        own = (row.shows != Shows.NOTHING, ~again)
+        count = self._session.scalar(select(func.count()).select_from(row).where(*own)) or 0
+        if not count:
+            return 0, ()
+        order = case({level.value: place for place, level in enumerate(WIDEST)}, value=row.level)
+        query = select(row.level, row.group_id, row.summary).where(*own).order_by(order, row.group_id).limit(limit)
+        found = self._session.execute(query).all()
+        return count, tuple(FoundTogether(self.by_key(Level(level), key), text) for level, key, text in found)
 
     def put(self, group: Group, answer: GroupAnswer) -> None:
         """Stores what was found of a group in place of what was."""

@@ -1,0 +1,97 @@
+"""What sessions show together is flagged once, until it is accepted into the model or somebody settles it."""
+
+from datetime import UTC, datetime
+
+import pytest
+
+from service.flows.accept_lasting import accept_lasting
+from service.flows.handle_flag import resolve_flag
+from service.flows.receive import upload
+from service.flows.refresh_group import refresh_group
+from service.flows.withdraw_model import withdraw_model
+from service.flows.withdraw_session import withdraw_session
+from service.pages.group import found_line
+from service.records.flag import Flag, FlagState, Matter
+from service.records.group import Group, Level
+from service.records.model import NewLasting
+from service.storage import Storage
+from service.storage.queries.flags import FlagQuery
+from tests.databases import one_engine
+from tests.service.grouped import CUBIC, cubic_session
+from tests.service.records import step, way
+from tests.service.sessions import session_id
+
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
+GROUP = tuple(cubic_session(number, cubic=4 * CUBIC) for number in range(5))
+NEW = NewLasting("cubic-nonlinearity", (), "K. Ito", "")
+
+
+def group(storage: Storage) -> Group:
+    with storage.database.reading() as store:
+        return store.groups.find(Level.UNIT, "BA-017")
+
+
+def flags(storage: Storage) -> list[Flag]:
+    with storage.database.reading() as store:
+        return list(store.flags.page(FlagQuery(matter=Matter.LASTING)))
+
+
+def refreshed(storage: Storage) -> list[Flag]:
+    refresh_group(storage, group(storage), NOW)
+    return flags(storage)
+
+
+@pytest.fixture
+def flagged(storage: Storage) -> Storage:
+    """A store of a unit whose four sessions show a cubic term, and its flag."""
+    for content in GROUP[:4]:
+        upload(storage, content, "a.json", NOW)
+    refresh_group(storage, group(storage), NOW)
+    return storage
+
+
+def test_an_effect_is_flagged_once(flagged: Storage) -> None:
+    upload(flagged, GROUP[4], "a.json", NOW)
+    (flag,) = refreshed(flagged)
+    assert (flag.unit, flag.place) == ("BA-017", "unit BA-017: cubic nonlinearity (A2)")
+    assert flag.summary.startswith("The sessions of unit BA-017 show together: A2 bends")
+    assert flag.session == session_id(GROUP[3])
+
+
+@one_engine
+def test_what_is_accepted_is_known_and_comes_back_when_it_is_withdrawn(flagged: Storage) -> None:
+    revision = accept_lasting(flagged, group(flagged), NEW, NOW)
+    (flag,) = refreshed(flagged)
+    assert (flag.state, flag.changes[-1].text) == (
+        FlagState.RESOLVED, "Accepted into the model of unit BA-017, revision 1.",
+    )  # fmt: skip
+    withdraw_model(flagged, revision.id, "K. Ito", "seen in error", NOW)
+    assert [f.state for f in refreshed(flagged)] == [FlagState.RAISED, FlagState.RESOLVED]
+
+
+@one_engine
+def test_what_a_person_settled_stays_settled(flagged: Storage) -> None:
+    resolve_flag(flagged, flags(flagged)[0].id, "K. Ito", "by design", NOW)
+    upload(flagged, GROUP[4], "a.json", NOW)
+    assert [f.state for f in refreshed(flagged)] == [FlagState.RESOLVED]
+
+
+@one_engine
+def test_what_the_sessions_no_longer_show_is_proposed_to_be_resolved(flagged: Storage) -> None:
+    for content in GROUP[:3]:
+        withdraw_session(flagged, way(flagged), session_id(content), step())
+    (flag,) = refreshed(flagged)
+    assert (flag.state, flag.proposal) == (FlagState.RAISED, "The sessions together no longer show it.")
+
+
+@one_engine
+def test_the_fleet_says_what_was_found_while_it_is_of_the_sessions_of_now(flagged: Storage) -> None:
+    with flagged.database.reading() as store:
+        line = found_line(store)
+    assert line is not None
+    ((home, whose, what),) = line.found
+    assert (home, whose, line.more) == ("/units/BA-017#together", "unit BA-017", 0)
+    assert what.startswith("A2 bends with the cube")
+    upload(flagged, GROUP[4], "a.json", NOW)
+    with flagged.database.reading() as store:
+        assert found_line(store) is None
