@@ -14,6 +14,7 @@ from estimator.groups.findings import LARGEST, Told, finding_of, structures, tol
 from estimator.groups.gain import gain_of
 from estimator.groups.layout import LEVELS, STAND, TYPE, UNIT, Layout
 from estimator.groups.limits import limits
+from estimator.groups.pictures import pictures
 from estimator.groups.pool import Model, pooled
 from estimator.groups.results import EmpiricalTerm, GroupDiagnosis, GroupFinding
 from estimator.groups.selection import Selection, select
@@ -63,13 +64,15 @@ def diagnose_statistics(
     separator = Separator(tuple(sessions))
     found = [finding_of(selection, one, separator.measurements(selection, one)) for one in each]
     scale = selection.weighed()
+    whole = merged(found)
+    drawn = pictures(whole, sessions) if sessions else [None] * len(whole)
     return GroupDiagnosis(
         level=level,
         subject=subject_of(statistics[-1], level),
         sessions=len(statistics),
         first=statistics[0].started_at,
         last=statistics[-1].started_at,
-        findings=tuple(merged(found)),
+        findings=tuple(replace(f, picture=picture) for f, picture in zip(whole, drawn, strict=True)),
         terms=tuple(learned_terms(selection, level, sessions)),
         structures=structures(selection),
         limits=limits(pooled(layout, Model(), selection.scale), level),

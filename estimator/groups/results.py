@@ -71,6 +71,8 @@ class GroupFinding:
     sentence: str
     advice: str
     sessions: tuple[SessionAmplitude, ...]
+    picture: dict[str, Any] | None = None
+    """Pooled residual of one sensor against what the effect depends on, without and with it; None without sessions."""
 
     def to_dict(self) -> dict[str, Any]:
         found = asdict(self)
@@ -142,6 +144,8 @@ class EmpiricalTerm:
 
     equation: str
     """With units."""
+    words: tuple[str, ...]
+    """What each amplitude multiplies: ``sin 3β``; of the applied vector with the angle it turns, ``δβ: sin 3β``."""
     sensors: tuple[str, ...]
     """None where it acts on the applied vector."""
     subject: str
@@ -161,7 +165,7 @@ class EmpiricalTerm:
 
     def to_dict(self) -> dict[str, Any]:
         found = asdict(self)
-        for name in ("sensors", "amplitude", "sigma", "units"):
+        for name in ("words", "sensors", "amplitude", "sigma", "units"):
             found[name] = list(found[name])
         return found
 

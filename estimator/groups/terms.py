@@ -26,6 +26,7 @@ from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.groups.candidates import columns_of
 from estimator.groups.evidence import ALPHA, log_bayes
 from estimator.groups.library import library
+from estimator.groups.pictures import Pictured, left_without, pooled_picture, values_of, variance_of
 from estimator.groups.results import EmpiricalTerm
 from estimator.groups.scores import inverse
 from estimator.groups.statistics import HARMONIC
@@ -39,9 +40,6 @@ FEWEST = 4
 
 MOST = 4
 """Terms of one place; what needs more is no simple law."""
-
-BINS = 24
-"""Points of the picture of a residual against its variable."""
 
 Key = tuple[str, ...]
 """The words of a term: the same term in every session."""
@@ -223,6 +221,7 @@ def shown(subject: str, terms: Learned, whole: Sequence[Library]) -> EmpiricalTe
     nearest, apart = nearest_cause(terms, whole)
     return EmpiricalTerm(
         equation=equation(terms, units),
+        words=tuple(w for key in terms.keys for w in key),
         sensors=(terms.sensor,) if terms.sensor else (),
         subject=subject,
         amplitude=tuple(terms.value.tolist()),
@@ -268,51 +267,12 @@ def nearest_cause(terms: Learned, whole: Sequence[Library]) -> tuple[str, float]
 
 
 def picture(terms: Learned, whole: Sequence[Library], variable: str) -> dict[str, object]:
-    """Pooled residual of the place against a variable, mean of each bin, before and after; m/s² (rad/s)."""
-    x, before, after, sigma = [], [], [], []
+    """Pooled residual of the place against a variable, before and after."""
+    parts = []
     for one in whole:
         baseline = one.residuals.baseline
-        names = [s.name for s in baseline.session.sensors]
-        i = names.index(terms.sensor) if terms.sensor else 0
-        left = residual_without(one, terms)
-        x.append(variable_values(baseline, i, variable))
-        before.append(baseline.residual[:, i])
-        after.append(left[:, i])
-        sigma.append(np.sqrt(baseline.variance[:, i]))
-    place, weight = np.concatenate(x), np.concatenate(sigma) ** -2.0
-    edges = np.linspace(place.min(), place.max() + 1e-12, BINS + 1)
-    number = np.clip(np.digitize(place, edges) - 1, 0, BINS - 1)
-    total = np.bincount(number, weights=weight, minlength=BINS)
-    seen = total > 0
-    mean = [
-        np.bincount(number, weights=weight * np.concatenate(v), minlength=BINS)[seen] / total[seen]
-        for v in (before, after)
-    ]
-    return {
-        "variable": variable,
-        "at": ((edges[1:] + edges[:-1]) / 2)[seen].tolist(),
-        "before": mean[0].tolist(),
-        "after": mean[1].tolist(),
-        "sigma": (total[seen] ** -0.5).tolist(),
-    }
-
-
-def residual_without(one: Library, terms: Learned) -> Array:
-    """(R, m) m/s² (rad/s): what the calibration leaves once the terms are taken out."""
-    baseline, effect = one.residuals.baseline, terms.predicted(one)
-    step = one.residuals.response @ one.residuals.whitened(effect[..., None])[:, 0]
-    m = effect.shape[1]
-    absorbed = (baseline.design * step.reshape(m, 5)).sum(axis=-1)
-    return np.asarray(baseline.residual - (effect - absorbed))
-
-
-def variable_values(baseline: Baseline, i: int, variable: str) -> Array:
-    """(R,) of what a picture is drawn over."""
-    setting = baseline.setting
-    if variable == "(t − t̄)" and setting.time is not None:
-        return setting.time - setting.time.mean()
-    if variable in ("(T − T̄)", "dT/dt") and setting.temperature is not None:
-        return setting.temperature - setting.temperature.mean()
-    if variable == "β" and setting.beta is not None:
-        return np.mod(setting.beta, 2 * np.pi)
-    return setting.a[:, i] / setting.norm[i]
+        i = [s.name for s in baseline.session.sensors].index(terms.sensor) if terms.sensor else 0
+        left = left_without(one.residuals, terms.predicted(one))[:, i]
+        at = values_of(baseline, i, variable)
+        parts.append(Pictured(at, baseline.residual[:, i], left, variance_of(baseline, i)))
+    return pooled_picture(parts, variable) | {"sensor": terms.sensor}

@@ -121,6 +121,14 @@ def _adjusted() -> Intervention:
     return Intervention(ADJUSTED, "adjustment", note, back, "R. Duarte", measured=True)
 
 
+ECCENTRIC_STAND, ECCENTRICITY = "ODG-2", (3.6e-6, -2.0e-6)
+"""Whose angle scale sits off centre, and by how much: along cos β and sin β, rad. Below an arcsecond, and below what
+any session sees."""
+WAVY_STAND, WAVE = "ODG-1", 4.4e-6
+"""Whose head is turned by sin 3β, rad, as three feet of a table would: no cause of the catalogue."""
+CUBIC = 4.4e-8
+"""(m/s²)⁻² of every accelerometer: a property of their design, 4.2 µg/g³."""
+
 CAST = (
     Member(
         "BA-101", ACCELEROMETER, "stable; the head's angle scale was off centre in the last session", 14,

@@ -14,7 +14,18 @@ from estimator.session import ACCELEROMETER, AS_FOUND, AS_LEFT, GYROSCOPE, ROTAT
 from estimator.simulate import scattered, simulate
 from estimator.writing import session_document
 from service.demo.blocks import norms, schedule_of, sensors_of
-from service.demo.cast import CAST, END, START, YEARS, Member
+from service.demo.cast import (
+    CAST,
+    CUBIC,
+    ECCENTRIC_STAND,
+    ECCENTRICITY,
+    END,
+    START,
+    WAVE,
+    WAVY_STAND,
+    YEARS,
+    Member,
+)
 from service.demo.changes import DEGREE_PER_HOUR, ELEMENT, MICRO, Change, step_of
 from service.demo.hidden import with_effect
 from service.demo.other_programmes import alignment, recording, turntable_truth
@@ -30,6 +41,8 @@ POSITIONS = (12, 24)
 """A run: a short session and a full one."""
 ELEVATION_DEG = 40.0
 """Of the head, degrees; `imu-health simulate` takes the same."""
+STEEP_DEG = 65.0
+"""Of short sessions on the eccentric stand: at one elevation an eccentric scale looks like a wobbling axis."""
 NOISE = {ACCELEROMETER: 3e-6, GYROSCOPE: 0.3}
 """One sigma of an averaged reading: V; pulses."""
 WANDER = {
@@ -151,7 +164,8 @@ def _measured(
 ) -> CalibrationSession:
     """The member on one of the stands."""
     stand, positions = STANDS[rng.integers(len(STANDS))], POSITIONS[rng.integers(len(POSITIONS))]
-    schedule = schedule_of(member.kind, SENSORS, stand, ELEVATION_DEG, positions)
+    elevation = STEEP_DEG if stand == ECCENTRIC_STAND and positions == POSITIONS[0] else ELEVATION_DEG
+    schedule = schedule_of(member.kind, SENSORS, stand, elevation, positions)
     rows = len(schedule.readings)
     schedule = replace(
         schedule,
@@ -162,7 +176,23 @@ def _measured(
         temperature=np.round(21.0 + 0.3 * rng.standard_normal() + 0.02 * np.sqrt(np.arange(rows)), 2),
     )
     seated = _turned(truth) if stand == TURNED_STAND and at >= TURNED_AT else truth
-    return simulate(schedule, seated, rng, noise=noise)
+    stated = schedule.beta
+    assert stated is not None
+    measured = simulate(replace(schedule, beta=stated + _off(stand, stated)), seated, rng, noise=noise)
+    readings = measured.readings + (_bent(measured, truth) if member.kind == ACCELEROMETER else 0.0)
+    return replace(measured, beta=stated, readings=readings)
+
+
+def _off(stand: str, beta: Array) -> Array:
+    """(R,) rad, by which the head truly stands further than its scale says."""
+    if stand == ECCENTRIC_STAND:
+        return ECCENTRICITY[0] * np.cos(beta) + ECCENTRICITY[1] * np.sin(beta)
+    return WAVE * np.sin(3 * beta) if stand == WAVY_STAND else np.zeros_like(beta)
+
+
+def _bent(session: CalibrationSession, truth: SensorParameters) -> Array:
+    """(R, m) reading units: the cubic term that all accelerometers of the type have."""
+    return np.asarray(truth.scale * CUBIC * (session.readings / truth.scale) ** 3)
 
 
 def _turned(truth: SensorParameters) -> SensorParameters:

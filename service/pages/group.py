@@ -1,8 +1,13 @@
 """What a group of sessions shows, as a section of the page of its unit, unit type or stand."""
 
 from dataclasses import dataclass
+from typing import Any
 from urllib.parse import quote
 
+from estimator.groups import GroupFinding
+from estimator.session import ACCELEROMETER, GYROSCOPE
+from service.charts import ChartSet
+from service.charts.groups import forest_chart, picture_chart, picture_table
 from service.flows.refresh_group import current
 from service.judging.model_in_force import in_force
 from service.records.group import Group, Level
@@ -20,6 +25,16 @@ MOST_REVISIONS = 10_000
 
 
 @dataclass(frozen=True)
+class Drawn:
+    """Charts of an effect or of a learned term, and what the last of them shows as a table."""
+
+    forest: ChartSet | None
+    picture: ChartSet | None
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True)
 class GroupSection:
     """Everything the section shows."""
 
@@ -28,6 +43,10 @@ class GroupSection:
     """None until it is made of the group's records of now."""
     failed: str
     """Why it cannot be made; empty else."""
+    effects: tuple[Drawn, ...] = ()
+    """Of every effect in turn."""
+    terms: tuple[Drawn, ...] = ()
+    """Of every learned term in turn."""
 
 
 @dataclass(frozen=True)
@@ -69,4 +88,21 @@ def group_section(store: Store, level: Level, name: str) -> GroupSection:
     if not shown.sessions:
         return GroupSection(group, None, "")
     accepted = in_force(store.models.page(ModelQuery(limit=MOST_REVISIONS))) if shown.findings else ()
-    return GroupSection(group, group_view(answer, shown, accepted), "")
+    return GroupSection(
+        group,
+        group_view(answer, shown, accepted),
+        "",
+        effects=tuple(_drawn_effect(f, f"effect-{k}") for k, f in enumerate(shown.findings, 1)),
+        terms=tuple(_drawn(None, t.picture, t.units[0], f"term-{k}") for k, t in enumerate(shown.terms, 1)),
+    )
+
+
+def _drawn_effect(finding: GroupFinding, name: str) -> Drawn:
+    return _drawn(forest_chart(finding, name), finding.picture, "rad/s" if finding.kind == GYROSCOPE else "", name)
+
+
+def _drawn(forest: ChartSet | None, picture: dict[str, Any] | None, unit: str, name: str) -> Drawn:
+    if picture is None:
+        return Drawn(forest, None, (), ())
+    kind = GYROSCOPE if unit.startswith("rad/s") else ACCELEROMETER
+    return Drawn(forest, picture_chart(picture, kind, name), *picture_table(picture, kind))

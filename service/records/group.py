@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 
-from estimator.groups.results import GroupFinding, GroupGain, PoolLimit
+from estimator.groups.results import EmpiricalTerm, GroupFinding, GroupGain, PoolLimit
 
 
 class Level(StrEnum):
@@ -102,6 +102,7 @@ class GroupShown:
     findings: tuple[GroupFinding, ...]
     limits: tuple[PoolLimit, ...]
     gain: GroupGain | None
-    equations: tuple[str, ...]
-    """Of empirical terms."""
+    terms: tuple[EmpiricalTerm, ...]
+    structures: tuple[str, ...]
+    """Where structure lives that no cause explains."""
     notes: tuple[str, ...]

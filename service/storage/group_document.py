@@ -5,7 +5,7 @@ from typing import Any
 
 from estimator.diagnosis.results import Limit
 from estimator.groups import GroupDiagnosis
-from estimator.groups.results import GroupFinding, GroupGain, Moved, PoolLimit, Rival, SessionAmplitude
+from estimator.groups.results import EmpiricalTerm, GroupFinding, GroupGain, Moved, PoolLimit, Rival, SessionAmplitude
 from service.records.group import Group, GroupShown, Members
 from service.storage.diagnosis_document import finite
 from service.words.group import NO_SESSION
@@ -30,7 +30,8 @@ def read_group(text: str) -> GroupShown:
         findings=tuple(map(_finding, document["findings"])),
         limits=tuple(map(_limit, document["limits"])),
         gain=None if document["gain"] is None else _gain(document["gain"]),
-        equations=tuple(term["equation"] for term in document["terms"]),
+        terms=tuple(map(_term, document["terms"])),
+        structures=tuple(one["where"] for one in document["structures"]),
         notes=tuple(document["notes"]),
     )
 
@@ -44,6 +45,10 @@ def _finding(entry: dict[str, Any]) -> GroupFinding:
         for s in entry["sessions"]
     )
     return GroupFinding(**own)
+
+
+def _term(entry: dict[str, Any]) -> EmpiricalTerm:
+    return EmpiricalTerm(**{name: tuple(value) if isinstance(value, list) else value for name, value in entry.items()})
 
 
 def _gain(entry: dict[str, Any]) -> GroupGain:

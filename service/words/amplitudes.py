@@ -55,7 +55,7 @@ def amplitudes_of(finding: Sized) -> Iterator[str]:
             continue
         expanded = COVERAGE * sigma
         who = f"{finding.sensors[k // each]}: " if len(finding.sensors) > 1 else ""
-        which = f"{_part(finding.cause, k % each)} " if each > 1 else ""
+        which = f"{part_of(finding.cause, k % each)} " if each > 1 else ""
         yield f"{who}{which}{_size(finding.cause, si_unit, value, expanded)}"
 
 
@@ -76,7 +76,7 @@ def _is_stated(value: float) -> bool:
     return isfinite(value) and value != 0
 
 
-def _part(cause: str, k: int) -> str:
+def part_of(cause: str, k: int) -> str:
     """What one of several amplitudes is."""
     known = find(cause)
     return known.amplitude_words[k] if known and known.amplitude_words else f"k{k + 1} ="

@@ -13,6 +13,7 @@ from service.words.amplitudes import amplitudes_of
 from service.words.causes import cause_on, percent
 from service.words.finding import standard_errors
 from service.words.group import over, statement
+from service.words.learned_term import TermView, gain_in_words, term_view
 from service.words.limits import size_of
 from service.words.names import day_of
 
@@ -75,7 +76,10 @@ class GroupView:
     summary: str
     left_out: int
     effects: tuple[LastingEffect, ...]
-    equations: tuple[str, ...]
+    structures: tuple[str, ...]
+    """Where structure lives that no cause explains."""
+    terms: tuple[TermView, ...]
+    gain: str
     notes: tuple[str, ...]
     limits: tuple[tuple[str, str, str], ...]
     """Cause, the smallest size that the pool would find, and that one session would."""
@@ -88,7 +92,9 @@ def group_view(answer: GroupAnswer, shown: GroupShown, accepted: Sequence[ModelR
         summary=answer.summary.partition(": ")[2].capitalize() if not shown.findings else "",
         left_out=shown.left_out,
         effects=tuple(_effect(finding, accepted) for finding in shown.findings),
-        equations=shown.equations,
+        structures=shown.structures,
+        terms=tuple(map(term_view, shown.terms)),
+        gain=gain_in_words(shown.gain),
         notes=shown.notes,
         limits=tuple(_limit(limit) for limit in shown.limits if limit.pool.amplitude),
     )

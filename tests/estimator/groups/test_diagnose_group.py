@@ -38,6 +38,15 @@ def test_what_is_modelled_gains_on_later_sessions(sessions: list[CalibrationSess
     assert gain.moved
 
 
+def test_the_picture_shows_the_effect_without_it_and_none_with_it(sessions: list[CalibrationSession]) -> None:
+    picture = diagnose_group(sessions, "stand").findings[0].picture
+    assert picture is not None
+    before, after = (np.square(np.array(picture[s]) / picture["sigma"]).sum() for s in ("before", "after"))
+    n = len(picture["at"])
+    assert picture["variable"] == "β"
+    assert after < n + 3 * np.sqrt(2 * n) < before
+
+
 def test_the_answer_is_the_agreed_json(sessions: list[CalibrationSession]) -> None:
     found = json.loads(json.dumps(diagnose_group(sessions, "unit").to_dict(), allow_nan=False))
     assert found["format"] == "imu-fleet-diagnosis/1"

@@ -40,6 +40,15 @@ def test_the_page_says_what_they_show_how_large_and_in_which_session(twelve: htt
 
 
 @one_engine
+def test_it_is_drawn_and_the_same_stands_in_tables(twelve: httpx.Client) -> None:
+    page = words(twelve)
+    assert re.search(r"In each session .* \d\.\d ± \d\.\d.µg/g³ together", page)
+    assert re.findall(r"(A2 with(?:out)? it) \d+ of \d+ outside ±2σ", page) == ["A2 without it", "A2 with it"]
+    assert "input, of the applied vector without it with it" in page
+    assert re.search(r"Sizes fixed on the first 8 sessions, tried on the 4 that came later: .* is \d+\.\d more", page)
+
+
+@one_engine
 def test_the_pool_finds_less_than_a_session_does(twelve: httpx.Client) -> None:
     together, alone = re.findall(r"cubic nonlinearity ([\d.]+).µg/g³ ([\d.]+).µg/g³", words(twelve))[0]
     assert 2 * float(together) < float(alone)

@@ -1,0 +1,62 @@
+"""A term that sessions taught, in words: its equation in people's measures, its worth, and what comes near it."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from estimator.groups.results import EmpiricalTerm, GroupGain
+from service.measures import COVERAGE, HARD, measured, number
+from service.words.amplitude_measures import amplitude_measure
+from service.words.causes import cause_name
+
+READS = "{sensor} reads more by"
+TURNS = {"δα": "the elevation α is more by", "δβ": "the angle β is more by"}
+"""How a line of a term begins, by the angle that it turns."""
+
+
+@dataclass(frozen=True)
+class TermView:
+    """A learned term, for people."""
+
+    lines: tuple[tuple[str, str], ...]
+    """What is more, and by how much."""
+    worth: str
+    nearest: str
+
+
+def term_view(term: EmpiricalTerm) -> TermView:
+    """What an engineer reads of a learned term."""
+    near = f"{number(term.separation, 1)} standard errors from it"
+    return TermView(
+        lines=tuple(_lines(term)),
+        worth=f"It removes {number(100 * term.explained, 0)}{HARD}% of what the sessions that took no part in learning "
+        "it show too much.",
+        nearest=f"Nearest in the catalogue: {cause_name(term.nearest)}, {near}." if term.nearest else "",
+    )
+
+
+def _lines(term: EmpiricalTerm) -> Iterator[tuple[str, str]]:
+    """One for the sensor, or for each angle of the applied vector that is turned."""
+    every = list(zip(term.words, term.amplitude, term.sigma, term.units, strict=True))
+    targets = dict.fromkeys(word.partition(": ")[0] if ": " in word else "" for word, *_ in every)
+    for target in targets:
+        own = [one for one in every if (one[0].partition(": ")[0] if ": " in one[0] else "") == target]
+        parts = [_part(word.removeprefix(f"{target}: "), *amount) for word, *amount in own]
+        yield TURNS.get(target, READS.format(sensor=", ".join(term.sensors))), " + ".join(parts)
+
+
+def _part(word: str, value: float, sigma: float, unit: str) -> str:
+    spread = COVERAGE * sigma
+    measure = amplitude_measure("", unit, max(abs(value), spread))
+    return f"({measured(value, spread, measure)}){HARD}·{HARD}{word}"
+
+
+def gain_in_words(gain: GroupGain | None) -> str:
+    """What the findings are worth for sessions that came later; empty where there were too few."""
+    if gain is None:
+        return ""
+    before, after = (number(x, 3) for x in (gain.chi2_per_dof_before, gain.chi2_per_dof_after))
+    likelier = f"{number(gain.log_score, 1)} more" if gain.log_score > 0 else f"{number(-gain.log_score, 1)} less"
+    return (
+        f"Sizes fixed on the first {gain.fitted} sessions, tried on the {gain.held_out} that came later: their χ² per "
+        f"degree of freedom goes from {before} to {after}, their log score is {likelier}."
+    )
