@@ -1,10 +1,12 @@
 """What sessions leave, pooled over what it depends on: measured minus simulated without an effect and with it.
 
 Residuals of all sessions are averaged in bins of one variable, each with the weight of its noise. What the calibration
-absorbs of the effect is in neither: the picture shows what can be seen.
+absorbs of the effect is in neither: the picture shows what can be seen. Of an effect on the applied vector that is the
+angle by which the head seems to stand off at each row, from all sensors together: with their slopes s per rad and
+variances v the angle is Σ(s·r/v)/Σ(s²/v) of their residuals r, its variance 1/Σ(s²/v) and that of the head's own error.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,6 +24,8 @@ from estimator.session import Array, CalibrationSession
 
 BINS = 24
 """Points of a picture: fewer hide a third harmonic, more are noise."""
+ANGLES = ("δβ", "δα")
+"""Of the head: what an effect on the applied vector is drawn as, rad."""
 BETA, TEMPERATURE, TIME, INPUT = "β", "(T − T̄)", "(t − t̄)", "a"
 """What a picture is drawn over: rad, K, s, and the input as a part of the applied vector."""
 
@@ -47,8 +51,8 @@ def pictures(findings: Sequence[GroupFinding], sessions: Sequence[CalibrationSes
 
 
 def _picture_of(finding: GroupFinding, whole: Sequence[WhitenedResiduals]) -> dict[str, Any] | None:
-    parts, sensor = [], ""
-    variable = variable_of(finding)
+    parts: list[Pictured] = []
+    variable, what = variable_of(finding), ""
     for residuals in whole:
         baseline, session = residuals.baseline, residuals.baseline.session
         subjects = (session.unit, session.unit_type, session.stand.id if session.stand else "")
@@ -56,19 +60,49 @@ def _picture_of(finding: GroupFinding, whole: Sequence[WhitenedResiduals]) -> di
         if added is None:
             continue
         effect = added.columns @ added.amplitude
-        names = [s.name for s in session.sensors]
-        sensor = sensor if sensor in names else names[place_of(finding, names, effect)]
-        i = names.index(sensor)
-        left = left_without(residuals, effect)[:, i]
-        at = values_of(baseline, i, variable)
-        parts.append(Pictured(at, baseline.residual[:, i], left, variance_of(baseline, i)))
-    return pooled_picture(parts, variable) | {"sensor": sensor} if parts else None
+        left = left_without(residuals, effect)
+        what = what or (finding.sensors[0] if finding.sensors else leading_angle(baseline, effect))
+        parts += list(drawn(baseline, left, what, variable))
+    return pooled_picture(parts, variable) | {"of": what} if parts else None
 
 
-def place_of(finding: GroupFinding, names: Sequence[str], effect: Array) -> int:
-    """The sensor that is drawn: the finding's first, or the one on which the effect is largest."""
-    own = [names.index(s) for s in finding.sensors if s in names]
-    return own[0] if own else int(np.argmax((effect**2).sum(axis=0)))
+def drawn(baseline: Baseline, left: Array, what: str, variable: str) -> Iterator[Pictured]:
+    """One session: of a sensor by its name, of every one that `EVERY` means, or of an angle; ``left`` (R, m)."""
+    if what in ANGLES:
+        before, variance = seen_as_angle(baseline, baseline.residual, what)
+        after, _ = seen_as_angle(baseline, left, what)
+        yield Pictured(values_of(baseline, 0, variable), before, after, variance)
+        return
+    for i, sensor in enumerate(baseline.session.sensors):
+        if what in (sensor.name, EVERY):
+            at = values_of(baseline, i, variable)
+            yield Pictured(at, baseline.residual[:, i], left[:, i], variance_of(baseline, i))
+
+
+def slopes(baseline: Baseline, angle: str) -> Array | None:
+    """(R, m) change of the inputs, m/s² (rad/s) per rad of an angle of the head; None without a stand."""
+    turn = baseline.setting.d_beta if angle == "δβ" else baseline.setting.d_alpha
+    return None if turn is None else baseline.setting.through(turn[..., None])[..., 0]
+
+
+def leading_angle(baseline: Baseline, effect: Array) -> str:
+    """The angle that an effect (R, m) on the applied vector turns most; none without a stand."""
+    best = {}
+    for angle in ANGLES:
+        slope = slopes(baseline, angle)
+        if slope is not None:
+            best[angle] = float((((slope * effect).sum(axis=1)) ** 2 / (slope**2).sum(axis=1)).sum())
+    return max(best, key=lambda angle: best[angle]) if best else baseline.session.sensors[0].name
+
+
+def seen_as_angle(baseline: Baseline, residual: Array, angle: str) -> tuple[Array, Array]:
+    """(R,) rad and its variance: the angle that the residuals (R, m) of a row look like."""
+    slope = slopes(baseline, angle)
+    assert slope is not None
+    weight = 1 / baseline.variance
+    size = (slope**2 * weight).sum(axis=1)
+    own = float(baseline.session.stand.sigma.beta) if baseline.session.stand and angle == "δβ" else 0.0
+    return (slope * residual * weight).sum(axis=1) / size, 1 / size + own**2
 
 
 def variable_of(finding: GroupFinding) -> str:
@@ -78,7 +112,7 @@ def variable_of(finding: GroupFinding) -> str:
         return TEMPERATURE
     if "time" in known.needs:
         return TIME
-    return INPUT if finding.sensors and EVERY not in finding.sensors else BETA
+    return INPUT if finding.sensors else BETA
 
 
 def pooled_picture(parts: Sequence[Pictured], variable: str) -> dict[str, Any]:

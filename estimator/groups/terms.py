@@ -26,7 +26,7 @@ from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.groups.candidates import columns_of
 from estimator.groups.evidence import ALPHA, log_bayes
 from estimator.groups.library import library
-from estimator.groups.pictures import Pictured, left_without, pooled_picture, values_of, variance_of
+from estimator.groups.pictures import Pictured, drawn, left_without, pooled_picture
 from estimator.groups.results import EmpiricalTerm
 from estimator.groups.scores import inverse
 from estimator.groups.statistics import HARMONIC
@@ -268,11 +268,9 @@ def nearest_cause(terms: Learned, whole: Sequence[Library]) -> tuple[str, float]
 
 def picture(terms: Learned, whole: Sequence[Library], variable: str) -> dict[str, object]:
     """Pooled residual of the place against a variable, before and after."""
-    parts = []
+    parts: list[Pictured] = []
+    what = terms.sensor or terms.keys[0][0].partition(":")[0]
     for one in whole:
-        baseline = one.residuals.baseline
-        i = [s.name for s in baseline.session.sensors].index(terms.sensor) if terms.sensor else 0
-        left = left_without(one.residuals, terms.predicted(one))[:, i]
-        at = values_of(baseline, i, variable)
-        parts.append(Pictured(at, baseline.residual[:, i], left, variance_of(baseline, i)))
-    return pooled_picture(parts, variable) | {"sensor": terms.sensor}
+        left = left_without(one.residuals, terms.predicted(one))
+        parts += list(drawn(one.residuals.baseline, left, what, variable))
+    return pooled_picture(parts, variable) | {"of": what}

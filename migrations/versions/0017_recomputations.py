@@ -1,4 +1,4 @@
-"""Sessions that are computed again because a model changed, and what moved; what groups show, in a word.
+"""Sessions that are computed again because a model changed, and what moved; what is of a group itself.
 
 Revision: 0017, after 0016
 """
@@ -35,8 +35,7 @@ def upgrade() -> None:
         sqlite_where=sa.text("state = 'waiting'"),
         postgresql_where=sa.text("state = 'waiting'"),
     )
-    shows = sa.Column("shows", sa.String(20), nullable=False, server_default="nothing")
-    op.add_column("group_diagnoses", shows)
+    op.add_column("group_diagnoses", sa.Column("own", sa.String(), nullable=False, server_default=""))
     op.add_column("pending_groups", sa.Column("attempts", sa.Integer(), nullable=False, server_default="0"))
     op.add_column("pending_outlooks", sa.Column("attempts", sa.Integer(), nullable=False, server_default="0"))
 
@@ -45,6 +44,6 @@ def downgrade() -> None:
     """What moved is in the audit too."""
     op.drop_column("pending_outlooks", "attempts")
     op.drop_column("pending_groups", "attempts")
-    op.drop_column("group_diagnoses", "shows")
+    op.drop_column("group_diagnoses", "own")
     op.drop_index("ix_recomputations_waiting", "recomputations")
     op.drop_table("recomputations")

@@ -11,9 +11,11 @@ from typing import Any
 import altair as alt
 
 from estimator.groups import GroupFinding
+from estimator.groups.layout import EVERY
+from estimator.groups.pictures import ANGLES
 from service.charts import DATA_FORM, HIGH, LEFT, LOW, RIGHT, UNIT, ChartSet, Panel, filled, padded, specification
 from service.charts.across import BETA, ticks, zero_line
-from service.measures import COVERAGE, Measure, deviation_measure, measured, number
+from service.measures import ARCSEC, COVERAGE, Measure, deviation_measure, measured, number
 from service.words.amplitude_measures import amplitude_measure
 from service.words.amplitudes import part_of
 from service.words.names import day_of
@@ -24,6 +26,8 @@ AIR = 0.04
 """Share of the time that is left empty on either side, so that no mark is cut."""
 POOLED, VALUE = "pooled", "{value}"
 SIDES = ("without it", "with it")
+WHAT = {EVERY: "Every sensor", "δβ": "The angle β,", "δα": "The elevation α,"}
+"""What a picture is of, but for one sensor."""
 BY_ANGLE = "β"
 TITLES = {BY_ANGLE: "β, °", "(T − T̄)": "T − T̄, K", "(t − t̄)": "t − t̄, h", "a": "input, of the applied vector"}
 """Of the axis that a picture is drawn over."""
@@ -49,7 +53,11 @@ def elements_of(finding: GroupFinding) -> Iterator[Element]:
             which = part_of(finding.cause, k % each) if each > 1 else ""
             unit = finding.units[k % len(finding.units)]
             largest = max(abs(value), COVERAGE * sigma)
-            yield Element(k, f"{who}{which}".strip() or "Amplitude", amplitude_measure(finding.cause, unit, largest))
+            yield Element(
+                k,
+                f"{who}{which.removesuffix(' =')}".strip() or "Amplitude",
+                amplitude_measure(finding.cause, unit, largest),
+            )
 
 
 def forest_chart(finding: GroupFinding, name: str) -> ChartSet | None:
@@ -174,6 +182,8 @@ def _largest(picture: dict[str, Any]) -> float:
 
 
 def _measure_of(picture: dict[str, Any], kind: str) -> Measure:
+    if picture["of"] in ANGLES:
+        return ARCSEC
     return deviation_measure(kind, "bias", _largest(picture))
 
 
@@ -181,7 +191,7 @@ def _picture_panel(picture: dict[str, Any], side: str, at: Sequence[float], meas
     values = picture["before" if side == SIDES[0] else "after"]
     outside = sum(abs(v) > COVERAGE * s for v, s in zip(values, picture["sigma"], strict=True))
     return Panel(
-        title=f"{picture['sensor']} {side}" if picture.get("sensor") else side,
+        title=f"{WHAT.get(picture['of'], picture['of'])} {side}",
         description=f"{outside} of {len(values)} outside ±2σ",
         condition=None,
         datasets={

@@ -18,13 +18,13 @@ from service.flows.keep_statistics import add_statistics
 from service.flows.refresh_outlook import END_OF_TIME
 from service.ingest import read_upload
 from service.log import log
-from service.records.group import Group, GroupAnswer, Level, Member, Members, Shows
+from service.records.group import Group, GroupAnswer, Level, Member, Members
 from service.settings import VERSION
 from service.storage import Files, Storage
 from service.storage.files import LOST
 from service.storage.group_document import group_document, read_group
 from service.storage.store import Store
-from service.words.group import FAILED, summary_of_group
+from service.words.group import FAILED, own_of_group, summary_of_group
 
 RULE = b"2"
 """Version of what an answer says of its sessions: those made by an earlier one are made again."""
@@ -90,7 +90,7 @@ def give_up(storage: Storage, group: Group, now: datetime) -> None:
     """Stores of a group that no process outlived its answer; this version does not try again with these sessions."""
     with storage.database.writing() as store:
         asked = store.pending_groups.asked(group)
-        answer = GroupAnswer(digest(members_of(store, group)), 0, FAILED, Shows.NOTHING, None, VERSION, now)
+        answer = GroupAnswer(digest(members_of(store, group)), 0, FAILED, "", None, VERSION, now)
         store.groups.put(group, answer)
         store.pending_groups.settle(asked)
 
@@ -99,7 +99,7 @@ def _answered(
     files: Files, group: Group, members: Members, records: dict[str, SessionStatistics], now: datetime
 ) -> GroupAnswer:
     pooled = _pooled(group, members, records)
-    made = GroupAnswer(digest(members), len(pooled), summary_of_group(0, ()), Shows.NOTHING, None, VERSION, now)
+    made = GroupAnswer(digest(members), len(pooled), summary_of_group(0, ()), "", None, VERSION, now)
     if not pooled:
         return replace(made, document=group_document(group, None, members))
     try:
@@ -109,8 +109,8 @@ def _answered(
         log.error("group failed", level=group.level.value, name=group.name, exc_info=fault)
         return replace(made, summary=FAILED)
     summary = summary_of_group(found.sessions, found.findings, unexplained=found.unexplained)
-    shows = Shows.NAMED if found.findings else Shows.UNEXPLAINED if found.unexplained else Shows.NOTHING
-    return replace(made, summary=summary, shows=shows, document=group_document(group, found, members))
+    own = own_of_group(group, found)
+    return replace(made, summary=summary, own=own, document=group_document(group, found, members))
 
 
 def _pooled(group: Group, members: Members, records: dict[str, SessionStatistics]) -> list[Member]:

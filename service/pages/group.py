@@ -5,6 +5,7 @@ from typing import Any
 from urllib.parse import quote
 
 from estimator.groups import GroupFinding
+from estimator.groups.pictures import ANGLES
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.charts import ChartSet
 from service.charts.groups import forest_chart, picture_chart, picture_table
@@ -30,6 +31,7 @@ class Drawn:
 
     forest: ChartSet | None
     picture: ChartSet | None
+    is_angle: bool
     head: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
 
@@ -62,7 +64,7 @@ class FoundLine:
 def found_line(store: Store) -> FoundLine | None:
     """Of the fleet page; None where no sessions together show anything."""
     count, found = store.groups.found(MOST_FOUND)
-    lines = tuple((home_of(one.group), whose(one.group), one.summary.partition(": ")[2]) for one in found)
+    lines = tuple((home_of(one.group), whose(one.group), one.own) for one in found)
     return FoundLine(lines, count - len(lines)) if lines else None
 
 
@@ -103,6 +105,6 @@ def _drawn_effect(finding: GroupFinding, name: str) -> Drawn:
 
 def _drawn(forest: ChartSet | None, picture: dict[str, Any] | None, unit: str, name: str) -> Drawn:
     if picture is None:
-        return Drawn(forest, None, (), ())
+        return Drawn(forest, None, False, (), ())
     kind = GYROSCOPE if unit.startswith("rad/s") else ACCELEROMETER
-    return Drawn(forest, picture_chart(picture, kind, name), *picture_table(picture, kind))
+    return Drawn(forest, picture_chart(picture, kind, name), picture["of"] in ANGLES, *picture_table(picture, kind))

@@ -15,14 +15,6 @@ class Level(StrEnum):
     STAND = "stand"
 
 
-class Shows(StrEnum):
-    """What a group's sessions show together, in a word."""
-
-    NOTHING = "nothing"
-    NAMED = "named"
-    UNEXPLAINED = "unexplained"
-
-
 @dataclass(frozen=True)
 class Group:
     """A unit, a unit type or a stand."""
@@ -76,7 +68,8 @@ class GroupAnswer:
     """Digest of its sessions."""
     sessions: int
     summary: str
-    shows: Shows
+    own: str
+    """Of what they show, that which is of the group itself: not of one of its units, nor of a stand; empty for none."""
     document: str | None
     """imu-fleet-diagnosis/1 with what the service adds; None where it could not be made."""
     estimator_version: str
@@ -85,10 +78,10 @@ class GroupAnswer:
 
 @dataclass(frozen=True)
 class FoundTogether:
-    """A group whose sessions show something, in a line."""
+    """A group whose sessions show something that is its own, in a line."""
 
     group: Group
-    summary: str
+    own: str
 
 
 @dataclass(frozen=True)

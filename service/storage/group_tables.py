@@ -36,7 +36,8 @@ class GroupDiagnosisRow(Base):
     """Digest of its sessions."""
     sessions: Mapped[int]
     summary: Mapped[str]
-    shows: Mapped[str] = mapped_column(String(20))
+    own: Mapped[str]
+    """Of what they show, that which is of the group itself; empty for nothing."""
     document: Mapped[bytes | None]
     """None where it could not be made."""
     estimator_version: Mapped[str] = mapped_column(String(40))

@@ -2,7 +2,8 @@
 
 from collections.abc import Sequence
 
-from estimator.groups import GroupFinding
+from estimator.groups import GroupDiagnosis, GroupFinding
+from service.records.group import Group
 from service.records.model import Scope
 from service.words.causes import cause_name, cause_on
 
@@ -13,6 +14,7 @@ FAILED = (
 )
 LONGEST_PLACE = 200
 """Characters that a flag keeps of its place."""
+UNKNOWN = "Structure that no known cause explains."
 NO_SESSION = "No accepted session calibrates a block."
 
 
@@ -30,6 +32,15 @@ def summary_of_group(sessions: int, findings: Sequence[GroupFinding], *, unexpla
     if unexplained:
         return f"{over(sessions)}: they share structure that no known cause explains."
     return f"{over(sessions)}: nothing wrong found."
+
+
+def own_of_group(group: Group, found: GroupDiagnosis) -> str:
+    """Of what the sessions show, that which is of the group itself; empty for nothing."""
+    mine = (group.level.value, group.name)
+    said = [statement(f) for f in found.findings if (f.level, f.subject) == mine]
+    if any(structure.subject == group.name for structure in found.structures):
+        said.append(UNKNOWN)
+    return " ".join(said)
 
 
 def statement(finding: GroupFinding) -> str:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from service.measures import COVERAGE, deviation_measure, measured
+from service.measures import COVERAGE, HARD, THIN, Measure, decimals, deviation_measure, number
 from service.records.recomputation import MovedParameter, Progress, Recomputation
 from service.words.names import PARAMETER_NAMES
 
@@ -24,12 +24,19 @@ def progress_of(found: Sequence[Recomputation]) -> str:
 
 
 def moved_in_words(moved: MovedParameter | None) -> str:
-    """``bias of A3 by 12 ± 30 µg``: the change beside the uncertainty of what changed."""
+    """``bias of A3 by −0.41 µg (U = 4.8 µg)``: the change beside the uncertainty of what changed."""
     if moved is None:
         return UNTOUCHED
     u = COVERAGE * moved.u
     measure = deviation_measure(moved.kind, moved.parameter, max(abs(moved.change), u))
-    return f"{PARAMETER_NAMES[moved.parameter]} of {moved.sensor} by {measured(moved.change, u, measure)}"
+    by, unsure = (_shown(value, measure) for value in (moved.change, u))
+    return f"{PARAMETER_NAMES[moved.parameter]} of {moved.sensor} by {by} (U{HARD}={HARD}{unsure})"
+
+
+def _shown(value: float, measure: Measure) -> str:
+    """With two significant digits."""
+    shown = value * measure.factor
+    return f"{number(shown, decimals(abs(shown)))}{THIN}{measure.label}"
 
 
 def _counted(count: int, what: str) -> str:

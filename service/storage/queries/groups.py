@@ -8,7 +8,7 @@ from sqlalchemy import ColumnElement, Select, and_, case, delete, func, or_, sel
 from estimator.groups.statistics import FORMAT
 from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
-from service.records.group import FoundTogether, Group, GroupAnswer, Level, Member, Members, Shows
+from service.records.group import FoundTogether, Group, GroupAnswer, Level, Member, Members
 from service.storage.group_tables import GroupDiagnosisRow, PendingGroupRow, SessionStatisticsRow
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
@@ -89,21 +89,22 @@ class Groups(Queries):
         if row is None:
             return None
         document = None if row.document is None else zlib.decompress(row.document).decode()
-        shows = Shows(row.shows)
         made = (row.estimator_version, row.created_at)
-        return GroupAnswer(row.rests_on, row.sessions, row.summary, shows, document, *made)
+        return GroupAnswer(row.rests_on, row.sessions, row.summary, row.own, document, *made)
 
     def found(self, limit: int) -> tuple[int, tuple[FoundTogether, ...]]:
-        """How many groups show something, and the first of them: stands before types before units. Those whose answer
-        is being made again are left out."""
+        """How many groups show something of their own, and the first of them: stands before types before units.
+
+        Those whose answer is being made again are left out.
+        """
         row, asked = GroupDiagnosisRow, PendingGroupRow
         again = select(asked.id).where(asked.level == row.level, asked.group_id == row.group_id).exists()
-        own = (row.shows != Shows.NOTHING, ~again)
+        own = (row.own != "", ~again)
         count = self._session.scalar(select(func.count()).select_from(row).where(*own)) or 0
         if not count:
             return 0, ()
         order = case({level.value: place for place, level in enumerate(WIDEST)}, value=row.level)
-        query = select(row.level, row.group_id, row.summary).where(*own).order_by(order, row.group_id).limit(limit)
+        query = select(row.level, row.group_id, row.own).where(*own).order_by(order, row.group_id).limit(limit)
         found = self._session.execute(query).all()
         return count, tuple(FoundTogether(self.by_key(Level(level), key), text) for level, key, text in found)
 
