@@ -12,6 +12,7 @@ from service.words.causes import cause_on
 class AcceptedCause:
     """A cause that an engineer accepted into a model."""
 
+    revision: int
     name: str
     session: str
     who: str
@@ -22,6 +23,6 @@ class AcceptedCause:
 def accepted_causes(revisions: Sequence[ModelRevision]) -> tuple[AcceptedCause, ...]:
     """Lines in the order of the revisions."""
     return tuple(
-        AcceptedCause(cause_on(one.cause, one.sensors), one.session, one.accepted_by, one.accepted_at, one.note)
+        AcceptedCause(one.id, cause_on(one.cause, one.sensors), one.session, one.accepted_by, one.accepted_at, one.note)
         for one in revisions
     )

@@ -17,7 +17,7 @@ from service.words.group import over
 from service.words.group_finding import FORMS, day_in_words
 from service.words.recomputations import GIVEN_UP, moved_in_words, progress_of
 
-HOMES = {Scope.UNIT: "/units/"}
+HOMES = {Scope.UNIT: "/units/", Scope.UNIT_TYPE: "/unit-types/", Scope.STAND: "/stands/"}
 """Where the page of a subject is."""
 
 
@@ -49,7 +49,7 @@ class ModelPage:
     name: str
     whose: str
     home: str
-    """Address of whose model it is; empty where that has no page."""
+    """Address of whose model it is."""
     statement: str
     amplitudes: tuple[str, ...]
     evidence: str
@@ -72,7 +72,7 @@ def model_page(
         revision=revision,
         name=cause_on(revision.cause, revision.sensors),
         whose=f"{revision.scope} {revision.subject}",
-        home=f"{HOMES[revision.scope]}{quote(revision.subject)}" if revision.scope in HOMES else "",
+        home=f"{HOMES[revision.scope]}{quote(revision.subject)}",
         statement="" if evidence is None else evidence.sentence,
         amplitudes=_amplitudes(revision),
         evidence="" if evidence is None else _evidence(evidence.strength, pooled),

@@ -10,8 +10,10 @@ from fastapi.responses import HTMLResponse, RedirectResponse
 from service.dependencies import Now, Reading, StorageOf
 from service.flows.record_stand_certificate import record_stand_certificate
 from service.pages.forms import SAYS_SOMETHING, SEE_OTHER, By, Key
+from service.pages.group import group_section
 from service.pages.render import render
 from service.pages.stands import stand_page, stands_page
+from service.records.group import Level
 from service.records.paper import StandCertificate
 from service.views.stand_report import every_stand, stand_report
 
@@ -29,7 +31,9 @@ def show_stands(request: Request, store: Reading, now: Now) -> HTMLResponse:
 @router.get("/stands/{name:path}")
 def show_stand(request: Request, store: Reading, now: Now, name: Key) -> HTMLResponse:
     """One stand: may it be used today, and what was measured on it."""
-    return render(request, "stand.html", stand_page(stand_report(store, name), now))
+    return render(
+        request, "stand.html", stand_page(stand_report(store, name), now, group_section(store, Level.STAND, name))
+    )
 
 
 @router.post("/stands/{name:path}/certificates")

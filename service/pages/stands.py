@@ -7,6 +7,7 @@ from datetime import datetime
 from service.pages.accepted_causes import AcceptedCause, accepted_causes
 from service.pages.flags import FlagCard, flag_cards
 from service.pages.fleet import FleetRow, flags_in_words, fleet_row
+from service.pages.group import GroupSection
 from service.pages.session_lines import SessionLine, session_lines
 from service.records.paper import StandCertificate
 from service.records.stand import StandCondition, StandEvidence, StandUse
@@ -66,6 +67,7 @@ class StandPage:
     units: tuple[FleetRow, ...]
     sessions: tuple[SessionLine, ...]
     causes: tuple[AcceptedCause, ...]
+    group: GroupSection | None
     more: tuple[str, ...]
     """Of ``flags``, ``units`` and ``sessions``, those of which not all are listed."""
 
@@ -76,7 +78,7 @@ def stands_page(stands: Sequence[StandLine], now: datetime) -> StandsPage:
     return StandsPage(tuple(sorted(rows, key=lambda row: (WORDS.index(row.word), row.use.stand))))
 
 
-def stand_page(report: StandReport, now: datetime) -> StandPage:
+def stand_page(report: StandReport, now: datetime, group: GroupSection | None = None) -> StandPage:
     """The page of one stand."""
     line, condition = report.line, report.line.condition
     certificate = certificate_in_words(line.certificates, now.date())
@@ -93,6 +95,7 @@ def stand_page(report: StandReport, now: datetime) -> StandPage:
         units=tuple(fleet_row(unit, now) for unit in report.units[:MOST]),
         sessions=session_lines(report.sessions[:MOST]),
         causes=accepted_causes(report.models),
+        group=group,
         more=tuple(name for name, found in listed.items() if len(found) > MOST),
     )
 

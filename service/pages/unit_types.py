@@ -10,6 +10,7 @@ from service.measures import deviation_measure, in_measure, limit, number, scale
 from service.pages.accepted_causes import AcceptedCause, accepted_causes
 from service.pages.fleet import FleetRow, fleet_row
 from service.pages.fleet_view import FleetView
+from service.pages.group import GroupSection
 from service.records.session import PARAMETERS
 from service.records.unit import ToleranceRevision, TypeUse, UnitType
 from service.views.type_report import MOST, TypeLine, TypeReport
@@ -85,6 +86,7 @@ class TypePage:
     more: bool
     """Whether there are units that are not listed."""
     causes: tuple[AcceptedCause, ...]
+    group: GroupSection | None
 
 
 def types_page(types: Sequence[TypeLine]) -> TypesPage:
@@ -92,7 +94,7 @@ def types_page(types: Sequence[TypeLine]) -> TypesPage:
     return TypesPage(tuple(map(_row, types)))
 
 
-def type_page(report: TypeReport, now: datetime) -> TypePage:
+def type_page(report: TypeReport, now: datetime, group: GroupSection | None = None) -> TypePage:
     """The page of one type."""
     known = report.line.unit_type
     kinds = {name: report.kinds.get(name, known.block) for name in known.sensors}
@@ -107,6 +109,7 @@ def type_page(report: TypeReport, now: datetime) -> TypePage:
         units=tuple(fleet_row(unit, now) for unit in report.units[:MOST]),
         more=len(report.units) > MOST,
         causes=accepted_causes(report.models),
+        group=group,
     )
 
 
