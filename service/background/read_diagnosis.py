@@ -85,7 +85,7 @@ class Reader:
 
     def _is_undated(self, serial: str) -> bool:
         with self.storage.database.reading() as store:
-            return store.pending_outlooks.ticket(serial) is not None
+            return store.pending_outlooks.is_coming(serial)
 
     def _look(self, id: str) -> tuple[StoredDiagnosis | None, Pending | None]:
         with self.storage.database.reading() as store:

@@ -91,6 +91,7 @@ def show_unit(
 ) -> HTMLResponse:
     """One unit with the history of its parameters; ``raw``: what the whole block did is left in."""
     report = unit_report(store, serial, now)
+    is_coming = report.summary.is_undated and not report.summary.is_given_up
     return render(
         request,
         "unit.html",
@@ -105,7 +106,7 @@ def show_unit(
             outlook=own_outlook(store, serial, now),
             group=group_section(store, Level.UNIT, serial),
             recalibrated=recalibrated_in_words(asked.recomputed, asked.unchanged, asked.left),
-            follow=SOONEST if report.summary.is_undated and settings.diagnosis_workers else None,
+            follow=SOONEST if is_coming and settings.diagnosis_workers else None,
         ),
     )
 

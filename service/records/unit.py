@@ -95,6 +95,8 @@ class UnitSummary:
     """For whom it is calibrated."""
     is_undated: bool = False
     """Whether ``due`` and its outlook are still to be worked out with its latest records."""
+    is_given_up: bool = False
+    """Whether no process outlived that: it is tried again with the unit's next session, or at another start."""
 
 
 @dataclass(frozen=True)

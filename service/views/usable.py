@@ -40,7 +40,7 @@ def usable(store: Store, serial: str, now: datetime) -> Usable:
     told = session or reference
     coarse = () if reference is None else _left_uncertain(store, report, reference)
     against = (*coarse, *_against(report, told, flags, now))
-    undated = (words.DATES_PENDING,) if report.summary.is_undated else ()
+    undated = (_undated(report),) if report.summary.is_undated else ()
     return Usable(
         usable=not against,
         why=against[0] if against else _yes(report, session, _at(told)),
@@ -111,7 +111,11 @@ def _against(
     if due is not None and due < now:
         yield words.OVERDUE.format(due=day_of(due))
     elif due is None and session is not None and (session.is_reference or session.verdict in FIT):
-        yield words.DATES_PENDING if report.summary.is_undated else words.NO_DUE
+        yield _undated(report) if report.summary.is_undated else words.NO_DUE
+
+
+def _undated(report: UnitReport) -> str:
+    return words.DATES_FAILED if report.summary.is_given_up else words.DATES_PENDING
 
 
 def _nothing_judged(report: UnitReport, now: datetime) -> str:

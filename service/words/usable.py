@@ -27,6 +27,10 @@ FLAGGED = "Flag {id} is open: {summary}"
 CLOSE = "Within tolerance, but by less than the uncertainty of the measurement: {reason}"
 WAITS = "The session of {day} waits for an engineer and does not count yet: accept it, correct it or withdraw it."
 DATES_PENDING = "Its dates are being worked out with its latest records: ask again in some seconds."
+DATES_FAILED = (
+    "The program failed at its dates, several times: a fault of the program. Its next session, or another start of the "
+    "service, tries again."
+)
 NOT_DIAGNOSED = "The session of {day} is not diagnosed yet: ask again in a minute."
 
 

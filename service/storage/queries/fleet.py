@@ -15,7 +15,7 @@ from service.records.paper import Customer
 from service.records.reservation import Reservations
 from service.records.unit import FleetCondition, UnitSummary, UnitType
 from service.storage.outlook_tables import OutlookRow
-from service.storage.pending_tables import PendingOutlookRow
+from service.storage.pending_tables import NEVER, PendingOutlookRow
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
 from service.storage.queries.unit_types import unit_type_of
@@ -137,7 +137,14 @@ def _summaries(*, measured: bool = True) -> Summaries:
     """Units with their latest accepted session; those without one too where they need not be measured."""
     return (
         select(
-            UnitRow, UnitTypeRow.name, ConditionRow, SessionRow, DiagnosisRow, OutlookRow.due, PendingOutlookRow.ticket
+            UnitRow,
+            UnitTypeRow.name,
+            ConditionRow,
+            SessionRow,
+            DiagnosisRow,
+            OutlookRow.due,
+            PendingOutlookRow.ticket,
+            PendingOutlookRow.claimed_until,
         )
         .options(defer(DiagnosisRow.document))
         .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
@@ -173,6 +180,7 @@ def _summary(row: Sequence[Any]) -> UnitSummary:
         reservations=_reservations(row[4]),
         customer=Customer(unit.customer, unit.customer_address),
         is_undated=row[6] is not None,
+        is_given_up=row[7] == NEVER,
     )
 
 

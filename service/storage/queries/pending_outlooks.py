@@ -26,6 +26,12 @@ class PendingOutlooks(Queries):
         query = select(PendingOutlookRow.ticket).join(UnitRow, UnitRow.id == PendingOutlookRow.unit_id)
         return self._session.scalar(query.where(UnitRow.serial == serial))
 
+    def is_coming(self, serial: str) -> bool:
+        """Whether a unit's is asked for and was not given up."""
+        query = select(PendingOutlookRow.unit_id).join(UnitRow, UnitRow.id == PendingOutlookRow.unit_id)
+        is_held = or_(PendingOutlookRow.claimed_until.is_(None), ~_IS_GIVEN_UP)
+        return self._session.scalar(query.where(UnitRow.serial == serial, is_held)) is not None
+
     def waiting(self, now: datetime, limit: int) -> tuple[str, ...]:
         """Serial numbers of units that nobody is at, the one that was asked for first before all."""
         query = select(UnitRow.serial).join(PendingOutlookRow, UnitRow.id == PendingOutlookRow.unit_id)

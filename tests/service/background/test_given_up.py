@@ -24,7 +24,9 @@ from service.records.model import Evidence, ModelRevision, Scope
 from service.records.recomputation import Progress
 from service.settings import Settings
 from service.storage import Storage
+from service.views.usable import usable
 from service.words.group import FAILED
+from service.words.usable import DATES_FAILED
 from tests.databases import one_engine
 from tests.service.grouped import GROUP
 from tests.service.sessions import session_id
@@ -77,6 +79,9 @@ def test_an_outlook_is_given_up_until_its_unit_s_history_changes(
     settings: Settings, two: Storage, helper: Helper
 ) -> None:
     assert tries(diagnosing(settings, two), helper, OUTLOOKS) == MOST_ATTEMPTS + 1
+    with two.database.reading() as store:
+        assert not store.pending_outlooks.is_coming(UNIT)
+        assert DATES_FAILED in usable(store, UNIT, NOW).reservations
     upload(two, GROUP[2], "a.json", NOW, is_dated_later=True)
     with two.database.reading() as store:
         assert store.pending_outlooks.waiting(NOW, 10) == (UNIT,)
