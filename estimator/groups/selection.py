@@ -232,9 +232,9 @@ def without_lesser(state: Selection) -> Selection:
 
 
 def concerns(f: Hypothesis, structure: Hypothesis) -> bool:
-    """Whether structure lives where a finding acts."""
+    """Whether structure lives where a finding acts: that of another stand does not."""
     if not f.sensor or not structure.sensor:
-        return f.sensor == structure.sensor
+        return f.sensor == structure.sensor and f.subject == structure.subject
     return f.sensor in (structure.sensor, "*") and (f.level != "unit" or f.subject == structure.subject)
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from functools import cache
 from math import degrees, isfinite
+from statistics import median
 from typing import Any
 
 import altair as alt
@@ -22,6 +23,8 @@ from service.words.names import day_of
 
 HEIGHT = 150
 """Pixels."""
+UNSURE = 3.0
+"""Times the usual session's U that another one's may be and still set the scale of the chart."""
 AIR = 0.04
 """Share of the time that is left empty on either side, so that no mark is cut."""
 POOLED, VALUE = "pooled", "{value}"
@@ -67,8 +70,10 @@ def forest_chart(finding: GroupFinding, name: str) -> ChartSet | None:
         return None
     times = [_at(one.started_at) for one in finding.sessions]
     span = [_iso(min(times)), _iso(max(times))]
+    reach = max(_reach(finding, element) for element in elements)
+    low, high = padded(-reach, reach)
     air = (max(times) - min(times)) * AIR
-    ranges = {LEFT: _iso(min(times) - air), RIGHT: _iso(max(times) + air)}
+    ranges = {LEFT: _iso(min(times) - air), RIGHT: _iso(max(times) + air), LOW: low, HIGH: high}
     return ChartSet(
         name=f"{name}-forest",
         heading="In each session",
@@ -77,14 +82,31 @@ def forest_chart(finding: GroupFinding, name: str) -> ChartSet | None:
     )
 
 
+def _spreads(finding: GroupFinding, element: Element) -> list[tuple[float, float]]:
+    """Every session's |amplitude| and U, as they are drawn."""
+    k, factor = element.number, element.measure.factor
+    own = ((one.amplitude[k], one.sigma[k]) for one in finding.sessions)
+    return [(abs(value) * factor, COVERAGE * sigma * factor) for value, sigma in own if sigma is not None]
+
+
+def _reach(finding: GroupFinding, element: Element) -> float:
+    """Up to where amplitudes are drawn: sessions that hardly see the effect would hide the others."""
+    every = _spreads(finding, element)
+    usual = median(u for _, u in every)
+    return max(value + u for value, u in every if u <= UNSURE * usual)
+
+
 def _forest_panel(finding: GroupFinding, element: Element, span: list[str]) -> Panel:
     k, factor, sigma = element.number, element.measure.factor, finding.sigma[element.number] or 0.0
     value, spread = finding.amplitude[k], COVERAGE * sigma
     since = finding.since if finding.form == "since" and finding.since else None
     start = _iso(_at(since)) if since else span[0]
+    reach = _reach(finding, element)
+    beyond = sum(value > reach for value, _ in _spreads(finding, element))
+    left = f"; {beyond} too unsure to be drawn are in the table" if beyond else ""
     return Panel(
         title=element.name,
-        description=f"{measured(value, spread, element.measure)} together",
+        description=f"{measured(value, spread, element.measure)} together{left}",
         condition=None,
         datasets={
             DATA_FORM: list(_session_points(finding, element)),
@@ -116,10 +138,13 @@ def _session_points(finding: GroupFinding, element: Element) -> Iterator[dict[st
 @cache
 def _forest_spec() -> dict[str, Any]:
     x = alt.X("t:T", title=None, axis=alt.Axis(tickCount=4), scale=alt.Scale(type="utc", domain=[LEFT, RIGHT]))
-    y = alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=alt.Scale(zero=True))
+    y_scale = alt.Scale(domain=[LOW, HIGH])
+    y = alt.Y("y:Q", title=UNIT, axis=alt.Axis(tickCount=5), scale=y_scale)
     pooled = alt.Chart(alt.NamedData(name=POOLED)).encode(x=x)
     base = alt.Chart(alt.NamedData(name=DATA_FORM)).encode(x=x)
-    marks = base.mark_point(filled=True, opacity=1, size=40, color="var(--accent)", stroke="var(--card)").encode(
+    marks = base.mark_point(
+        filled=True, opacity=1, size=40, color="var(--accent)", stroke="var(--card)", clip=True
+    ).encode(
         y=y,
         tooltip=[
             alt.Tooltip("date:N", title="session"),
@@ -132,7 +157,7 @@ def _forest_spec() -> dict[str, Any]:
             pooled.mark_area(color="var(--second)", opacity=0.25).encode(y=alt.Y("lo:Q"), y2="hi:Q"),
             pooled.mark_line(color="var(--second)", strokeWidth=2).encode(y=y),
             zero_line(),
-            base.mark_rule(color="var(--accent)", opacity=0.55).encode(y=alt.Y("lo:Q"), y2="hi:Q"),
+            base.mark_rule(color="var(--accent)", opacity=0.55, clip=True).encode(y=alt.Y("lo:Q"), y2="hi:Q"),
             marks,
         ],
         HEIGHT,

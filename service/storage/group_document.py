@@ -31,7 +31,7 @@ def read_group(text: str) -> GroupShown:
         limits=tuple(map(_limit, document["limits"])),
         gain=None if document["gain"] is None else _gain(document["gain"]),
         terms=tuple(map(_term, document["terms"])),
-        structures=tuple(one["where"] for one in document["structures"]),
+        structures=tuple(f"{one['where']} ({one['subject']})" for one in document["structures"]),
         notes=tuple(document["notes"]),
     )
 

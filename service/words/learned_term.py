@@ -19,6 +19,8 @@ class TermView:
 
     lines: tuple[tuple[str, str], ...]
     """What is more, and by how much."""
+    whose: str
+    """Whose sessions taught it."""
     worth: str
     nearest: str
 
@@ -28,6 +30,7 @@ def term_view(term: EmpiricalTerm) -> TermView:
     near = f"{number(term.separation, 1)} standard errors from it"
     return TermView(
         lines=tuple(_lines(term)),
+        whose=term.subject,
         worth=f"It removes {number(100 * term.explained, 0)}{HARD}% of what the sessions that took no part in learning "
         "it show too much.",
         nearest=f"Nearest in the catalogue: {cause_name(term.nearest)}, {near}." if term.nearest else "",
