@@ -82,8 +82,9 @@ imu-health models withdraw 7 --by "K. Ito" --why "encoder aligned on 3 May"
 ```
 
 * Its size is the group's, and no session fits it again: fitted freely, an effect below the noise would cost each
-  session more than it is worth. What it adds is taken out of the readings, and what the group does not know of it (its σ and
-  the spread τ) is in every parameter's uncertainty. Only of an effect that differs every time each session has a say.
+  session more than it is worth. What it adds is taken out of the readings, and what the group does not know of it (its
+  σ and the spread τ) is in every parameter's uncertainty. Only of an effect that differs every time each session has a
+  say.
 * What began at a date is not in the sessions before it.
 * Of one cause on one sensor the size found nearest to it counts: the unit's before the type's before the stand's. A
   cause that was accepted from a single session is fitted in each, as it always was.

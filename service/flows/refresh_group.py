@@ -109,8 +109,8 @@ def _answered(
         log.error("group failed", level=group.level.value, name=group.name, exc_info=fault)
         return replace(made, summary=FAILED)
     summary = summary_of_group(found.sessions, found.findings, unexplained=found.unexplained)
-    own = own_of_group(group, found)
-    return replace(made, summary=summary, own=own, document=group_document(group, found, members))
+    theirs = own_of_group(group, found)
+    return replace(made, summary=summary, own=theirs, document=group_document(group, found, members))
 
 
 def _pooled(group: Group, members: Members, records: dict[str, SessionStatistics]) -> list[Member]:

@@ -48,7 +48,8 @@ def _finding(entry: dict[str, Any]) -> GroupFinding:
 
 
 def _term(entry: dict[str, Any]) -> EmpiricalTerm:
-    return EmpiricalTerm(**{name: tuple(value) if isinstance(value, list) else value for name, value in entry.items()})
+    own: dict[str, Any] = {name: tuple(value) if isinstance(value, list) else value for name, value in entry.items()}
+    return EmpiricalTerm(**own)
 
 
 def _gain(entry: dict[str, Any]) -> GroupGain:

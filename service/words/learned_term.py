@@ -39,18 +39,14 @@ def term_view(term: EmpiricalTerm) -> TermView:
 
 def _lines(term: EmpiricalTerm) -> Iterator[tuple[str, str]]:
     """One for the sensor, or for each angle of the applied vector that is turned."""
-    every = list(zip(term.words, term.amplitude, term.sigma, term.units, strict=True))
-    targets = dict.fromkeys(word.partition(": ")[0] if ": " in word else "" for word, *_ in every)
-    for target in targets:
-        own = [one for one in every if (one[0].partition(": ")[0] if ": " in one[0] else "") == target]
-        parts = [_part(word.removeprefix(f"{target}: "), *amount) for word, *amount in own]
+    found: dict[str, list[str]] = {}
+    for word, value, sigma, unit in zip(term.words, term.amplitude, term.sigma, term.units, strict=True):
+        target, _, factor = word.rpartition(": ")
+        spread = COVERAGE * sigma
+        measure = amplitude_measure("", unit, max(abs(value), spread))
+        found.setdefault(target, []).append(f"({measured(value, spread, measure)}){HARD}·{HARD}{factor}")
+    for target, parts in found.items():
         yield TURNS.get(target, READS.format(sensor=", ".join(term.sensors))), " + ".join(parts)
-
-
-def _part(word: str, value: float, sigma: float, unit: str) -> str:
-    spread = COVERAGE * sigma
-    measure = amplitude_measure("", unit, max(abs(value), spread))
-    return f"({measured(value, spread, measure)}){HARD}·{HARD}{word}"
 
 
 def gain_in_words(gain: GroupGain | None) -> str:
