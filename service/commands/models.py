@@ -9,6 +9,7 @@ from rich.table import Table
 
 from service.commands.client import Client, connected
 from service.commands.console import DEFAULT_SERVER, AsJson, Server, print_json, screen
+from service.errors import RefusedError, ServiceError
 from service.records.group import Level
 
 PATHS = {Level.UNIT: "units", Level.TYPE: "unit-types", Level.STAND: "stands"}
@@ -51,7 +52,11 @@ def accept(
     """Accept what sessions show together; every session that it concerns is computed again."""
     body = {"cause": cause, "sensors": sensor or [], "by": by, "note": why}
     with connected(server) as client:
-        made = client.post(f"/{PATHS[level]}/{quote(name)}/diagnosis/accept", body)
+        try:
+            made = client.post(f"/{PATHS[level]}/{quote(name)}/diagnosis/accept", body)
+        except RefusedError as refused:
+            why_not = "; ".join(f"{problem.field} {problem.message}" for problem in refused.problems)
+            raise ServiceError(f"{refused.detail} {why_not}") from refused
         _show(client, made["id"], as_json)
 
 
