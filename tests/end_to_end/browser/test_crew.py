@@ -106,7 +106,7 @@ def test_a_first_session_that_turns_out_bad_gives_way_to_a_better_reference(crew
         uploaded(page, crew, session_bytes(unit="BF-1", seed=month, month=month, a3_moved=moved))
     assert "Unfit" in head(page)
     page.goto(f"{crew}/units/BF-1")
-    page.locator("#sessions tbody a").nth(1).click()
+    page.locator("#sessions tbody th a").nth(1).click()
     send(page, "Make this session the reference", why="the first was measured warm")
     assert "Chosen as the reference" in head(page)
     page.goto(f"{crew}/units/BF-1")

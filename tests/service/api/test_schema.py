@@ -25,7 +25,7 @@ FEWER = {"/api/v1/plan": 2}
 def address(request: pytest.FixtureRequest, stock_of: StockOf) -> Iterator[str]:
     """A service with two sessions of one unit."""
     stock = stock_of(request.getfixturevalue(request.param))
-    with stock.holding(session_bytes(), session_bytes(seed=2)) as settings, serving(settings) as url:
+    with stock.holding(session_bytes(), session_bytes(seed=2, month=4)) as settings, serving(settings) as url:
         yield url
 
 
