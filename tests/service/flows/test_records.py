@@ -10,7 +10,6 @@ from sqlalchemy.exc import DatabaseError
 from service.errors import ConflictError, NotFoundError
 from service.flows.accept_session import accept_session
 from service.flows.choose_reference import choose_reference
-from service.flows.receive import upload
 from service.flows.record_service import record_service
 from service.flows.supersede_session import supersede_session
 from service.flows.withdraw_service import withdraw_service
@@ -22,6 +21,7 @@ from service.records.session import Receipt, StoredSession
 from service.records.state import RecordKind, RecordState
 from service.storage import Storage
 from tests.estimator.test_reading_csv import csv_of
+from tests.service.dated import upload_and_date as upload
 from tests.service.records import NOW, state_of, step, way
 from tests.service.sessions import session_bytes
 
