@@ -117,8 +117,8 @@ moved between sessions is not yet used as evidence: residuals alone are.
 
 The table is of few groups, and its intervals are wide: most figures do not yet tell whether their target is met. Two
 stay beyond it so far. One life without an effect in forty reached a name, by rounding of what is kept, which was mended
-after the table was made. And where amplitudes differ from session to
-session, two sigma hold the mean of the group too seldom.
+after the table was made. And where amplitudes differ from session to session, two sigma held the mean of the group in
+13 of 17 cases. On fresh groups it was 61 of 66, 92.4 % (83.5–96.7): `--groups 120 --seed 12 --part spread`.
 """
 
 
