@@ -23,6 +23,7 @@ CONFIG: dict[str, Any] = {
     "background": "transparent",
     "font": "system-ui, sans-serif",
     "view": {"stroke": "var(--line)", "fill": "transparent"},
+    "mark": {"aria": False},  # the table beside it says the same, and better, than hundreds of marks read aloud
     "axis": {
         "domain": False,
         "grid": True,

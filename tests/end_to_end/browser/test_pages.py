@@ -2,9 +2,12 @@
 
 import itertools
 from dataclasses import dataclass
+from importlib.resources import files
+from typing import Literal
 
+import axe_playwright_python
 import pytest
-from playwright.sync_api import Browser
+from playwright.sync_api import Browser, Page
 
 from tests.end_to_end.browser.conftest import Site, Witness, draw_all, opened
 
@@ -69,11 +72,18 @@ class Seen:
     """Of its headings, in order."""
     nameless: int
     """Controls without a label."""
+    barriers: tuple[str, ...]
+    """What axe finds, in light and in dark colours."""
 
 
 OVERFLOW = "document.documentElement.scrollWidth - window.innerWidth"
 LEVELS = "[...document.querySelectorAll('h1,h2,h3')].map((h) => +h.tagName[1])"
 CONTROLS = "[...document.querySelectorAll('input:not([type=hidden]),select')]"
+AXE = (files(axe_playwright_python) / "axe.min.js").read_text(encoding="utf-8")
+SCHEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
+VIOLATIONS = (
+    "axe.run().then((r) => r.violations.map((v) => `${v.id}: ${v.nodes[0].html} ${v.nodes[0].failureSummary}`))"
+)
 NAMELESS = f"{CONTROLS}.filter((e) => !e.labels.length && !e.ariaLabel).length"
 
 
@@ -89,8 +99,19 @@ def visit(browser: Browser, site: Site, path: str, width: int) -> Seen:
         page.goto(address(site, path))
         draw_all(page)
         overflow, levels, nameless = (page.evaluate(script) for script in (OVERFLOW, LEVELS, NAMELESS))
+        barriers = barriers_of(page)
     complaints, addresses = tuple(witness.complaints), tuple(witness.addresses)
-    return Seen(complaints, addresses, sum(received), overflow, tuple(levels), nameless)
+    return Seen(complaints, addresses, sum(received), overflow, tuple(levels), nameless, barriers)
+
+
+def barriers_of(page: Page) -> tuple[str, ...]:
+    """What axe finds on a page, in both colour schemes, with the element."""
+    page.evaluate(AXE)
+    found = []
+    for scheme in SCHEMES:
+        page.emulate_media(color_scheme=scheme)
+        found += [f"{scheme}: {one}" for one in page.evaluate(VIOLATIONS)]
+    return tuple(found)
 
 
 @pytest.fixture(scope="module", params=PATHS)
@@ -112,6 +133,10 @@ def test_the_console_is_quiet(seen: Seen, path: str) -> None:
 
 def test_only_our_own_service_is_asked(seen: Seen, site: Site) -> None:
     assert {address.startswith(site.url) for address in seen.addresses} == {True}
+
+
+def test_axe_finds_no_barrier(seen: Seen) -> None:
+    assert seen.barriers == ()
 
 
 def test_nothing_is_wider_than_the_screen(seen: Seen) -> None:
