@@ -23,7 +23,7 @@ PALETTE = {
     "fail": "#b3261e",
     "undecidable": "#55606b",
     "reference": "#0d5878",
-    "none": "#6a757d",
+    "none": "#626d75",
 }
 """The light colours of the pages' style; a test holds them to it."""
 VARIABLE = re.compile(r"var\(--([\w-]+)\)")
