@@ -34,7 +34,7 @@ def test_what_is_judged_later_ends_as_what_is_judged_at_once(storage: Storage) -
     assert state_of(storage, UNIT) == at_once
 
 
-def test_an_ordinary_upload_judges_one_session(storage: Storage) -> None:
+def test_who_is_the_reference_already_is_chosen_without_judging_the_others(storage: Storage) -> None:
     ids = filled(storage)
     _, derived = choose_reference(storage, way(storage), ids[0], step())
-    assert derived.judged == ()
+    assert derived.judged == (ids[0],)  # says from now on that it was chosen

@@ -56,7 +56,7 @@ def test_a_session_is_diagnosed_once(storage: Storage) -> None:
 
 
 def test_the_reference_itself_is_not_judged_again_and_a_later_session_is(storage: Storage) -> None:
-    reference, later = stored(storage), stored(storage, notes="the same again")
+    reference, later = stored(storage), stored(storage, started_at="2026-09-01T09:00:00Z")
     made = [diagnose(storage, id, NOW) for id in (reference, later)]
     assert [diagnosis.state for diagnosis in made] == [DiagnosisState.NAMED] * 2
     assert made[0].verdict_after is None

@@ -116,7 +116,8 @@ def test_a_gyro_block_is_judged_in_its_own_units(storage: Storage) -> None:
     calibration = gyro_block(sensors=gyros()) | {"started_at": "2026-03-01T09:00:00Z"}
     upload(storage, json.dumps(calibration).encode(), "a.json", NOW)
     assert upload(storage, json.dumps(gyro_recording()).encode(), "f.json", NOW).verdict is not Verdict.FAIL
-    receipt = upload(storage, json.dumps(gyro_recording(2.0)).encode(), "g.json", NOW)
+    moved = gyro_recording(2.0) | {"started_at": "2026-09-01T09:00:00Z"}
+    receipt = upload(storage, json.dumps(moved).encode(), "g.json", NOW)
     assert (receipt.verdict, receipt.reason[:53]) == (
         Verdict.FAIL,
         "G3 has changed since the calibration: bias +2.0 °/h (",
