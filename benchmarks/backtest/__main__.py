@@ -26,7 +26,7 @@ from benchmarks.study.report import table
 PAGE = Path(__file__).parents[2] / "docs" / "health" / "backtest.md"
 HISTORIES, TYPES = 500, 6
 """Of every kind; of every number of sessions."""
-SMALL_HISTORIES, SMALL_TYPES = 10, 1
+SMALL_HISTORIES, SMALL_TYPES = 6, 1
 MORE = 8
 """Types with stated dates for each one with due dates: of a date only those that pass a tolerance tell."""
 Row = tuple[str, str, str]

@@ -20,6 +20,7 @@ from service.judging.moments import of_date, of_moment
 from service.judging.reference import reference_of
 from service.judging.tolerances import tolerances_of
 from service.records.doubt import Correction, Doubt, Remedy
+from service.records.unit import UnitType
 from service.storage.store import Store
 
 LEAST_RATIO = 2.0
@@ -31,6 +32,8 @@ IN_G = (STANDARD_GRAVITY, 1 / STANDARD_GRAVITY)
 IN_DEGREES = (180 / np.pi, np.pi / 180)
 FAR, NEAR = np.cos(np.radians(20.0)), np.cos(np.radians(10.0))
 """An input axis lies within some degrees of its nominal one: beyond 20° it is another one, within 10° it is that."""
+ROUNDED = np.cos(np.radians(1.0))
+"""A nominal axis is written to a degree or better."""
 TOO_QUIET = 1e-5
 """χ² a degree of freedom: standard errors that are stated 300 times larger than the readings scatter."""
 
@@ -66,12 +69,31 @@ def _beside_its_type(store: Store, new: Checked, found: Found, calibration: Cali
     """What no other unit of its type has; nothing where too few are known."""
     serial = new.session.unit
     kind = store.unit_types.of_unit(serial)
+    if _is_unnamed(new, kind) and not _is_design(found, kind):
+        return
     values = store.history.references_of_type(kind.name, serial, MOST)
     others = type_of_references(values, tolerances_of(kind))
     scales = tuple(_of_scale(found, "value in the type's other units", others.scales(), Remedy.BOTH))
     yield from scales
     if not scales:
         yield from beside_type(calibration.sensors, others)
+
+
+def _is_unnamed(new: Checked, kind: UnitType) -> bool:
+    """Whether nobody said which type: it is called after what the file describes, as units of any design may be."""
+    return new.session.unit_type is None and kind.name == new.type_name
+
+
+def _is_design(found: Found, kind: UnitType) -> bool:
+    """Whether the nominal values are those of the type, up to their rounding."""
+    known = zip(kind.sensors, kind.nominal_axes, kind.nominal_scales, strict=True)
+    design = {name: (np.asarray(axis), scale) for name, axis, scale in known}
+    return all(
+        sensor.name in design
+        and sensor.nominal_axis @ design[sensor.name][0] > ROUNDED
+        and 1 / LIKE < sensor.nominal_scale / design[sensor.name][1] < LIKE
+        for sensor, _ in found
+    )
 
 
 def _of_scale(found: Found, what: str, known: dict[str, float], remedy: Remedy = Remedy.READINGS) -> Iterator[Doubt]:

@@ -16,12 +16,16 @@ from tests.service.flows.test_questioned import slipped, times
 from tests.service.records import NOW
 from tests.service.sessions import session_bytes
 
+TYPE = "BA-6"
+
 
 @pytest.fixture
 def fleet(storage: Storage) -> Storage:
     """As many units of one type as say what is usual."""
     for number in range(FEWEST):
-        upload(storage, session_bytes(unit=f"OK-{number}", seed=20 + number), "a.json", NOW, outlook=False)
+        upload(
+            storage, session_bytes(unit_type=TYPE, unit=f"OK-{number}", seed=20 + number), "a.json", NOW, outlook=False
+        )
     return storage
 
 
@@ -57,24 +61,33 @@ SLIPS: dict[str, tuple[Callable[[Document], None], str]] = {
 @pytest.mark.parametrize("name", SLIPS)
 def test_what_only_the_type_can_tell_is_questioned(fleet: Storage, name: str) -> None:
     slip, words = SLIPS[name]
-    receipt = upload(fleet, slipped(slip, unit="NEW-1", seed=40), "a.json", NOW)
+    receipt = upload(fleet, slipped(slip, unit_type=TYPE, unit="NEW-1", seed=40), "a.json", NOW)
     assert (receipt.state, receipt.is_reference) == (RecordState.QUESTIONED, False)
     assert words in receipt.reason
 
 
 def test_a_zero_that_no_unit_of_the_type_has_is_questioned_before_it_is_a_reference(fleet: Storage) -> None:
-    receipt = upload(fleet, session_bytes(unit="NEW-2", seed=41, a3_moved=9000.0), "a.json", NOW)
+    receipt = upload(fleet, session_bytes(unit_type=TYPE, unit="NEW-2", seed=41, a3_moved=9000.0), "a.json", NOW)
     assert receipt.state is RecordState.QUESTIONED
     assert "The zero of A3 lies" in receipt.reason
-    moved = session_bytes(unit="OK-1", seed=42, month=5, a3_moved=9000.0)
+    moved = session_bytes(unit_type=TYPE, unit="OK-1", seed=42, month=5, a3_moved=9000.0)
     assert upload(fleet, moved, "a.json", NOW).state is RecordState.ACCEPTED
 
 
 def test_a_unit_like_the_others_is_not_asked(fleet: Storage) -> None:
-    assert upload(fleet, session_bytes(unit="NEW-3", seed=43), "a.json", NOW).is_reference
+    assert upload(fleet, session_bytes(unit_type=TYPE, unit="NEW-3", seed=43), "a.json", NOW).is_reference
 
 
 def test_readings_and_nominal_values_are_put_right_together(fleet: Storage) -> None:
-    asked = upload(fleet, slipped(in_mv, unit="NEW-4", seed=44), "a.json", NOW)
+    asked = upload(fleet, slipped(in_mv, unit_type=TYPE, unit="NEW-4", seed=44), "a.json", NOW)
     made = correct_session(Reception(fleet, 2.0, Metrics(), lambda: None), asked.id, "K. Ito", NOW)
     assert (made.state, made.is_reference) == (RecordState.ACCEPTED, True)
+
+
+def test_units_of_another_design_whose_type_nobody_named_are_not_held_against_one_another(storage: Storage) -> None:
+    """They are all called after what their files describe, six accelerometers in volts."""
+    for number in range(FEWEST):
+        upload(storage, session_bytes(unit=f"OK-{number}", seed=20 + number), "a.json", NOW, outlook=False)
+    assert upload(storage, slipped(in_mv, unit="NEW-4", seed=44), "a.json", NOW).is_reference
+    moved = session_bytes(unit="NEW-5", seed=45, a3_moved=9000.0)
+    assert upload(storage, moved, "a.json", NOW).state is RecordState.QUESTIONED
