@@ -30,8 +30,7 @@ UNREADABLE = (
     BadZipFile,  # a broken header
     ValueError,  # a place before the beginning, or a name in no code
     EOFError,  # its end comes too soon
-    RuntimeError,  # a part that claims to be encrypted
-    NotImplementedError,  # zipfile's word for a version or a way of packing that it does not know
+    RuntimeError,  # a part that claims to be encrypted, or packed in a way that zipfile does not know
 )
 """What zipfile ends in at an archive that anybody may have made."""
 

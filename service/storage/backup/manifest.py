@@ -26,7 +26,7 @@ UNREADABLE = (
     OSError,  # a place before the beginning
     EOFError,  # its end comes too soon
     KeyError,  # a member is missing
-    NotImplementedError,  # zipfile's word for a way of packing that a changed byte made up
+    RuntimeError,  # a member that claims to be encrypted, or packed in a way that a changed byte made up
 )
 """What reading a changed backup ends in."""
 

@@ -146,6 +146,19 @@ def test_no_byte_of_its_manifest_and_index_changes_without_an_answer(full: Setti
 
 
 @one_engine
+@pytest.mark.parametrize("place", [6, 8, 10], ids=["version", "flags", "packing"])
+@pytest.mark.parametrize("bit", [1, 64])
+def test_no_bit_of_how_a_member_is_packed_ends_in_a_fault(full: Settings, tmp_path: Path, place: int, bit: int) -> None:
+    """The places in an entry of the index (APPNOTE 4.3.12); one bit of the flags says that the member is encrypted."""
+    backup = backup_of(full, tmp_path)
+    content = bytearray(backup.read_bytes())
+    content[content.index(b"PK\x01\x02") + place] ^= bit
+    backup.write_bytes(content)
+    with suppress(ServiceError):
+        verified(backup)
+
+
+@one_engine
 @pytest.mark.parametrize("member", ["tables/sessions.jsonl", "files/"])
 def test_a_part_that_was_replaced_is_named(full: Settings, tmp_path: Path, member: str) -> None:
     backup = backup_of(full, tmp_path)
