@@ -109,7 +109,7 @@ def read_correction(id: SessionId, storage: StorageOf) -> CorrectionDocument:
     return CorrectionDocument.model_validate(correction_document(storage, id))
 
 
-@router.get("/{id}/export", responses={**TEXT_FILE, **errors(404, 422)}, response_class=Response)
+@router.get("/{id}/export", responses={**TEXT_FILE, **errors(404, 409, 422)}, response_class=Response)
 def read_export(
     id: SessionId,
     storage: StorageOf,

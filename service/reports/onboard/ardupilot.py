@@ -12,6 +12,6 @@ LEARNED = "INS_GYR_CAL = 0 keeps the gyro offsets; else ArduPilot measures them 
 
 def written(given: Given) -> str:
     """The file."""
-    notes = [*heading(given, "ArduPilot"), *left_of(given), LEARNED]
     rows = [f"{name},{number(value)}" for name, value in parameters(given, NAMES)]
+    notes = [*heading(given, "ArduPilot"), *left_of(given), LEARNED]
     return "\n".join([*commented(iter(notes)), *rows, ""])

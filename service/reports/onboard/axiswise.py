@@ -6,7 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.session import Array
+from service.errors import ConflictError
 from service.reports.onboard.given import STANDARD_GRAVITY, Given, misalignment, unmixed
+
+LEAST = 0.5
+"""Share of its nominal scale that an axis must feel along itself."""
+MOST_ASKEW = 0.1
+"""rad: 1 m/s² at 1 g; a mounting is off by some hundredths."""
 
 
 @dataclass(frozen=True)
@@ -19,7 +25,15 @@ class Names:
 
 
 def parameters(given: Given, names: Names) -> Iterator[tuple[str, float]]:
-    """Name and value, m/s², none and rad/s, of ``(raw − offset)·scale`` and of gyros ``raw − offset``."""
+    """Name and value, m/s², none and rad/s, of ``(raw − offset)·scale`` and of gyros ``raw − offset``.
+
+    ConflictError where the axes lie so far from the nominal ones that no scale an axis puts them right."""
+    for kind, vector in given.vectors.items():
+        if not np.all(np.diag(vector.matrix) > LEAST) or misalignment(vector) > MOST_ASKEW:
+            raise ConflictError(
+                f"The {kind}s' axes lie too far from their nominal ones: an offset and a scale an axis cannot correct "
+                "them. Look for exchanged or reversed channels, or hand on for Kalibr or ROS 2."
+            )
     if given.accelerometers is not None:
         offset, scale = unmixed(given.accelerometers)
         yield from _named(names.offset, offset)

@@ -15,6 +15,6 @@ DEVICE = "PX4 uses them where CAL_ACC0_ID and CAL_GYRO0_ID are the ids of these 
 
 def written(given: Given) -> str:
     """The file."""
-    notes = [*heading(given, "PX4"), *left_of(given), DEVICE]
     rows = [f"1\t1\t{name}\t{number(value)}\t{FLOAT}" for name, value in parameters(given, NAMES)]
+    notes = [*heading(given, "PX4"), *left_of(given), DEVICE]
     return "\n".join([*commented(iter(notes)), *rows, ""])

@@ -1,6 +1,7 @@
 """The correction of a stored session, as the parameter files of other systems are written from."""
 
 from estimator.nominal_vector import nominal_vector
+from service.errors import ConflictError
 from service.reports.onboard.given import Given
 from service.settings import VERSION
 from service.storage import Storage
@@ -9,8 +10,12 @@ from service.words.conditions import condition_of
 
 
 def given_of(storage: Storage, id: str) -> Given:
-    """Of a session; NotFoundError where its programme gives no correction."""
+    """Of a session; NotFoundError where its programme gives no correction, ConflictError where a sensor has none: the
+    vector that a driver makes holds it too."""
     one = corrected(storage, id)
+    if one.found.left_out:
+        why = "; ".join(f"{name}: {reason}" for name, reason in one.found.left_out)
+        raise ConflictError(f"The driver's vector holds sensors that have no correction. {why}.")
     return Given(
         unit=one.stored.unit,
         session=one.stored.id,

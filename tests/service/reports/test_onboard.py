@@ -112,3 +112,13 @@ def test_a_recording_in_service_has_none(client: httpx.Client) -> None:
     answer = client.post("/api/v1/sessions", content=recording_bytes())
     refused = client.get(f"/api/v1/sessions/{answer.json()['id']}/export", params={"system": "px4"})
     assert (refused.status_code, "no correction" in refused.json()["detail"]) == (404, True)
+
+
+def test_exchanged_channels_are_refused_where_only_a_scale_can_be_given(client: httpx.Client) -> None:
+    document = block(0.0)
+    first, second, *_ = document["sensors"]
+    first["nominal_axis"], second["nominal_axis"] = second["nominal_axis"], first["nominal_axis"]
+    id = send(client, document)
+    answer = client.get(f"/api/v1/sessions/{id}/export", params={"system": "px4"})
+    assert (answer.status_code, "exchanged" in answer.json()["detail"]) == (409, True)
+    assert "SM" in text(client, id, "ros2")
