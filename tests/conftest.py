@@ -1,5 +1,6 @@
 """What all tests share: databases of both engines, and services on them that are empty or hold sessions already."""
 
+import gc
 import os
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
@@ -7,13 +8,16 @@ from functools import cache
 
 import httpx
 import pytest
+from argon2 import PasswordHasher
+from argon2.profiles import CHEAPEST
 
 from service.app import create_app
+from service.identity import passwords
 from service.settings import Settings
 from service.storage import Storage
 from tests.databases import ENGINES, Databases, PostgresDatabases, postgres_databases, sqlite_databases
 from tests.serving import http_client
-from tests.stock import Stock, stores
+from tests.stock import Fill, Stock, stores
 
 os.environ.setdefault("IMU_HEALTH_DIAGNOSIS_WORKERS", "0")
 """Diagnoses are made when they are read: a test that looks at none does not pay for it. Those of the processes that
@@ -21,7 +25,24 @@ make them say how many they want."""
 
 SettingsHolding = Callable[..., Settings]
 Holding = Callable[..., httpx.Client]
+SettingsFilled = Callable[[Fill], Settings]
+Filled = Callable[[Callable[[Storage], object]], Storage]
 StockOf = Callable[[Databases], Stock]
+
+
+def pytest_collection_finish() -> None:
+    """What was imported and collected stays to the end: looking for garbage in it, again and again, takes a
+    fifteenth of the time."""
+    gc.collect()
+    gc.freeze()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def light_passwords() -> Iterator[None]:
+    """Passwords hashed with the least work: with the product's, a sixth of a second each, accounts are slow to make."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(passwords, "_hasher", cache(lambda: PasswordHasher.from_parameters(CHEAPEST)))
+        yield
 
 
 @pytest.fixture(scope="session")
@@ -67,6 +88,29 @@ def holding(settings_holding: SettingsHolding) -> Iterator[Holding]:
         yield lambda *uploads, diagnosed=False: opened.enter_context(
             http_client(create_app(settings_holding(*uploads, diagnosed=diagnosed)))
         )
+
+
+@pytest.fixture
+def settings_filled(databases: Databases, stock_of: StockOf) -> Iterator[SettingsFilled]:
+    """Settings of a service that a function has filled, once for all tests, of each engine in turn."""
+    with ExitStack() as opened:
+        yield lambda fill: opened.enter_context(stock_of(databases).filled(fill))
+
+
+@pytest.fixture
+def filled(settings_filled: SettingsFilled) -> Iterator[Filled]:
+    """The stores that a function has filled, once for all tests, without the service."""
+    with ExitStack() as opened:
+        yield lambda fill: opened.enter_context(stores(settings_filled(_by_stores(fill))))
+
+
+@cache
+def _by_stores(fill: Callable[[Storage], object]) -> Fill:
+    def by_settings(settings: Settings) -> None:
+        with stores(settings) as storage:
+            fill(storage)
+
+    return by_settings
 
 
 @pytest.fixture

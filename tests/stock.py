@@ -1,7 +1,8 @@
-"""Services that hold uploads already: each is filled once over HTTP, and copied for every test that asks for it."""
+"""Services that hold something already: each is filled once, over HTTP or by a function, and copied for every test that
+asks for it."""
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from uuid import uuid4
@@ -14,6 +15,8 @@ from tests.serving import http_client
 
 Uploads = tuple[bytes, ...]
 """Session files in the order in which they are uploaded."""
+Fill = Callable[[Settings], object]
+"""Stores something in the service of these settings."""
 
 
 @contextmanager
@@ -29,7 +32,7 @@ class Stock:
 
     def __init__(self, databases: Databases, folder: Path) -> None:
         self._databases, self._folder = databases, folder
-        self._filled: dict[tuple[Uploads, bool], Settings] = {}
+        self._filled: dict[object, Settings] = {}
 
     @contextmanager
     def holding(self, *uploads: bytes, diagnosed: bool = False) -> Iterator[Settings]:
@@ -39,12 +42,26 @@ class Stock:
         yield settings
         self._databases.drop(settings.database)
 
+    @contextmanager
+    def filled(self, fill: Fill) -> Iterator[Settings]:
+        """Settings of a new service that a function has filled."""
+        if fill not in self._filled:
+            settings = self._copy((), diagnosed=False)
+            fill(settings)
+            self._filled[fill] = settings
+        settings = self._copied(self._filled[fill])
+        yield settings
+        self._databases.drop(settings.database)
+
     def _copy(self, uploads: Uploads, diagnosed: bool) -> Settings:
         if not uploads:
             return self._settings(self._databases.migrated())
-        original = self._original(uploads, diagnosed)
+        return self._copied(self._original(uploads, diagnosed))
+
+    def _copied(self, original: Settings) -> Settings:
         copy = self._settings(self._databases.copied(original.database))
-        shutil.copytree(original.files, copy.files)
+        if original.files.exists():
+            shutil.copytree(original.files, copy.files)
         return copy
 
     def _original(self, uploads: Uploads, diagnosed: bool) -> Settings:

@@ -1,9 +1,9 @@
-"""The project's own source, parsed."""
+"""The project's own source. Trees are parsed when they are looked at and not kept: all of them are half a gigabyte."""
 
 import ast
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -17,10 +17,22 @@ class Module:
     name: str
     """Dotted; of a package the package's."""
     path: Path
-    tree: ast.Module
     is_package: bool
 
     @property
+    def tree(self) -> ast.Module:
+        """Parsed anew each time."""
+        return ast.parse(self.path.read_text("utf-8"))
+
+    @cached_property
+    def texts(self) -> tuple[str, ...]:
+        """Its strings that are no docstrings."""
+        nodes = tuple(ast.walk(self.tree))
+        bare = {id(node.value) for node in nodes if isinstance(node, ast.Expr)}
+        plain = (node.value for node in nodes if isinstance(node, ast.Constant) and id(node) not in bare)
+        return tuple(text for text in plain if isinstance(text, str))
+
+    @cached_property
     def imports(self) -> frozenset[str]:
         """Dotted names that it imports; of ``from x import y`` the module x, and x.y where that is a module."""
         return frozenset(name for node in ast.walk(self.tree) for name in _imported(node))
@@ -38,6 +50,7 @@ def _imported(node: ast.AST) -> Iterator[str]:
             yield node.module
 
 
+@cache
 def _file(name: str) -> bool:
     base = ROOT.joinpath(*name.split("."))
     return base.with_suffix(".py").is_file() or (base / "__init__.py").is_file()
@@ -54,4 +67,4 @@ def _module(path: Path) -> Module:
     parts = path.relative_to(ROOT).with_suffix("").parts
     is_package = parts[-1] == "__init__"
     name = ".".join(parts[:-1] if is_package else parts)
-    return Module(name, path, ast.parse(path.read_text("utf-8")), is_package)
+    return Module(name, path, is_package)

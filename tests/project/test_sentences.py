@@ -1,7 +1,5 @@
 """A sentence made from results stands in one file, so that a fact is said in one way everywhere."""
 
-import ast
-
 import pytest
 
 from tests.project.source import ROOT, modules
@@ -23,23 +21,16 @@ EXAMPLES = "service.api.schemas."
 """The description of the API quotes answers."""
 
 
-def texts(tree: ast.Module) -> list[str]:
-    """Strings of a module that are no docstrings."""
-    bare = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
-    plain = (node for node in ast.walk(tree) if isinstance(node, ast.Constant) and id(node) not in bare)
-    return [node.value for node in plain if isinstance(node.value, str)]
-
-
 @pytest.mark.parametrize("sentence", SENTENCES)
 def test_a_sentence_is_made_in_one_place(sentence: str) -> None:
     said = (module for module in modules("service") if not module.name.startswith(EXAMPLES))
-    places = {module.name for module in said for text in texts(module.tree) if sentence in text}
+    places = {module.name for module in said for text in module.texts if sentence in text}
     assert places == {SENTENCES[sentence]}
 
 
 def test_words_hold_no_markup() -> None:
     words = (module for module in modules("service") if module.name.startswith("service.words"))
-    assert [text for module in words for text in texts(module.tree) if "</" in text or "<p" in text] == []
+    assert [text for module in words for text in module.texts if "</" in text or "<p" in text] == []
 
 
 def test_templates_hold_none_of_these_sentences() -> None:

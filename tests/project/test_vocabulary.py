@@ -1,12 +1,12 @@
 """One set of words for verdicts of parameters and one for units; what is fit is a unit; ± is U."""
 
 import re
+from functools import cache
 
 import pytest
 
 from service.words.conditions import CONDITIONS, REFERENCE
 from tests.project.source import ROOT, modules
-from tests.project.test_sentences import texts
 
 RETIRED = {
     r"beyond doubt": "by more than U",
@@ -24,6 +24,7 @@ RETIRED = {
 DOCUMENTS = ("README.md", "docs/glossary.md", "docs/reports.md", "docs/quickstart.md", "docs/diagnosis/index.md")
 
 
+@cache
 def read_by_people() -> dict[str, str]:
     """Everything that people read: templates, strings of the service, sentences of the causes, documents."""
     templates = [path for room in ("pages", "reports") for path in (ROOT / "service" / room / "templates").iterdir()]
@@ -32,7 +33,7 @@ def read_by_people() -> dict[str, str]:
     for package in ("service", "estimator"):
         for module in modules(package):
             if module.name.startswith(("service.", "estimator.causes")):
-                found[module.name] = "\n".join(texts(module.tree))
+                found[module.name] = "\n".join(module.texts)
     return found
 
 

@@ -16,7 +16,7 @@ from tests.estimator.health.test_common_motion import axes_of
 
 TOLERANCE = 20 * ARCSEC
 TOLERANCES = {(ACCELEROMETER, "axis"): TOLERANCE}
-SESSIONS = 250
+SESSIONS = 120
 
 
 def measured(axes: Array, turn: Array, sigma: float, rng: np.random.Generator) -> Array:

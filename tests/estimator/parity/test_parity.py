@@ -14,7 +14,7 @@ from estimator.parity import ParityAccumulator, parity_check
 from estimator.parity.flight import TRANSPORT, Manoeuvre, Weather
 from tests.estimator.parity.cases import STILL, biased, block, recording, scaled, tilted
 
-RUNS = 40
+RUNS = 24
 
 
 def results(m, *, change=lambda true: true, runs=RUNS, motion="auto", **options):
@@ -35,7 +35,7 @@ def unchanged():
 @pytest.mark.parametrize("m", [4, 6, 9])
 def test_an_unchanged_block_is_called_changed_no_more_often_than_stated(m):
     alarms = sum(r.detected for r in results(m))
-    assert alarms <= 3, "one in a hundred is stated: more than 3 of 40 has a probability of 0.07 %"
+    assert alarms <= 3, "one in a hundred is stated: more than 3 of 24 has a probability of 0.01 %"
 
 
 def test_slow_noise_raises_no_alarms():

@@ -12,6 +12,7 @@ from service.flows.receive import upload
 from service.records.flag import Flag, FlagState, Matter, NoticeKind
 from service.storage import Storage
 from service.storage.queries.flags import FlagQuery
+from tests.conftest import Filled
 from tests.service.sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
@@ -32,12 +33,15 @@ def kinds(flag: Flag) -> list[str]:
     return [change.kind.value.removeprefix("flag.") for change in flag.changes]
 
 
-@pytest.fixture
-def flagged(storage: Storage) -> Storage:
-    """A unit whose second session is out of tolerance."""
+def two_sessions(storage: Storage) -> None:
+    """The second of them is out of tolerance."""
     measured(storage, 1)
     measured(storage, 2, 90.0)
-    return storage
+
+
+@pytest.fixture
+def flagged(filled: Filled) -> Storage:
+    return filled(two_sessions)
 
 
 def test_a_failing_session_raises_a_flag_on_the_sensor(flagged: Storage) -> None:

@@ -19,6 +19,7 @@ from service.records.group import Group, Level
 from service.records.model import ModelRevision, NewLasting, Scope
 from service.records.recomputation import Progress, Recomputation
 from service.storage import Storage
+from tests.conftest import Filled
 from tests.databases import one_engine
 from tests.service.grouped import CUBIC, cubic_session
 from tests.service.sessions import session_id
@@ -54,13 +55,16 @@ def brought(storage: Storage, revision: int) -> tuple[Recomputation, ...]:
         return store.recomputations.of(revision)
 
 
-@pytest.fixture
-def four(storage: Storage) -> Storage:
-    """A store of a unit with four sessions, and of another without the effect, whose answer is made."""
+def four_sessions(storage: Storage) -> None:
+    """Of a unit, and one of another without the effect; the answer is made."""
     for content in (*GROUP, cubic_session(40, unit="BA-018", cubic=0.0)):
         upload(storage, content, "a.json", NOW)
     refresh_group(storage, group(storage), NOW)
-    return storage
+
+
+@pytest.fixture
+def four(filled: Filled) -> Storage:
+    return filled(four_sessions)
 
 
 @pytest.fixture

@@ -12,6 +12,7 @@ from service.records.decision import Verdict
 from service.records.session_list import SessionOrder, SessionQuery
 from service.records.state import RecordState
 from service.storage import Storage
+from tests.conftest import Filled
 from tests.service.records import step, way
 from tests.service.sessions import session_bytes
 
@@ -22,9 +23,8 @@ SESSIONS = {"C": (1, 4, 6), "A": (2, 5), "B": (3,)}
 """Months of 2026 in which each unit was measured; C is unfit in April, withdrawn in June, B was on another stand."""
 
 
-@pytest.fixture
-def stored(storage: Storage) -> Storage:
-    """Six sessions, uploaded unit by unit."""
+def six_sessions(storage: Storage) -> None:
+    """Uploaded unit by unit."""
     for unit, months in SESSIONS.items():
         for month in months:
             moved = 200.0 if (unit, month) == ("C", 4) else 0.0
@@ -32,7 +32,11 @@ def stored(storage: Storage) -> Storage:
             content = session_bytes(seed=month, month=month, unit=unit, a3_moved=moved, **other)
             upload(storage, content, "a.json", NOW)
     withdraw_session(storage, way(storage), id_of(storage, 6), step())
-    return storage
+
+
+@pytest.fixture
+def stored(filled: Filled) -> Storage:
+    return filled(six_sessions)
 
 
 def listed(stored: Storage, wanted: SessionQuery) -> str:

@@ -8,6 +8,7 @@ import pytest
 from service.flows.set_lot import set_lot
 from service.records.fleet import FleetChoices, FleetQuery, Order
 from service.storage import Storage
+from tests.conftest import Filled
 from tests.service.dated import upload_and_date
 from tests.service.sessions import session_bytes
 
@@ -16,14 +17,17 @@ STAND = {"id": "S-2", "alpha_deg": 40.0, "sigma_arcsec": dict.fromkeys(("theta_x
 ALL = FleetQuery()
 
 
-@pytest.fixture
-def fleet(storage: Storage) -> Storage:
+def three_units(storage: Storage) -> None:
     """C-1 is unfit since April, A-1 fit since February, B-1 measured once, in March, on another stand."""
     for unit, month, moved in (("C-1", 1, 0.0), ("C-1", 4, 200.0), ("A-1", 1, 0.0), ("A-1", 2, 0.0)):
         upload_and_date(storage, session_bytes(seed=month, month=month, unit=unit, a3_moved=moved), "a.json", NOW)
     upload_and_date(storage, session_bytes(month=3, unit="B-1", stand=STAND), "b.json", NOW)
     set_lot(storage, "A-1", "L7", NOW, who="K. Ito")
-    return storage
+
+
+@pytest.fixture
+def fleet(filled: Filled) -> Storage:
+    return filled(three_units)
 
 
 def listed(fleet: Storage, wanted: FleetQuery) -> str:
