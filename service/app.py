@@ -17,6 +17,7 @@ from service.background.derive_pending import derive_pending
 from service.background.diagnose_waiting import Diagnosing, ask_for_missing
 from service.background.watch_fleet import watch_fleet
 from service.boundary import guard
+from service.boundary.heads import HeadAsGet
 from service.identity.elsewhere import provider_of
 from service.ingest import limits
 from service.metrics import Metrics
@@ -54,6 +55,7 @@ def create_app(settings: Settings, clock: Callable[[], datetime] = utc_now) -> F
     api.mount(app)
     guard(app, settings)
     pages.mount(app)
+    app.add_middleware(HeadAsGet)
     app.add_middleware(Measured, metrics=application.metrics)
     return app
 

@@ -29,6 +29,7 @@ from service.api import (
     usable,
     webhooks,
 )
+from service.api.held import Held
 from service.api.openapi import describe
 from service.api.problems import add_problem_handlers
 from service.identity.access import API
@@ -38,10 +39,11 @@ PREFIX = API
 
 
 def mount(app: FastAPI) -> None:
-    """Adds every route of the API, its error shape and its description to the application."""
+    """Adds every route of the API, its error shape, its description and the tags of its answers to the application."""
     app.router.routes.extend(_every().routes)
     add_problem_handlers(app)
     describe(app)
+    app.add_middleware(Held, prefix=PREFIX)
 
 
 @cache

@@ -1,4 +1,4 @@
-"""Records as tables that other programs read: CSV and Parquet."""
+"""Records as tables that other programs read: CSV, Parquet and Arrow."""
 
 import io
 from collections.abc import Mapping, Sequence
@@ -8,6 +8,7 @@ from urllib.parse import quote
 import polars as pl
 from fastapi import Response
 
+from service.api.negotiated import FORMS
 from service.records.history import HistoryPoint
 from service.records.unit import UnitSummary
 from service.words.verdict import unit_in_words
@@ -20,6 +21,7 @@ HISTORY_COLUMNS = {
     "reference": pl.Float64(), "deviation": pl.Float64(), "expanded": pl.Float64(), "tolerance": pl.Float64(),
     "verdict": pl.String(), "is_reference": pl.Boolean(),
     "axis_x": pl.Float64(), "axis_y": pl.Float64(), "axis_z": pl.Float64(), "revision": pl.Int64(),
+    "at_ms": pl.Int64(), "unit": pl.String(),
 }  # fmt: skip
 FLEET_COLUMNS = {
     "serial": pl.String(), "unit_type": pl.String(), "simulated": pl.Boolean(), "sessions": pl.Int64(),
@@ -27,23 +29,36 @@ FLEET_COLUMNS = {
     "reason": pl.String(),
     "worst_sensor": pl.String(), "worst_parameter": pl.String(), "margin": pl.Float64(),
     "diagnosis": pl.String(), "flags": pl.Int64(), "due": TIME, "lot": pl.String(),
-    "said": pl.String(),
+    "said": pl.String(), "last_at_ms": pl.Int64(), "due_ms": pl.Int64(),
 }  # fmt: skip
+BINARY = {"schema": {"type": "string", "format": "binary"}}
+"""How OpenAPI describes a table."""
+TABLES: dict[str, Any] = {media: BINARY for media, form in FORMS.items() if form != "json"}
+BY_HEADER = {"Vary": "Accept"}
+"""Of an answer whose form the header `Accept` may choose."""
 FORMULA = r"^[=+\-@\t\r]"
 """How a cell begins that a spreadsheet would work out instead of showing."""
 NO_AXIS = (None, None, None)
 """Of a parameter that is a number."""
 
 
-def history_table(points: Sequence[HistoryPoint]) -> pl.DataFrame:
-    """One row a point; the axis as three columns."""
-    rows = [vars(p) | dict(zip(("axis_x", "axis_y", "axis_z"), p.axis or NO_AXIS, strict=True)) for p in points]
-    return _table(rows, HISTORY_COLUMNS)
+def history_table(serial: str, points: Sequence[HistoryPoint]) -> pl.DataFrame:
+    """One row a point of a unit's history; the axis as three columns."""
+    return _table([_point_row(serial, point) for point in points], HISTORY_COLUMNS)
+
+
+def _point_row(serial: str, point: HistoryPoint) -> dict[str, Any]:
+    axis = dict(zip(("axis_x", "axis_y", "axis_z"), point.axis or NO_AXIS, strict=True))
+    return vars(point) | axis | {"at_ms": point.at_ms, "unit": serial}
 
 
 def fleet_table(units: Sequence[UnitSummary]) -> pl.DataFrame:
     """One row a unit."""
-    return _table([vars(unit) | {"said": unit_in_words(unit)} for unit in units], FLEET_COLUMNS)
+    return _table([_unit_row(unit) for unit in units], FLEET_COLUMNS)
+
+
+def _unit_row(unit: UnitSummary) -> dict[str, Any]:
+    return vars(unit) | {"said": unit_in_words(unit), "last_at_ms": unit.last_at_ms, "due_ms": unit.due_ms}
 
 
 def as_csv(table: pl.DataFrame, filename: str) -> Response:
@@ -63,6 +78,24 @@ def as_parquet(table: pl.DataFrame, filename: str) -> Response:
     target = io.BytesIO()
     table.write_parquet(target)
     return as_file(target.getvalue(), "application/vnd.apache.parquet", filename)
+
+
+def as_arrow(table: pl.DataFrame, filename: str) -> Response:
+    """Arrow's streaming format, with text in the layout that every reader of Arrow knows."""
+    target = io.BytesIO()
+    table.write_ipc_stream(target, compat_level=pl.CompatLevel.oldest())
+    return as_file(target.getvalue(), "application/vnd.apache.arrow.stream", filename)
+
+
+WRITERS = {"csv": as_csv, "parquet": as_parquet, "arrow": as_arrow}
+"""By what the parameter `format` calls them."""
+
+
+def as_table(table: pl.DataFrame, form: str, name: str) -> Response:
+    """A table in one of these forms, as a file of this name."""
+    answer = WRITERS[form](table, f"{name}.{form}")
+    answer.headers.update(BY_HEADER)
+    return answer
 
 
 def _table(rows: Sequence[Mapping[str, Any]], columns: Mapping[str, pl.DataType]) -> pl.DataFrame:

@@ -2,9 +2,10 @@
 
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Query, Response
+from fastapi import APIRouter, Query, Request, Response
 
-from service.api.exports import as_csv, as_file, fleet_table
+from service.api.exports import BINARY, BY_HEADER, TABLES, as_file, as_table, fleet_table
+from service.api.negotiated import FORMS, wanted_form
 from service.api.schemas.fields import Page, Window
 from service.api.schemas.problem import errors
 from service.api.schemas.units import FleetSchema, UnitPage, UnitSummarySchema
@@ -19,8 +20,12 @@ PDF = "application/pdf"
 """Media type."""
 XLSX = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
 """Media type (ISO/IEC 29500)."""
-BYTES = {"schema": {"type": "string", "format": "binary"}}
-"""How OpenAPI describes a file."""
+FORM = (
+    "Form of the answer; a workbook and a paper are of the whole fleet, whatever the page. Without it the header "
+    "`Accept` chooses, else it is JSON."
+)
+REPORTS = {**FORMS, XLSX: "xlsx", PDF: "pdf"}
+"""Tables, and what is of the whole fleet."""
 
 
 @router.get("", responses=errors())
@@ -31,28 +36,30 @@ def read_fleet(store: Reading) -> FleetSchema:
 
 @router.get(
     "/report",
-    responses={200: {"content": {"text/csv": {"schema": {"type": "string"}}, XLSX: BYTES, PDF: BYTES}}, **errors(422)},
+    responses={200: {"content": {**TABLES, XLSX: BINARY, PDF: BINARY}}, **errors(422)},
     response_model=UnitPage,
 )
 def report_fleet(
+    request: Request,
     store: Reading,
     now: Now,
     format: Annotated[
-        Literal["json", "csv", "xlsx", "pdf"],
-        Query(description="Form of the answer; a workbook and a paper are of the whole fleet, whatever the page."),
-    ] = "json",
+        Literal["json", "csv", "parquet", "arrow", "xlsx", "pdf"] | None,
+        Query(description=FORM),
+    ] = None,
     page: Page = 1,
     limit: Annotated[int, Query(ge=1, le=10_000, description="How many units on a page.")] = 10_000,
 ) -> Response:
     """The condition of every unit, worst first."""
-    if format == "xlsx":
+    form = wanted_form(request, format, REPORTS)
+    if form == "xlsx":
         return as_file(fleet_xlsx(store, fleet_report(store, now)), XLSX, "fleet.xlsx")
-    if format == "pdf":
+    if form == "pdf":
         return as_file(fleet_pdf(store, fleet_report(store, now)), PDF, "fleet.pdf")
     window = Window(page, limit)
     found = store.fleet.units(FleetQuery(offset=window.offset, limit=limit))
-    if format == "csv":
-        return as_csv(fleet_table(found), "fleet.csv")
+    if form != "json":
+        return as_table(fleet_table(found), form, "fleet")
     units = [UnitSummarySchema.model_validate(unit) for unit in found]
     answer = UnitPage(units=units, page=page, limit=limit, next_page=window.next_after(len(units)))
-    return Response(answer.model_dump_json(), media_type="application/json")
+    return Response(answer.model_dump_json(), media_type="application/json", headers=BY_HEADER)

@@ -98,11 +98,16 @@ def _allowed(request: Request) -> str:
 
     What only a more general route takes is left out: /units/X/lot can be read as the page of a unit named "X/lot".
     """
-    routes = request.app.router.routes
     template = getattr(request.scope.get("route"), "path", None)
-    own = {m for route in _every(routes) if route.path in (template, request.scope["path"]) for m in route.methods}
-    taken = (m for m in METHODS if any(r.matches({**request.scope, "method": m})[0] is Match.FULL for r in routes))
-    return ", ".join(m for m in taken if m in own)
+    every = _every(request.app.router.routes)
+    own = {m for route in every if route.path in (template, request.scope["path"]) for m in route.methods}
+    asked = ((m, "GET" if m == "HEAD" else m) for m in METHODS)  # HEAD is answered wherever GET is
+    return ", ".join(m for m, by in asked if by in own and _is_taken(request, by))
+
+
+def _is_taken(request: Request, method: str) -> bool:
+    scope = {**request.scope, "method": method}
+    return any(route.matches(scope)[0] is Match.FULL for route in request.app.router.routes)
 
 
 def _every(routes: Iterable[Any]) -> Iterator[Any]:

@@ -4,8 +4,8 @@ from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query, Response
 
-from service.api.exports import as_file
-from service.api.fleet import BYTES, XLSX
+from service.api.exports import BINARY, as_file
+from service.api.fleet import XLSX
 from service.api.schemas.fields import Text
 from service.api.schemas.problem import errors
 from service.dependencies import Now, StorageOf
@@ -21,7 +21,7 @@ Sensors = Annotated[int, Query(ge=3, le=12, description="Without a unit and a ty
 
 
 @router.get(
-    "/session-template", responses={200: {"content": {XLSX: BYTES}}, **errors(404, 422)}, response_class=Response
+    "/session-template", responses={200: {"content": {XLSX: BINARY}}, **errors(404, 422)}, response_class=Response
 )
 def read_template(
     storage: StorageOf,

@@ -5,8 +5,9 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request, Response
 
 from service.admission import PersonOf
-from service.api.exports import as_csv, as_parquet, history_table
+from service.api.exports import BY_HEADER, TABLES, as_table, history_table
 from service.api.flags import WantedState, flag_page
+from service.api.negotiated import wanted_form
 from service.api.schemas.fields import Bound, Moment, Serial, Text, WantedText, WantedVerdict, WindowOf
 from service.api.schemas.flags import FlagPage
 from service.api.schemas.history import HistoryAsked, HistoryPage, HistoryPointSchema
@@ -32,9 +33,6 @@ from service.views.unit_report import unit_report
 
 router = APIRouter(prefix="/units", tags=["units"])
 WORST_FIRST = Order.CONDITION
-TABLE = {"type": "string", "format": "binary"}
-"""How OpenAPI describes a table."""
-HISTORY_FORMATS = {"text/csv": {"schema": TABLE}, "application/vnd.apache.parquet": {"schema": TABLE}}
 
 
 @router.get("", responses=errors(422))
@@ -66,22 +64,21 @@ def list_units(
 
 @router.get(
     "/{serial:path}/history",
-    responses={200: {"content": HISTORY_FORMATS}, **errors(404, 422)},
+    responses={200: {"content": TABLES}, **errors(404, 422)},
     response_model=HistoryPage,
 )
 def read_history(request: Request, serial: Serial, store: Reading, asked: Annotated[HistoryAsked, Query()]) -> Response:
     """The parameters through time, oldest first: value, uncertainty, band, tolerance and verdict of every point.
 
-    A table (CSV, Parquet) that is not the last has a `Link` header to the next.
+    A table (CSV, Parquet, Arrow) that is not the last has a `Link` header to the next.
     """
     found = store.history.points(store.units.key(serial), asked.query)
-    following = asked.window.next_after(len(found))
-    if asked.format == "json":
+    following, form = asked.window.next_after(len(found)), wanted_form(request, asked.format)
+    if form == "json":
         points = [HistoryPointSchema.model_validate(point) for point in found]
         answer = HistoryPage(unit=serial, points=points, page=asked.page, limit=asked.limit, next_page=following)
-        return Response(answer.model_dump_json(), media_type="application/json")
-    write = as_csv if asked.format == "csv" else as_parquet
-    table = write(history_table(found), f"{serial}-history.{asked.format}")
+        return Response(answer.model_dump_json(), media_type="application/json", headers=BY_HEADER)
+    table = as_table(history_table(serial, found), form, f"{serial}-history")
     if following is not None:
         table.headers["Link"] = f'<{request.url.include_query_params(page=following)}>; rel="next"'
     return table

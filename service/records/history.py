@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from service.records.decision import Verdict
+from service.records.instants import epoch_ms
 
 
 @dataclass(frozen=True)
@@ -35,3 +36,8 @@ class HistoryPoint:
     axis: tuple[float, float, float] | None
     revision: int = 0
     """The model revision that it was computed under."""
+
+    @property
+    def at_ms(self) -> int:
+        """``at`` in milliseconds since 1970."""
+        return epoch_ms(self.at)

@@ -5,6 +5,7 @@ from datetime import datetime
 
 from service.records.decision import Verdict
 from service.records.event import Service
+from service.records.instants import epoch_ms
 from service.records.paper import NOBODY, Customer
 from service.records.reservation import Reservations
 from service.records.session import StoredSession
@@ -97,6 +98,16 @@ class UnitSummary:
     """Whether ``due`` and its outlook are still to be worked out with its latest records."""
     is_given_up: bool = False
     """Whether no process outlived that: it is tried again with the unit's next session, or at another start."""
+
+    @property
+    def last_at_ms(self) -> int | None:
+        """``last_at`` in milliseconds since 1970."""
+        return None if self.last_at is None else epoch_ms(self.last_at)
+
+    @property
+    def due_ms(self) -> int | None:
+        """``due`` in milliseconds since 1970."""
+        return None if self.due is None else epoch_ms(self.due)
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,15 @@ from fastapi import Depends, Path, Query
 from pydantic import AfterValidator, BeforeValidator, StringConstraints
 
 from service.records.decision import Verdict
+from service.records.instants import EPOCH, MILLISECOND
 
 TEXT = r"^[^\x00]*$"
 """PostgreSQL keeps any character but NUL."""
 NUMBER = re.compile(r"\s*[-+]?[\d._]+(e[-+]?\d+)?\s*", re.IGNORECASE)
+FEWEST_MS = 100_000_000_000
+"""In milliseconds a day of March 1973, long before anything was measured; in seconds the year 5138."""
+MOST_MS = 7_258_118_400_000
+"""The start of 2200, after which nothing is kept."""
 EARLIEST, LATEST = datetime(1900, 1, 1, tzinfo=UTC), datetime(2200, 1, 1, tzinfo=UTC)
 
 
@@ -25,6 +30,16 @@ def _in_utc(moment: datetime) -> datetime:
     if not EARLIEST <= aware < LATEST:
         raise ValueError("must lie between 1900 and 2200")
     return aware.astimezone(UTC)
+
+
+def _counted(given: object) -> object:
+    """A bound may be counted in milliseconds since 1970, as dashboards do. Seconds would lie in 1970 and are refused,
+    for they would cut nothing, or all."""
+    if not isinstance(given, str) or not given.isdecimal():
+        return _written(given)
+    if int(given) < FEWEST_MS:
+        raise ValueError("a bare number is milliseconds since 1970; of seconds, write the date and time")
+    return EPOCH + min(int(given), MOST_MS) * MILLISECOND
 
 
 def _bounded(moment: datetime) -> datetime:
@@ -47,8 +62,8 @@ def _day_written(given: object) -> object:
 
 Moment = Annotated[datetime, BeforeValidator(_written), AfterValidator(_in_utc)]
 """A time; without a zone it is UTC."""
-Bound = Annotated[datetime, BeforeValidator(_written), AfterValidator(_bounded)]
-"""A time that a list begins or ends at; without a zone it is UTC."""
+Bound = Annotated[datetime, BeforeValidator(_counted), AfterValidator(_bounded)]
+"""A time that a list begins or ends at; without a zone it is UTC. Also as milliseconds since 1970."""
 Day = Annotated[date, BeforeValidator(_day_written)]
 """A day, as on a calendar."""
 Text = Annotated[str, StringConstraints(pattern=TEXT, max_length=200)]

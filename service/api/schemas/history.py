@@ -9,6 +9,8 @@ from service.api.schemas.fields import Bound, Text, Window
 from service.records.decision import Verdict
 from service.storage.queries.history import HistoryQuery
 
+TableForm = Literal["json", "csv", "parquet", "arrow"]
+
 
 class HistoryAsked(BaseModel):
     """Which part of a unit's history is wanted, and in which form."""
@@ -19,7 +21,9 @@ class HistoryAsked(BaseModel):
     sensor: Text | None = Field(None, description="Only this sensor.")
     since: Bound | None = Field(None, description="Measured at or after this time.")
     until: Bound | None = Field(None, description="Measured before this time.")
-    format: Literal["json", "csv", "parquet"] = Field("json", description="Form of the answer.")
+    format: TableForm | None = Field(
+        None, description="Form of the answer; without it the header `Accept` chooses, else it is JSON."
+    )
     revision: Annotated[int, Field(ge=0, le=2_000_000_000)] | None = Field(
         None, description="Under this model revision instead of the one in force; 0: baseline."
     )
@@ -69,6 +73,7 @@ class HistoryPointSchema(BaseModel):
     is_reference: bool = Field(description="Whether the session is one that later ones are judged against.")
     axis: tuple[float, float, float] | None = Field(description="For the axis: its components in block axes.")
     revision: int = Field(description="Model revision that it was computed under; 0 is the baseline.")
+    at_ms: int = Field(description="`at` in milliseconds since 1970.")
 
 
 class HistoryPage(BaseModel):

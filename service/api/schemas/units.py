@@ -95,6 +95,8 @@ class UnitSummarySchema(SaidVerdict):
     flags: int = Field(description="How many flags are open.")
     due: datetime | None = Field(description="When its next calibration is due, UTC.")
     lot: str | None = Field(description="Production lot, where it is recorded.")
+    last_at_ms: int | None = Field(description="`last_at` in milliseconds since 1970.")
+    due_ms: int | None = Field(description="`due` in milliseconds since 1970.")
 
 
 class UnitPage(BaseModel):

@@ -180,5 +180,5 @@ def test_the_fleet_report_comes_as_json_and_csv(measured: httpx.Client) -> None:
 def test_a_format_that_is_not_offered_says_what_is(client: httpx.Client) -> None:
     answer = client.get("/api/v1/fleet/report?format=odt")
     assert answer.status_code == 422
-    offered = "Input should be 'json', 'csv', 'xlsx' or 'pdf'"
+    offered = "Input should be 'json', 'csv', 'parquet', 'arrow', 'xlsx' or 'pdf'"
     assert answer.json()["problems"] == [{"field": "format", "row": None, "message": offered}]

@@ -12,15 +12,15 @@ from tests.serving import http_client
 
 HTML = {"Accept": "text/html,application/xhtml+xml,*/*;q=0.8"}
 SEVERAL = {
-    "/api/v1/sessions": "GET, POST",
-    "/api/v1/webhooks": "GET, POST",
-    "/api/v1/units/B/notes": "GET, POST",
-    "/api/v1/units/B/customer": "GET, PUT",
+    "/api/v1/sessions": "GET, HEAD, POST",
+    "/api/v1/webhooks": "GET, HEAD, POST",
+    "/api/v1/units/B/notes": "GET, HEAD, POST",
+    "/api/v1/units/B/customer": "GET, HEAD, PUT",
     "/api/v1/units/B/lot": "PUT",
     "/api/v1/units/B/recalibrate": "POST",
-    "/api/v1/unit-types/T": "GET, PUT",
+    "/api/v1/unit-types/T": "GET, HEAD, PUT",
     "/api/v1/webhooks/1": "DELETE",
-    "/upload": "GET, POST",
+    "/upload": "GET, HEAD, POST",
     "/openapi.json": "GET, HEAD",
 }
 
