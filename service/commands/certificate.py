@@ -7,7 +7,7 @@ from urllib.parse import quote
 
 import typer
 
-from service.commands.client import connected
+from service.client import connect
 from service.commands.console import DEFAULT_SERVER, Out, Server, deliver
 
 
@@ -43,13 +43,13 @@ def certificate(
     """Write the certificate of a session."""
     own = f"/sessions/{quote(session, safe='')}"
     path = f"{own}/certificates/{quote(number, safe='')}" if number else f"{own}/certificate"
-    with connected(server) as client:
+    with connect(server) as client:
         deliver(client.get(path, format=format.value, **({} if number else {"by": by})).content, out)
 
 
 def correction(session: Session, server: Server = DEFAULT_SERVER, out: Out = None) -> None:
     """Write the correction that firmware applies to readings, as JSON."""
-    with connected(server) as client:
+    with connect(server) as client:
         found = client.get(f"/sessions/{quote(session, safe='')}/correction").json()
     deliver((json.dumps(found, indent=1, ensure_ascii=False) + "\n").encode(), out)
 
@@ -61,6 +61,6 @@ def export(
     out: Out = None,
 ) -> None:
     """Write the correction as parameters of PX4, ArduPilot, Kalibr or ROS 2."""
-    with connected(server) as client:
+    with connect(server) as client:
         found = client.get(f"/sessions/{quote(session, safe='')}/export", system=system.value)
     deliver(found.content, out)

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 from rich.markup import escape
 
-from service.commands.client import connected
+from service.client import connect
 from service.commands.console import DEFAULT_SERVER, Server, screen
 
 Unit = Annotated[str, typer.Argument(metavar="UNIT", help="Serial number.")]
@@ -45,7 +45,7 @@ def _when(at: datetime | None) -> dict[str, Any]:
 
 
 def _send(server: str, path: str, body: dict[str, Any]) -> None:
-    with connected(server) as client:
+    with connect(server) as client:
         kept = client.post(path, body)
     what = kept.get("kind", "note")
     screen().print(f"[bold]{escape(kept['unit'])}[/]  {kept['at'][:10]}  {what} {kept['id']} recorded")

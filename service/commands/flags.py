@@ -6,7 +6,7 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
-from service.commands.client import connected
+from service.client import connect
 from service.commands.console import DEFAULT_SERVER, AsJson, Server, print_json, screen
 from service.records.flag import FlagState
 
@@ -35,7 +35,7 @@ def list_flags(
     if context.invoked_subcommand is not None:
         return
     wanted = {"unit": unit, "state": None if state is None else state.value}
-    with connected(server) as client:
+    with connect(server) as client:
         found = client.get("/flags", limit="1000", **{k: v for k, v in wanted.items() if v}).json()["flags"]
     shown = [flag for flag in found if state is not None or flag["state"] != FlagState.RESOLVED]
     if as_json:
@@ -58,7 +58,7 @@ def resolve(id: Id, by: By, why: Why, server: Server = DEFAULT_SERVER) -> None:
 
 
 def _handle(id: int, what: str, by: str, why: str, server: str) -> None:
-    with connected(server) as client:
+    with connect(server) as client:
         flag = client.post(f"/flags/{id}/{what}", {"by": by, "why": why})
     screen().print(_line(flag))
 

@@ -7,7 +7,7 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
-from service.commands.client import Client, connected
+from service.client import Client, connect
 from service.commands.console import DEFAULT_SERVER, AsJson, Server, print_json, screen
 from service.errors import RefusedError, ServiceError
 from service.records.group import Level
@@ -29,7 +29,7 @@ def list_models(context: typer.Context, server: Server = DEFAULT_SERVER, as_json
     """Show accepted causes, newest first."""
     if context.invoked_subcommand is not None:
         return
-    with connected(server) as client:
+    with connect(server) as client:
         found = client.get("/models", limit="1000").json()["models"]
     if as_json:
         for revision in found:
@@ -51,7 +51,7 @@ def accept(
 ) -> None:
     """Accept what sessions show together; every session that it concerns is computed again."""
     body = {"cause": cause, "sensors": sensor or [], "by": by, "note": why}
-    with connected(server) as client:
+    with connect(server) as client:
         try:
             made = client.post(f"/{PATHS[level]}/{quote(name)}/diagnosis/accept", body)
         except RefusedError as refused:
@@ -63,7 +63,7 @@ def accept(
 @models.command("withdraw")
 def withdraw(id: Id, by: By, why: Why, server: Server = DEFAULT_SERVER, as_json: AsJson = False) -> None:
     """Take an accepted cause out of the model again."""
-    with connected(server) as client:
+    with connect(server) as client:
         made = client.post(f"/models/{id}/withdraw", {"by": by, "why": why})
         _show(client, made["id"], as_json)
 
@@ -71,7 +71,7 @@ def withdraw(id: Id, by: By, why: Why, server: Server = DEFAULT_SERVER, as_json:
 @models.command("show")
 def show(id: Id, server: Server = DEFAULT_SERVER, as_json: AsJson = False) -> None:
     """Show a revision: how far its sessions are computed again, and what moved."""
-    with connected(server) as client:
+    with connect(server) as client:
         _show(client, id, as_json)
 
 

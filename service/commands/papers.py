@@ -7,7 +7,7 @@ from urllib.parse import quote
 import typer
 from rich.markup import escape
 
-from service.commands.client import connected
+from service.client import connect
 from service.commands.console import DEFAULT_SERVER, Server, screen
 
 By = Annotated[str, typer.Option("--by", help="Your name.")]
@@ -23,7 +23,7 @@ def customer(
     server: Server = DEFAULT_SERVER,
 ) -> None:
     """Record for whom a unit is calibrated; its certificates name them."""
-    with connected(server) as client:
+    with connect(server) as client:
         path = f"/units/{quote(unit, safe='')}/customer"
         kept = client.put(path, {"name": name, "address": address, "by": by})
     screen().print(
@@ -45,6 +45,6 @@ def stand_certificate(
     body = {"number": number, "issued_by": issued_by, "by": by} | {
         name: f"{day:%Y-%m-%d}" for name, day in (("issued_on", issued_on), ("valid_until", valid_until))
     }
-    with connected(server) as client:
+    with connect(server) as client:
         kept = client.put(f"/stands/{quote(stand, safe='')}/certificate", body)
     screen().print(f"[bold]{escape(stand)}[/]  {escape(kept['number'])}, valid until {kept['valid_until']}")

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 import typer
 from rich.markup import escape
 
-from service.commands.client import connected
+from service.client import connect
 from service.commands.console import DEFAULT_SERVER, Server, screen
 
 session = typer.Typer(
@@ -22,21 +22,21 @@ Id = Annotated[str, typer.Argument(metavar="SESSION", help="The session's id.")]
 @session.command("withdraw")
 def withdraw(id: Id, by: By, why: Why, server: Server = DEFAULT_SERVER) -> None:
     """Take a session back: it stays readable, and tells nothing of its unit any more."""
-    with connected(server) as client:
+    with connect(server) as client:
         _show(client.post(f"/sessions/{id}/withdraw", {"by": by, "why": why}))
 
 
 @session.command("accept")
 def accept(id: Id, by: By, why: Why, server: Server = DEFAULT_SERVER) -> None:
     """Say that a session counts that was questioned, withdrawn or superseded."""
-    with connected(server) as client:
+    with connect(server) as client:
         _show(client.post(f"/sessions/{id}/accept", {"by": by, "why": why}))
 
 
 @session.command("reference")
 def reference(id: Id, by: By, why: Why, server: Server = DEFAULT_SERVER) -> None:
     """Choose and approve a session as what all others of its time are judged against."""
-    with connected(server) as client:
+    with connect(server) as client:
         unit = client.get(f"/sessions/{id}").json()["unit"]
         _show(client.post(f"/units/{unit}/reference", {"session": id, "by": by, "why": why}))
 
@@ -48,7 +48,7 @@ def withdraw_service(
     server: Server = DEFAULT_SERVER,
 ) -> None:
     """Take a service back: it stays on record and is no break any more."""
-    with connected(server) as client:
+    with connect(server) as client:
         found = client.post(f"/services/{number}/withdraw", {"by": by, "why": why})
     screen().print(f"Service {found['id']}  [bold]{escape(found['unit'])}[/]  {found['kind']}  {found['state']}")
 

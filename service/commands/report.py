@@ -8,7 +8,7 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
-from service.commands.client import connected
+from service.client import connect
 from service.commands.console import DEFAULT_SERVER, AsJson, Out, Server, deliver, print_json, screen
 from service.commands.upload import coloured
 from service.measures import number
@@ -27,7 +27,7 @@ class Format(StrEnum):
 
 def fleet(server: Server = DEFAULT_SERVER, as_json: AsJson = False) -> None:
     """Show every unit with its condition, the worst first; --json prints how many units are in which."""
-    with connected(server) as client:
+    with connect(server) as client:
         condition = client.get("/fleet").json()
         if as_json:
             print_json(condition)
@@ -55,7 +55,7 @@ def write_report(
     """Write the fleet's condition as a file for other programs."""
     if context.invoked_subcommand is not None:
         return
-    with connected(server) as client:
+    with connect(server) as client:
         deliver(client.get("/fleet/report", format=format.value).content, out)
 
 
@@ -69,7 +69,7 @@ def write_label(
 ) -> None:
     """Write a unit's label: serial number, due date, and a QR code that opens its page."""
     path = f"/units/{quote(unit, safe='')}/label.{format.value}"
-    with connected(server) as client:
+    with connect(server) as client:
         deliver(client.get(path, due=str(due).lower()).content, out)
 
 

@@ -9,8 +9,8 @@ from urllib.parse import quote
 import typer
 from rich.markup import escape
 
+from service.client import connect
 from service.commands.certificate import Session
-from service.commands.client import connected
 from service.commands.console import DEFAULT_SERVER, Server, screen
 from service.commands.exits import say
 from service.errors import ConflictError
@@ -33,7 +33,7 @@ def sign(
 ) -> None:
     """Sign the certificate of a session: reviewed, then approved by somebody else. Asks for your password."""
     path = f"/sessions/{quote(session, safe='')}/certificate"
-    with connected(server) as client:
+    with connect(server) as client:
         issued = client.get(f"{path}s").json()["certificates"]
         if not issued:
             raise ConflictError(NOT_ISSUED)

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from service.commands.client import connected
+from service.client import connect
 from service.commands.console import DEFAULT_SERVER, Server
 from service.commands.exits import say
 
@@ -26,7 +26,7 @@ def write_template(
     out: Out = Path("session.xlsx"),
 ) -> None:
     """Write a workbook to fill in: sensors, stand and schedule are there; `imu-health upload` takes it as it is."""
-    with connected(server) as client:
+    with connect(server) as client:
         asked = {"unit": unit, "unit_type": unit_type, "kind": kind, "sensors": str(sensors)}
         out.write_bytes(client.get("/session-template", **asked).content)
     say(f"{out} is ready to fill in: yellow cells on the sheets session and readings; then imu-health upload {out}")

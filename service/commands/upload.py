@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import typer
 from rich.markup import escape
 
-from service.commands.client import Client, connected
+from service.client import Client, connect
 from service.commands.console import DEFAULT_SERVER, AsJson, Files, Server, for_each, print_json, screen
 from service.records.decision import Verdict
 from service.words.conditions import Condition, condition_of
@@ -53,14 +53,14 @@ def upload_files(
     given = {"supersedes": supersedes, "by": by, "why": why, "mapping": read_by}
     stated = {name: text for name, text in given.items() if text}
     show: Callable[[dict[str, Any]], None] = print_json if as_json else _print_line
-    with connected(server) as client:
+    with connect(server) as client:
         for_each(files, lambda file: _uploaded(client, file, stated, wait=wait), show, "uploading")
 
 
 def _uploaded(client: Client, file: Path, stated: dict[str, str], *, wait: bool) -> dict[str, Any]:
     """The answer with the verdict that the session has once it is diagnosed."""
-    answer = client.upload(file, stated)
-    if wait and client.diagnosed(answer["id"]):
+    answer = client.send(file.name, file.read_bytes(), stated)
+    if wait and client.is_diagnosed(answer["id"]):
         session = client.get(f"/sessions/{answer['id']}").json()
         answer |= {name: session[name] for name in answer if name in session}
     return answer

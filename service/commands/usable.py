@@ -6,7 +6,7 @@ from urllib.parse import quote
 import typer
 from rich.markup import escape
 
-from service.commands.client import connected
+from service.client import connect
 from service.commands.console import DEFAULT_SERVER, AsJson, Server, print_json, screen
 from service.commands.exits import FAILED
 
@@ -15,7 +15,7 @@ Unit = Annotated[str, typer.Argument(metavar="UNIT", help="Serial number.")]
 
 def usable(unit: Unit, server: Server = DEFAULT_SERVER, as_json: AsJson = False) -> None:
     """Say whether a unit may be used: exit code 0 for yes, 1 for no, for a unit nobody knows, and in doubt."""
-    with connected(server) as client:
+    with connect(server) as client:
         answer = client.get(f"/units/{quote(unit, safe='')}/usable").json()
     if as_json:
         print_json(answer)

@@ -12,7 +12,7 @@ from tests.project.source import PACKAGES, Module, modules
 
 SERVICE_LAYERS = (
     {"settings", "errors", "records", "measures", "log"},
-    {"identity", "metrics", "words"},
+    {"client", "identity", "metrics", "words"},
     {"ingest", "storage", "planning"},
     {"judging"},
     {"flows", "views", "charts"},

@@ -1,0 +1,166 @@
+"""What the service answers, as `docs/api.md` describes it; SI, moments in UTC. `document` is always the whole answer,
+with the fields that are not named here."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any, Literal
+
+Verdict = Literal["pass", "conditional-pass", "undecidable", "conditional-fail", "fail"]
+
+
+@dataclass(frozen=True)
+class Reservation:
+    """What speaks against taking a verdict as it stands."""
+
+    kind: str
+    text: str
+    advice: str
+    document: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Said:
+    """A verdict, and how to say it to people: ``said``, never the verdict alone."""
+
+    verdict: Verdict | None
+    is_reference: bool
+    reason: str
+    said: str
+    reservations: tuple[Reservation, ...]
+    document: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Receipt(Said):
+    """The answer to an upload."""
+
+    id: str
+    unit: str
+    created: bool
+    """False where the same content was stored already."""
+    state: str
+    url: str
+
+
+@dataclass(frozen=True)
+class Session(Said):
+    """A stored session."""
+
+    id: str
+    unit: str
+    programme: str
+    stand: str | None
+    started_at: datetime
+    uploaded_at: datetime
+    state: str
+    stage: str | None
+    revision: int
+
+
+@dataclass(frozen=True)
+class Unit(Said):
+    """A unit in short, by its latest session."""
+
+    serial: str
+    unit_type: str
+    sessions: int
+    last_session: str | None
+    last_at: datetime | None
+    worst_sensor: str | None
+    worst_parameter: str | None
+    margin: float | None
+    flags: int
+    due: datetime | None
+    lot: str | None
+
+
+@dataclass(frozen=True)
+class Point:
+    """One parameter of one sensor at one session."""
+
+    session: str
+    at: datetime
+    sensor: str
+    kind: str
+    parameter: str
+    value: float | None
+    u: float | None
+    """Standard uncertainty of the value."""
+    lower: float | None
+    upper: float | None
+    reference: float | None
+    deviation: float | None
+    expanded: float | None
+    """U of the deviation."""
+    tolerance: float | None
+    verdict: Verdict
+    is_reference: bool
+    axis: tuple[float, ...] | None
+    revision: int
+    document: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A named cause."""
+
+    cause: str
+    sensors: tuple[str, ...]
+    amplitude: tuple[float | None, ...]
+    sigma: tuple[float | None, ...]
+    """One standard uncertainty of each amplitude."""
+    units: tuple[str, ...]
+    p_value: float | None
+    alternatives: tuple[str, ...]
+    sentence: str
+    advice: str
+    document: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What the simulation gets wrong about a session."""
+
+    session: str
+    unit: str
+    state: str
+    summary: str
+    findings: tuple[Finding, ...]
+    """Strongest first."""
+    unexplained: bool
+    verdict_after: Verdict | None
+    """With the named causes in the model."""
+    notes: tuple[str, ...]
+    document: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Flag:
+    """A matter that somebody must look after."""
+
+    id: int
+    unit: str
+    matter: str
+    place: str
+    state: str
+    summary: str
+    proposal: str
+    session: str | None
+    raised_at: datetime
+    changed_at: datetime
+    document: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Usable:
+    """Whether a unit may be used now."""
+
+    usable: bool
+    """In doubt false."""
+    why: str
+    reasons: tuple[str, ...]
+    reservations: tuple[str, ...]
+    until: datetime | None
+    session: str | None
+    as_of: datetime
+    document: dict[str, Any]

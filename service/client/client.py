@@ -1,0 +1,123 @@
+"""What a program asks of the service, call by call."""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Any, Literal, TypeVar
+from urllib.parse import quote
+
+import httpx
+
+from service.client.answers import Diagnosis, Flag, Point, Receipt, Session, Unit, Usable
+from service.client.connection import Connection
+from service.client.reading import read, read_all
+from service.errors import ServiceError
+
+T = TypeVar("T")
+TOKEN = "IMU_HEALTH_TOKEN"  # noqa: S105 - the name of a variable
+"""Environment variable with the token of whoever calls; on a command line others on the machine could read it."""
+LOCAL = "http://127.0.0.1:8000"
+"""Where the service listens unless it is told otherwise."""
+TIMEOUT = httpx.Timeout(300.0, connect=5.0)
+"""Seconds; the report of a large fleet takes some tens."""
+
+
+@contextmanager
+def connect(server: str = LOCAL, token: str | None = None) -> "Iterator[Client]":
+    """A client of the service at an address, with a token or the environment's; ServiceError when it is no address."""
+    try:
+        http = httpx.Client(base_url=f"{server.rstrip('/')}/api/v1", timeout=TIMEOUT)
+    except httpx.InvalidURL as fault:
+        raise ServiceError(f"{server} is not an address: {fault}") from fault
+    shown = os.environ.get(TOKEN, "") if token is None else token
+    if shown:
+        http.headers["Authorization"] = f"Bearer {shown}"
+    with http:
+        yield Client(server, http)
+
+
+@dataclass(frozen=True)
+class Client(Connection):
+    """A running service; a call that it refuses or does not answer raises an error of `service.errors`."""
+
+    def upload(self, file: Path | bytes, *, name: str = "session", **stated: str) -> Receipt:
+        """Stores a session file, once however often it is sent; ``stated`` is what a form may say of it: supersedes,
+        by, why, mapping. Its verdict may still be without reservations: `verdict_of` waits for them."""
+        content = file if isinstance(file, bytes) else file.read_bytes()
+        return read(Receipt, self.send(name if isinstance(file, bytes) else file.name, content, stated))
+
+    def verdict_of(self, session: str) -> Session:
+        """A session once causes were looked for, so that its verdict is said with all that is known; where that takes
+        longer than about two minutes, with a reservation of kind ``pending``."""
+        self.is_diagnosed(session)
+        return self.session(session)
+
+    def session(self, id: str) -> Session:
+        """A stored session."""
+        return read(Session, self.get(f"/sessions/{_in_path(id)}").json())
+
+    def unit(self, serial: str) -> Unit:
+        """A unit in short; its ``document`` has everything but the history."""
+        whole = self.get(f"/units/{_in_path(serial)}").json()
+        return read(Unit, whole["summary"])
+
+    def units(self, **wanted: Any) -> Iterator[Unit]:
+        """Units, worst first, page after page; ``wanted`` as in the API: verdict, q, unit_type, stand, order …"""
+        return self._pages(Unit, "/units", "units", {"limit": 1000, **wanted})
+
+    def usable(self, serial: str) -> Usable:
+        """Whether a unit may be used now."""
+        return read(Usable, self.get(f"/units/{_in_path(serial)}/usable").json())
+
+    def history(
+        self,
+        serial: str,
+        *,
+        parameter: str | None = None,
+        sensor: str | None = None,
+        since: datetime | None = None,
+        until: datetime | None = None,
+    ) -> Iterator[Point]:
+        """The parameters of a unit through time, oldest first, page after page."""
+        asked = {"parameter": parameter, "sensor": sensor, "since": _written(since), "until": _written(until)}
+        return self._pages(Point, f"/units/{_in_path(serial)}/history", "points", {"limit": 10_000, **asked})
+
+    def diagnosis(self, session: str) -> Diagnosis:
+        """What the simulation gets wrong about a session, waited for."""
+        if not self.is_diagnosed(session):
+            raise ServiceError(f"The diagnosis of {session} is still being made; ask again.")
+        return read(Diagnosis, self.get(f"/sessions/{_in_path(session)}/diagnosis").json())
+
+    def flags(self, *, unit: str | None = None, state: str | None = None) -> Iterator[Flag]:
+        """Flags, open ones first."""
+        return self._pages(Flag, "/flags", "flags", {"limit": 1000, "unit": unit, "state": state})
+
+    def acknowledge(self, flag: int, *, by: str, why: str) -> Flag:
+        """Says that somebody looks after a flag, and why it can stay for now."""
+        return read(Flag, self.post(f"/flags/{flag}/acknowledge", {"by": by, "why": why}))
+
+    def resolve(self, flag: int, *, by: str, why: str) -> Flag:
+        """Says that the matter is settled, and how."""
+        return read(Flag, self.post(f"/flags/{flag}/resolve", {"by": by, "why": why}))
+
+    def certificate(self, session: str, form: Literal["pdf", "dcc"] = "pdf", *, by: str = "") -> bytes:
+        """The certificate of a session: for people to sign, or as XML for programs; ``by`` is kept with its number."""
+        return self.get(f"/sessions/{_in_path(session)}/certificate", format=form, by=by).content
+
+    def _pages(self, kind: type[T], path: str, name: str, query: dict[str, Any]) -> Iterator[T]:
+        page: int | None = 1
+        while page is not None:
+            found = self.get(path, page=page, **query).json()
+            yield from read_all(kind, found[name])
+            page = found["next_page"]
+
+
+def _in_path(name: str) -> str:
+    return quote(name, safe="")
+
+
+def _written(moment: datetime | None) -> str | None:
+    return None if moment is None else moment.isoformat()
