@@ -57,7 +57,7 @@ stands: setup
 	$(BIN)/python -m benchmarks.stands
 
 pictures: setup browser
-	IMU_HEALTH_PICTURES=1 $(BIN)/pytest tests/end_to_end/browser/test_pictures.py
+	IMU_HEALTH_PICTURES=1 $(BIN)/pytest tests/end_to_end/browser/test_pictures.py tests/docs
 
 lock: setup
 	$(BIN)/pip install --quiet uv
