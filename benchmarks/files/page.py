@@ -46,7 +46,7 @@ No file that somebody uploads may end, freeze or bloat the service. Five things 
 
 * **Nothing is believed.** The extent of a table is counted before anything is built from it: the cells of a workbook
   one by one, wherever its sheets lie; rows and columns of CSV; lists, nesting and commas of JSON.
-* **Another process reads.** XLSX, HDF5, MAT and Parquet, and text of more than {LONG // MEBIBYTE} MiB, are read by a
+* **Another process reads.** XLSX, HDF5, MAT, Parquet, logs and text of more than {LONG // MEBIBYTE} MiB, are read by a
   process of their own. Before it sees a byte the kernel bounds its memory, its computing time and its time by the
   clock. It cannot write files, knows no setting and no password, and gives back numbers and text, never objects
   (no pickle). When it is ended, the upload is answered 422 with what to do, and the service goes on.

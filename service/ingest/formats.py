@@ -8,13 +8,21 @@ HDF5 = b"\x89HDF\r\n\x1a\n"
 """HDF5 file format, III.A."""
 MAT = b"MATLAB "
 """Of every MAT file."""
+ULOG = b"ULog\x01\x125"
+"""ULog file format, header."""
+MCAP = b"\x89MCAP0\r\n"
+"""MCAP format specification, magic."""
+SQLITE = b"SQLite format 3\x00"
+"""SQLite file format, 1.3.1; a rosbag2 may be one."""
+LOGS = (ULOG, MCAP, SQLITE)
+"""Of flight controllers and robots."""
 BINARY = (PARQUET, XLSX, HDF5, MAT)
-"""All."""
+"""Session files and tables."""
 
 
 def is_binary(start: bytes) -> bool:
     """Whether the first bytes are those of a binary format."""
-    return start.startswith(BINARY)
+    return start.startswith((*BINARY, *LOGS))
 
 
 def may_be_log(start: bytes) -> bool:

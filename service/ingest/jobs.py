@@ -5,18 +5,24 @@ from pathlib import Path
 
 from estimator.reading import read_session
 from service.ingest import hdf5, mat, parquet, xlsx
-from service.ingest.formats import HDF5, MAT, PARQUET, XLSX
+from service.ingest.formats import HDF5, LOGS, MAT, PARQUET, XLSX
 from service.ingest.layout.envelope import is_wrapped, unwrapped
 from service.ingest.layout.look import look
 from service.ingest.layout.mapping import layout_of
 from service.ingest.layout.reading import document_of
 from service.ingest.limits import in_force, refusal
+from service.ingest.logs import log_of
 from service.ingest.long_log import averaged_if_long
 from service.ingest.recording import recording
 
 Content = bytes | Path
 """Of a file, or where it lies."""
 Reader = Callable[[bytes, str], dict[str, object]]
+
+NO_MAPPING = (
+    "is a log, which does not say which unit it is of or where it was: choose it on the upload page, or send it with a "
+    "mapping, which POST /api/v1/layouts/preview proposes"
+)
 
 READERS: tuple[tuple[bytes, Reader], ...] = (
     (PARQUET, parquet.read_parquet),
@@ -42,6 +48,9 @@ def session(content: Content, filename: str) -> object:
     for magic, read in READERS:
         if content.startswith(magic):
             return read_session(read(content, filename), name=filename, most=in_force().extent)
+    if content.startswith(LOGS):
+        log_of(content, filename)
+        raise refusal(filename, NO_MAPPING)
     return read_session(content, name=filename, most=in_force().extent)
 
 

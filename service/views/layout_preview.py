@@ -22,6 +22,7 @@ from service.views.pattern import earlier
 KNOWN = "It says itself that it is a session: upload it as it is, without a mapping."
 FIRST_ROWS = 6
 """Of the table, as they will be read."""
+OF_A_LOG = ("unit", "started_at", "notes", "sample_rate_hz")
 NO_STAND = {"id": ""}
 """Of which nothing is known."""
 
@@ -70,10 +71,21 @@ def _proposed(storage: Storage, seen: Mapping[str, Any], unit: str, unit_type: s
         known = store.layouts.find(fingerprint(seen), unit_type)
     if known is not None:
         facts = known["session"] if not unit else facts_of(storage, unit, unit_type) or known["session"]
-        return {**known, "session": {**facts, "unit": unit}}, True
+        return {**known, "session": _said({**facts, **_of_this(seen)}, unit)}, True
     facts = facts_of(storage, unit, unit_type)
     columns = understood([Seen(**column) for column in seen["columns"]], facts.get("sensors", ()))
-    return {"columns": columns, "session": {**(facts or _unknown(columns)), "unit": unit}}, False
+    known = {**facts, **seen["facts"]} or _unknown(columns)
+    return {"columns": columns, "session": _said(known, unit)}, False
+
+
+def _of_this(seen: Mapping[str, Any]) -> dict[str, Any]:
+    """What a log says of itself, which another of the same layout says otherwise."""
+    return {key: value for key, value in seen["facts"].items() if key in OF_A_LOG}
+
+
+def _said(facts: Mapping[str, Any], unit: str) -> dict[str, Any]:
+    """With the unit that was named, or else the one that the file names."""
+    return {**facts, "unit": unit or facts.get("unit", "")}
 
 
 def facts_of(storage: Storage, unit: str, unit_type: str) -> dict[str, Any]:

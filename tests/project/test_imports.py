@@ -69,6 +69,9 @@ HOMES = {
     "signxml": ("service.reports.seal",),
     "cryptography": ("service.reports.seal",),
     "joserfc": ("service.identity.oidc",),
+    "pyulog": ("service.ingest.logs.ulog",),
+    "mcap": ("service.ingest.logs.mcap_file",),
+    "rosbags": ("service.ingest.logs.ros",),
     "structlog": ("service.log", "service.api.measured"),
 }
 ALL = modules(*PACKAGES)
@@ -167,6 +170,7 @@ BY_NAME = {
     "estimator.on_demand": "what a single use does not touch",
     "service.cli": "the command that was asked for",
     "service.identity.elsewhere": "a library that is not always installed",
+    "service.ingest.logs.readers": "a library that is not always installed",
     "service.reports.sealing": "a library that is not always installed",
 }
 """Modules that import by a name, and what."""

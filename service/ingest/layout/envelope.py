@@ -14,14 +14,16 @@ from zipfile import ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 
 from estimator.reading.json_text import parse_json
 from estimator.reading.problems import Problems
-from service.ingest.formats import HDF5, MAT, PARQUET, XLSX
+from service.ingest.formats import HDF5, MAT, MCAP, PARQUET, SQLITE, ULOG, XLSX
 from service.ingest.limits import in_force, refusal
 
 MAPPING = "imu-mapping.json"
 """Name of the first part."""
 NAME_AT = 30
 """Byte of a ZIP archive at which the name of its first part begins (APPNOTE 4.3.7)."""
-ENDINGS = ((XLSX, "xlsx"), (PARQUET, "parquet"), (HDF5, "h5"), (MAT, "mat"))
+ENDINGS = (
+    (XLSX, "xlsx"), (PARQUET, "parquet"), (HDF5, "h5"), (MAT, "mat"), (ULOG, "ulg"), (MCAP, "mcap"), (SQLITE, "db3"),
+)  # fmt: skip
 """Of the second part, by its first bytes; anything else is text."""
 LONGEST_MAPPING = 1024 * 1024
 """Bytes; ten thousand columns take less."""

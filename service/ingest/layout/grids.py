@@ -4,7 +4,7 @@ import csv
 import io
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import fastexcel
@@ -12,7 +12,7 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from service.ingest import hdf5, mat, parquet
+from service.ingest import hdf5, logs, mat, parquet
 from service.ingest.formats import HDF5, MAT, PARQUET, XLSX
 from service.ingest.layout.decoding import decoded
 from service.ingest.layout.understand import joined
@@ -47,13 +47,17 @@ class Grid:
     """A table as cells: R rows of readings, each column with its heading."""
 
     kind: str
-    """text, xlsx, parquet, hdf5 or mat."""
+    """text, xlsx, parquet, hdf5, mat or log."""
     headings: tuple[str, ...]
     columns: tuple[Sequence[Cell], ...]
     """As written: numbers where the file has numbers, else texts, None where empty."""
     taken: Mapping[str, Any]
     """How it was taken apart: encoding, separator, decimal, sheet, header_row, first_row."""
     sheets: tuple[str, ...] = ()
+    meanings: Mapping[str, str] = field(default_factory=dict)
+    """What the file itself says of its columns, by heading."""
+    facts: Mapping[str, Any] = field(default_factory=dict)
+    """What it says of the session."""
 
     @property
     def rows(self) -> int:
@@ -75,6 +79,9 @@ def grid_of(content: bytes, filename: str, stated: Mapping[str, Any]) -> Grid:
     for magic, read in ((PARQUET, _parquet), (HDF5, _hdf5), (MAT, _mat)):
         if content.startswith(magic):
             return read(content, filename)
+    log = logs.log_of(content, filename)
+    if log is not None:
+        return _log(log)
     return _text(content, filename, stated)
 
 
@@ -279,6 +286,11 @@ def _named(kind: str, table: Mapping[str, Any]) -> Grid:
         tuple(c for c in columns if len(c) == rows),
         {"first_row": 1, "decimal": "."},
     )
+
+
+def _log(log: logs.LogTable) -> Grid:
+    plain = _named("log", log.columns)
+    return replace(plain, meanings=dict(zip(plain.headings, log.meanings, strict=True)), facts=log.facts)
 
 
 def _listed(cells: Sequence[Cell] | NDArray[Any]) -> list[Cell]:

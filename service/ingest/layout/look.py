@@ -3,7 +3,7 @@
 from typing import Any
 
 from service.ingest import hdf5, mat, parquet
-from service.ingest.formats import HDF5, MAT, PARQUET, XLSX
+from service.ingest.formats import HDF5, LOGS, MAT, PARQUET, XLSX
 from service.ingest.layout.envelope import is_wrapped, unwrapped
 from service.ingest.layout.grids import Cell, Grid, grid_of, is_nothing, number_of
 from service.ingest.layout.mapping import layout_of
@@ -29,6 +29,8 @@ def is_session(content: bytes, filename: str) -> bool:
         return True
     if content.startswith(XLSX):
         return {"session", "readings"} <= set(sheet_names(content, filename))
+    if content.startswith(LOGS):
+        return False
     if content.startswith(PARQUET):
         return parquet.has_metadata(content)
     if content.startswith(HDF5):
@@ -58,6 +60,7 @@ def look(content: bytes, filename: str) -> object:
         "sheets": list(grid.sheets),
         "rows": grid.rows,
         "columns": [_column(heading, cells, grid) for heading, cells in zip(grid.headings, grid.columns, strict=True)],
+        "facts": dict(grid.facts),
     }
 
 
@@ -74,6 +77,7 @@ def _column(heading: str, cells: Any, grid: Grid) -> dict[str, Any]:
         "empty": not said,
         "words": words if len(words) <= MOST_WORDS else [],
         "holes": first == 0 and len(said) < len(cells),
+        "meaning": grid.meanings.get(heading),
     }
 
 

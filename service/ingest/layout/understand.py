@@ -38,6 +38,8 @@ class Seen:
     """The different texts of a column with few of them."""
     holes: bool = False
     """Whether cells are empty below filled ones."""
+    meaning: str | None = None
+    """What the file itself says that it is."""
 
 
 def understood(columns: Sequence[Seen], sensors: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
@@ -78,7 +80,7 @@ def _guess(column: Seen, names: Mapping[str, str]) -> dict[str, Any]:
     guess: dict[str, Any] = {"heading": column.heading, "as": None}
     if column.empty:
         return guess
-    meaning = _meaning(name, unit, column, names)
+    meaning = column.meaning or _meaning(name, unit, column, names)
     guess |= {"as": meaning} | ({"unit": unit} if unit and meaning else {})
     if meaning == "run":
         guess["words"] = run_words(column.words)

@@ -1,0 +1,11 @@
+"""Logs of flight controllers and robots (ULog, MCAP, rosbag2 in SQLite) → one table of all their IMUs on one clock.
+
+Such a log says what its channels are, in SI, but not which unit it is of or where it stood: it comes in as a table of
+people's own layout does, with a mapping that the file itself proposes. The libraries come with
+``pip install 'imu-health[logs]'`` and are imported when such a file is read.
+"""
+
+from service.ingest.logs.readers import log_of
+from service.ingest.logs.table import LogTable
+
+__all__ = ["LogTable", "log_of"]

@@ -1,0 +1,79 @@
+"""Messages of ROS 2 → streams: every topic of sensor_msgs/msg/Imu is an instance.
+
+Source: REP 103 (SI units), sensor_msgs/msg/Imu (a covariance that begins with −1 says that there is no such sensor).
+"""
+
+from array import array
+from collections.abc import Iterable, Iterator
+from datetime import UTC, datetime
+from functools import cache
+from typing import Any
+
+import numpy as np
+from rosbags.serde import SerdeError
+from rosbags.typesys import Stores, get_typestore
+from rosbags.typesys.store import Typestore
+
+from estimator.session import ACCELEROMETER, GYROSCOPE
+from service.ingest.limits import refusal
+from service.ingest.logs.readers import Contents
+from service.ingest.logs.streams import Array, Stream
+
+IMU = "sensor_msgs/msg/Imu"
+CDR = "cdr"
+"""How ROS 2 writes messages, as bags name it."""
+NANOSECOND = 1e-9
+EARLIEST, LATEST = 946_684_800.0, 4_102_444_800.0
+"""2000 and 2100, s since 1970: a clock that is outside counts from something else."""
+COLUMNS = 9
+"""Of an instance: two times, three rates, three accelerations, and which of both there are."""
+Message = tuple[str, int, bytes]
+"""Topic, time of the log in ns, content."""
+DAMAGED = (SerdeError, ValueError, IndexError, TypeError, OverflowError)
+"""What the library raises on content that is no such message."""
+WRONG = "holds a message of {topic} that is no {kind}; record it again"
+NONE = "holds no topic of {kind}; record the raw IMUs"
+
+
+def contents(messages: Iterable[Message], filename: str) -> Contents:
+    """All topics of the messages, by name."""
+    rows: dict[str, array[float]] = {}
+    for topic, logged, content in messages:
+        try:
+            rows.setdefault(topic, array("d")).extend(_row(logged, content))
+        except DAMAGED as fault:
+            raise refusal(filename, WRONG.format(topic=topic, kind=IMU), "table") from fault
+    if not rows:
+        raise refusal(filename, NONE.format(kind=IMU), "table")
+    found = {topic: np.frombuffer(cells).reshape(-1, COLUMNS) for topic, cells in sorted(rows.items())}
+    streams = [stream for topic, table in found.items() for stream in _streams(topic, table)]
+    return Contents(streams, _facts(streams))
+
+
+@cache
+def _store() -> Typestore:
+    return get_typestore(Stores.ROS2_HUMBLE)
+
+
+def _row(logged: int, content: bytes) -> tuple[float, ...]:
+    message: Any = _store().deserialize_cdr(content, IMU)
+    rate, force = message.angular_velocity, message.linear_acceleration
+    missing = 2 * (message.angular_velocity_covariance[0] == -1) + (message.linear_acceleration_covariance[0] == -1)
+    stamp = message.header.stamp
+    taken = stamp.sec + NANOSECOND * stamp.nanosec
+    return taken, NANOSECOND * logged, rate.x, rate.y, rate.z, force.x, force.y, force.z, float(missing)
+
+
+def _streams(topic: str, table: Array) -> Iterator[Stream]:
+    missing = table[0, 8]
+    time = table[:, 0] if np.all(np.diff(table[:, 0]) > 0) else table[:, 1]
+    if missing not in (1.0, 3.0):
+        yield Stream(f"{topic} acceleration", ACCELEROMETER, time, table[:, 5:8])
+    if missing < 2.0:
+        yield Stream(f"{topic} rate", GYROSCOPE, time, table[:, 2:5])
+
+
+def _facts(streams: Iterable[Stream]) -> dict[str, object]:
+    """When it was measured, where the clock says that."""
+    first = max((float(stream.time[0]) for stream in streams if len(stream.time)), default=0.0)
+    return {"started_at": datetime.fromtimestamp(first, UTC).isoformat()} if EARLIEST < first < LATEST else {}

@@ -1,0 +1,127 @@
+"""Streams of several IMUs, each with its own times → rows that all of them share: means over equal spans of time.
+
+A row is the mean of what came within its span. Where a stream has nothing in it, because the log dropped samples, the
+row is left out for all. Means of white noise are as good as its samples for what is done next, which is averaging over
+rests; a log of an hour becomes a table that can be held.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from estimator.session import ACCELEROMETER, GYROSCOPE
+from service.ingest.limits import check_table, refusal
+from service.ingest.logs.streams import Array, Stream, in_order
+
+RATE = 50.0
+"""Rows a second at most: a rest of two seconds has a hundred, and a log of three IMUs lasts half an hour within the
+usual limits."""
+SAMPLES = 2.0
+"""Of the slowest stream in a row, so that its jitter leaves no row empty."""
+SLOWEST = 4.0
+"""Samples a second of any stream at least: with fewer nobody sees when the block rests."""
+FEWEST = 100
+"""Samples below which a stream is not one that is logged all along."""
+AXES = "xyz"
+
+
+@dataclass(frozen=True)
+class LogTable:
+    """A log as a table that says itself what its columns are."""
+
+    columns: dict[str, Array]
+    """By heading."""
+    meanings: tuple[str, ...]
+    """What each column is read as."""
+    facts: dict[str, object]
+    """What it says of the session: imu-session/1 without its table."""
+
+
+def log_table(streams: Sequence[Stream], filename: str, facts: dict[str, object]) -> LogTable:
+    """All streams on one clock; FormatError where they have none in common, or there is no accelerometer."""
+    ordered = [stream for stream in map(in_order, streams) if len(stream.time) >= FEWEST]
+    if not any(stream.kind == ACCELEROMETER for stream in ordered):
+        raise refusal(filename, f"holds no accelerometer with {FEWEST} samples or more; log the raw IMUs", "table")
+    start = max(float(stream.time[0]) for stream in ordered)
+    end = min(float(stream.time[-1]) for stream in ordered)
+    slowest = min(map(_rate, ordered))
+    if slowest < SLOWEST:
+        raise refusal(
+            filename, f"has an IMU with {slowest:.3g} samples a second; at least {SLOWEST:g} are needed", "table"
+        )
+    rate = min(RATE, slowest / SAMPLES)
+    rows = (end - start) * rate
+    if rows < 1:
+        raise refusal(filename, "has IMUs that were not logged at the same time; their times do not overlap", "table")
+    check_table(filename, int(rows), 3 * len(ordered) + 2)
+    return _table(ordered, _Clock(start, round(rate, 3), int(rows)), facts)
+
+
+def _rate(stream: Stream) -> float:
+    """Samples a second; of two at one time each counts."""
+    steps = np.diff(stream.time)
+    usual = float(np.median(steps[steps > 0])) if np.any(steps > 0) else 1.0
+    return 1.0 / usual
+
+
+@dataclass(frozen=True)
+class _Clock:
+    """Spans of time of equal length."""
+
+    start: float
+    rate: float
+    rows: int
+
+    def means(self, stream: Stream, values: Array) -> Array:
+        """(rows, k) means of the values (n, k) that lie in each span; NaN where none does."""
+        span = np.floor((stream.time - self.start) * self.rate)
+        inside = (span >= 0) & (span < self.rows)
+        place = span[inside].astype(np.int64)
+        count = np.bincount(place, minlength=self.rows).astype(float)
+        count[count == 0] = np.nan
+        sums = [np.bincount(place, column, self.rows) for column in values[inside].T]
+        means: Array = np.column_stack(sums) / count[:, None]
+        return means
+
+    @property
+    def times(self) -> Array:
+        """(rows,) middles of the spans, s since the first began."""
+        times: Array = (np.arange(self.rows, dtype=np.float64) + 0.5) / self.rate
+        return times
+
+
+def _table(streams: Sequence[Stream], clock: _Clock, facts: dict[str, object]) -> LogTable:
+    columns, meanings, sensors = {"time [s]": clock.times}, ["time_s"], []
+    for kind, letter in ((ACCELEROMETER, "A"), (GYROSCOPE, "G")):
+        own = [stream for stream in streams if stream.kind == kind]
+        for place, stream in enumerate(own):
+            means = clock.means(stream, stream.values)
+            for axis, name in enumerate(AXES):
+                columns[f"{stream.label} {name} [{stream.unit}]"] = means[:, axis]
+                meanings.append(f"{letter}{3 * place + axis + 1}")
+                sensors.append(_sensor(meanings[-1], stream, axis))
+    warm = next((stream for stream in streams if _is_warm(stream)), None)
+    if warm is not None and warm.temperature is not None:
+        columns[f"{warm.label} temperature [°C]"] = clock.means(warm, warm.temperature[:, None])[:, 0]
+        meanings.append("temperature_c")
+    whole = np.isfinite(np.column_stack(list(columns.values()))).all(axis=1)
+    said = {"block": ACCELEROMETER, "programme": "arbitrary-orientations", "sample_rate_hz": clock.rate}
+    kept = {heading: column[whole] for heading, column in columns.items()}
+    return LogTable(kept, tuple(meanings), {**facts, **said, "sensors": sensors})
+
+
+def _is_warm(stream: Stream) -> bool:
+    """Whether it says its temperature, and not for ever nothing."""
+    return stream.temperature is not None and bool(np.isfinite(stream.temperature).all())
+
+
+def _sensor(name: str, stream: Stream, axis: int) -> dict[str, object]:
+    """In SI and along the axes of the log: how it is calibrated is what the session will tell."""
+    entry: dict[str, object] = {
+        "name": name,
+        "nominal_axis": [float(k == axis) for k in range(len(AXES))],
+        "nominal_scale": 1.0,
+        "reading_unit": stream.unit,
+    }
+    return entry | ({"kind": GYROSCOPE} if stream.kind == GYROSCOPE else {})

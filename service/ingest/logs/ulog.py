@@ -1,0 +1,83 @@
+"""ULog of PX4: every instance of `sensor_accel` and `sensor_gyro`, else the one IMU of `sensor_combined`.
+
+Source: PX4 user guide, ULog file format; the messages of PX4-Autopilot, msg/SensorAccel.msg and its neighbours.
+"""
+
+import io
+import struct
+from collections.abc import Iterator
+from contextlib import redirect_stdout
+
+import numpy as np
+from pyulog import ULog
+from pyulog.exceptions import ULogException
+
+from estimator.session import ACCELEROMETER, GYROSCOPE
+from service.ingest.limits import refusal
+from service.ingest.logs.readers import Contents
+from service.ingest.logs.streams import Array, Stream
+
+RAW = {"sensor_accel": ACCELEROMETER, "sensor_gyro": GYROSCOPE}
+COMBINED = {"accelerometer_m_s2": ACCELEROMETER, "gyro_rad": GYROSCOPE}
+MICROSECOND = 1e-6
+HEADER = 16
+"""Bytes before the first message."""
+DAMAGED = (ULogException, struct.error, ValueError, LookupError, TypeError, AttributeError, OverflowError)
+"""What the library raises on files that were cut off or written over."""
+BROKEN = "is damaged within: some of its messages cannot be read; copy it from the card again"
+CUT = "The log breaks off within a message, as where the power went: what came before it is read."
+UNREADABLE = "is damaged or not a readable ULog file; copy it from the card again"
+
+
+def read(content: bytes, filename: str) -> Contents:
+    """The IMUs of a log; FormatError where it is damaged. One that breaks off at its end is read up to there."""
+    try:
+        with redirect_stdout(io.StringIO()):  # the library prints what it thinks of a file
+            log = ULog(io.BytesIO(content), [*RAW, "sensor_combined"])
+            streams = [*_raw(log)] or [*_combined(log)]
+    except DAMAGED as fault:
+        raise refusal(filename, UNREADABLE) from fault
+    if log.file_corruption:
+        raise refusal(filename, BROKEN)
+    return Contents(streams, _facts(log, content))
+
+
+def _raw(log: ULog) -> Iterator[Stream]:
+    for data in sorted(log.data_list, key=lambda data: (data.name, data.multi_id)):
+        if data.name in RAW:
+            values = np.column_stack([data.data[axis].astype(float) for axis in "xyz"])
+            temperature = data.data.get("temperature")
+            warm = None if temperature is None else temperature.astype(float)
+            yield Stream(f"{data.name} {data.multi_id}", RAW[data.name], _time(data.data), values, warm)
+
+
+def _combined(log: ULog) -> Iterator[Stream]:
+    for data in (data for data in log.data_list if data.name == "sensor_combined"):
+        for field, kind in COMBINED.items():
+            values = np.column_stack([data.data[f"{field}[{axis}]"].astype(float) for axis in range(3)])
+            yield Stream(f"{field} {data.multi_id}", kind, _time(data.data), values)
+
+
+def _time(data: dict[str, Array]) -> Array:
+    """When a sample was taken, where that is logged besides when it was published."""
+    sampled = data.get("timestamp_sample")
+    chosen = sampled if sampled is not None and np.all(sampled > 0) else data["timestamp"]
+    return MICROSECOND * chosen.astype(float)
+
+
+def _facts(log: ULog, content: bytes) -> dict[str, object]:
+    """Serial number of the flight controller, and what was lost."""
+    lost = sum(dropout.duration for dropout in log.dropouts)
+    notes = [f"The logger dropped {lost} ms of samples in {len(log.dropouts)} gaps."] if log.dropouts else []
+    notes += [] if _is_whole(content) else [CUT]
+    serial = log.msg_info_dict.get("sys_uuid")
+    said = {"unit": serial if isinstance(serial, str) else "", "notes": " ".join(notes)}
+    return {key: text for key, text in said.items() if text}
+
+
+def _is_whole(content: bytes) -> bool:
+    """Whether the last message ends where the file does: each has its length before it."""
+    at = HEADER
+    while at + 3 <= len(content):
+        at += 3 + int.from_bytes(content[at : at + 2], "little")
+    return at == len(content)
