@@ -2,9 +2,11 @@
 
 `plan` takes a block on a two-axis stand and proposes or judges elevation, number of positions and positions;
 `rank_of_orientations` says what a set of still orientations identifies, and what to add. Neither needs readings.
+`missing` says what a session that is being measured still lacks.
 """
 
 from estimator.planning.elevation import conditioning, optimal_elevation
+from estimator.planning.missing import Missing, missing
 from estimator.planning.orientations import OrientationRank, proposed_orientations, rank_of_orientations
 from estimator.planning.positions import OptimalPositions, optimal_positions
 from estimator.planning.propose import plan
@@ -12,6 +14,7 @@ from estimator.planning.results import Judged, Plan, Request, Sweep, Wanted
 
 __all__ = [
     "Judged",
+    "Missing",
     "OptimalPositions",
     "OrientationRank",
     "Plan",
@@ -19,6 +22,7 @@ __all__ = [
     "Sweep",
     "Wanted",
     "conditioning",
+    "missing",
     "optimal_elevation",
     "optimal_positions",
     "plan",

@@ -1,14 +1,17 @@
 """Plans: what a session would tell before it is measured."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
+from service.api.received import REQUEST_BODY, FileOf
 from service.api.schemas.problem import errors
 from service.dependencies import StorageOf
 from service.planning.question import PlanQuestion
+from service.views.missing import missing_of
 from service.views.plan import plan
+from service.words.missing import missing_in_words
 
 router = APIRouter(prefix="/plan", tags=["planning"])
 
@@ -20,6 +23,39 @@ class PlanDocument(BaseModel):
 
     format: str = Field(description="`imu-plan/1`.")
     question: dict[str, Any] = Field(description="What was asked, in people's units, with the type's tolerances.")
+
+
+class Setting(BaseModel):
+    """A position of the stand that is to come."""
+
+    run: str = Field(description="`direct` or `flipped`.")
+    beta_deg: float = Field(description="Turn of the head, degrees.")
+
+
+class MissingDocument(BaseModel):
+    """imu-missing/1: what a session that is being measured still lacks."""
+
+    format: str = Field(description="`imu-missing/1`.")
+    done: int = Field(description="Positions so far.")
+    positions: int | None = Field(description="Equal steps a run; null in arbitrary orientations.")
+    complete: bool = Field(description="Whether nothing is to come.")
+    settings: list[Setting] = Field(description="Of a stand, in the order of turning.")
+    directions: list[list[float]] = Field(description="Where up should point, unit vectors in block axes.")
+    unseen: list[str] = Field(description="What the positions so far leave open.")
+    said: list[str] = Field(description="The same for people.")
+
+
+Positions = Annotated[
+    int | None, Query(ge=2, le=360, description="Positions a run; without it the smallest step so far says it.")
+]
+Runs = Annotated[Literal["both", "direct"], Query(description="`direct` where the block is not flipped.")]
+
+
+@router.post("/missing", responses=errors(400, 413, 422), openapi_extra=REQUEST_BODY)
+def read_missing(file: FileOf, positions: Positions = None, runs: Runs = "both") -> MissingDocument:
+    """Which positions a session still lacks while it is measured. Nothing is stored."""
+    found = missing_of(file, positions, both_runs=runs == "both")
+    return MissingDocument.model_validate({**found.to_dict(), "said": missing_in_words(found)})
 
 
 @router.get("", responses=errors(404, 422))

@@ -16,7 +16,9 @@ from service.api import PREFIX
 from service.api.problems import problem
 from service.boundary.pace import LATE, allowance
 
-UPLOADS = frozenset({f"{PREFIX}/sessions", f"{PREFIX}/layouts/preview", "/upload", "/upload/layout"})
+UPLOADS = frozenset(
+    {f"{PREFIX}/sessions", f"{PREFIX}/layouts/preview", f"{PREFIX}/plan/missing", "/upload", "/upload/layout"}
+)
 """Where files are received; these routes count what comes themselves."""
 TOO_LARGE, TOO_SLOW = 413, 408
 CLOSE = {"Connection": "close"}

@@ -84,6 +84,11 @@ CATALOGUE = {
         "plan.plan_session",
         "Plan a session: elevation, positions, expected uncertainty of every parameter, and what it cannot see.",
     ),
+    "missing": Entry(
+        "missing.missing_positions",
+        "Say which positions a session still lacks while it is measured: settings of the stand, or orientations to "
+        "add.",
+    ),
     "parity": Entry(
         "parity.parity",
         "Judge a recording in service by what the redundant sensors say of one another; no stand needed.",

@@ -103,6 +103,7 @@ POST /notes/{{id}}/withdraw
 POST /sessions/{{id}}/stage
 POST {API}/sessions
 POST {API}/layouts/preview
+POST {API}/plan/missing
 PUT {SESSION}/stage
 GET {SESSION}/certificate
 POST {UNIT}/services

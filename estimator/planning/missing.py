@@ -1,0 +1,122 @@
+"""What a session that is being measured still lacks: the settings of the stand, or the orientations, to come.
+
+On a two-axis stand the schedule is N equal steps of β a run, from the first β that was set; N follows from the smallest
+step so far, or is stated. In arbitrary orientations it is what `rank_of_orientations` asks to add. Neither needs a fit:
+where a sensor points is known well enough from its nominal axis.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from estimator.calibration.calibrate import averaged
+from estimator.errors import Problem, ScheduleError
+from estimator.planning.expected import expected_sigmas
+from estimator.planning.orientations import rank_of_orientations
+from estimator.results import PARAMETERS
+from estimator.session import ACCELEROMETER, TWO_AXIS_STAND, Array, CalibrationSession
+
+SAME = 0.25
+"""Of a step: a row this near to a setting stands there. Half a step would be another setting's as well."""
+MOST = 360
+"""Equal steps a run: whole degrees are finer than anybody turns a head by."""
+RUNS = ("direct", "flipped")
+
+
+@dataclass(frozen=True, eq=False)
+class Missing:
+    """What is done and what is to come."""
+
+    done: int
+    """Positions so far."""
+    positions: int | None
+    """Equal steps a run, on a stand."""
+    settings: tuple[tuple[str, float], ...]
+    """Run and β, rad, still to be set, in the order of turning; none in arbitrary orientations."""
+    directions: Array
+    """(k, 3) where up should point, unit vectors, block axes; none on a stand."""
+    unseen: tuple[str, ...]
+    """What the positions so far leave open."""
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether nothing is to come."""
+        return not self.settings and not len(self.directions)
+
+    def to_dict(self) -> dict[str, Any]:
+        """``imu-missing/1``; angles in degrees."""
+        return {
+            "format": "imu-missing/1",
+            "done": self.done,
+            "positions": self.positions,
+            "complete": self.is_complete,
+            "settings": [{"run": run, "beta_deg": round(float(np.degrees(beta)), 9)} for run, beta in self.settings],
+            "directions": self.directions.tolist(),
+            "unseen": list(self.unseen),
+        }
+
+
+def missing(session: CalibrationSession, positions: int | None = None, *, both_runs: bool = True) -> Missing:
+    """What the rows so far lack of a whole session.
+
+    positions : equal steps a run; None: as the smallest step so far says. ``both_runs``: whether the block is flipped.
+
+    Raises
+    ------
+    ScheduleError : the programme does not calibrate, or the steps say no number of positions.
+    """
+    rows = averaged(session)
+    if rows.programme != TWO_AXIS_STAND:
+        found = rank_of_orientations(rows.sensors, pointing(rows))
+        return Missing(len(rows.readings), None, (), found.add, found.unseen)
+    assert rows.beta is not None
+    assert rows.flipped is not None
+    steps = positions or steps_of(rows.beta, rows.flipped)
+    runs = np.array([False, True]) if both_runs else np.unique(rows.flipped)
+    settings = tuple(one for run in runs for one in _unset(rows.beta[rows.flipped == run], rows.beta, steps, bool(run)))
+    return Missing(len(rows.readings), steps, settings, np.zeros((0, 3)), _open(rows))
+
+
+def steps_of(beta: Array, flipped: Array) -> int:
+    """Equal steps in a whole turn that the smallest step between angles (R,), rad, of one run makes."""
+    gaps = [np.diff(np.unique(np.round(np.mod(beta[flipped == run], 2 * np.pi), 9))) for run in np.unique(flipped)]
+    found = np.concatenate(gaps)
+    count = 2 * np.pi / float(found.min()) if len(found) else np.inf
+    if not count <= MOST or abs(count - round(count)) > SAME:
+        text = "the steps so far are no equal parts of a turn; say how many positions a run is to have"
+        raise ScheduleError([Problem("beta_deg", text)])
+    return round(count)
+
+
+def _unset(done: Array, every: Array, steps: int, flipped: bool) -> list[tuple[str, float]]:
+    """Settings of a run that none of its angles (r,), rad, stands at; ``every`` (R,) begins with the first."""
+    step = 2 * np.pi / steps
+    wanted = np.mod(every[0] + step * np.arange(steps), 2 * np.pi)
+    away = np.abs(np.angle(np.exp(1j * (wanted[:, None] - done[None, :]))))
+    nearest = away.min(axis=1, initial=np.inf)
+    return [(RUNS[flipped], float(beta)) for beta, far in zip(wanted, nearest, strict=True) if far > SAME * step]
+
+
+def _open(rows: CalibrationSession) -> tuple[str, ...]:
+    """``A1 scale``: what is not observed yet."""
+    total, _ = expected_sigmas(rows)
+    return tuple(
+        f"{sensor.name} {parameter}"
+        for sensor, own in zip(rows.sensors, np.isfinite(total), strict=True)
+        for parameter, is_seen in zip(PARAMETERS, own, strict=True)
+        if not is_seen
+    )
+
+
+def pointing(rows: CalibrationSession) -> Array:
+    """(R, 3) directions of the specific force, unit vectors: as stated, else by nominal axes and scale factors."""
+    if rows.directions is not None and np.isfinite(rows.directions).all():
+        return rows.directions
+    felt = np.array([sensor.kind == ACCELEROMETER for sensor in rows.sensors])
+    scale = np.array([sensor.nominal_scale for sensor in rows.sensors])[felt]
+    offset = np.array([sensor.nominal_offset or 0.0 for sensor in rows.sensors])[felt]
+    axes = np.stack([sensor.nominal_axis for sensor in rows.sensors])[felt]
+    force = np.linalg.lstsq(axes, ((rows.readings[:, felt] - offset) / scale).T, rcond=None)[0].T
+    found: Array = force / np.linalg.norm(force, axis=1, keepdims=True)
+    return found
