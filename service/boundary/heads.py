@@ -4,23 +4,21 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 
 class HeadAsGet:
-    """Works out what GET would answer and keeps the body back (RFC 9110, 9.3.2)."""
+    """Works out what GET would answer (RFC 9110, 9.3.2); the server, whose own scope says HEAD, sends the head only."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Passes everything else through. The server knows by its own scope that the length announces no body."""
+        """Passes everything else through."""
         if scope["type"] != "http" or scope["method"] != "HEAD":
             await self.app(scope, receive, send)
             return
         asked = {**scope, "method": "GET"}
 
-        async def without_body(message: Message) -> None:
-            if message["type"] == "http.response.start" and "route" in asked:
+        async def named(message: Message) -> None:
+            if "route" in asked:
                 scope["route"] = asked["route"]  # which the log and the figures name
-            elif message["type"] == "http.response.body":
-                message = {**message, "body": b""}
             await send(message)
 
-        await self.app(asked, receive, without_body)
+        await self.app(asked, receive, named)

@@ -31,3 +31,9 @@ def test_the_head_of_an_answer_is_that_of_the_whole(holding: Holding, path: str)
 
 def test_head_is_not_possible_where_get_is_not(client: httpx.Client) -> None:
     assert client.head("/api/v1/webhooks/1").status_code == 405
+
+
+def test_the_figures_name_what_a_head_was_asked_of(client: httpx.Client) -> None:
+    client.head("/api/v1/fleet")
+    counted = [line for line in client.get("/metrics").text.splitlines() if 'method="HEAD"' in line]
+    assert any('operation="read_fleet"' in line for line in counted), counted
