@@ -5,8 +5,8 @@ row is left out for all. Means of white noise are as good as its samples for wha
 rests; a log of an hour becomes a table that can be held.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -40,7 +40,8 @@ class LogTable:
 
 def log_table(streams: Sequence[Stream], filename: str, facts: dict[str, object]) -> LogTable:
     """All streams on one clock; FormatError where they have none in common, or there is no accelerometer."""
-    ordered = [stream for stream in map(in_order, streams) if len(stream.time) >= FEWEST]
+    sound = [in_order(stream) for stream in streams]
+    ordered = [stream for stream in sound if len(stream.time) >= FEWEST]
     if not any(stream.kind == ACCELEROMETER for stream in ordered):
         raise refusal(filename, f"holds no accelerometer with {FEWEST} samples or more; log the raw IMUs", "table")
     start = max(float(stream.time[0]) for stream in ordered)
@@ -55,7 +56,24 @@ def log_table(streams: Sequence[Stream], filename: str, facts: dict[str, object]
     if rows < 1:
         raise refusal(filename, "has IMUs that were not logged at the same time; their times do not overlap", "table")
     check_table(filename, int(rows), 3 * len(ordered) + 2)
-    return _table(ordered, _Clock(start, round(rate, 3), int(rows)), facts)
+    table = _table(ordered, _Clock(start, round(rate, 3), int(rows)))
+    notes = [str(facts.get("notes", "")), *_left_out(streams, sound), *_torn(len(table.columns["time [s]"]), int(rows))]
+    said = " ".join(filter(None, notes))
+    return replace(table, facts={**facts, **table.facts, **({"notes": said} if said else {})})
+
+
+def _left_out(streams: Sequence[Stream], sound: Sequence[Stream]) -> Iterator[str]:
+    """What of a log is not in its table."""
+    for stream, kept in zip(streams, sound, strict=True):
+        if len(kept.time) < len(stream.time):
+            yield f"{stream.label}: {len(stream.time) - len(kept.time)} samples are no numbers and were left out."
+        if len(kept.time) < FEWEST:
+            yield f"{stream.label} has {len(kept.time)} samples only and was left out."
+
+
+def _torn(kept: int, rows: int) -> Iterator[str]:
+    if kept < rows:
+        yield f"{rows - kept} of {rows} rows were left out: some IMU says nothing in them."
 
 
 def _rate(stream: Stream) -> float:
@@ -91,7 +109,7 @@ class _Clock:
         return times
 
 
-def _table(streams: Sequence[Stream], clock: _Clock, facts: dict[str, object]) -> LogTable:
+def _table(streams: Sequence[Stream], clock: _Clock) -> LogTable:
     columns, meanings, sensors = {"time [s]": clock.times}, ["time_s"], []
     for kind, letter in ((ACCELEROMETER, "A"), (GYROSCOPE, "G")):
         own = [stream for stream in streams if stream.kind == kind]
@@ -108,7 +126,7 @@ def _table(streams: Sequence[Stream], clock: _Clock, facts: dict[str, object]) -
     whole = np.isfinite(np.column_stack(list(columns.values()))).all(axis=1)
     said = {"block": ACCELEROMETER, "programme": "arbitrary-orientations", "sample_rate_hz": clock.rate}
     kept = {heading: column[whole] for heading, column in columns.items()}
-    return LogTable(kept, tuple(meanings), {**facts, **said, "sensors": sensors})
+    return LogTable(kept, tuple(meanings), {**said, "sensors": sensors})
 
 
 def _is_warm(stream: Stream) -> bool:

@@ -69,8 +69,24 @@ def test_messages_without_a_stamp_have_the_log_s_time() -> None:
 def test_rows_in_which_a_sensor_says_nothing_are_left_out() -> None:
     gap = (FOUND[0].time > 5) & (FOUND[0].time < 6)
     torn = made.Imu(FOUND[0].time[~gap], FOUND[0].force[~gap], FOUND[0].rate[~gap])
-    time = table_of(made.ulog([torn, FOUND[1]])).columns["time [s]"]
-    assert np.diff(time).max() == pytest.approx(1.0, abs=0.03)
+    table = table_of(made.ulog([torn, FOUND[1]]))
+    assert np.diff(table.columns["time [s]"]).max() == pytest.approx(1.0, abs=0.03)
+    assert "rows were left out: some IMU says nothing" in str(table.facts["notes"])
+
+
+def test_an_imu_with_hardly_a_sample_is_left_out_and_named() -> None:
+    short = made.Imu(FOUND[1].time[:50], FOUND[1].force[:50], FOUND[1].rate[:50])
+    table = table_of(made.ulog([FOUND[0], short]))
+    assert [meaning for meaning in table.meanings if meaning[0] in "AG"] == ["A1", "A2", "A3", "G1", "G2", "G3"]
+    assert "sensor_accel 1 has 50 samples only" in str(table.facts["notes"])
+
+
+def test_samples_that_are_no_numbers_are_left_out_and_counted() -> None:
+    force = FOUND[0].force.copy()
+    force[7:10, 1] = np.nan
+    table = table_of(made.ulog([made.Imu(FOUND[0].time, force, FOUND[0].rate), FOUND[1]]))
+    assert "sensor_accel 0: 3 samples are no numbers" in str(table.facts["notes"])
+    assert np.isfinite(np.column_stack(list(table.columns.values()))).all()
 
 
 def test_what_the_logger_dropped_is_said() -> None:
