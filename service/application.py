@@ -82,12 +82,12 @@ class Application:
     def diagnoses(self) -> Reader:
         """The diagnoses of sessions, for whoever reads them."""
         own = self.settings
-        return Reader(self.storage, self.clock, self.bell, own.coverage_factor, own.diagnosis_workers)
+        return Reader(self.storage, self.clock, self.bell, self.metrics, own.coverage_factor, own.diagnosis_workers)
 
     @cached_property
     def groups(self) -> GroupReader:
         """What groups of sessions show, for whoever reads it."""
-        return GroupReader(self.storage, self.clock, self.bell, self.settings.diagnosis_workers)
+        return GroupReader(self.storage, self.clock, self.bell, self.metrics, self.settings.diagnosis_workers)
 
 
 def application_of(request: Request) -> Application:

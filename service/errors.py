@@ -18,9 +18,6 @@ from http import HTTPStatus
 
 from estimator.errors import Problem
 
-FAULTS = (ArithmeticError, AssertionError, AttributeError, LookupError, TypeError, ValueError)
-"""What a mistake in the program ends in. A store or memory that is missing is none: that is tried again."""
-
 
 class ServiceError(Exception):
     """An error with a status and a sentence for the one who asked."""

@@ -1,5 +1,5 @@
 """Work beside the requests that stands in a queue in the database: claimed by one process at a time, made in a process
-of its own, and given up where no process outlives it."""
+of its own, and given up where the program fails at it or no process outlives it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -8,7 +8,8 @@ from threading import Event
 from typing import Generic, Protocol, TypeVar
 
 from service.background.diagnose_waiting import CLAIM, EXTEND, MOST_ATTEMPTS, PUT_OFF, Diagnosing
-from service.background.helper import DiedError, Failure, Helper, Still, StoppingError
+from service.background.guard import Failure
+from service.background.helper import Helper, Still, StoppingError
 from service.log import log
 from service.storage import Storage
 from service.storage.store import Store
@@ -30,7 +31,7 @@ class Queue(Protocol[T]):
         """Whoever claimed it is still at it."""
 
     def give_back(self, one: T) -> None:
-        """The process died: the next one may take it at once."""
+        """The program failed or its process died: the next one may take it at once."""
 
     def put_off(self, one: T, until: datetime | None) -> None:
         """Ends a claim with a word of why: nobody begins it before a time."""
@@ -45,9 +46,9 @@ class Work(Generic[T]):
     queue: Callable[[Store], Queue[T]]
     make: Callable[[Helper, T, datetime, Still], Failure | None]
     give_up: Callable[[Storage, T, datetime], None]
-    """Keeps that no process outlived it."""
+    """Keeps that the program failed at it, or that no process outlived it."""
     most: int = MOST_ATTEMPTS
-    """Processes that may die of one."""
+    """Tries at which the program may fail, or its process die."""
 
 
 def work_next(own: Diagnosing, helper: Helper, stop: Event, work: Work[T]) -> bool:
@@ -92,18 +93,22 @@ def _make(own: Diagnosing, helper: Helper, stop: Event, work: Work[T], one: T) -
 
     try:
         failure = work.make(helper, one, last, still)
-    except DiedError as died:
-        _note(own, work, one, Failure(type(died).__name__, str(died)))
-        with own.storage.database.writing() as store:
-            work.queue(store).give_back(one)
     except StoppingError:
         with own.storage.database.writing() as store:
             work.queue(store).put_off(one, None)
     else:
         if failure is not None:
-            _note(own, work, one, failure)
-            with own.storage.database.writing() as store:
-                work.queue(store).put_off(one, own.clock() + PUT_OFF)
+            _leave(own, work, one, failure)
+
+
+def _leave(own: Diagnosing, work: Work[T], one: T, failure: Failure) -> None:
+    """What is foreseen passes, and is tried for ever; at what is not, a few times."""
+    _note(own, work, one, failure)
+    with own.storage.database.writing() as store:
+        if failure.is_foreseen:
+            work.queue(store).put_off(one, own.clock() + PUT_OFF)
+        else:
+            work.queue(store).give_back(one)
 
 
 def _note(own: Diagnosing, work: Work[T], one: T, failure: Failure) -> None:

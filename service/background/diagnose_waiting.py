@@ -11,8 +11,8 @@ from threading import Event
 from uuid import uuid4
 
 from service.background.bell import Bell
-from service.background.guard import Guard
-from service.background.helper import DiedError, Failure, Helper, StoppingError
+from service.background.guard import Failure, Guard
+from service.background.helper import Helper, StoppingError
 from service.flows.diagnose import give_up
 from service.log import log
 from service.metrics import Metrics
@@ -27,7 +27,8 @@ EXTEND = timedelta(seconds=10)
 PUT_OFF = timedelta(minutes=10)
 """After a try that failed, as on a file that is lost; whoever reads the diagnosis tries at once."""
 MOST_ATTEMPTS = 3
-"""Processes that may die of one diagnosis before it is given up: two could be a machine in need."""
+"""Tries at which the program may fail, or its process die, before a diagnosis is given up: two could be a machine in
+need."""
 WORK = "pending diagnoses"
 """As the log and the figures name it."""
 
@@ -90,18 +91,22 @@ def _diagnose(own: Diagnosing, helper: Helper, claim: Claim, stop: Event) -> Non
 
     try:
         failure = helper.diagnose(claim.session, begun, still)
-    except DiedError as died:
-        _note(own, claim, Failure(type(died).__name__, str(died)))
-        with own.storage.database.writing() as store:
-            store.pending.give_back(claim)
     except StoppingError:
         with own.storage.database.writing() as store:
             store.pending.put_off(claim, None)
     else:
         if failure is not None:
-            _note(own, claim, failure)
-            with own.storage.database.writing() as store:
-                store.pending.put_off(claim, own.clock() + PUT_OFF)
+            _leave(own, claim, failure)
+
+
+def _leave(own: Diagnosing, claim: Claim, failure: Failure) -> None:
+    """What is foreseen passes, and is tried for ever; at what is not, a few times."""
+    _note(own, claim, failure)
+    with own.storage.database.writing() as store:
+        if failure.is_foreseen:
+            store.pending.put_off(claim, own.clock() + PUT_OFF)
+        else:
+            store.pending.give_back(claim)
 
 
 def _note(own: Diagnosing, claim: Claim, failure: Failure) -> None:

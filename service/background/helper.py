@@ -9,27 +9,24 @@ import multiprocessing
 import signal
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Any
 
-from estimator.errors import SessionError
-from service.background.guard import FAULTS
+from service.background.guard import Failure, ending_here
 from service.errors import ServiceError
 from service.flows.diagnose import diagnose
 from service.flows.recompute import recompute
 from service.flows.refresh_beside import refresh_beside
 from service.flows.refresh_group import refresh_group
 from service.ingest import limits
-from service.log import log, write_log
+from service.log import write_log
 from service.records.group import Group
 from service.records.recomputation import Task
 from service.settings import Settings
 from service.storage import Storage, open_storage
-from service.storage.faults import DATABASE_FAULTS
 
 LOOK_EVERY = 0.25
 """Seconds between two looks whether the service is stopping while a diagnosis is made."""
@@ -41,10 +38,8 @@ ANSWERS = multiprocessing.get_context("forkserver")
 
 Still = Callable[[], bool]
 """Whether the service goes on; asked now and then while something is made."""
-
-
-class DiedError(ServiceError):
-    """The process ended before it answered."""
+DIED = "ProcessDied"
+"""As the figures name a process that ended before it answered."""
 
 
 class StoppingError(ServiceError):
@@ -62,14 +57,6 @@ class Job(StrEnum):
     """What the sessions of a unit, a unit type or a stand show together."""
     MODEL = "model"
     """A unit's sessions under another model."""
-
-
-@dataclass(frozen=True)
-class Failure:
-    """Why it is not made."""
-
-    fault: str
-    reason: str
 
 
 class Helper:
@@ -93,7 +80,7 @@ class Helper:
         self._pipe = ours
 
     def diagnose(self, id: str, now: datetime, still: Still) -> Failure | None:
-        """Makes and stores a diagnosis, while ``still`` says to go on; DiedError where its process ended before."""
+        """Makes and stores a diagnosis, while ``still`` says to go on."""
         return self._answer(Job.DIAGNOSIS, id, now, still)
 
     def refresh(self, serial: str, now: datetime, still: Still) -> Failure | None:
@@ -120,9 +107,9 @@ class Helper:
                     self.end()
                     raise StoppingError(f"The {job} of {of} was interrupted.")
             answer: Failure | None = self._pipe.recv()
-        except (EOFError, OSError) as gone:
+        except (EOFError, OSError):
             self.end()
-            raise DiedError(f"The process died at the {job} of {of}.") from gone
+            return Failure(DIED, f"The process died at the {job} of {of}.", is_foreseen=False)
         return answer
 
     def end(self) -> None:
@@ -152,7 +139,7 @@ def work(pipe: Connection, settings: Settings) -> None:
 
 
 def _made(storage: Storage, job: Job, of: Any, now: datetime, coverage_factor: float) -> Failure | None:
-    try:
+    with ending_here(job.value, str(of)) as met:
         if job is Job.GROUP:
             refresh_group(storage, of, now)
         elif job is Job.OUTLOOK:
@@ -161,9 +148,4 @@ def _made(storage: Storage, job: Job, of: Any, now: datetime, coverage_factor: f
             recompute(storage, of, now, coverage_factor)
         else:
             diagnose(storage, of, now, coverage_factor)
-    except (ServiceError, SessionError, *DATABASE_FAULTS) as fault:
-        return Failure(type(fault).__name__, str(fault))
-    except FAULTS as fault:
-        log.error("work beside the requests failed", job=job.value, of=str(of), exc_info=fault)
-        return Failure(type(fault).__name__, str(fault))
-    return None
+    return met.failure

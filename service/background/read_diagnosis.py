@@ -10,10 +10,13 @@ from uuid import uuid4
 
 from estimator.errors import SessionError
 from service.background.bell import Bell
-from service.background.diagnose_waiting import PUT_OFF
+from service.background.diagnose_waiting import PUT_OFF, WORK
+from service.background.guard import Guard
+from service.background.refresh_waiting import OUTLOOKS
 from service.errors import ServiceError
-from service.flows.diagnose import diagnose, known_of
+from service.flows.diagnose import diagnose, give_up, known_of
 from service.flows.refresh_beside import refresh_beside
+from service.metrics import Metrics
 from service.records.diagnosis import StoredDiagnosis
 from service.records.pending import Claim, Pending
 from service.storage import Storage
@@ -38,6 +41,7 @@ class Reader:
     storage: Storage
     clock: Callable[[], datetime]
     bell: Bell
+    metrics: Metrics
     coverage_factor: float
     workers: int
     """Processes of this service that make diagnoses; 0 where each is made when it is read."""
@@ -64,14 +68,22 @@ class Reader:
         if not self._is_undated(serial):
             return True
         if not self.workers:
-            refresh_beside(self.storage, serial, self.clock())
-            return True
+            return self._date(serial)
         if not self._places.acquire(blocking=False):
             return False
         try:
             return self._dated(serial, monotonic() + patience)
         finally:
             self._places.release()
+
+    def _date(self, serial: str) -> bool:
+        """Here; where the program fails that is kept, and nobody waits for it."""
+        guard = Guard(self.metrics)
+        with guard.at_request(OUTLOOKS.name, serial):
+            refresh_beside(self.storage, serial, self.clock())
+        if guard.failed:
+            OUTLOOKS.give_up(self.storage, serial, self.clock())
+        return not guard.failed
 
     def _dated(self, serial: str, end: float) -> bool:
         while True:
@@ -106,7 +118,7 @@ class Reader:
             self.bell.wait(rung, min(left, LOOK_EVERY))
 
     def _made(self, id: str) -> StoredDiagnosis | None:
-        """Here, unless somebody is at it."""
+        """Here, unless somebody is at it; where the program fails that is kept, and whoever reads is told."""
         now = self.clock()
         claim = Claim(id, uuid4().hex, now + CLAIM)
         with self.storage.database.writing() as store:
@@ -114,8 +126,16 @@ class Reader:
             is_ours = store.pending.claim(claim, now) is not None
         if not is_ours:
             return self._awaited(id, monotonic() + PATIENCE)
+        guard = Guard(self.metrics)
+        with guard.at_request(WORK, id):
+            self._diagnose(claim, now)
+        if guard.failed:
+            give_up(self.storage, id, now)
+        return self._look(id)[0]
+
+    def _diagnose(self, claim: Claim, now: datetime) -> None:
         try:
-            return diagnose(self.storage, id, now, self.coverage_factor)
+            diagnose(self.storage, claim.session, now, self.coverage_factor)
         except (ServiceError, SessionError):
             with self.storage.database.writing() as store:
                 store.pending.put_off(claim, now + PUT_OFF)

@@ -7,7 +7,10 @@ from threading import BoundedSemaphore
 from time import monotonic
 
 from service.background.bell import Bell
+from service.background.guard import Guard
+from service.background.pool_waiting import GROUPS
 from service.flows.refresh_group import current, refresh_group
+from service.metrics import Metrics
 from service.records.group import Group, GroupAnswer, Level
 from service.storage import Storage
 
@@ -26,6 +29,7 @@ class GroupReader:
     storage: Storage
     clock: Callable[[], datetime]
     bell: Bell
+    metrics: Metrics
     workers: int
     """Processes of this service that make answers; 0 where each is made when it is read."""
     places: BoundedSemaphore = field(default_factory=lambda: BoundedSemaphore(MOST_WAITING))
@@ -39,7 +43,7 @@ class GroupReader:
         if known is not None:
             return known
         if not self.workers:
-            return refresh_group(self.storage, group, self.clock())
+            return self._made(group)
         if not asked:
             with self.storage.database.writing() as store:
                 store.pending_groups.ask((group,), self.clock())
@@ -50,6 +54,19 @@ class GroupReader:
             return self._awaited(group, monotonic() + patience)
         finally:
             self.places.release()
+
+    def _made(self, group: Group) -> GroupAnswer | None:
+        """Here, without the sessions at which the program fails; where it fails at the answer itself that is kept."""
+        guard = Guard(self.metrics)
+        for tried in range(GROUPS.most):
+            with guard.at_request(GROUPS.name, group.name):
+                refresh_group(self.storage, group, self.clock())
+            if guard.failed == tried:
+                break
+        else:
+            GROUPS.give_up(self.storage, group, self.clock())
+        with self.storage.database.reading() as store:
+            return current(store, group)
 
     def _awaited(self, group: Group, end: float) -> GroupAnswer | None:
         while True:

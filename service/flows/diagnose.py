@@ -12,7 +12,6 @@ from estimator.diagnosis import diagnose as find_causes
 from estimator.errors import SessionError
 from estimator.results import COVERAGE
 from estimator.session import DIAGNOSED, CalibrationSession
-from service.errors import FAULTS
 from service.flows.derive_again import Deriving
 from service.flows.flagging.diagnosis import flag_diagnosis
 from service.flows.keep_statistics import keep_statistics
@@ -29,7 +28,7 @@ from service.storage import Files, Storage
 from service.storage.diagnosis_document import diagnosis_to_dict, inapplicable_to_dict, read_diagnosis, written
 from service.storage.files import LOST
 from service.storage.store import Store
-from service.words.diagnosis import NOT_APPLICABLE, cannot_be_diagnosed, fault_of_the_program, never_ended, summary_of
+from service.words.diagnosis import NOT_APPLICABLE, cannot_be_diagnosed, fault_of_the_program, summary_of
 
 MOST_EARLIER = 10
 """Earlier sessions of the unit that a diagnosis looks at."""
@@ -75,11 +74,11 @@ def diagnose(storage: Storage, id: str, now: datetime, coverage_factor: float = 
 
 
 def give_up(storage: Storage, id: str, now: datetime) -> None:
-    """Stores of a session that no process outlived its diagnosis; this version does not try again."""
+    """Stores of a session that the program failed at its diagnosis; this version does not try again."""
     with storage.database.reading() as store:
         task, asked = task_of(store, id), store.pending.of(id)
     log.error("diagnosis given up", session=id, estimator_version=VERSION)
-    made, way = _failed(task, never_ended(id), now), Deriving(storage.files, COVERAGE, now)
+    made, way = _failed(task, fault_of_the_program(id), now), Deriving(storage.files, COVERAGE, now)
     with storage.database.writing() as store:
         _keep(store, way, task.session.unit, made, None if asked is None else asked.ticket)
 
@@ -106,10 +105,7 @@ def known_of(store: Store, id: str) -> StoredDiagnosis | None:
 
 
 def _made(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
-    """Reads the stored bytes again and looks for causes, where the programme is one that can show any.
-
-    Where the program fails it says so, and this version does not try again; the next one does.
-    """
+    """Reads the stored bytes again and looks for causes, where the programme is one that can show any."""
     if task.session.programme not in DIAGNOSED:
         nothing = written(inapplicable_to_dict(task.session.unit))
         return replace(_nothing_found(task, DiagnosisState.NOT_APPLICABLE, NOT_APPLICABLE, now), document=nothing)
@@ -117,9 +113,6 @@ def _made(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
         return _found(storage, task, now)
     except SessionError as fault:
         return _failed(task, cannot_be_diagnosed(fault), now)
-    except FAULTS as fault:
-        log.error("diagnosis failed", session=task.session.id, estimator_version=VERSION, exc_info=fault)
-        return _failed(task, fault_of_the_program(task.session.id), now)
 
 
 def _found(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:

@@ -5,25 +5,24 @@ from datetime import datetime
 from estimator.errors import SessionError
 from estimator.groups import statistics_of
 from estimator.session import CALIBRATIONS
-from service.errors import FAULTS
 from service.ingest import read_upload
-from service.log import log
 from service.settings import VERSION
 from service.storage import Storage
 from service.storage.files import LOST
-from service.words.group import NOT_MADE
 
 
 def keep_statistics(storage: Storage, session: str, now: datetime) -> None:
     """Makes the statistics of a session that calibrates a block, where they are still to be made, and asks for the
-    answers of its groups. Where it cannot be done that is kept, and this version does not try again."""
+    answers of its groups, who try again where the program failed."""
     with storage.database.writing() as store:
         stored = store.sessions.get(session)
         if stored.programme not in CALIBRATIONS or not store.statistics.begin(session, VERSION):
             return
-    add_statistics(storage, session, stored.sha256, stored.filename)
-    with storage.database.writing() as store:
-        store.pending_groups.ask(store.groups.of_unit(stored.unit), now)
+    try:
+        add_statistics(storage, session, stored.sha256, stored.filename)
+    finally:
+        with storage.database.writing() as store:
+            store.pending_groups.ask(store.groups.of_unit(stored.unit), now)
 
 
 def add_statistics(storage: Storage, session: str, sha256: str, filename: str) -> None:
@@ -36,10 +35,6 @@ def add_statistics(storage: Storage, session: str, sha256: str, filename: str) -
     except SessionError as fault:
         with storage.database.writing() as store:
             store.statistics.fail(session, str(fault))
-    except FAULTS as fault:
-        log.error("statistics failed", session=session, estimator_version=VERSION, exc_info=fault)
-        with storage.database.writing() as store:
-            store.statistics.fail(session, NOT_MADE)
     else:
         with storage.database.writing() as store:
             store.statistics.keep(session, record)

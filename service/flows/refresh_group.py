@@ -12,7 +12,6 @@ from hashlib import sha256
 from estimator.errors import SessionError
 from estimator.groups import SessionStatistics, diagnose_statistics
 from estimator.session import CalibrationSession
-from service.errors import FAULTS
 from service.flows.flagging.lasting import flag_lasting
 from service.flows.keep_statistics import add_statistics
 from service.flows.refresh_outlook import END_OF_TIME
@@ -87,7 +86,7 @@ def _flag(store: Store, group: Group, members: Members, answer: GroupAnswer, now
 
 
 def give_up(storage: Storage, group: Group, now: datetime) -> None:
-    """Stores of a group that no process outlived its answer; this version does not try again with these sessions."""
+    """Stores of a group that the program failed at its answer; this version does not try again with these sessions."""
     with storage.database.writing() as store:
         asked = store.pending_groups.asked(group)
         answer = GroupAnswer(digest(members_of(store, group)), 0, FAILED, "", None, VERSION, now)
@@ -105,7 +104,7 @@ def _answered(
     try:
         own = [_named(records[m.session], m) for m in pooled]
         found = diagnose_statistics(own, group.level.value, _sessions(files, pooled))
-    except (*FAULTS, SessionError) as fault:
+    except SessionError as fault:
         log.error("group failed", level=group.level.value, name=group.name, exc_info=fault)
         return replace(made, summary=FAILED)
     summary = summary_of_group(found.sessions, found.findings, unexplained=found.unexplained)

@@ -102,18 +102,10 @@ def cannot_be_diagnosed(fault: SessionError) -> str:
 def fault_of_the_program(session: str) -> str:
     """That the program failed, and what holds all the same."""
     return (
-        "The program failed at this diagnosis: that is a fault of the program, not of the session. The session, its "
-        "calibration and its verdict are stored and hold, and the next version of the program diagnoses it again. "
-        f"The log says what happened, under session {session}: send that to those who maintain the program."
-    )
-
-
-def never_ended(session: str) -> str:
-    """That the program did not outlive the diagnosis, and what holds all the same."""
-    return (
-        "The program did not outlive this diagnosis, several times: it took too long or too much memory. The session, "
-        "its calibration and its verdict are stored and hold, and the next version of the program diagnoses it again. "
-        f"The log says when, under session {session}: send that to those who maintain the program."
+        "The program failed at this diagnosis, met something that it does not foresee, or needed too much time or "
+        "memory: that is a fault of the program, not of the session. The session, its calibration and its verdict are "
+        "stored and hold, and the next version of the program diagnoses it again. The log says what happened, under "
+        f"session {session}: send that to those who maintain the program."
     )
 
 

@@ -7,7 +7,6 @@ from service.records.group import Group
 from service.records.model import Scope
 from service.words.causes import cause_name, cause_on
 
-NOT_MADE = "The program failed at it: a fault of the program, not of the session. The next version tries again."
 FAILED = (
     "The program failed at what these sessions show together: that is a fault of the program, not of the sessions. The "
     "next version of the program tries again."

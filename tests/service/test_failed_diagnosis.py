@@ -8,14 +8,19 @@ import json
 import zlib
 from collections.abc import Iterator
 from datetime import UTC, datetime
+from threading import Event
 
 import httpx
 import pytest
 from sqlalchemy import text
 
 from service.app import create_app
-from service.flows.diagnose import diagnose
+from service.background.bell import Bell
+from service.background.diagnose_waiting import MOST_ATTEMPTS, Diagnosing, diagnose_next
+from service.background.guard import AT_FAULT
+from service.background.helper import Helper
 from service.flows.receive import upload
+from service.metrics import Metrics
 from service.records.diagnosis import DiagnosisState
 from service.settings import Settings
 from service.storage import Storage
@@ -63,10 +68,10 @@ def test_the_page_says_that_it_is_a_fault_of_the_program_and_where_to_look(shown
     assert "Error" not in page.text
 
 
-def test_the_log_says_what_happened_under_the_session(written: io.StringIO, spoilt: Storage) -> None:
-    assert diagnose(spoilt, ID, NOW).document is None
-    [failure] = [line for line in lines(written) if line["event"] == "diagnosis failed"]
-    assert (failure["level"], failure["session"]) == ("error", ID)
+def test_the_log_says_what_happened_under_the_session(written: io.StringIO, shown: httpx.Client) -> None:
+    shown.get(f"/sessions/{ID}/diagnosis", headers=HTML)
+    [failure] = [line for line in lines(written) if line["event"] == "background work failed"]
+    assert (failure["level"], failure["place"]) == ("error", ID)
     assert "KeyError" in failure["exception"]
 
 
@@ -76,10 +81,25 @@ def test_session_calibration_and_file_are_there_all_the_same(shown: httpx.Client
         assert shown.get(f"/api/v1/sessions/{ID}{path}").status_code == 200
 
 
-def test_this_version_fails_once(written: io.StringIO, spoilt: Storage) -> None:
-    made = [diagnose(spoilt, ID, NOW) for _ in range(2)]
-    assert [one.state for one in made] == [DiagnosisState.FAILED] * 2
-    assert len([line for line in lines(written) if line["event"] == "diagnosis failed"]) == 1
+def test_this_version_fails_once_for_whoever_reads_and_counts_it(shown: httpx.Client) -> None:
+    for _ in range(2):
+        assert shown.get(f"/api/v1/sessions/{ID}/diagnosis").status_code == 404
+    counted = 'imu_health_background_faults_total{fault="KeyError",work="pending diagnoses"} 1.0'
+    assert counted in shown.get("/metrics").text
+
+
+def test_what_the_program_fails_at_is_tried_some_times_beside_the_requests(
+    written: io.StringIO, spoilt: Storage, settings: Settings
+) -> None:
+    own, helper = Diagnosing(settings, spoilt, lambda: NOW, Metrics(), Bell()), Helper(settings)
+    tries = 0
+    while diagnose_next(own, helper, Event()):
+        tries += 1
+    helper.end()
+    assert tries == 1 + MOST_ATTEMPTS + 1
+    assert f'{{fault="KeyError",work="pending diagnoses"}} {float(MOST_ATTEMPTS)}' in own.metrics.text().decode()
+    reasons = [line["reason"] for line in lines(written) if line.get("session") == ID and "reason" in line]
+    assert reasons == [AT_FAULT] * MOST_ATTEMPTS
 
 
 def test_one_failure_does_not_keep_the_next_from_its_diagnosis(spoilt: Storage, settings: Settings) -> None:

@@ -12,8 +12,8 @@ from service.storage.queries.base import Queries
 from service.storage.statistics_document import packed, unpacked
 
 MOST_ATTEMPTS = 3
-"""Processes that may die of one session's before they are given up: two could be a machine in need."""
-GIVEN_UP = "The program did not outlive it, several times."
+"""Tries at which the program may fail at one session's, or its process die: two could be a machine in need."""
+GIVEN_UP = "The program failed at it: a fault of the program, not of the session. The next version tries again."
 
 
 class Statistics(Queries):

@@ -4,15 +4,19 @@ from datetime import UTC, datetime
 
 import httpx
 import pytest
+from sqlalchemy import text
 
 from service.app import create_app
 from service.background.bell import Bell
 from service.background.diagnose_waiting import CLAIM
+from service.background.pool_waiting import GROUPS as QUEUE
 from service.background.read_group import MOST_WAITING, GroupReader
 from service.flows.receive import upload
+from service.metrics import Metrics
 from service.records.group import Level
 from service.settings import Settings
 from service.storage import Storage
+from service.words.group import FAILED
 from tests.conftest import Holding
 from tests.databases import one_engine
 from tests.service.grouped import GROUP
@@ -64,5 +68,19 @@ def test_what_a_group_shows_is_accepted_and_its_progress_told(holding: Holding) 
 @one_engine
 def test_patience_ends(storage: Storage) -> None:
     upload(storage, GROUP[0], "a.json", NOW)
-    reader = GroupReader(storage, lambda: NOW, Bell(), workers=1)
+    reader = GroupReader(storage, lambda: NOW, Bell(), Metrics(), workers=1)
     assert reader.read(Level.UNIT, "BA-017", patience=0.0) is None
+
+
+@one_engine
+def test_an_answer_at_which_the_program_fails_is_kept_as_failed(storage: Storage) -> None:
+    upload(storage, GROUP[0], "a.json", NOW)
+    metrics = Metrics()
+    reader = GroupReader(storage, lambda: NOW, Bell(), metrics, workers=0)
+    reader.read(Level.UNIT, "BA-017")
+    with storage.database.engine.begin() as connection:
+        connection.execute(text("UPDATE session_statistics SET document = :damaged"), {"damaged": b"no stream"})
+        connection.execute(text("DELETE FROM group_diagnoses"))
+    answers = [reader.read(Level.UNIT, "BA-017") for _ in range(2)]
+    assert [answer and answer.summary for answer in answers] == [FAILED] * 2
+    assert f'fault="error",work="pending groups"}} {float(QUEUE.most)}' in metrics.text().decode()

@@ -19,7 +19,8 @@ from service.background.diagnose_waiting import (
     ask_for_missing,
     diagnose_next,
 )
-from service.background.helper import DiedError, Helper, Still
+from service.background.guard import Failure
+from service.background.helper import DIED, Helper, Still
 from service.background.read_diagnosis import Reader
 from service.flows.receive import upload
 from service.metrics import Metrics
@@ -120,8 +121,7 @@ def test_a_process_that_is_killed_at_its_work_costs_nothing(own: Diagnosing, hel
         os.kill(pid, signal.SIGKILL)
         return True
 
-    with pytest.raises(DiedError):
-        helper.diagnose(id, NOW, killed)
+    assert helper.diagnose(id, NOW, killed) == Failure(DIED, f"The process died at the diagnosis of {id}.", False)
     assert waiting(own.storage) == (id,)
     assert diagnose_next(own, helper, Event())
     assert state_of(own.storage, id) is DiagnosisState.NOTHING
@@ -156,7 +156,7 @@ def test_a_file_that_is_lost_is_put_off_and_tried_again_by_whoever_reads(own: Di
     assert diagnose_next(own, helper, Event())
     assert (waiting(own.storage, NOW), waiting(own.storage, NOW + PUT_OFF)) == ((), (id,))
     file.with_suffix(".away").rename(file)
-    reader = Reader(own.storage, own.clock, own.bell, 2.0, workers=1)
+    reader = Reader(own.storage, own.clock, own.bell, own.metrics, 2.0, workers=1)
     made = reader.read(id)
     assert made is not None
     assert made.state is DiagnosisState.NOTHING

@@ -12,7 +12,8 @@ import pytest
 from service.background.bell import Bell
 from service.background.claimed import Work, work_next
 from service.background.diagnose_waiting import MOST_ATTEMPTS, Diagnosing
-from service.background.helper import Failure, Helper, Still
+from service.background.guard import AT_FAULT, Failure
+from service.background.helper import Helper, Still
 from service.background.pool_waiting import GROUPS
 from service.background.recompute_waiting import MODELS
 from service.background.refresh_waiting import OUTLOOKS
@@ -148,3 +149,14 @@ def test_what_fails_with_a_word_is_put_off_and_never_given_up(settings: Settings
     own = diagnosing(settings, two)
     assert work_next(own, helper, Event(), failing)
     assert not work_next(own, helper, Event(), failing)
+
+
+@one_engine
+def test_what_the_program_fails_at_is_given_up_too(settings: Settings, two: Storage, helper: Helper) -> None:
+    def fails(helper: Helper, one: str, now: datetime, still: Still) -> Failure | None:
+        return Failure("KeyError", AT_FAULT, is_foreseen=False)
+
+    failing, begun = Work(OUTLOOKS.name, OUTLOOKS.queue, fails, OUTLOOKS.give_up), 0
+    while work_next(diagnosing(settings, two), helper, Event(), failing):
+        begun += 1
+    assert begun == MOST_ATTEMPTS + 1
