@@ -1,4 +1,8 @@
-"""Do stated probabilities mean what they say: of causes called 70 % likely, do 70 % act?"""
+"""Do stated probabilities mean what they say: of causes called 70 % likely, do 70 % act?
+
+Most lines of a ranking state next to nothing and are right. So the error is told of those between one and 99 % too,
+beside what it would be by chance if every one of them meant what it says.
+"""
 
 from statistics import fmean
 
@@ -9,10 +13,15 @@ from benchmarks.study.report import table
 from tests.blind.score import Outcome
 
 BINS = 10
+DRAWS = 2000
+"""Of truths as the statements say, for the error that chance makes: their mean to some per cent."""
+PLAIN = 0.01
+"""Below it, and above one less it, a cause is as good as ruled out or sure."""
 
 INTRODUCTION = (
     "Of one effect hidden in a session, every probability that the ranking states, with how often it was right. The "
-    "error is the mean over all statements of the distance between what the bin says and what is so."
+    "error is the mean over all statements of the distance between what the bin says and what is so. By chance: what it "
+    "would be if every statement meant what it says."
 )
 
 
@@ -20,9 +29,12 @@ def section(outcomes: list[Outcome]) -> str:
     """Markdown, of single effects, strong and weak."""
     single = [o for o in outcomes if o.kind in ("single", "weak")]
     stated = [belief for o in single for belief in o.beliefs]
+    open_ones = [(p, right) for p, right in stated if PLAIN <= p <= 1 - PLAIN]
     none = [o for o in outcomes if o.kind == "none"]
     rows = [
         ("mean absolute error over ten bins", "≤ 3 %", f"{100 * error(stated):.1f} % of {len(stated)}"),
+        ("the same of statements between 1 and 99 %", "", f"{100 * error(open_ones):.1f} % of {len(open_ones)}"),
+        ("by chance", "", f"{100 * by_chance(open_ones):.1f} %"),
         ("mean probability given to the true cause (fault isolation accuracy)", "", f"{100 * accuracy(single):.1f} %"),
         ("something found where an effect is hidden", "", rate([bool(o.findings) or o.unexplained for o in single])),
         ("something found where there is none", "", rate([bool(o.findings) or o.unexplained for o in none])),
@@ -53,6 +65,13 @@ def binned(stated: list[tuple[float, bool]]) -> list[tuple[float, list[bool]]]:
 def error(stated: list[tuple[float, bool]]) -> float:
     """Mean over the bins, each by its number of statements, of |stated − true|."""
     return sum(len(marks) * abs(said - fmean(marks)) for said, marks in binned(stated) if marks) / max(len(stated), 1)
+
+
+def by_chance(stated: list[tuple[float, bool]]) -> float:
+    """The mean error of as many statements that mean what they say."""
+    rng, likely = np.random.default_rng(1), np.array([p for p, _ in stated])
+    drawn = rng.random((DRAWS, len(likely))) < likely
+    return fmean([error([(p, bool(r)) for p, r in zip(likely, one, strict=True)]) for one in drawn])
 
 
 def accuracy(single: list[Outcome]) -> float:

@@ -67,22 +67,31 @@ def clip_finding(clip: Clip, limit: float, by_scale: float, baseline: Baseline) 
 def record_error_finding(error: RecordError, session: CalibrationSession) -> Finding:
     """A record error, with the other ways to put the record right that do as well."""
     cause, places = error.undone.cause, error.undone.places
-    strength = float(np.sqrt(2 * error.undone.log_evidence))
-    reached, others, ranking = 0.0, list[str](), list[Rival]()
+    reached, others = 0.0, list[str]()
     for attempt, share in error.posterior():
         name = attempt.cause.identifier
-        ranking.append(Rival(name, concerned(attempt.places, session, of_rows=cause.of_rows), share, strength))
         if reached < CREDIBLE and name != cause.identifier and name not in others:
             others.append(name)
         reached += share
+    strength = float(np.sqrt(2 * error.undone.log_evidence))
     shown = {f"row {k}": float(p + 1) for k, p in enumerate(places, 1)} if cause.of_rows else {}
     sensors = concerned(places, session, of_rows=cause.of_rows)
     return replace(
         named_cause(cause, sensors, float(np.exp(-error.undone.log_evidence)), strength),
         nonlinear_each=(shown,),
         alternatives=tuple(others),
-        ranking=tuple(ranking[:SHOWN]),
+        ranking=record_ranking(error, session, strength)[:SHOWN],
     )
+
+
+def record_ranking(error: RecordError, session: CalibrationSession, strength: float) -> tuple[Rival, ...]:
+    """What may be wrong with the record, most likely first: rows are not told, so that one line is of all of them."""
+    shares: dict[tuple[str, tuple[str, ...]], float] = {}
+    for attempt, share in error.posterior():
+        place = attempt.cause.identifier, concerned(attempt.places, session, of_rows=attempt.cause.of_rows)
+        shares[place] = shares.get(place, 0.0) + share
+    ranked = sorted(shares.items(), key=lambda item: -item[1])
+    return tuple(Rival(name, sensors, share, strength) for (name, sensors), share in ranked)
 
 
 def concerned(places: tuple[int, ...], session: CalibrationSession, *, of_rows: bool) -> tuple[str, ...]:

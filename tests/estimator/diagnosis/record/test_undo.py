@@ -1,6 +1,7 @@
 """Record errors are undone one after another, only those of the catalogue, and hide no effect."""
 
 import numpy as np
+import pytest
 
 from estimator import diagnose
 from estimator.causes import CATALOGUE, Correction, cause
@@ -32,3 +33,9 @@ def test_a_record_error_does_not_hide_an_effect() -> None:
     jump = 0.12 * 2e-3 * (np.arange(48) >= 20)[:, None] * np.eye(6)[2]
     wrong = next(iter(SIGN.corrected(with_readings(SESSION, jump))))[1]
     assert [f.cause for f in diagnose(wrong).findings] == ["sign-reversed", "bias-jump"]
+
+
+def test_a_ranking_says_of_each_cause_once_how_likely_it_is() -> None:
+    (finding,) = diagnose(exchange_rows(SESSION, 2, 11)).findings
+    assert [line.cause for line in finding.ranking] == ["positions-swapped"]
+    assert finding.ranking[0].probability == pytest.approx(1.0)
