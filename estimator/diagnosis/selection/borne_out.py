@@ -10,6 +10,10 @@ f degrees of freedom what all names leave of the sensor. Where its stated noise 
 
 with π how often stated noise is wrong and B(E) the Bayes factor of noise larger than stated against noise as stated,
 ½(E − f) − ½ f ln(E/f) − ½ ln(f/2) in logarithms. What a name carries on several sensors is at the mercy of each.
+
+Where the β error of a row is shared, a sensor that is believed too much draws it to its own readings: E is then hardly
+too large, and what the sensor scatters shows in all. So on a block that is not too large ½(E − f) − ½ f ln(E/f) is the
+gain in restricted likelihood of the whole session, which it is where nothing is shared (`likelihood.py`).
 """
 
 from dataclasses import replace
@@ -17,10 +21,15 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import expit, logit
 
+from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.likelihood import log_likelihood_ratio
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.common_or_own import seen_from
 from estimator.diagnosis.selection.excess_noise import sensor_scatter, with_unknown_noise
 from estimator.diagnosis.selection.ranking import extended_basis, family_p_value
 from estimator.diagnosis.selection.search_state import LEVEL, Found, SearchState
+from estimator.diagnosis.selection.start import as_they_scatter
+from estimator.diagnosis.signatures.lasting import MANY
 from estimator.diagnosis.signatures.noise import NoiseClaim
 from estimator.diagnosis.signatures.products import Projected
 from estimator.diagnosis.signatures.scores import rescored, tail
@@ -42,11 +51,10 @@ FEWEST = 2.0
 def too_sure(state: SearchState) -> tuple[NoiseClaim, ...]:
     """Sensors whose stated noise names may not rest on: it is too small by strong evidence, or may be and a name would
     then not hold."""
-    larger = log_evidence_of_more(state)
+    ratio, larger = evidence_of_more(state)
     sensors = sorted({i for f in state.found for i in doubted_for(state, f, larger)})
-    energy, freedom = sensor_scatter(state)
-    kinds = state.baseline.setting.kinds
-    return tuple(NoiseClaim(kinds[i], (i,), float(energy[i] / freedom[i]), float(freedom[i])) for i in sensors)
+    freedom, kinds = sensor_scatter(state)[1], state.baseline.setting.kinds
+    return tuple(NoiseClaim(kinds[i], (i,), float(ratio[i]), float(freedom[i])) for i in sensors)
 
 
 def doubted_for(state: SearchState, found: Found, larger: Array) -> set[int]:
@@ -73,10 +81,39 @@ def p_if_unknown(state: SearchState, found: Found, sensor: int) -> float:
     return family_p_value(replace(found.best, p_value=p_value), state.families)
 
 
-def log_evidence_of_more(state: SearchState) -> Array:
-    """ln B(E), (m,) of noise larger than stated; −∞ where none is stated or nothing tells it."""
+def evidence_of_more(state: SearchState) -> tuple[Array, Array]:
+    """(m,) variance over the stated one, and (m,) ln B(E) of noise larger than stated; −∞ where none is stated or
+    nothing tells it."""
     energy, freedom = sensor_scatter(state)
     f = np.maximum(freedom, FEWEST)
-    ratio = np.maximum(energy / f, 1.0)
-    log_evidence = 0.5 * f * (ratio - 1 - np.log(ratio)) - 0.5 * np.log(f / 2)
-    return np.where((freedom >= FEWEST) & ~state.baseline.unstated, log_evidence, -np.inf)
+    ratio = energy / f
+    more = np.maximum(ratio, 1.0)
+    gained = 0.5 * f * (more - 1 - np.log(more))
+    if state.found and state.sensor_count <= MANY:
+        beside = beside_effects(state)
+        plain = WhitenedResiduals.of(beside)
+        for i in sensors_asked(state):
+            scaled = as_they_scatter(beside, [[i]])
+            factor = float(np.median(scaled.variance[:, i] / beside.variance[:, i]))
+            whole = log_likelihood_ratio(WhitenedResiduals.of(scaled), plain) if factor > 1 else 0.0
+            if whole > gained[i]:
+                ratio[i], gained[i] = factor, whole
+    log_evidence = gained - 0.5 * np.log(f / 2)
+    return ratio, np.where((freedom >= FEWEST) & ~state.baseline.unstated, log_evidence, -np.inf)
+
+
+def sensors_asked(state: SearchState) -> set[int]:
+    """Sensors of stated noise on which names rest."""
+    named = {i for f in state.found for i in f.best.sensors or range(state.sensor_count)}
+    return {i for i in named if not state.baseline.unstated[i]}
+
+
+def beside_effects(state: SearchState) -> Baseline:
+    """The baseline to which what was found is known but for its size: a nuisance of which nothing is known."""
+    effects = np.concatenate([f.best.shape.columns for f in (*state.found, *state.structures)], axis=-1)
+    size = np.sqrt((effects**2).sum(axis=(0, 1)))
+    constant = np.concatenate([state.baseline.constant, effects[..., size > 0] / size[size > 0]], axis=-1)
+    unknown = np.full(constant.shape[-1] - state.baseline.constant.shape[-1], np.inf)
+    return replace(
+        state.baseline, constant=constant, constant_sigma=np.concatenate([state.baseline.constant_sigma, unknown])
+    )

@@ -9,7 +9,7 @@ from scipy.stats import f
 from estimator import CalibrationSession, diagnose
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.selection.acceptance import believed, borne_out
-from estimator.diagnosis.selection.borne_out import log_evidence_of_more, p_if_unknown, too_sure
+from estimator.diagnosis.selection.borne_out import evidence_of_more, p_if_unknown, too_sure
 from estimator.diagnosis.selection.excess_noise import sensor_scatter
 from estimator.diagnosis.selection.start import as_they_scatter, begin
 from estimator.simulate import simulate
@@ -62,8 +62,22 @@ def test_a_strong_name_holds_and_the_search_stands_as_it_is() -> None:
 def test_noise_that_is_not_stated_is_not_doubted() -> None:
     session = measured()
     errors = np.where(np.arange(4) == SENSOR, np.nan, session.standard_errors)
-    larger = log_evidence_of_more(begin(baseline_of(replace(session, standard_errors=errors)), (), ()))
+    _, larger = evidence_of_more(begin(baseline_of(replace(session, standard_errors=errors)), (), ()))
     assert np.isfinite(larger).tolist() == [i != SENSOR for i in range(4)]
+
+
+def test_noise_that_hides_behind_the_stand_is_seen_in_the_whole_session() -> None:
+    """The stand's β errors are large: a sensor that is believed too much draws them to its own readings."""
+    schedule = replace(FEW, stand=replace(FEW.stand, sigma=replace(FEW.stand.sigma, beta=2e-5)))
+    own, whole = [], []
+    for seed in range(20):
+        session = simulate(schedule, truth_of(schedule), np.random.default_rng([63, seed]), noise=NOISE)
+        state = begin(baseline_of(stated(session, 1 / 3, SECOND)), (), start(("bias-jump",)).catalogue)
+        state = replace(state, found=(candidate(state, "bias-jump"),))
+        energy, freedom = (x[SENSOR] for x in sensor_scatter(state))
+        own.append(energy / freedom)
+        whole.append(evidence_of_more(state)[0][SENSOR])
+    assert np.median(whole) > 1.5 * np.median(own)
 
 
 @pytest.mark.parametrize("strength", [0.0, 1.0])
