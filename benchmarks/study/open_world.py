@@ -1,8 +1,8 @@
 """``python -m benchmarks.study.open_world --sessions 12 --seed 1 [PART…]`` writes docs/diagnosis/open-world.md.
 
-Beyond the catalogue and the assumptions: a cause left out, noise wrongly stated, probabilities as stated, few
-readings, blocks turned between sessions, parity checks of moving blocks. Of a page that exists, a part can be made anew
-by itself; each part says what made it.
+Beyond the catalogue and the assumptions: a cause left out, noise wrongly stated or unlike normal noise, probabilities
+as stated, few readings, blocks turned between sessions, parity checks of moving blocks. Of a page that exists, a part
+can be made anew by itself; each part says what made it.
 """
 
 import argparse
@@ -16,7 +16,16 @@ from typing import TypeVar
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from benchmarks.study import degrees_of_freedom, examine, left_out, parity_reach, reliability, stated_noise, turns
+from benchmarks.study import (
+    degrees_of_freedom,
+    examine,
+    left_out,
+    other_noise,
+    parity_reach,
+    reliability,
+    stated_noise,
+    turns,
+)
 from tests.blind.catalogue import CATALOGUE
 
 PAGE = Path(__file__).parents[2] / "docs" / "diagnosis" / "open-world.md"
@@ -50,6 +59,11 @@ def stated_noise_part(pool: Executor, sessions: int, seed: int) -> str:
     return stated_noise.section(performed(pool, stated_noise.wishes(sessions, seed + 1), stated_noise.perform))
 
 
+def other_noise_part(pool: Executor, sessions: int, seed: int) -> str:
+    """Four times as many sessions of every kind."""
+    return other_noise.section(performed(pool, other_noise.wishes(4 * sessions, seed), other_noise.perform))
+
+
 def reliability_part(pool: Executor, sessions: int, seed: int) -> str:
     """Fifty times as many sessions."""
     return reliability.section(performed(pool, examine.tasks(50 * sessions, seed + 2), examine.perform))
@@ -73,6 +87,7 @@ def parity_part(pool: Executor, sessions: int, seed: int) -> str:
 PARTS: dict[str, Callable[[Executor, int, int], str]] = {
     "left-out": left_out_part,
     "stated-noise": stated_noise_part,
+    "other-noise": other_noise_part,
     "reliability": reliability_part,
     "few-readings": few_readings_part,
     "turned": turned_part,
