@@ -8,6 +8,7 @@ from estimator.diagnosis.selection.common_or_own import common_or_own
 from estimator.diagnosis.selection.lack_of_fit import with_unlike_noise, without_common_rows, without_misfits
 from estimator.diagnosis.selection.noise_claim import (
     doubted,
+    is_quieter,
     of_whole_kinds,
     sensors_of,
     with_unknown_scale,
@@ -55,7 +56,7 @@ def whatever_the_scale(start: SearchState, claims: tuple[NoiseClaim, ...]) -> Se
     wide = of_whole_kinds(start, claims)
     found = believed(with_unknown_scale(start, wide))
     left = doubted(found)
-    if left and sensors_of(left) != sensors_of(wide):
+    if sensors_of(left) != sensors_of(wide) and not is_quieter(start, left):
         found = believed(with_unknown_scale(start, left, found.found))
         left = doubted(found) or left
     return replace(found, noise_claims=left) if left else None

@@ -98,9 +98,10 @@ def _claims(state: SearchState, kind: str, own: Array) -> Iterator[NoiseClaim]:
     for side, least in enumerate((QUIET / len(each), SEEN)):
         seen = [s for s in each if s.tails[side] < least]
         most = 2 * sum(s.tails[side] < SEEN for s in each) >= len(each) and whole.tails[side] < DOUBTFUL
-        if not most and (side == MORE or not seen):
+        quiet = side != MORE and (bool(seen) or whole.tails[side] < QUIET)
+        if not most and not quiet:
             continue
-        chosen = together([s for s in each if s.tails[side] < SEEN])
+        chosen = together([s for s in each if s.tails[side] < SEEN] or each)
         alike = [s.is_alike(chosen, side) for s in each]
         claimed, sensors = together(s for s, yes in zip(each, alike, strict=True) if yes), own[alike]
         if claimed.freedom >= FEWEST and not stands(replace(state.baseline, variance=state.stated), sensors):
@@ -145,14 +146,27 @@ def pure_error(baseline: Baseline, own: Array) -> Scatter:
 
 
 def of_whole_kinds(state: SearchState, claims: Iterable[NoiseClaim]) -> tuple[NoiseClaim, ...]:
-    """The claims, every other sensor of their kinds in one of its own: an effect may hide that it is off too."""
-    wider = []
+    """The claims, every other sensor of their kinds in one of its own: an effect may hide that it is off too.
+
+    That half of a kind or more scatters less is a claim of the whole: the others only seem not to, by what acts on
+    them.
+    """
+    wider, kinds = [], state.baseline.setting.kinds
     for claim in claims:
-        kinds = state.baseline.setting.kinds
+        if is_quieter(state, [claim]):
+            whole = tuple(i for i, k in enumerate(kinds) if k == claim.kind)
+            wider.append(replace(claim, sensors=whole, freedom=claim.freedom * len(whole) / len(claim.sensors)))
+            continue
         rest = [i for i, k in enumerate(kinds) if k == claim.kind and i not in claim.sensors]
         others = [NoiseClaim(claim.kind, (i,), 1.0, 0.0) for i in rest]
         wider += [claim, *others]
     return tuple(wider)
+
+
+def is_quieter(state: SearchState, claims: Iterable[NoiseClaim]) -> bool:
+    """Whether all claims are that half of a kind or more scatters less than stated."""
+    kinds = state.baseline.setting.kinds
+    return all(c.ratio < 1 and 2 * len(c.sensors) >= kinds.count(c.kind) for c in claims)
 
 
 def sensors_of(claims: Iterable[NoiseClaim]) -> set[int]:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.study.other_noise import Wish, in_orientations
 from estimator import diagnose, read_session
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.selection.noise_claim import doubted, pure_error, without_names_in_no_noise
@@ -50,6 +51,14 @@ def test_an_effect_that_all_sensors_show_is_no_noise(identifier: str) -> None:
     found = diagnose(measured(effect(identifier), 3))
     assert [f.cause for f in found.findings] == [identifier]
     assert found.noise == ()
+
+
+@pytest.mark.parametrize("factor", [1 / 3, 3.0])
+def test_in_orientations_too_where_no_sensor_by_itself_tells_its_noise(factor: float) -> None:
+    """Eleven degrees of freedom a sensor: only all of them together tell the factor, the one that jumps among them."""
+    found = diagnose(read_session(in_orientations(Wish("", hidden=True, seed=(5, 4, 1, 2)), factor).session))
+    assert [(f.cause, f.sensors) for f in found.findings] == [("bias-jump", ("A5",))]
+    assert [scale.factor for scale in found.noise] == pytest.approx([1 / factor], rel=0.25)
 
 
 def test_one_noisy_sensor_is_excess_noise_and_no_wrong_claim() -> None:
