@@ -30,7 +30,9 @@ ORIENTATIONS = [p for p in PROGRAMMES if p.name.startswith("orientations")]
 INTRODUCTION = (
     "Noise of the variance that is stated, but with the tails of Student's t with four degrees of freedom; one sensor "
     "ten times as noisy as the others, and stated so. And blocks in 24 arbitrary orientations, their errors stated "
-    "right, too small, too large, or with such tails; there the effect is a zero that jumps."
+    "right, too small, too large, or with such tails. The effect is of strength 12 on the stand; in orientations it is "
+    "a zero that jumps, fifteen standard errors in all, of which parameters and unknown directions take up more than "
+    "half in some."
 )
 
 
@@ -113,14 +115,14 @@ def in_orientations(wish: Wish, factor: float = 1.0, tails: bool = False) -> Hid
 
 
 def with_jump(session: dict[str, Any], rng: np.random.Generator) -> dict[str, Any]:
-    """The zero of one sensor jumps in the middle half, by as many standard errors of a reading as `STRENGTH` about."""
+    """The zero of one sensor jumps in the middle half: `STRENGTH` and a fourth more in all, standard errors."""
     document = json.loads(json.dumps(session))
     name = str(rng.choice([sensor["name"] for sensor in document["sensors"]]))
     readings, error = np.array(document["table"][name]), document["table"][f"{name}_se"][0]
     rows = len(readings)
     step = np.arange(rows) >= rng.integers(rows // 4, 3 * rows // 4)
     size = STRENGTH * error / np.sqrt(rows * step.mean() * (1 - step.mean()))
-    document["table"][name] = (readings + 1.25 * size * step).tolist()  # the parameters take up a fifth of it
+    document["table"][name] = (readings + 1.25 * size * step).tolist()
     return dict(document)
 
 
@@ -160,5 +162,5 @@ def section(answers: list[Answer]) -> str:
         sound, hidden = [a for a in own if not a.wish.hidden], [a for a in own if a.wish.hidden]
         named, unexplained = rate([a.other_name for a in sound]), rate([a.unexplained for a in sound])
         rows.append((world, named, unexplained, rate([a.offered for a in hidden])))
-    head = ("world", "sound: a name other than noise", "sound: `unexplained`", "strength 12: named or listed")
+    head = ("world", "sound: a name other than noise", "sound: `unexplained`", "an effect: named or listed")
     return f"## Other noise, other programmes\n\n{INTRODUCTION}\n\n" + table(head, rows)
