@@ -9,6 +9,7 @@ MISTAKES = {"Exception", "AssertionError", "AttributeError", "NameError"}
 PLACES = {
     "service/background/guard.py": "the boundary of work beside the requests",
     "service/ingest/hdf5.py": "what h5py raises on damaged files",
+    "service/ingest/logs/ulog.py": "what pyulog raises on damaged files",
 }
 
 
