@@ -6,11 +6,12 @@ the restricted χ² by
 
     χ² = bᵀJ⁻¹b,    b = DᵀPz,  J = DᵀPD, both freed of the events that are in the model already
 
-The candidate with the largest χ²/2 − ln N of its class, N how many of it were looked at, is fitted with the variances
-made anew, because an event that is not in the model passes for scatter. Its variance V = tr J⁻¹ holds parts that were
-estimated: v_c by the variance θ_c, known to d_c degrees of freedom (twice its information), hence V to V²/Σ v_c²/d_c of
-them (Satterthwaite). χ²/k is Fisher's F of k and so many; the log likelihood that decides between hypotheses is
-Student's, (ν + k)/2·ln(1 + χ²/ν) − ln N, which never underflows. Units as in `seating`.
+The candidate with the largest χ²/2 − ln N of its class, N how many of it were looked at (of steps, what neighbouring
+dates are worth: `scan`), is fitted with the variances made anew, because an event that is not in the model passes for
+scatter. Its variance V = tr J⁻¹ holds parts that were estimated: v_c by the variance θ_c, known to d_c degrees of
+freedom (twice its information), hence V to V²/Σ v_c²/d_c of them (Satterthwaite). χ²/k is Fisher's F of k and so many;
+the log likelihood that decides between hypotheses is Student's, (ν + k)/2·ln(1 + χ²/ν) − ln N, which never underflows.
+Units as in `seating`.
 """
 
 from collections.abc import Sequence
@@ -19,9 +20,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
+from estimator.arrays import eigh
+from estimator.health.scan import looks
 from estimator.health.seating import STAND_PRIOR, Seating, Units, Weighted, freedoms
 from estimator.session import Array
 
+LEVEL = 0.01
+"""Chance that any stand of a fleet is flagged although none moved."""
 FEWEST_UNITS = 3
 """Two that differ cannot say which of them changed."""
 MOST_DATES = 120
@@ -55,7 +60,7 @@ class Candidate:
 
     event: Event
     chi2: float
-    looked: int
+    looked: float
 
     @property
     def gain(self) -> float:
@@ -72,7 +77,7 @@ class Weighed:
     """Degrees of freedom that its variance is known to."""
     size: int
     """k."""
-    looked: int
+    looked: float
 
     def exceeds(self, level: float) -> bool:
         """Whether chance alone reaches as much with less than a probability, everything looked at."""
@@ -100,8 +105,8 @@ def columns(groups: Sequence[Units], events: Sequence[Event]) -> list[Array]:
 def of_stands(found: Seating) -> list[Candidate]:
     """Each stand's most evident change, steps and excursions; of stands that three units tell of."""
     searched = {s: _searched(found, s) for s in range(len(found.scatter.stand))}
-    looked = {lasting: sum(int(one.valid[one.lasting == lasting].sum()) for one in searched.values())
-              for lasting in (True, False)}  # fmt: skip
+    looked = {True: sum(one.steps for one in searched.values()),
+              False: sum(int(one.valid[~one.lasting].sum()) for one in searched.values())}  # fmt: skip
     best = (_best(one, stand, looked) for stand, one in searched.items())
     return [candidate for candidate in best if candidate is not None]
 
@@ -118,6 +123,8 @@ class _Searched:
     """(p,)"""
     valid: Array
     """(p,) bool; whether enough units tell of it."""
+    steps: float
+    """Looks that the dates of a lasting turn are worth."""
 
     @property
     def lasting(self) -> Array:
@@ -125,7 +132,7 @@ class _Searched:
         return np.isinf(self.end)
 
 
-def _best(one: _Searched, stand: int, looked: dict[bool, int]) -> Candidate | None:
+def _best(one: _Searched, stand: int, looked: dict[bool, float]) -> Candidate | None:
     """The pair with the largest gain; half of the level belongs to steps and half to excursions."""
     if not one.valid.any():
         return None
@@ -155,7 +162,18 @@ def _searched(found: Seating, stand: int) -> _Searched:
     free = whole - np.einsum("caex,exfy,dbfy->cadb", shared, found.covariance, shared, optimize=True)
     i, j = np.triu_indices(c + 1, 1)
     chi2, seen = _chi2(pull[i] - pull[j], _between(free, i, j), _between(whole, i, j))
-    return _Searched(dates[i], np.append(dates, np.inf)[j], chi2, seen & (telling[i, j] >= FEWEST_UNITS))
+    valid = seen & (telling[i, j] >= FEWEST_UNITS)
+    lasting = i[valid & (j == c)]
+    steps = looks(_alike(free, lasting), k, LEVEL / 2) if len(lasting) else 0.0
+    return _Searched(dates[i], np.append(dates, np.inf)[j], chi2, valid, steps)
+
+
+def _alike(free: Array, steps: Array) -> Array:
+    """(s − 1,) least correlation between the scores of a step (s,) and the next, from the information (c, k, c, k)."""
+    values, vectors = eigh(free[steps, :, steps])
+    root = (vectors / np.sqrt(values)[:, None, :]) @ vectors.swapaxes(1, 2)
+    shared = root[:-1] @ free[steps[:-1], :, steps[1:]] @ root[1:]
+    return np.asarray(np.linalg.svd(shared, compute_uv=False).min(axis=1, initial=1.0))
 
 
 def _dates(found: Seating, stand: int) -> Array:
@@ -203,7 +221,7 @@ def of_units(found: Seating) -> Candidate | None:
     return None if best is None else Candidate(best[1], best[0], looked)
 
 
-def weighed(found: Seating, e: int, looked: int) -> Weighed:
+def weighed(found: Seating, e: int, looked: float) -> Weighed:
     """The e-th event of the model."""
     value, covariance = found.value[e], found.covariance[e, :, e]
     chi2 = float(value @ np.linalg.pinv(covariance, hermitian=True) @ value)

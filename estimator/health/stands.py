@@ -19,11 +19,9 @@ import numpy as np
 from scipy import stats
 
 from estimator.health.seating import Seating, Units, seated
-from estimator.health.stand_events import FEWEST_UNITS, Event, Weighed, columns, of_stands, of_units, weighed
+from estimator.health.stand_events import FEWEST_UNITS, LEVEL, Event, Weighed, columns, of_stands, of_units, weighed
 from estimator.session import Array
 
-LEVEL = 0.01
-"""Chance that any stand of a fleet is flagged although none moved."""
 AGREEING = 0.8
 """Share of the units that must show the shift; one in five may differ."""
 TELLS = 5.0
@@ -109,7 +107,7 @@ class _Taken:
     """An event in the model, and how many of its class were looked at."""
 
     event: Event
-    looked: int
+    looked: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,9 +191,8 @@ class _Witnesses:
         if len(self.pull) < FEWEST_UNITS:
             return False
         votes = self.agreeing[self._own > TELLS**2]
-        return bool(votes.sum() >= AGREEING * len(votes)) and self._without_one() > own.size * float(
-            stats.f.isf(LEVEL, own.size, own.freedom)
-        )
+        by_chance = own.size * float(stats.f.isf(min(LEVEL, 1 / own.looked), own.size, own.freedom))
+        return bool(votes.sum() >= AGREEING * len(votes)) and self._without_one() > by_chance
 
     def _without_one(self) -> float:
         """χ² without the unit that it rests on most."""
