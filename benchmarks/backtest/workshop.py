@@ -50,7 +50,7 @@ def history(kind: str, time: Array, plan: Plan, rng: np.random.Generator) -> His
     """One parameter of a unit that is measured at (n,) years ``time``."""
     days = STEP * np.arange(round(YEARS / STEP))
     at = np.round(time / STEP).astype(int)
-    warmth = _weather(days, rng)
+    warmth = weather(days, rng)
     onset = _onset(kind, time, plan, rng)
     truth = _course(kind, days, (onset, warmth), rng)
     sigma = np.exp(rng.uniform(*np.log(plan.sigma))) * np.exp(0.25 * rng.standard_normal(len(time)))
@@ -60,7 +60,7 @@ def history(kind: str, time: Array, plan: Plan, rng: np.random.Generator) -> His
     return History(kind, truth - recorded, onset, STEP * at, truth[at] + error - recorded, sigma, temperature)
 
 
-def _weather(days: Array, rng: np.random.Generator) -> Array:
+def weather(days: Array, rng: np.random.Generator) -> Array:
     """(points,) °C about 20: flat while it is heated, otherwise up to ten degrees colder, with weeks of their own."""
     season = (days + rng.uniform()) % 1.0
     swing = np.where(season < HEATED, 0.0, np.sin(np.pi * (season - HEATED) / (1 - HEATED)))

@@ -161,7 +161,7 @@ def most_likely(readings: Readings, walk: float, dof: Array) -> Change | None:
     squared = (score**2 / information).sum(axis=0)
     best = int(np.argmax(squared >= squared.max() * (1 - 1e-9)))
     shrunk = _shrunk(float(squared[best]), k, float(_freedom(null, readings, dof)[best]))
-    found = odds(mixture(null, readings.time, tells), null.z[0] * shrunk)
+    found = odds(mixture(null, readings.time, tells), null.z[0] * shrunk, readings.tails)
     kind = _kind(found)
     likely = squared / 2 + np.log(np.maximum(family.share, 1e-300))
     likely = np.where(tells & _alike(family.kind, kind), likely, -np.inf)

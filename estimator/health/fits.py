@@ -13,10 +13,11 @@ and with a ~ N(0, s²) the Bayes factor is (1 + s²S)^(−1/2)·exp(s²x²/(2(1 
 the restricted one (Harville 1974). The level at the last session is the best linear unbiased prediction.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from estimator.health.error_laws import NORMAL
 from estimator.health.shapes import Kind, Shapes
 from estimator.session import Array
 
@@ -51,6 +52,8 @@ class Readings:
     """(n, b) columns that act whatever else does, the first of them 1; any unit."""
     now: Array
     """(b,) the same for the level that is forecast: after all steps, at the mean temperature."""
+    tails: Array = field(default_factory=NORMAL.copy)
+    """(4,) chance of each law of errors, of `FREEDOMS`; likelihoods take the first, chances of an alarm all."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,6 +12,12 @@ half of R histories from the null and half from the mixture (defensive importanc
 
 whose terms are at most 2/b: the relative error is small however small the chance is. It corrects for all kinds, sizes
 and times that were tried, and never exceeds 1/b (Markov). The draws are fixed.
+
+Where errors may have tails (`tails`), the chance is that of each ν by its weight. A third of the draws is then of
+Student's law t, a third of the same with one session `WILD` times as wide, its density w in place of t, a third of the
+mixture above:
+
+    p = 1/R·Σ 1[B_r ≥ b]·3/(1 + m_r + B_r·N(z_r)/t(z_r)),    m the mean of w(z_i)/t(z_i) over all sessions
 """
 
 from dataclasses import dataclass
@@ -19,6 +25,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.arrays import eigh
+from estimator.health.error_laws import FREEDOMS, NORMAL, drawn, log_density
 from estimator.health.fits import PART_KINDS, PART_SIZES, Fits
 from estimator.health.shapes import Kind
 from estimator.session import Array
@@ -27,6 +34,12 @@ DRAWS = 1000
 """The chance is right to a few percent of itself."""
 SEED = 1995
 """Of the draws, so that the same history has the same p-value always."""
+WILD = 6.0
+"""As far out as one session in some thousands is."""
+FELT = 1e-4
+"""Weight of a law of errors below which it changes no p-value that a level asks for."""
+COMMON = 0.1
+"""p-value of mostly normal errors above which tails change nothing that matters: outliers are rare."""
 WANDERS = np.array([0.06, 0.12, 0.25, 0.5])
 """(4,) T a root year, beyond what the type does anyway."""
 SHARES = {Kind.JUMP: 1 / 3, Kind.LATE: 1 / 9, Kind.START: 1 / 9, Kind.AGING: 1 / 9, Kind.WALK: 1 / 3}
@@ -132,19 +145,48 @@ def _modes(null: Fits, time: Array) -> tuple[Array, Array]:
     return np.maximum(values, 0.0), vectors
 
 
-def odds(mixed: Mixture, z: Array) -> Odds:
-    """Of one whitened history (k, n), freed of the base."""
+def odds(mixed: Mixture, z: Array, tails: Array = NORMAL) -> Odds:
+    """Of one whitened history (k, n), freed of the base; ``tails`` (4,) the weight of each of `FREEDOMS`."""
     shaped, wandered = (part[0] for part in mixed.log_parts(z[None]))
     b = float(np.logaddexp(np.logaddexp.reduce(shaped), np.logaddexp.reduce(wandered)))
-    rng = np.random.default_rng(SEED)
-    nothing = rng.standard_normal((DRAWS // 2, *z.shape))
-    reached = mixed.log_odds(np.concatenate([nothing, mixed.drawn(rng, DRAWS // 2)]))
-    beyond = reached[reached >= b - 1e-9]
-    p = float(np.sum(2 / (1 + np.exp(np.minimum(beyond, 700.0))))) / DRAWS
-    bound = float(np.exp(-max(b, 0.0)))
     kinds: dict[Kind, float] = {kind: _sum(shaped[mixed.kind == kind]) for kind in SHARES}
     kinds[Kind.WALK] = _sum(wandered)
-    return Odds(b, kinds, min(p, bound) if beyond.size else bound)
+    return Odds(b, kinds, _chance(mixed, z.shape, b, tails))
+
+
+def _chance(mixed: Mixture, shape: tuple[int, ...], b: float, tails: Array) -> float:
+    """p over all laws of errors."""
+    normal = _by_chance(mixed, shape, b) if tails[0] > FELT else 0.0
+    if tails[0] > 0.5 and normal > COMMON:
+        return normal
+    heavy = [(float(tails[i]), float(FREEDOMS[i])) for i in np.flatnonzero(tails > FELT) if np.isfinite(FREEDOMS[i])]
+    rest = sum(weight * _by_tails(mixed, shape, b, freedom) for weight, freedom in heavy)
+    return min(float(tails[0]) * normal + rest, 1.0)
+
+
+def _by_chance(mixed: Mixture, shape: tuple[int, ...], b: float) -> float:
+    """p where errors are normal."""
+    rng = np.random.default_rng(SEED)
+    nothing = rng.standard_normal((DRAWS // 2, *shape))
+    reached = mixed.log_odds(np.concatenate([nothing, mixed.drawn(rng, DRAWS // 2)]))
+    beyond = reached[reached >= b - 1e-9]
+    bound = float(np.exp(-max(b, 0.0)))
+    return min(float(np.sum(2 / (1 + np.exp(np.minimum(beyond, 700.0))))) / DRAWS, bound) if beyond.size else bound
+
+
+def _by_tails(mixed: Mixture, shape: tuple[int, ...], b: float, freedom: float) -> float:
+    """p where they are Student's."""
+    rng = np.random.default_rng(SEED)
+    runs = DRAWS // 3
+    plain, wild = drawn(freedom, (runs, *shape), rng), drawn(freedom, (runs, *shape), rng)
+    flat = wild.reshape(runs, -1)
+    flat[np.arange(runs), rng.integers(flat.shape[1], size=runs)] *= WILD
+    z = np.concatenate([plain, flat.reshape(wild.shape), mixed.drawn(rng, runs)])
+    reached = mixed.log_odds(z)
+    student = log_density(z, freedom)
+    wider = np.exp(log_density(z / WILD, freedom) - np.log(WILD) - student).mean(axis=(1, 2))
+    changed = reached + (log_density(z, np.inf) - student).sum(axis=(1, 2))
+    return float(np.mean((reached >= b - 1e-9) * 3 / (1 + wider + np.exp(np.minimum(changed, 700.0)))))
 
 
 def _sum(logs: Array) -> float:

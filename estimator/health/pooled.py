@@ -12,10 +12,11 @@ general. So a type of one unit works as well, and a type of many hardly feels th
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from estimator.health.error_laws import FREEDOMS, NORMAL, USUAL
 from estimator.health.fits import PART_KINDS, WALKS
 from estimator.health.shapes import Kind
 from estimator.session import Array
@@ -49,6 +50,8 @@ class Prior:
     """(P,) per history, of drifts from the start and of aging; 0 elsewhere."""
     histories: int = 0
     """That it was learned from; 0 for units in general."""
+    tails: Array = field(default_factory=NORMAL.copy)
+    """(4,) chance of each law of errors."""
 
     def parts(self, span: Array | float) -> Array:
         """(..., P) chance of each part within histories of (...,) years."""
@@ -69,7 +72,7 @@ class Prior:
 def general_prior() -> Prior:
     """Of units in general."""
     chance = np.concatenate([[0.0], CHANCE])
-    return Prior(WALK / WALK.sum(), np.where(COMES, chance, 0.0), np.where(STARTS, chance, 0.0))
+    return Prior(WALK / WALK.sum(), np.where(COMES, chance, 0.0), np.where(STARTS, chance, 0.0), tails=USUAL)
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +83,8 @@ class Evidence:
     """Years."""
     log_evidence: Array
     """(Q, P) of `Fits.log_evidence`."""
+    log_tails: Array = field(default_factory=lambda: np.zeros(len(FREEDOMS)))
+    """(4,) of `tails.log_tails`; zero where it tells nothing."""
 
 
 def learn(histories: Sequence[Evidence]) -> Prior:
@@ -93,7 +98,14 @@ def learn(histories: Sequence[Evidence]) -> Prior:
     found = general
     for _ in range(ROUNDS):
         found = _improved(found, general, likelihood, span)
-    return found
+    return replace(found, tails=_weighed(general.tails, np.stack([h.log_tails for h in histories])))
+
+
+def _weighed(usual: Array, logs: Array) -> Array:
+    """(4,) chance of each law of errors, from those of M histories (M, 4)."""
+    log = np.log(usual) + logs.sum(axis=0)
+    weight = np.exp(log - log.max())
+    return np.asarray(weight / weight.sum())
 
 
 def _improved(found: Prior, general: Prior, likelihood: Array, span: Array) -> Prior:

@@ -14,6 +14,7 @@ from estimator.health.forecast import AHEAD, MEDIAN, Future, earliest, future, p
 from estimator.health.pooled import Evidence, Prior
 from estimator.health.posterior import Draws, draw
 from estimator.health.shapes import DRIFTS, Kind, shapes
+from estimator.health.tails import log_tails
 from estimator.session import Array
 
 RECENT = 60
@@ -98,7 +99,7 @@ def evidence(track: Track) -> Evidence:
     if tells_of_temperature(temperature):
         readings = warmed(readings, 0.0, dof, temperature, LEVEL).readings
     found = fits(readings, shapes(readings.time))
-    return Evidence(found.span, found.log_evidence())
+    return Evidence(found.span, found.log_evidence(), log_tails(readings, found))
 
 
 def prognosis(tracks: Sequence[Track], priors: Sequence[Prior], ahead: Array) -> Prognosis:
@@ -146,7 +147,8 @@ def _outlook(track: Track, prior: Prior, ahead: Array, of: tuple[int, float]) ->
     """Of the track with a number, at a level of detection ``of`` it."""
     number, level = of
     rng = np.random.default_rng(number)
-    detected = detect(_readings(track), prior.usual_walk, *_conditions(track), level)
+    readings = replace(_readings(track), tails=prior.tails)
+    detected = detect(readings, prior.usual_walk, *_conditions(track), level)
     family = shapes(detected.readings.time)
     draws = draw(detected.readings, family, prior, rng)
     stays = staying(draws, prior, _swing(detected.warmth, track), rng)

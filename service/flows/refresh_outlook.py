@@ -16,7 +16,7 @@ from service.words.motion import motions_in_words
 
 END_OF_TIME = datetime(9999, 1, 1, tzinfo=UTC)
 """After every break."""
-RULE = b"2"
+RULE = b"3"
 """Version of what an outlook says of a history: those made by an earlier one are made again."""
 TypeHistories = dict[tuple[str, str], tuple[bytes, ...]]
 """What a type's units tell, by kind of sensor and parameter."""
