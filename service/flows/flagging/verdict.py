@@ -16,7 +16,7 @@ FAILS = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
 PASSES = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
 """Verdicts that speak for resolving one."""
 WITHIN = "The session of {day} finds every parameter of {sensor} within its tolerance."
-NEW_REFERENCE = "The session of {day}, after a service, is the new reference."
+NEW_REFERENCE = "The session of {day} is the reference that {sensor} is judged against now."
 
 
 def tell_verdict(store: Store, occasion: Occasion, latest: StoredSession, was: Refreshed) -> None:
@@ -39,7 +39,7 @@ def told_by(session: StoredSession, judged: Judged) -> Told:
         if failed:
             concerns.append(_concern(sensor, failed))
         elif judged.is_reference:
-            clear.append((Matter.TOLERANCE.value, sensor, NEW_REFERENCE.format(day=day)))
+            clear.append((Matter.TOLERANCE.value, sensor, NEW_REFERENCE.format(day=day, sensor=sensor)))
         elif own and all(d.verdict in PASSES for d in own):
             clear.append((Matter.TOLERANCE.value, sensor, WITHIN.format(day=day, sensor=sensor)))
     return Told(tuple(concerns), tuple(clear))

@@ -111,6 +111,7 @@ def test_a_first_session_that_turns_out_bad_gives_way_to_a_better_reference(crew
     assert "Chosen as the reference" in head(page)
     page.goto(f"{crew}/units/BF-1")
     assert "Fit" in head(page)
+    assert "The session of 1 Mar 2026 is the reference that A3 is judged against now." in page.inner_text("main")
 
 
 def test_a_service_entered_a_week_late_takes_the_fail_back(crew: str, page: Page) -> None:
