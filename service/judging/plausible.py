@@ -34,8 +34,8 @@ FAR, NEAR = np.cos(np.radians(20.0)), np.cos(np.radians(10.0))
 """An input axis lies within some degrees of its nominal one: beyond 20° it is another one, within 10° it is that."""
 ROUNDED = np.cos(np.radians(1.0))
 """A nominal axis is written to a degree or better."""
-TOO_QUIET = 1e-5
-"""χ² a degree of freedom: standard errors that are stated 300 times larger than the readings scatter."""
+TOO_QUIET = 1e-4
+"""χ² a degree of freedom: standard errors that are stated a hundred times larger than the readings scatter."""
 
 
 def doubts(store: Store, new: Checked, calibration: Calibration, but: Collection[str]) -> tuple[Doubt, ...]:

@@ -61,14 +61,21 @@ def per_g(document: dict[str, Any]) -> None:
         sensor["nominal_scale"] *= 9.80665
 
 
+def noisy(document: dict[str, Any]) -> None:
+    for sensor in document["sensors"]:
+        document["table"][f"{sensor['name']}_se"] = [200 * error for error in document["table"][f"{sensor['name']}_se"]]
+
+
 SWAPPED = accelerometer_block(6, seed=3, unit="BA-017", sensors=true_sensors(6, bias=1e-3, tilt=1e-4), positions=24)
 """With both runs under one another's name."""
 SLIPS: dict[str, tuple[Slip, str]] = {
     "mV for V": (times(1000.0), "such as mV for V"),
     "one channel in mV": (times(1000.0, A1), "The scale factor of A1 is 1"),
     "per g": (per_g, "g and m/s² were taken for one another"),
+    "degrees": (times(57.2958), "degrees stand for radians"),
     "sign": (times(-1.0, A1), "its sign is reversed"),
     "exchange": (exchanged, "their channels are exchanged"),
+    "noise": (noisy, "times less than their standard errors: another unit is stated"),
 }
 
 
