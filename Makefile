@@ -52,7 +52,7 @@ study: setup
 	$(BIN)/python -m benchmarks.study.groups --groups 40 --seed 2
 
 backtest: setup
-	$(BIN)/python -m benchmarks.backtest --seed 3
+	$(BIN)/python -m benchmarks.backtest --seed 5
 
 stands: setup
 	$(BIN)/python -m benchmarks.stands

@@ -3,12 +3,13 @@
 import numpy as np
 
 from benchmarks.backtest.histories import History, Plan
-from benchmarks.backtest.rivals import EVENTS, RIVALS, Rule, figures, optimum
-from benchmarks.backtest.units import PARAMETERS
+from benchmarks.backtest.rivals import EVENTS, RIVALS, Rule, figures, log_ratios, optimum
+from benchmarks.backtest.units import PARAMETERS, learned, unit
 from benchmarks.backtest.worlds import FIRST, World
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
 from estimator.health.detection import detect
+from estimator.health.error_laws import NORMAL
 from estimator.health.fits import Readings, fits
 from estimator.health.odds import mixture, odds
 from estimator.health.shapes import shapes
@@ -21,11 +22,16 @@ OURS = "the likelihood of all changes (ours)"
 LEVELS = (0.01, 0.05, 0.2, 0.5, 0.8)
 
 
-def p_value(one: History) -> float:
-    """Of the estimator, noise known and no walk expected."""
+def readings(one: History, tails: Array = NORMAL) -> Readings:
+    """As the estimator takes them, noise known; ``tails`` (4,) the chance of each law of errors."""
     n = len(one.time)
-    readings = Readings(one.time, one.value[:, None], one.sigma[:, None], np.ones((n, 1)), np.ones(1))
-    return detect(readings, 0.0, np.full(n, np.inf), np.full(n, np.nan), 0.0).p_value
+    return Readings(one.time, one.value[:, None], one.sigma[:, None], np.ones((n, 1)), np.ones(1), tails)
+
+
+def p_value(one: History, tails: Array = NORMAL) -> float:
+    """Of the estimator, no walk expected."""
+    n = len(one.time)
+    return detect(readings(one, tails), 0.0, np.full(n, np.inf), np.full(n, np.nan), 0.0).p_value
 
 
 def suspicion(one: History) -> float:
@@ -35,11 +41,14 @@ def suspicion(one: History) -> float:
 
 def log_odds(one: History) -> float:
     """Of any change against none, by the estimator: not yet made into a p-value of the history's own schedule."""
-    n = len(one.time)
-    readings = Readings(one.time, one.value[:, None], one.sigma[:, None], np.ones((n, 1)), np.ones(1))
-    null = fits(readings, shapes(one.time), np.zeros(1))
+    null = fits(readings(one), shapes(one.time), np.zeros(1))
     tells = (null.information[0] > 0).all(axis=0)
     return odds(mixture(null, one.time, tells), null.z[0]).total
+
+
+def tails_of(world: World, rng: np.random.Generator) -> Array:
+    """(4,) chance of each law of errors, as twenty units of a type tell it."""
+    return learned([unit(world, kind, world.plan, rng) for kind in world.fleet]).tails
 
 
 def made(world: World, kind: str, of: tuple[int, Plan], rng: np.random.Generator) -> list[History]:
@@ -48,19 +57,25 @@ def made(world: World, kind: str, of: tuple[int, Plan], rng: np.random.Generator
     return [world.made(kind, plan, rng) for _ in range(count)]
 
 
-def found(kind: str, count: int, rng: np.random.Generator) -> list[bool]:
+def found(kind: str, count: int, tails: Array, rng: np.random.Generator) -> list[bool]:
     """Whether a change is found at 5 % over all parameters of its unit."""
-    return [p_value(one) < SINGLE for one in made(FIRST, kind, (count, FIRST.plan), rng)]
+    return [p_value(one, tails) < SINGLE for one in made(FIRST, kind, (count, FIRST.plan), rng)]
 
 
-def alarms_page(world: World, count: int, rng: np.random.Generator) -> str:
-    """Markdown: p-values where nothing happens."""
-    rows = []
+def alarms_page(world: World, of: tuple[int, Array], rng: np.random.Generator) -> str:
+    """Markdown: p-values where nothing happens, of so many histories, errors being as a type tells; and taken for
+    normal ones."""
+    (count, tails), rows = of, []
     for plan in (world.planned((3, 5)), world.plan, world.long):
-        p = np.array([p_value(one) for one in made(world, world.still, (count, plan), rng)])
-        rows.append((_sessions(plan), *(str(rate([bool(x) for x in p < level])) for level in LEVELS)))
+        still = made(world, world.still, (count, plan), rng)
+        for name, law in (("", tails), (", errors taken for normal", NORMAL)):
+            p = np.array([p_value(one, law) for one in still])
+            rows.append((_sessions(plan) + name, *(str(rate([bool(x) for x in p < level])) for level in LEVELS)))
     head = (world.still, *(f"p < {level:g}" for level in LEVELS))
-    return "### Are p-values what they say?\n\nWhere nothing happens.\n\n" + table(head, rows)
+    text = (
+        "### Are p-values what they say?\n\nWhere nothing happens. Tails of errors are learned from twenty units.\n\n"
+    )
+    return text + table(head, rows)
 
 
 def _sessions(plan: Plan) -> str:
@@ -83,6 +98,15 @@ def _hits(rule: Rule, still: list[History], events: dict[str, list[History]]) ->
     return {kind: [bool(x) for x in figures(rule, one) > threshold] for kind, one in events.items()}
 
 
+def _alone(still: list[History], events: dict[str, list[History]]) -> list[list[bool]]:
+    """Of every kind what is found by its own likelihood ratio."""
+    nothing, hits = [log_ratios(one) for one in still], []
+    for kind, histories in events.items():
+        threshold = float(np.quantile([ratios[kind] for ratios in nothing], 1 - LEVEL))
+        hits.append([log_ratios(one)[kind] > threshold for one in histories])
+    return hits
+
+
 def rivals_page(count: int, rng: np.random.Generator) -> tuple[str, dict[str, tuple[float, ...]]]:
     """Markdown, and of every event what is found by the estimator, by its odds and by the optimum, %."""
     still = made(FIRST, FIRST.still, (2 * count, FIRST.plan), rng)
@@ -93,12 +117,16 @@ def rivals_page(count: int, rng: np.random.Generator) -> tuple[str, dict[str, tu
         hits = _hits(rule, still, events)
         shares.append(np.array([np.mean(hit) for hit in hits.values()]))
         rows.append((name, *(str(rate(hit)) for hit in hits.values())))
+    rows.insert(2, ("who looks for that kind alone", *(str(rate(hit)) for hit in _alone(still, events))))
     text = (
         "### Beside other rules, at equal false alarms\n\n"
         f"Every rule has the threshold at which {100 * LEVEL:.0f} % of stable histories raise an alarm. The optimum "
-        "knows the generator's own changes and their shares; no rule finds more of their mixture. Ours is a p-value, "
-        "uniform in every history by itself: it spends its false alarms alike on histories that can show something and "
-        "on those that cannot. The odds behind it have one threshold for all histories, as the optimum has.\n\n"
+        "is the likelihood ratio of the generator's own changes in equal shares to nothing, over a grid of their "
+        "sizes, days and constants, whatever the level: no rule finds more of their mixture (Neyman and Pearson). Of "
+        "one kind more is found only by who leaves the others out; the likelihood ratio of that kind alone bounds it. "
+        "Ours is a p-value, uniform in every history by itself: it spends its false alarms alike on histories that can "
+        "show something and on those that cannot. The odds behind it have one threshold for all histories, as the "
+        "optimum has.\n\n"
     )
     both = {kind: tuple(100 * float(shares[rule][i]) for rule in (0, 2, 1)) for i, kind in enumerate(EVENTS)}
     return text + table(("rule", *EVENTS), rows), both

@@ -1,34 +1,67 @@
-"""Stated dates of somebody who knows the second generator: every kind, their shares, all laws of sizes and of errors.
+"""Stated dates of somebody who knows a generator: every kind, their shares, all laws of sizes, times and errors.
 
 What a kind may have done is drawn from its own law given the readings. Times and constants are drawn from their prior;
 size a and error e₀ of the reference, of which deviations a·(f(t) − f(0)) − e₀ are linear, from Student's law about
 their weighted least squares; the weight is prior times likelihood over the density drawn from. One that wanders is
-followed by particles (Gordon, Salmond & Smith 1993). Of dates that hold as often as they claim whatever the readings
-are, none is later but by chance.
+followed by particles (Gordon, Salmond & Smith 1993). So the date is as good as the readings allow, but for chance.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from scipy import stats
 
-from benchmarks.backtest import workshop as law
 from benchmarks.backtest.histories import STEP, YEARS, History
 from estimator.session import Array
 
-DRAWS, FOLLOWED = 4000, 2000
+DRAWS, FOLLOWED = 2000, 2000
 """Of each kind, and of all together those that are followed into the future: a chance of 10 % to within 1 %."""
 WIDE, TAILS = 1.5, 5.0
 """Of the law that sizes are drawn from: wider than the least squares say, with heavy tails."""
-MEDIANS = {"shock": 0.5, "shock and back": 0.5, "creep": 0.3, "late creep": 0.3, "settling": 0.7}
-"""Of the log-normal sizes, T or T a year."""
+Random = np.random.Generator
 Course = Callable[[Array], Array]
 """(N, t) courses of N draws per unit of size, at times (t,), years."""
 
 
+@dataclass(frozen=True)
+class Sized:
+    """A kind of one shape with one size."""
+
+    typical: float
+    """Size, T or T a year."""
+    log_prior: Callable[[Array], Array]
+    """Log density of sizes (N,) of either sign."""
+    courses: Callable[[int, Random], Course]
+    """So many, with times and constants from their prior."""
+
+
+@dataclass(frozen=True)
+class Law:
+    """All that a generator does; nothing moves in a kind that is named nowhere here."""
+
+    kinds: tuple[str, ...]
+    sized: Mapping[str, Sized]
+    log_error: Callable[[Array], Array]
+    """Log density of errors in standard deviations."""
+    errors: Callable[[int, Random], Array]
+    """So many of them."""
+    wanders: str
+    scales: tuple[float, float]
+    """Least and largest of what wanders, T a root year."""
+    steps: Callable[[Array, int, Random], Array]
+    """What such scales, in any shape, add within so many `STEP`."""
+    seasonal: str
+    slopes: tuple[float, float]
+    """T per °C, of either sign."""
+    thermometer: tuple[float, float]
+    """°C: mean of the laboratory, standard deviation of a session's temperature."""
+    air: Callable[[Array, Random], Array]
+    """°C about the mean at days, years, of any year."""
+
+
 @dataclass(frozen=True, eq=False)
-class Kind:
+class _Kind:
     """Draws of one kind."""
 
     log_weight: Array
@@ -37,14 +70,13 @@ class Kind:
     """Of places (m,), the deviations (m, t) at all dates from the last session on, T."""
 
 
-def early(one: History, since: int, level: float, rng: np.random.Generator) -> float:
-    """Years from the last session before which the tolerance is passed with a chance, what changes one day having done
-    so ``since`` sessions back or more; infinite if never."""
+def early(one: History, law: Law, level: float, rng: Random) -> float:
+    """Years from the last session before which the tolerance is passed with a chance; infinite if never."""
     days = STEP * np.arange(round(float(one.time[-1]) / STEP), round(YEARS / STEP))
-    kinds = [drawn(kind, one, (since, days), rng) for kind in law.DESCRIBED]
-    weight = np.exp(np.stack([kind.log_weight for kind in kinds]) - max(kind.log_weight.max() for kind in kinds))
-    rough = np.cumsum(weight) / weight.sum()
-    picked = np.searchsorted(rough, (np.arange(FOLLOWED) + rng.uniform()) / FOLLOWED)
+    kinds = [_drawn(kind, one, law, days, rng) for kind in law.kinds]
+    logs = np.stack([kind.log_weight for kind in kinds])
+    rough = np.cumsum(np.exp(logs - logs.max()))
+    picked = np.searchsorted(rough, rough[-1] * (np.arange(FOLLOWED) + rng.uniform()) / FOLLOWED)
     found = [_passed(kind.future(picked[picked // DRAWS == i] % DRAWS)) for i, kind in enumerate(kinds)]
     passed = np.concatenate(found)
     inside = passed[passed > 0]
@@ -57,113 +89,81 @@ def _passed(deviation: Array) -> Array:
     return np.where(beyond.any(axis=1), STEP * beyond.argmax(axis=1), np.inf)
 
 
-def drawn(kind: str, one: History, of: tuple[int, Array], rng: np.random.Generator) -> Kind:
-    """Of a kind; ``of`` sessions since a change, at least, and the days (t,) of the future, years."""
-    since, days = of
-    if kind == "small shocks":
-        return _wandering(one, days, rng)
-    if kind == "unheated":
-        return _weathered(one, days, rng)
-    if kind not in MEDIANS:
-        return _unsized(one, np.zeros((DRAWS, len(one.time))), lambda own: np.zeros((len(own), len(days))), rng)
-    return _sized(one, _course(kind, one, since, rng), MEDIANS[kind], days, rng)
+def _drawn(kind: str, one: History, law: Law, days: Array, rng: Random) -> _Kind:
+    if kind == law.wanders:
+        return _wandering(one, law, days, rng)
+    if kind == law.seasonal:
+        return _weathered(one, law, days, rng)
+    if kind in law.sized:
+        return _sized(one, law, law.sized[kind], days, rng)
+    return _unsized(one, law, np.zeros((DRAWS, len(one.time))), lambda own: np.zeros((len(own), len(days))), rng)
 
 
-def _course(kind: str, one: History, since: int, rng: np.random.Generator) -> Course:
-    """Courses with times and constants from their prior."""
-    latest = float(one.time[-1 - since]) if since else YEARS
-    whole = -np.expm1(-latest / law.HAZARD)
-    onset = -law.HAZARD * np.log1p(-rng.uniform(size=(DRAWS, 1)) * whole)
-    back, constant = onset + rng.uniform(0.2, 2.0, (DRAWS, 1)), rng.uniform(0.1, 2.0, (DRAWS, 1))
-    courses: dict[str, Course] = {
-        "shock": lambda t: (t >= onset).astype(float),
-        "shock and back": lambda t: ((t >= onset) & (t < back)).astype(float),
-        "creep": lambda t: np.tile(t, (DRAWS, 1)),
-        "late creep": lambda t: _bent(np.maximum(t - onset, 0.0)),
-        "settling": lambda t: t / (t + constant),
-    }
-    return courses[kind]
+def _signs(one: History) -> Array:
+    """(n,) of e₀ in every reading: the reference's own, and taken off all others."""
+    return np.append(1.0, np.full(len(one.time) - 1, -1.0))
 
 
-def _bent(late: Array) -> Array:
-    """A drift that takes up its rate, years; the same shape as ``late``, years."""
-    return np.where(late < law.BEND, late**2 / (2 * law.BEND), late - law.BEND / 2)
-
-
-def _sized(one: History, course: Course, median: float, days: Array, rng: np.random.Generator) -> Kind:
+def _sized(one: History, law: Law, of: Sized, days: Array, rng: Random) -> _Kind:
     """Sizes and e₀ of courses."""
-    shape = course(one.time)
-    weight, sign = one.sigma**-2.0, np.append(1.0, np.full(len(one.time) - 1, -1.0))
+    course = of.courses(DRAWS, rng)
+    shape, weight, sign = course(one.time), one.sigma**-2.0, _signs(one)
     cross = (weight * sign * shape).sum(axis=1)
-    normal = np.stack([(weight * shape**2).sum(axis=1) + median**-2.0, cross, cross, np.full(DRAWS, weight.sum())])
+    normal = np.stack([(weight * shape**2).sum(axis=1) + of.typical**-2.0, cross, cross, np.full(DRAWS, weight.sum())])
     covariance = np.linalg.inv(normal.T.reshape(-1, 2, 2))
     pull = np.stack([shape @ (weight * one.value), np.full(DRAWS, (weight * sign) @ one.value)], axis=1)
-    root = WIDE * np.linalg.cholesky(covariance)
-    steps = rng.standard_t(TAILS, (DRAWS, 2))
-    found = np.einsum("nij,nj->ni", covariance, pull) + np.einsum("nij,nj->ni", root, steps)
+    root, steps = WIDE * np.linalg.cholesky(covariance), rng.standard_t(TAILS, (DRAWS, 2))
+    size, origin = (np.einsum("nij,nj->ni", covariance, pull) + np.einsum("nij,nj->ni", root, steps)).T
     density = stats.t.logpdf(steps, TAILS).sum(axis=1) - np.log(np.diagonal(root, axis1=1, axis2=2)).sum(axis=1)
-    size, origin = found.T
-    prior = stats.lognorm.logpdf(np.abs(size), 0.5, scale=median) - np.log(2)
-    log = prior + _log_likelihood(one, size[:, None] * shape, origin) - density
-    return Kind(log, lambda own: size[own, None] * course(days)[own] - origin[own, None])
+    log = of.log_prior(size) + _log_likelihood(one, law, size[:, None] * shape, origin) - density
+    return _Kind(log, lambda own: size[own, None] * course(days)[own] - origin[own, None])
 
 
-def _unsized(one: History, moved: Array, ahead: Callable[[Array], Array], rng: np.random.Generator) -> Kind:
+def _unsized(one: History, law: Law, moved: Array, ahead: Callable[[Array], Array], rng: Random) -> _Kind:
     """e₀ of what moved by (N, n) since the reference; ``ahead`` that in future."""
-    weight, sign = one.sigma**-2.0, np.append(1.0, np.full(len(one.time) - 1, -1.0))
+    weight, steps = one.sigma**-2.0, rng.standard_t(TAILS, DRAWS)
     scale = WIDE * weight.sum() ** -0.5
-    steps = rng.standard_t(TAILS, DRAWS)
-    origin = (one.value - moved) @ (weight * sign) / weight.sum() + scale * steps
-    log = _log_likelihood(one, moved, origin) - stats.t.logpdf(steps, TAILS) + np.log(scale)
-    return Kind(log, lambda own: ahead(own) - origin[own, None])
+    origin = (one.value - moved) @ (weight * _signs(one)) / weight.sum() + scale * steps
+    log = _log_likelihood(one, law, moved, origin) - stats.t.logpdf(steps, TAILS) + np.log(scale)
+    return _Kind(log, lambda own: ahead(own) - origin[own, None])
 
 
-def _log_likelihood(one: History, moved: Array, origin: Array) -> Array:
+def _log_likelihood(one: History, law: Law, moved: Array, origin: Array) -> Array:
     """(N,) of what moved by (N, n) since the reference, whose error is ``origin`` (N,), T."""
-    later = one.value[1:] - moved[:, 1:] + origin[:, None]
-    return np.asarray(_log_errors(np.column_stack([origin, later]), one.sigma).sum(axis=1))
+    errors = np.column_stack([origin, one.value[1:] - moved[:, 1:] + origin[:, None]])
+    return np.asarray((law.log_error(errors / one.sigma) - np.log(one.sigma)).sum(axis=1))
 
 
-def _log_errors(errors: Array, sigma: Array) -> Array:
-    """Log density of errors (N, n), T, of sigmas (n,)."""
-    scale = sigma * np.sqrt((law.TAILS - 2) / law.TAILS)
-    return np.asarray(stats.t.logpdf(errors / scale, law.TAILS) - np.log(scale))
-
-
-def _weathered(one: History, days: Array, rng: np.random.Generator) -> Kind:
-    """One that follows the weather, which was measured to 0.3 °C; that of the future is of any year."""
-    felt = one.temperature - 20 - 0.3 * rng.standard_normal((DRAWS, len(one.time)))
-    slope = rng.choice([-1.0, 1.0], DRAWS) * rng.uniform(0.02, 0.06, DRAWS)
+def _weathered(one: History, law: Law, days: Array, rng: Random) -> _Kind:
+    """One that follows the air, which was measured at every session; that of the future is of any year."""
+    mean, scatter = law.thermometer
+    felt = one.temperature - mean - scatter * rng.standard_normal((DRAWS, len(one.time)))
+    slope = rng.choice([-1.0, 1.0], DRAWS) * rng.uniform(*law.slopes, DRAWS)
 
     def ahead(own: Array) -> Array:
-        come = np.array([law.weather(days, rng) for _ in own]).reshape(len(own), len(days))
+        come = np.array([law.air(days, rng) for _ in own]).reshape(len(own), len(days))
         come[:, 0] = felt[own, -1]
         return np.asarray(slope[own, None] * (come - felt[own, :1]))
 
-    return _unsized(one, slope[:, None] * (felt - felt[:, :1]), ahead, rng)
+    return _unsized(one, law, slope[:, None] * (felt - felt[:, :1]), ahead, rng)
 
 
-def _wandering(one: History, days: Array, rng: np.random.Generator) -> Kind:
-    """Many small shocks, session after session."""
-    each = rng.uniform(0.1, 0.4, DRAWS) / np.sqrt(2 * law.SHOCKS)
-    value = -one.sigma[0] * np.sqrt((law.TAILS - 2) / law.TAILS) * rng.standard_t(law.TAILS, DRAWS)
-    log = 0.0
+def _wandering(one: History, law: Law, days: Array, rng: Random) -> _Kind:
+    """From session to session; its evidence is that of the later readings given e₀."""
+    scale, log = rng.uniform(*law.scales, DRAWS), 0.0
+    value = -one.sigma[0] * law.errors(DRAWS, rng)
     for i, steps in enumerate(np.round(np.diff(one.time) / STEP).astype(int), start=1):
-        value = value + _shocks(each, steps, rng)
-        weight = np.exp(_log_errors((one.value[i] - value)[:, None], one.sigma[i : i + 1])[:, 0])
+        value = value + law.steps(scale, int(steps), rng)
+        weight = np.exp(law.log_error((one.value[i] - value) / one.sigma[i])) / one.sigma[i]
         log += float(np.log(max(weight.mean(), 1e-300)))
-        kept = np.searchsorted(np.cumsum(weight) / weight.sum(), (np.arange(DRAWS) + rng.uniform()) / DRAWS)
-        value, each = value[np.minimum(kept, DRAWS - 1)], each[np.minimum(kept, DRAWS - 1)]
+        rough = np.cumsum(np.maximum(weight, 1e-300))
+        kept = np.searchsorted(rough, rough[-1] * (np.arange(DRAWS) + rng.uniform()) / DRAWS)
+        kept = np.minimum(kept, DRAWS - 1)
+        value, scale = value[kept], scale[kept]
 
     def ahead(own: Array) -> Array:
-        come = rng.uniform(size=(len(own), len(days))) < law.SHOCKS * STEP
-        come[:, 0] = False
-        return np.asarray(value[own, None] + np.cumsum(rng.laplace(0.0, each[own, None], come.shape) * come, axis=1))
+        come = law.steps(np.repeat(scale[own, None], len(days), axis=1), 1, rng)
+        come[:, 0] = 0.0
+        return np.asarray(value[own, None] + np.cumsum(come, axis=1))
 
-    return Kind(np.full(DRAWS, log), ahead)
-
-
-def _shocks(each: Array, steps: int, rng: np.random.Generator) -> Array:
-    """(N,) sums of Laplace's shocks within so many steps, of scales (N,), T: normal ones of gamma variance."""
-    count = rng.binomial(steps, law.SHOCKS * STEP, len(each))
-    return np.asarray(each * np.sqrt(2 * rng.gamma(np.maximum(count, 1e-12))) * rng.standard_normal(len(each)))
+    return _Kind(np.full(DRAWS, log), ahead)

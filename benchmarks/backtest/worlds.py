@@ -7,6 +7,8 @@ import numpy as np
 
 from benchmarks.backtest import histories, workshop
 from benchmarks.backtest.histories import History, Plan
+from benchmarks.backtest.knowing import Law
+from benchmarks.backtest.laws import FIRST_LAW, SECOND_LAW
 from estimator.session import Array
 
 FLEET = 20
@@ -29,6 +31,8 @@ class World:
     """Fewest and most, of units whose due date is looked at."""
     dates: Callable[[Plan, np.random.Generator], Array]
     history: Callable[[str, Array, Plan, np.random.Generator], History]
+    law: Law
+    """What somebody knows who knows the generator."""
 
     @property
     def kinds(self) -> tuple[str, ...]:
@@ -62,6 +66,7 @@ FIRST = World(
     {"2 to 3": (2, 3), "4 to 5": (4, 5), "6 to 7": (6, 7), "8 to 16": (8, 16)},
     histories.dates,
     histories.history,
+    FIRST_LAW,
 )
 SECOND = World(
     workshop.DESCRIBED,
@@ -71,4 +76,5 @@ SECOND = World(
     {"3": (3, 3), "4 to 7": (4, 7), "8 to 20": (8, 20), "21 to 60": (21, 60)},
     workshop.dates,
     workshop.history,
+    SECOND_LAW,
 )

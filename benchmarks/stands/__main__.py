@@ -10,6 +10,7 @@ from benchmarks.stands.axes import ARCSEC, held
 from benchmarks.stands.fleets import Fleet, motions_of
 from benchmarks.stands.oracles import knows_all_but_the_stand, knows_the_seating
 from benchmarks.study.rates import Rate, rate
+from estimator.health.stand_events import FEWEST_UNITS
 from estimator.health.stands import StandState, stand_states
 
 PAGE = Path(__file__).parents[2] / "docs" / "health" / "stands.md"
@@ -61,10 +62,15 @@ def dated(states: tuple[StandState, ...]) -> bool:
     )
 
 
-def share(fleets: int, seed: int, fleet: Fleet, asked: Callable[[tuple[StandState, ...]], bool]) -> Rate:
-    """How often something is said of so many fleets."""
+def said(fleets: int, seed: int, fleet: Fleet, asked: Callable[[tuple[StandState, ...]], bool]) -> list[bool]:
+    """Whether something is said of each of so many fleets."""
     made = (motions_of(fleet, np.random.default_rng([seed, i])) for i in range(fleets))
-    return rate([asked(stand_states(motions)) for motions in made])
+    return [asked(stand_states(motions)) for motions in made]
+
+
+def share(fleets: int, seed: int, fleet: Fleet, asked: Callable[[tuple[StandState, ...]], bool]) -> Rate:
+    """How often it is said."""
+    return rate(said(fleets, seed, fleet, asked))
 
 
 def known(fleets: int, seed: int, fleet: Fleet) -> tuple[Rate, Rate]:
@@ -78,12 +84,23 @@ def known(fleets: int, seed: int, fleet: Fleet) -> tuple[Rate, Rate]:
     return rate(all_else), rate(seating)
 
 
+def told(fleets: int, seed: int, fleet: Fleet) -> list[bool]:
+    """Of each fleet, whether three units were measured on the first stand within the month."""
+    found = []
+    for i in range(fleets):
+        motions = motions_of(fleet, np.random.default_rng([seed, i]))
+        units = {m.unit for m in motions if m.stand == "S0" and SINCE <= m.time < SINCE + MONTH}
+        found.append(len(units) >= FEWEST_UNITS)
+    return found
+
+
 def rows(fleets: int, seed: int) -> list[tuple[str, Rate, str]]:
     """What is asked, how often it is so, and how often it should be."""
     two = [Fleet(12, 8, 2, lambda _, s, bad=bad: bad if s else 5.0, steady) for bad in (15.0, 30.0)]
     beside = Fleet(10, 10, 2, lambda _, s: 30.0 if s else 5.0, turned)
     among = Fleet(20, 10, 2, lambda u, _: 30.0 if u < 10 else 5.0, turned)
     month = Fleet(40, 12, 2, lambda _, __: 5.0, excursion)
+    seated = said(fleets, seed + 4, month, dated)
     best, second = known(fleets, seed + 2, beside), known(fleets, seed + 3, among)
     axes = [
         (m, arcsec, *held(m, arcsec * ARCSEC, BLOCKS, seed)) for m, arcsec in ((4, 0.8), (6, 0.8), (6, 2.0), (8, 0.8))
@@ -101,7 +118,9 @@ def rows(fleets: int, seed: int) -> list[tuple[str, Rate, str]]:
          share(fleets, seed + 3, among, found), "≥ 95 %"),
         ("the same fleets: it is named by who knows τ and looks for the date, direction and size", second[1], "–"),
         ("a stand seated 25″ off for a month: one shift, with the dates of there and back",
-         share(fleets, seed + 4, month, dated), "≥ 95 %"),
+         rate(seated), "≥ 95 %"),
+        ("the same, of fleets of which three units or more were measured on it in that month",
+         rate([hit for hit, is_told in zip(seated, told(fleets, seed + 4, month), strict=True) if is_told]), "≥ 95 %"),
         *((f"{m} axes, one drifted by 0.2–0.6 T, {arcsec}″ a session: U holds it", own, "93–97 %")
           for m, arcsec, own, _ in axes),
         *((f"{m} axes, one drifted, {arcsec}″ a session: U of the others holds zero", others, "≥ 93 %")

@@ -63,18 +63,19 @@ def passed(weight: Array, stays: Array) -> Array:
     return np.asarray(np.maximum.accumulate(np.clip(1 - weight @ stays, 0.0, 1.0)))
 
 
-def earliest(draws: Draws, stays: Array) -> float:
+def earliest(draws: Draws, stays: Array, *, drifts: bool) -> float:
     """Years before which the tolerance is reached with the chance `EARLY`, and with `WHICHEVER` at most of a drift, and
-    of an aging, that the history leaves open.
+    of an aging, that the history leaves open; with `EARLY` of it too once it is known that it ``drifts``.
 
     Over all that a history may be, one that goes on hides behind those that do not: at a share s of it the chance
     `EARLY` of all may be `EARLY`/s of its own. A kind with a share below `EARLY` cannot break the claim.
     """
+    level = EARLY if drifts else WHICHEVER
     found = [float(reach(passed(draws.weight, stays)[None], EARLY)[0])]
     for going in (draws.rate, draws.aging):
         own = draws.weight * going.any(axis=1)
         if own.sum() >= EARLY:
-            found.append(float(reach(passed(own / own.sum(), stays)[None], WHICHEVER)[0]))
+            found.append(float(reach(passed(own / own.sum(), stays)[None], level)[0]))
     return min(found)
 
 

@@ -65,7 +65,8 @@ class Outlook:
     reach_50: float
     """Years after the last session; infinite beyond the horizon."""
     reach_90: float
-    """Before it the tolerance is reached with 10 % probability, and with 20 % at most if what is there is a drift."""
+    """Before it the tolerance is reached with 10 % probability, and with 20 % at most if what is there is a drift; with
+    10 % of a drift that was found."""
     is_known: bool
     """Whether the level is known well enough for the forecast to mean anything."""
     direction: Array
@@ -167,7 +168,7 @@ def _outlook(track: Track, prior: Prior, ahead: Array, of: tuple[int, float]) ->
         warmth=detected.warmth,
         chance=chance,
         reach_50=float(reach(chance[None], MEDIAN)[0]),
-        reach_90=earliest(draws, stays),
+        reach_90=earliest(draws, stays, drifts=any(change.kind in DRIFTS for change in detected.changes)),
         is_known=sigma < KNOWN,
         direction=way,
         fan=future(draws, prior, ahead, rng),

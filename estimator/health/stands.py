@@ -7,9 +7,10 @@ back, several, or a unit that moved by itself. The most evident is taken into th
 and so on until nothing is evident; what others explain better is then taken out again. The level 1 % is shared by all
 dates and stands that were looked at (Bonferroni).
 
-A shift is the stand's only when at least three units tell of it, when it is evident without any one of them, and when
-four in five of the units that tell for themselves (their own sigma at most a fifth of it) show it: a single unit that
-was dropped is no fault of the stand. Values are in rad (turns) or relative (scales), covariances in rad² or relative².
+A shift is the stand's only when at least three units tell of it, when without any one of them it is more than chance
+makes the largest of all that was looked at, and when four in five of the units that tell for themselves (their own
+sigma at most a fifth of it) show it, one of any number left aside: a single unit that was dropped, or mounted badly, is
+no fault of the stand. Values are in rad (turns) or relative (scales), covariances in rad² or relative².
 """
 
 from collections.abc import Mapping, Sequence
@@ -23,7 +24,7 @@ from estimator.health.stand_events import FEWEST_UNITS, LEVEL, Event, Weighed, c
 from estimator.session import Array
 
 AGREEING = 0.8
-"""Share of the units that must show the shift; one in five may differ."""
+"""Share of the units that must show the shift; one in five may differ, and one of any number."""
 TELLS = 5.0
 """Sigmas of its own that a shift must have for a unit to have a vote: half of them is then far from either answer."""
 TRIED = 12
@@ -192,7 +193,7 @@ class _Witnesses:
             return False
         votes = self.agreeing[self._own > TELLS**2]
         by_chance = own.size * float(stats.f.isf(min(LEVEL, 1 / own.looked), own.size, own.freedom))
-        return bool(votes.sum() >= AGREEING * len(votes)) and self._without_one() > by_chance
+        return bool(votes.sum() >= AGREEING * (len(votes) - 1)) and self._without_one() > by_chance
 
     def _without_one(self) -> float:
         """χ² without the unit that it rests on most."""

@@ -41,16 +41,19 @@ def test_the_first_passage_of_a_drifting_walk_is_the_closed_form() -> None:
     assert found == pytest.approx(exact, abs=4 * np.sqrt(exact * (1 - exact) / 20_000) + 0.005)
 
 
-def test_a_drift_that_may_be_there_passes_before_reach_90_in_one_history_of_five_at_most() -> None:
+def test_a_drift_passes_before_reach_90_in_one_history_of_five_and_a_found_one_in_ten_at_most() -> None:
     """One in eight draws drifts, at a rate from 0 to 1 T a year: over all, two thirds of them would have passed."""
     still, moving = draws(3500, np.zeros(1)), draws(500, np.zeros(1))
     rate = np.concatenate([still.rate, np.linspace(0.002, 1.0, 500)[:, None]])
     level, weight = np.zeros((4000, 1)), np.full(4000, 1 / 4000)
     both = Draws(weight, level, rate, 0 * rate, np.ones(4000), np.zeros(4000), 1.0)
-    date = earliest(both, staying(both, NEVER, 0.0, np.random.default_rng(1)))
-    assert np.mean(rate[rate > 0] * date >= 1) == pytest.approx(0.2, abs=0.02)
+    stays = staying(both, NEVER, 0.0, np.random.default_rng(1))
+    for is_found, share in ((False, 0.2), (True, 0.1)):
+        date = earliest(both, stays, drifts=is_found)
+        assert np.mean(rate[rate > 0] * date >= 1) == pytest.approx(share, abs=0.02)
     alone = replace(moving, rate=rate[3500:])
-    assert earliest(alone, staying(alone, NEVER, 0.0, np.random.default_rng(1))) == pytest.approx(1 / 0.9, rel=0.02)
+    stays = staying(alone, NEVER, 0.0, np.random.default_rng(1))
+    assert earliest(alone, stays, drifts=False) == pytest.approx(1 / 0.9, rel=0.02)
 
 
 def test_an_axis_is_out_when_it_leaves_the_disc_not_a_square() -> None:
