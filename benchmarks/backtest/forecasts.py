@@ -168,7 +168,7 @@ def reached_page(world: World, found: Sequence[Reached]) -> str:
         "How often the tolerance was passed before *reach 90*, where a date within twelve years was stated, in types "
         "whose parameters are of all kinds alike and may change any day; by kind, those whose change began two "
         "sessions back or more. The last column is of somebody who knows the generator with all its laws and states "
-        "the date before which the tolerance is passed with 10 %: of all, every tenth is passed but for chance; what "
+        "the date before which the tolerance is passed with 10 %: of all about every tenth is passed; what "
         "is more in a kind, its readings do not tell.\n\n"
         + table(
             ("the parameter", "passed before reach 90", "where a change was found", "by who knows the generator"), rows

@@ -7,7 +7,7 @@ from estimator.session import Array
 
 FREEDOMS = np.array([np.inf, 10.0, 5.0, 3.5])
 """(4,) ν: none, hardly any, plain and heavy tails; below it a stated standard deviation means little."""
-USUAL = np.array([0.91, 0.03, 0.03, 0.03])
+USUAL = np.array([0.97, 0.01, 0.01, 0.01])
 """(4,) chance of each in workshops in general: errors are averages of many readings, mostly normal."""
 NORMAL = np.array([1.0, 0.0, 0.0, 0.0])
 """(4,) weights where all errors are normal."""
