@@ -9,7 +9,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 # Tests wait now and then, for a browser or a process: one worker more than cores keeps these at work.
 WORKERS ?= $(shell n=$$(nproc 2>/dev/null || echo 2); echo $$((n < 7 ? n + 1 : 8)))
 
-.PHONY: setup run test lint format bench papers study backtest stands pictures browser lock clean
+.PHONY: setup run test lint format words bench papers study backtest stands pictures browser lock clean
 
 setup: $(STAMP)
 
@@ -38,6 +38,9 @@ lint: setup
 format: setup
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
+
+words: setup
+	$(BIN)/python -m service.languages
 
 bench: setup
 	$(BIN)/python -m benchmarks

@@ -31,6 +31,7 @@ from service.pages import (
     type_routes,
 )
 from service.pages.headers import SecurityHeaders
+from service.pages.in_language import InOneLanguage
 from service.pages.problem import ProblemPages, unexpected_pages
 
 PARTS = (
@@ -62,6 +63,7 @@ def mount(app: FastAPI) -> None:
     app.router.routes.extend(_every().routes)
     unexpected_pages(app)
     app.add_middleware(ProblemPages)
+    app.add_middleware(InOneLanguage)
     app.add_middleware(GZipMiddleware, minimum_size=1000, compresslevel=6)
     app.add_middleware(SecurityHeaders)
 

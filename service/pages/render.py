@@ -1,16 +1,21 @@
 """From a frozen context to a page: the one Jinja environment and what every template may use."""
 
 import json
+from collections.abc import MutableMapping
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
+from urllib.parse import parse_qsl, quote, urlencode
 
 from fastapi import Request
 from fastapi.responses import HTMLResponse
-from jinja2 import Environment, FileSystemLoader, StrictUndefined, pass_context
+from jinja2 import Environment, StrictUndefined, pass_context
 from jinja2.runtime import Context
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
+from service.languages.language import QUERY, Language, asked
 from service.pages.assets import asset_url
+from service.pages.spoken import Spoken
 from service.records.identity import EVERYBODY, Person, Role
 from service.words.conditions import CONDITIONS, REFERENCE, RESERVED
 from service.words.names import day_of, heading, spaced
@@ -34,10 +39,12 @@ def _may(context: Context, role: str) -> bool:
 @pass_context
 def _your_name(context: Context) -> Markup:
     """Under what a form is sent: the account's name, or a field for it where nobody signs in."""
-    name = _person(context).name
+    name, say = _person(context).name, context.environment.filters["translated"]
     if name:
-        return Markup('<input type="hidden" name="by" value="{0}"><p class="quiet">As {0}</p>').format(name)
-    return Markup('<label>Your name <input name="by" required maxlength="200" autocomplete="name"></label>')
+        field = Markup('<input type="hidden" name="by" value="{}"><p class="quiet">{}</p>')
+        return field.format(name, say("As {name}").format(name=name))
+    field = Markup('<label>{} <input name="by" required maxlength="200" autocomplete="name"></label>')
+    return field.format(say("Your name"))
 
 
 @pass_context
@@ -59,9 +66,12 @@ def _person(context: Context) -> Person:
     return person
 
 
-def _environment() -> Environment:
+@lru_cache
+def _environment(language: Language) -> Environment:
+    """The templates in a language; English ones are what is written in the files."""
+    spoken = Spoken(language)
     environment = Environment(
-        loader=FileSystemLoader(TEMPLATES),
+        loader=spoken.templates(TEMPLATES),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
@@ -71,15 +81,31 @@ def _environment() -> Environment:
         asset=asset_url, conditions=CONDITIONS, explained=(*CONDITIONS, REFERENCE, RESERVED), reserved=RESERVED
     )
     environment.globals.update(may=_may, your_name=_your_name, csrf_field=_csrf_field, csrf_query=_csrf_query)
-    environment.filters.update(but=but, day=day_of, heading=heading, spaced=spaced, embed=embed)
+    environment.filters.update(but=but, day=day_of, heading=heading, spaced=spaced, as_written=escape)
+    environment.filters.update(
+        translated=spoken.say, plural_form=spoken.plural, embed=lambda data: embed(spoken.chart(data))
+    )
     return environment
 
 
-_ENVIRONMENT = _environment()
-
-
 def render(request: Request, template: str, page: Any, status: int = 200) -> HTMLResponse:
-    """The page of a frozen context; templates see it as ``page``."""
+    """The page of a frozen context in the language of the one who asks; templates see it as ``page``."""
     person = getattr(request.state, "person", EVERYBODY)  # an address that no route took offers what it may
-    text = _ENVIRONMENT.get_template(template).render(page=page, path=request.scope["path"], person=person)
+    language = asked(request.scope)
+    found = _environment(language).get_template(template)
+    text = found.render(
+        page=page,
+        path=request.scope["path"],
+        person=person,
+        language=language,
+        languages=[(one, _address(request.scope, one)) for one in Language],
+    )
     return HTMLResponse(text, status, headers={"Cache-Control": "no-cache"})
+
+
+def _address(scope: MutableMapping[str, Any], language: Language) -> str:
+    """Of the same page in another language; of what a form answered, the fleet's."""
+    if scope.get("method", "GET") not in ("GET", "HEAD"):
+        return f"/?{urlencode({QUERY: language.value})}"
+    asked_for = [pair for pair in parse_qsl(scope["query_string"].decode("latin-1")) if pair[0] != QUERY]
+    return f"{quote(scope['path'])}?{urlencode([*asked_for, (QUERY, language.value)])}"

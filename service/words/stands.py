@@ -31,9 +31,10 @@ def _shift(shift: StandEvidence) -> str:
     when = f"since {day_of(shift.since)}"
     if shift.until is not None:
         when = f"from {day_of(shift.since)} until before {day_of(shift.until)}"
+    by = f"{size_of_shift(shift)}, {seen} {when}."
     if shift.quantity == AXES:
-        return f"It turn{_s(shift)} every block by {size_of_shift(shift)}, {seen} {when}."
-    return f"It change{_s(shift)} every scale factor by {size_of_shift(shift)}, {seen} {when}."
+        return f"It {'turns' if shift.until is None else 'turned'} every block by {by}"
+    return f"It {'changes' if shift.until is None else 'changed'} every scale factor by {by}"
 
 
 def size_of_shift(shift: StandEvidence) -> str:
@@ -52,13 +53,6 @@ def scatter_of(own: StandSeating) -> str:
     """``±0.4 arcsec about each axis``: from one mounting to the next, ± U."""
     parameter, of = ("axis", "about each axis") if own.quantity == AXES else ("scale", "of all scale factors")
     return f"±{in_words(own.kind, parameter, COVERAGE * own.tau)} {of}"
-
-
-def _s(shift: StandEvidence) -> str:
-    """The ending of a verb, now or then."""
-    if shift.until is None:
-        return "s"
-    return "ed" if shift.quantity == AXES else "d"
 
 
 def _seating(seating: Sequence[StandSeating]) -> list[str]:

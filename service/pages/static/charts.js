@@ -13,7 +13,7 @@ function draw(place) {
   window.vegaEmbed(place, { ...spec, datasets: { ...spec.datasets, ...datasets } }, OPTIONS).then(
     () => place.classList.add("drawn"),
     (error) => {
-      place.textContent = "This chart could not be drawn; its numbers are in the table.";
+      place.textContent = document.getElementById("content").dataset.saidUndrawn;
       console.error(error);
     },
   );

@@ -17,7 +17,7 @@ function waiting(file) {
   const bar = document.createElement("progress");
   bar.max = 1;
   bar.value = 0;
-  bar.setAttribute("aria-label", `Upload of ${file.name}`);
+  bar.setAttribute("aria-label", form.dataset.saidUpload.replace("…", () => file.name));
   card.append(name, bar);
   outcomes.prepend(card);
   return card;
@@ -39,7 +39,7 @@ function show(card, request) {
     cards.forEach((one) => follow(one));
     if (outcomes.children.length === 1 && !queue.length) outcomes.querySelector("form.table")?.submit();
   }
-  else failed(card, answer.querySelector("#problem")?.textContent.trim() ?? `The server answered ${request.status}.`);
+  else failed(card, answer.querySelector("#problem")?.textContent.trim() ?? form.dataset.saidStatus.replace("…", request.status));
 }
 
 // A card whose diagnosis is still being made looks again, ever more slowly, until it is.
@@ -73,7 +73,7 @@ function send(file, card) {
       else bar.removeAttribute("value"); // received; being calibrated
     };
     request.onload = () => done(show(card, request));
-    request.onerror = () => done(failed(card, "The server did not answer. Is it running? Try again."));
+    request.onerror = () => done(failed(card, form.dataset.saidUnanswered));
     request.open("POST", form.action);
     request.setRequestHeader("Accept", "text/html");
     request.send(body);

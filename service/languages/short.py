@@ -1,0 +1,98 @@
+"""Words that stand alone: what no extraction can tell from a key. They are said wherever such a value is shown."""
+
+WORDS = tuple(
+    word.strip()
+    for line in """
+    pass | fail | conditional pass | conditional fail | undecidable | reference | no session | not judged
+    accepted | questioned | withdrawn | superseded | simulated | none | overdue | repeat | again | fit | unfit
+    raised | acknowledged | resolved | open | waiting | done | failed | delivered
+    scale factor | scale | bias | quadratic term | quadratic | input axis | axis | misalignment | zero
+    accelerometer | gyroscope | gyro | accelerometers | gyros | gyroscopes | sensors | everything
+    unit | unit type | stand | session | block | type | lot | position | row | record | service
+    two axis stand | arbitrary orientations | rotation alignment | rate table | in service
+    direct | flipped | as found | as left | maximum likelihood | closed form | turntable | analytic
+    adjustment | repair | sensor swap | new reference | note
+    viewer | crew | engineer | admin | demonstration | nobody
+    nothing wrong | unexplained | diagnosis | cause | sensor | fixture | temperature | vibration | gravity
+    time | history | both runs | positions | turn | rotation | both | neither | epoch | margin
+    direct run | flipped run | allowed | before | after | yes | no | proposed | default | environment | start
+    rms | residual | flag | drift | risk | due | latitude | levelling | elevation | turn β | backwards
+    small | large | password | diagnose | certificate | upload | customer | interval | tolerances | stage | recalibrate
+    refuse | stand-certificate | question | acknowledge | resolve
+    {rate} a year | from row {value} | at row {value} | a steady change of a parameter; a step is a sudden one
+    """.strip().splitlines()
+    for word in line.split("|")
+)
+MARGIN = "1 − (|y| + U)/T: 1 is spotless, 0 the edge of a pass"
+FROM_PYDANTIC = (
+    "Field required",
+    "Extra inputs are not permitted",
+    "Input should be a valid string",
+    "Input should be a valid integer",
+    "Input should be a valid number",
+    "Input should be a valid list",
+    "Input should be a valid dictionary",
+    "Input should be a valid boolean",
+    "Input should be a finite number",
+    "Input should be a valid integer, unable to parse string as an integer",
+    "Input should be a valid number, unable to parse string as a number",
+    "Input should be a valid boolean, unable to interpret input",
+    "JSON decode error",
+    "Input should be a valid datetime or date, {why}",
+    "Input should be a valid date or datetime, {why}",
+    "Input should be a valid datetime, {why}",
+    "Input should have timezone info",
+    "Input should be {expected}",
+    "Input should be greater than {limit}",
+    "Input should be less than {limit}",
+    "Input should be greater than or equal to {limit}",
+    "Input should be less than or equal to {limit}",
+    "String should have at least {limit} character",
+    "String should have at least {limit} characters",
+    "String should have at most {limit} character",
+    "String should have at most {limit} characters",
+    "String should match pattern {pattern}",
+    "Value error, {why}",
+    "Input should be a valid URL, {why}",
+    "List should have at least {limit} items after validation, not {actual}",
+    "List should have at most {limit} items after validation, not {actual}",
+)
+"""What it finds in a request."""
+FROM_HTTP = (
+    "Bad Request",
+    "Unauthorized",
+    "Forbidden",
+    "Not Found",
+    "Method Not Allowed",
+    "Request Timeout",
+    "Conflict",
+    "Misdirected Request",
+    "Unprocessable Entity",
+    "Unprocessable Content",
+    "Content Too Large",
+    "Request Entity Too Large",
+    "Too Many Requests",
+    "Internal Server Error",
+    "Service Unavailable",
+    "Insufficient Storage",
+    "Not Implemented",
+    "Bad Gateway",
+    "Unsupported Media Type",
+)
+"""Titles of problems (RFC 9110)."""
+STANDING_ALONE = (*WORDS, MARGIN, *FROM_PYDANTIC, *FROM_HTTP)
+COUNTED = (
+    *("accelerometer", "block", "byte", "column", "day", "flag", "gyro", "gyroscope", "orientation", "position"),
+    *("problem", "reading", "row", "sensor", "session", "stand", "unit", "value"),
+)
+"""Things that are said with a number; all have their plural in s."""
+NAMES = frozenset(
+    (
+        *("imu-health", "· imu-health", "OpenAPI", "Kalibr", "ROS 2", "imu-health {software}", "imu-health {version}"),
+        *("about:blank", "https:", "Vary", "Cookie", "Connection", "openid profile email"),
+        *("Liberation Sans", "Libertinus Serif", "General", "begins with", "yyyy-mm-dd hh:mm"),
+        *("acc x", "acc y", "gyro x", "gyro y", "gyro z", "sin {turns}", "cos {turns}", "{worst}.bias ({zero})"),
+        *("mounting{key}", "{length} ± {expanded} cm"),
+    )
+)
+"""What looks like words and is a name: of programs, headers, fonts, sensors and keys."""

@@ -1,0 +1,87 @@
+"""Where the words are: the templates, the typesetter's templates, and the modules that say something to people."""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from estimator.causes import CATALOGUE, ON_TURNTABLE, Cause
+from service.languages import python_sources
+from service.languages.message import LETTERS, PLACE, Message
+from service.languages.short import COUNTED, NAMES, STANDING_ALONE
+from service.languages.templates import Template, literals
+
+ROOT = Path(__file__).parents[2]
+TEMPLATES = "service/pages/templates"
+SAID = ("service/words", "service/pages", "service/views", "service/charts", "service/reports", "service/records")
+"""Rooms in which a single word with a capital letter is said to people too."""
+SETTINGS = "service/settings.py"
+"""Its page shows what they are described by."""
+ALSO = ("service", "estimator")
+SILENT = (
+    "service/api/atom.py",
+    "service/api/calendar.py",
+    "service/api/feeds.py",
+    "service/api/openapi.py",
+    "service/api/schemas",
+    "service/app.py",
+    "service/background",
+    "service/boundary/server.py",
+    "service/commands",
+    "service/cli.py",
+    "service/demo",
+    "service/identity/access.py",
+    "service/ingest/convert",
+    "service/ingest/fork_server.py",
+    "service/ingest/layout/units.py",
+    "service/ingest/layout/vocabulary.py",
+    "service/languages",
+    "service/log.py",
+    "service/metrics.py",
+    "service/pages/headers.py",
+    "service/reports/dcc",
+    "service/reports/onboard",
+    "service/reports/printable.py",
+    "service/reports/seal/trial.py",
+    "service/reports/seal/xml.py",
+    "service/storage/backup",
+    "service/storage/engine.py",
+    "service/storage/schema.py",
+    "estimator/__init__.py",
+    "estimator/alignment/simulate.py",
+    "estimator/on_demand.py",
+    "estimator/published",
+)
+"""What speaks to programs, to whoever runs the service, or in a form that a standard fixes."""
+
+
+def messages() -> Iterator[Message]:
+    """Every message of the product, in the order of its files; some stand in several."""
+    return (one for one in _all() if LETTERS.search(PLACE.sub(" ", one.text)) and one.text not in NAMES)
+
+
+def _all() -> Iterator[Message]:
+    yield from (Message(word, place="service/languages/short.py") for word in STANDING_ALONE)
+    yield from (
+        Message(text, place="estimator/causes") for cause in (*CATALOGUE, *ON_TURNTABLE) for text in _names_of(cause)
+    )
+    yield from (Message(f"{{n}} {thing}", f"{{n}} {thing}s", "service/languages/short.py") for thing in COUNTED)
+    for path in sorted((ROOT / TEMPLATES).glob("*.html")):
+        template = Template(path.read_text("utf-8"), path.name)
+        yield from (found.message for found in template.messages())
+        yield from (Message(text, place=path.name) for text in literals(template))
+    for path in _modules():
+        name = path.relative_to(ROOT).as_posix()
+        source = path.read_text("utf-8")
+        headings, described = name.startswith(SAID), name == SETTINGS
+        yield from python_sources.messages(source, name, headings=headings, described=described)
+
+
+def _names_of(cause: Cause) -> Iterator[str]:
+    """What a cause and its amplitudes are called."""
+    yield from filter(re.compile(r"[a-z]{2}").search, (cause.name, cause.shape_words, *cause.amplitude_words))
+
+
+def _modules() -> Iterator[Path]:
+    for path in sorted(p for room in ALSO for p in (ROOT / room).rglob("*.py")):
+        if not path.relative_to(ROOT).as_posix().startswith(SILENT):
+            yield path
