@@ -15,6 +15,7 @@ from service.background.read_group import GroupReader
 from service.errors import TooLargeError
 from service.flows.receive import Reception
 from service.flows.sign_certificate import Rules
+from service.languages.language import Language, asked
 from service.metrics import Metrics
 from service.records.identity import Person
 from service.reports.desk import Desk
@@ -82,7 +83,15 @@ def _groups(request: Request) -> GroupReader:
 
 def _desk(request: Request, storage: StorageOf) -> Desk:
     own = application_of(request)
-    return Desk(storage, laboratory_of(own.settings), Rules(own.settings.four_eyes), own.seal)
+    return Desk(storage, laboratory_of(own.settings), Rules(own.settings.four_eyes), own.seal, asked(request.scope))
+
+
+def _language(request: Request) -> Language:
+    return asked(request.scope)
+
+
+LanguageOf = Annotated[Language, Depends(_language)]
+"""What is made for people is made in the language of the one who asks."""
 
 
 def address_of(request: Request) -> str:

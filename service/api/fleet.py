@@ -10,6 +10,7 @@ from service.api.schemas.fields import Page, Window
 from service.api.schemas.problem import errors
 from service.api.schemas.units import FleetSchema, UnitPage, UnitSummarySchema
 from service.dependencies import Now, Reading
+from service.languages.language import asked
 from service.records.fleet import FleetQuery
 from service.reports.fleet_paper import fleet_pdf
 from service.reports.fleet_workbook import fleet_xlsx
@@ -53,9 +54,9 @@ def report_fleet(
     """The condition of every unit, worst first."""
     form = wanted_form(request, format, REPORTS)
     if form == "xlsx":
-        return as_file(fleet_xlsx(store, fleet_report(store, now)), XLSX, "fleet.xlsx")
+        return as_file(fleet_xlsx(store, fleet_report(store, now), asked(request.scope)), XLSX, "fleet.xlsx")
     if form == "pdf":
-        return as_file(fleet_pdf(store, fleet_report(store, now)), PDF, "fleet.pdf")
+        return as_file(fleet_pdf(store, fleet_report(store, now), asked(request.scope)), PDF, "fleet.pdf")
     window = Window(page, limit)
     found = store.fleet.units(FleetQuery(offset=window.offset, limit=limit))
     if form != "json":

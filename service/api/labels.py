@@ -9,7 +9,7 @@ from fastapi import APIRouter, Depends, Query, Request, Response
 from service.api.exports import as_file
 from service.api.schemas.fields import Serial
 from service.api.schemas.problem import errors
-from service.dependencies import Now, Reading, SettingsOf
+from service.dependencies import LanguageOf, Now, Reading, SettingsOf
 from service.errors import NotFoundError
 from service.reports.label import Label, label_of, label_pdf, label_svg
 from service.settings import Settings
@@ -55,12 +55,12 @@ LabelsOf = Annotated[Labels, Depends(_labels)]
     responses={200: {"content": {PDF: BYTES}}, **errors(404, 422)},
     response_class=Response,
 )
-def read_label(serial: Serial, labels: LabelsOf, *, due: Due = True) -> Response:
+def read_label(serial: Serial, labels: LabelsOf, language: LanguageOf, *, due: Due = True) -> Response:
     """A small label: serial number, due date, and a QR code that opens the unit's page.
 
     Its address is that of the setting `IMU_HEALTH_PUBLIC_URL`, or the one that this request was sent to.
     """
-    return as_file(label_pdf(labels.of(serial, due=due), labels.now), PDF, f"{serial}-label.pdf")
+    return as_file(label_pdf(labels.of(serial, due=due), labels.now, language), PDF, f"{serial}-label.pdf")
 
 
 @router.get(
@@ -68,6 +68,6 @@ def read_label(serial: Serial, labels: LabelsOf, *, due: Due = True) -> Response
     responses={200: {"content": {SVG: BYTES}}, **errors(404, 422)},
     response_class=Response,
 )
-def draw_label(serial: Serial, labels: LabelsOf, *, due: Due = True) -> Response:
+def draw_label(serial: Serial, labels: LabelsOf, language: LanguageOf, *, due: Due = True) -> Response:
     """The same label as a drawing."""
-    return as_file(label_svg(labels.of(serial, due=due)), SVG, f"{serial}-label.svg")
+    return as_file(label_svg(labels.of(serial, due=due), language), SVG, f"{serial}-label.svg")

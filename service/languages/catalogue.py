@@ -4,12 +4,14 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property, lru_cache
 from gettext import c2py
 from pathlib import Path
+from typing import Any
 
 from babel.messages import Catalog
 from babel.messages import Message as Stored
 from babel.messages.pofile import read_po
 
-from service.languages.grammar import JOINTS, MONTHS, Grammar
+from service.languages.charts import chart_in
+from service.languages.grammar import DAYS, JOINTS, MONTHS, NAMES_OF_MONTHS, Grammar
 from service.languages.language import Language
 from service.languages.message import PLACE, Message
 from service.languages.recognise import Entry, Recogniser
@@ -22,7 +24,9 @@ class Catalogue:
 
     def __init__(self, language: Language, stored: Catalog) -> None:
         self._stored = stored
-        self._grammar = Grammar(c2py(stored.plural_expr), JOINTS[language], MONTHS[language])
+        self._grammar = Grammar(
+            c2py(stored.plural_expr), JOINTS[language], MONTHS[language], NAMES_OF_MONTHS[language], DAYS[language]
+        )
         self.plural = self._grammar.plural
 
     def forms(self, message: Message) -> Sequence[str]:
@@ -33,6 +37,10 @@ class Catalogue:
     def say(self, text: str) -> str:
         """A text that was made in English; what is not known stays as it is."""
         return self._recogniser.say(text)
+
+    def chart(self, definition: Any) -> Any:
+        """A chart's definition with its words in the language."""
+        return chart_in(definition, self.say, self._grammar.time)
 
     @cached_property
     def _recogniser(self) -> Recogniser:

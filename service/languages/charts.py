@@ -1,18 +1,26 @@
 """Charts in another language: what people read of a definition; fields, values and expressions stay."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 READ = frozenset(("title", "text", "description", "subtitle"))
 """Keys of Vega-Lite under which a text stands that people read."""
 
 
-def chart_in(data: Any, say: Callable[[str], str]) -> Any:
-    """A definition, or a part of one, with what people read of it said in another language."""
+def chart_in(data: Any, say: Callable[[str], str], time: Mapping[str, Any]) -> Any:
+    """A whole definition, its axes of time in the language too; ``time`` is d3's locale of it."""
+    told = _part_in(data, say)
+    if isinstance(told, dict) and "config" in told:
+        told["config"] = told["config"] | {"locale": {"time": time}}
+    return told
+
+
+def _part_in(data: Any, say: Callable[[str], str]) -> Any:
+    """A part of a definition with what people read of it said in another language."""
     if isinstance(data, dict):
-        return {k: _said(v, say) if k in READ else chart_in(v, say) for k, v in data.items()}
+        return {k: _said(v, say) if k in READ else _part_in(v, say) for k, v in data.items()}
     if isinstance(data, list | tuple):
-        return [chart_in(one, say) for one in data]
+        return [_part_in(one, say) for one in data]
     return data
 
 
@@ -21,4 +29,4 @@ def _said(value: Any, say: Callable[[str], str]) -> Any:
         return say(value)
     if isinstance(value, list | tuple) and all(isinstance(one, str) for one in value):
         return [say(one) for one in value]
-    return chart_in(value, say)
+    return _part_in(value, say)

@@ -90,6 +90,8 @@ class Recogniser:
         bare = text.strip()
         if len(bare) > LONGEST or not ENGLISH.search(bare):
             return text
+        if text in self._exact:
+            return self._exact[text]
         start = text.index(bare)
         return text[:start] + _Reader(self, {}).read(bare).said + text[start + len(bare) :]
 

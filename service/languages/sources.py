@@ -5,13 +5,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from estimator.causes import CATALOGUE, ON_TURNTABLE, Cause
-from service.languages import python_sources
+from service.languages import python_sources, typst_sources
 from service.languages.message import LETTERS, PLACE, Message
 from service.languages.short import COUNTED, NAMES, STANDING_ALONE
 from service.languages.templates import Template, literals
 
 ROOT = Path(__file__).parents[2]
 TEMPLATES = "service/pages/templates"
+PAPERS = "service/reports/templates"
 SAID = ("service/words", "service/pages", "service/views", "service/charts", "service/reports", "service/records")
 """Rooms in which a single word with a capital letter is said to people too."""
 SETTINGS = "service/settings.py"
@@ -69,6 +70,8 @@ def _all() -> Iterator[Message]:
         template = Template(path.read_text("utf-8"), path.name)
         yield from (found.message for found in template.messages())
         yield from (Message(text, place=path.name) for text in literals(template))
+    for path in sorted((ROOT / PAPERS).glob("*.typ")):
+        yield from typst_sources.messages(path.read_text("utf-8"), path.name)
     for path in _modules():
         name = path.relative_to(ROOT).as_posix()
         source = path.read_text("utf-8")

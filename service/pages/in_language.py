@@ -12,6 +12,8 @@ from service.languages.language import COOKIE, YEAR, Language, asked, chosen_by_
 READ_BY_PEOPLE = ("text/html", "application/problem+json")
 """Kinds of answers that depend on the language; all others are for programs, or their routes say it."""
 PROBLEM = "application/problem+json"
+PAPERS = ("application/pdf", "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet")
+"""Made in the language of the one who asks, or kept in that of the one who approved them."""
 SAID = ("title", "detail")
 
 
@@ -41,7 +43,7 @@ class _Speaker:
     async def __call__(self, message: Message) -> None:
         if message["type"] == "http.response.start":
             kind = MutableHeaders(scope=message).get("content-type", "")
-            if kind.startswith(READ_BY_PEOPLE):
+            if kind.startswith((*READ_BY_PEOPLE, *PAPERS)):
                 self._tell(MutableHeaders(scope=message), kind)
             if kind.startswith(PROBLEM) and self._language is not Language.ENGLISH:
                 self._held = message
@@ -54,7 +56,8 @@ class _Speaker:
             await self._send_said(self._held)
 
     def _tell(self, headers: MutableHeaders, kind: str) -> None:
-        headers.setdefault("Content-Language", self._language.value)
+        if kind.startswith(READ_BY_PEOPLE):
+            headers.setdefault("Content-Language", self._language.value)
         headers.add_vary_header("Accept-Language")
         headers.add_vary_header("Cookie")
         if self._by_hand and kind.startswith("text/html"):

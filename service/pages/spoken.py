@@ -8,7 +8,6 @@ from jinja2 import BaseLoader, Environment, FileSystemLoader
 from markupsafe import Markup
 
 from service.languages.catalogue import Catalogue, catalogue_of
-from service.languages.charts import chart_in
 from service.languages.language import Language
 from service.languages.templates import in_language
 
@@ -35,7 +34,7 @@ class Spoken:
 
     def chart(self, data: Any) -> Any:
         """A chart's definition with its titles said in the language."""
-        return data if self._catalogue is None else chart_in(data, self._catalogue.say)
+        return data if self._catalogue is None else self._catalogue.chart(data)
 
 
 class _Exchanged(FileSystemLoader):

@@ -9,6 +9,7 @@ from service.flows.diagnose import diagnose
 from service.flows.identity.attempts import Attempt, attempting
 from service.flows.issue_certificate import Statement, issue_certificate
 from service.flows.sign_certificate import Rules, Signing, require_signer, sign_certificate, signature_of
+from service.languages.language import Language
 from service.records.paper import Issue, Laboratory
 from service.records.signature import CertificateFile, Meaning, Signature
 from service.reports.certificate import certificate_pdf
@@ -19,8 +20,6 @@ from service.reports.sealing import Seal
 from service.storage import Storage
 from service.views.certificate import CertifiedSession, certified_session
 
-FORMATS = {"pdf": certificate_pdf, "dcc": certificate_dcc}
-"""How a certificate can be written."""
 DAMAGED = "The approved certificate {number} is not what was kept, and is not given out: the database was changed."
 NOT_KEPT = "There is no approved certificate {number!r} of this session."
 
@@ -33,6 +32,14 @@ class Desk:
     laboratory: Laboratory
     rules: Rules
     seal: Seal | None
+    language: Language = Language.ENGLISH
+    """Of what is made for people; a certificate for programs speaks English."""
+
+    def written(self, format: str, found: CertifiedSession, issue: Issue, signed: Signed) -> bytes:
+        """A certificate in one of its two forms."""
+        if format == "dcc":
+            return certificate_dcc(found, issue, signed)
+        return certificate_pdf(found, issue, signed, self.language)
 
 
 @dataclass(frozen=True)
@@ -57,7 +64,7 @@ def hand_out(desk: Desk, id: str, format: str, now: datetime, *, who: str) -> Ha
     with desk.storage.database.reading() as store:
         kept = store.signatures.kept(issue.number, format)
         signatures = store.signatures.of_certificate(issue.number)
-    content = FORMATS[format](found, issue, Signed(signatures)) if kept is None else _intact(kept, issue.number)
+    content = desk.written(format, found, issue, Signed(signatures)) if kept is None else _intact(kept, issue.number)
     return HandedOut(_name(found.report.session.unit, issue.number), content)
 
 
@@ -94,7 +101,7 @@ def _files(
         seal.require_valid(signatures[-1].signed_at)
         sealed_by = seal.subject
     signed = Signed(signatures, sealed_by)
-    pdf, dcc = (make(found, issue, signed) for make in (certificate_pdf, certificate_dcc))
+    pdf, dcc = (desk.written(format, found, issue, signed) for format in ("pdf", "dcc"))
     if seal is not None:
         pdf, dcc = seal.pdf(pdf), seal.xml(dcc)
     return tuple(

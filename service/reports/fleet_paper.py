@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from service.charts.fleet import fleet_chart
+from service.languages.language import Language
 from service.measures import COVERAGE, deviation_measure, measured, signed
 from service.records.decision import Verdict
 from service.records.outlook import ParameterTrend, UnitOutlook
@@ -66,9 +67,9 @@ class FleetPaper:
     software: str
 
 
-def fleet_pdf(store: Store, report: FleetReport) -> bytes:
+def fleet_pdf(store: Store, report: FleetReport, language: Language = Language.ENGLISH) -> bytes:
     """The report as PDF: two pages and a section for each unit that is not fit, of the worst ones if they are many."""
-    return typeset("fleet.typ", fleet_paper(store, report), report.at)
+    return typeset("fleet.typ", fleet_paper(store, report), report.at, language)
 
 
 def fleet_paper(store: Store, report: FleetReport) -> FleetPaper:

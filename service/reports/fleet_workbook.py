@@ -3,6 +3,7 @@
 import io
 from collections.abc import Iterator
 
+from service.languages.language import Language
 from service.measures import MEASURES, Measure, in_measure, value_measure
 from service.records.decision import Decision
 from service.records.history import HistoryPoint
@@ -46,12 +47,12 @@ ABOUT = (Column("What", width=26), Column("Value", width=110))
 """The columns of the four sheets; widths in characters, for the longest usual text."""
 
 
-def fleet_xlsx(store: Store, report: FleetReport) -> bytes:
+def fleet_xlsx(store: Store, report: FleetReport, language: Language = Language.ENGLISH) -> bytes:
     """The workbook; its rows are read and written one after another."""
     target = io.BytesIO()
     sessions = _sessions_shown(store)
     outlooks = {outlook.serial: outlook for outlook in report.outlooks}
-    book = Workbook(target, report.at, "Fleet report")
+    book = Workbook(target, report.at, "Fleet report", language)
     book.table("Fleet", FLEET, (_fleet_row(unit, outlooks.get(unit.serial)) for unit in report.units))
     book.table("Parameters", PARAMETERS, (_parameter_row(*row) for row in store.fleet_rows.latest_decisions()))
     book.table("Histories", HISTORIES, (_history_row(*row) for row in store.fleet_rows.histories(sessions)))

@@ -6,6 +6,7 @@ from urllib.parse import quote
 
 import segno
 
+from service.languages.language import Language
 from service.measures import HARD
 from service.records.unit import UnitSummary
 from service.reports.typeset import typeset, typeset_svg
@@ -58,11 +59,11 @@ def _held(day: datetime) -> str:
     return day_of(day).replace(" ", HARD)
 
 
-def label_pdf(label: Label, now: datetime) -> bytes:
+def label_pdf(label: Label, now: datetime, language: Language = Language.ENGLISH) -> bytes:
     """60 mm by 30 mm, for a label printer."""
-    return typeset(TEMPLATE, label, now)
+    return typeset(TEMPLATE, label, now, language)
 
 
-def label_svg(label: Label) -> bytes:
+def label_svg(label: Label, language: Language = Language.ENGLISH) -> bytes:
     """The same as a drawing; letters are outlines, so that it needs no fonts."""
-    return typeset_svg(TEMPLATE, label)
+    return typeset_svg(TEMPLATE, label, language)

@@ -1,7 +1,7 @@
 """Tables in a workbook: frozen, filtered heading, real dates and numbers, verdicts in colour, text that stays text."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from enum import Enum
@@ -11,6 +11,8 @@ import xlsxwriter
 from xlsxwriter.format import Format
 from xlsxwriter.worksheet import Worksheet
 
+from service.languages.catalogue import catalogue_of
+from service.languages.language import Language
 from service.reports.pictures import PALETTE
 from service.words.conditions import CONDITIONS, REFERENCE
 
@@ -49,24 +51,27 @@ class Column:
 class Workbook:
     """A workbook under construction; rows go to disk as they come, so a large one takes little memory."""
 
-    def __init__(self, target: Any, made: datetime, title: str) -> None:
+    def __init__(self, target: Any, made: datetime, title: str, language: Language = Language.ENGLISH) -> None:
+        self._say: Callable[[str], str] = str if language is Language.ENGLISH else catalogue_of(language).say
         self._book = xlsxwriter.Workbook(target, OPTIONS)
-        self._book.set_properties({"title": title, "author": "imu-health", "created": naive(made)})
+        self._book.set_properties({"title": self._say(title), "author": "imu-health", "created": naive(made)})
         self._head = self._book.add_format({"bold": True, "bottom": 1, "text_wrap": True, "valign": "top"})
         self._formats: dict[Kind, Format] = {kind: self._book.add_format({"num_format": kind.value}) for kind in Kind}
         self._quoted = self._book.add_format({"quote_prefix": True})
-        self._tones = {word: self._tone(c.key) for c in (*CONDITIONS, REFERENCE) for word in (c.formal, c.word)}
+        self._tones = {
+            self._say(word): self._tone(c.key) for c in (*CONDITIONS, REFERENCE) for word in (c.formal, c.word)
+        }
 
     def _tone(self, key: str) -> Format:
         return self._book.add_format({"font_color": "#ffffff", "bg_color": PALETTE[key]})
 
     def table(self, name: str, columns: Sequence[Column], rows: Iterable[Sequence[Cell]]) -> None:
         """One sheet of one table."""
-        sheet = self._book.add_worksheet(name)
+        sheet = self._book.add_worksheet(self._say(name))
         sheet.freeze_panes(1, 1)
         for place, column in enumerate(columns):
             sheet.set_column(place, place, column.width)
-            sheet.write_string(0, place, column.name, self._head)
+            sheet.write_string(0, place, self._say(column.name), self._head)
         last = 0
         for last, row in enumerate(rows, 1):
             for place, (column, cell) in enumerate(zip(columns, row, strict=True)):
@@ -79,14 +84,14 @@ class Workbook:
             case None:
                 return
             case bool():
-                sheet.write_string(row, place, "yes" if cell else "no")
+                sheet.write_string(row, place, self._say("yes" if cell else "no"))
             case datetime():
                 sheet.write_datetime(row, place, naive(cell), self._formats[kind])
             case int() | float():
                 sheet.write_number(row, place, cell, self._formats[kind])
             case str():
                 look = self._quoted if FORMULA.match(cell) else self._formats[Kind.TEXT]
-                sheet.write_string(row, place, cell[:LONGEST_TEXT], look)
+                sheet.write_string(row, place, self._say(cell)[:LONGEST_TEXT], look)
 
     def _colour(self, sheet: Worksheet, columns: Sequence[Column], last: int) -> None:
         """Verdicts in their colours, as rules of the sheet: they follow when somebody sorts or edits. No word of one

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from service.languages.language import Language
 from service.records.paper import Issue
 from service.reports.certificate.drawings import Drawing, histories_of, residuals_of
 from service.reports.certificate.signed import UNSIGNED, SignatureLine, Signed, lines_of
@@ -22,9 +23,11 @@ class DrawnCertificate:
     """Whose electronic seal the file carries; empty where it has none."""
 
 
-def certificate_pdf(found: CertifiedSession, issue: Issue, signed: Signed = UNSIGNED) -> bytes:
+def certificate_pdf(
+    found: CertifiedSession, issue: Issue, signed: Signed = UNSIGNED, language: Language = Language.ENGLISH
+) -> bytes:
     """The certificate as PDF; it carries the date of issue, so that one issue gives the same bytes every time."""
-    return typeset("certificate.typ", drawn_certificate(found, issue, signed), issue.issued_at)
+    return typeset("certificate.typ", drawn_certificate(found, issue, signed), issue.issued_at, language)
 
 
 def drawn_certificate(found: CertifiedSession, issue: Issue, signed: Signed = UNSIGNED) -> DrawnCertificate:

@@ -76,6 +76,8 @@ class Seen:
     """What axe finds, in light and in dark colours."""
 
 
+IN_RUSSIAN = ("/", "/units/BA-017", "/sessions/{unfit}", "/sessions/{swayed}/diagnosis", "/flags", "/upload", "/help")
+"""Its words are longer."""
 OVERFLOW = "document.documentElement.scrollWidth - window.innerWidth"
 LEVELS = "[...document.querySelectorAll('h1,h2,h3')].map((h) => +h.tagName[1])"
 CONTROLS = "[...document.querySelectorAll('input:not([type=hidden]),select')]"
@@ -217,3 +219,16 @@ def test_two_sessions_are_chosen_on_the_unit_s_page(chromium: Browser, site: Sit
         page.wait_for_url("**/compare?**")
         assert "A3 bias moved −8" in page.locator("main").inner_text()
         assert page.locator("tr.fail th").all_inner_texts() == ["A3 bias"]
+
+
+def test_pages_in_russian_fit_on_a_phone(chromium: Browser, site: Site) -> None:
+    witness, wider = Witness(), {}
+    with opened(chromium, 390, locale="ru-RU") as (_, page):
+        witness.watch(page)
+        for path in IN_RUSSIAN:
+            page.goto(address(site, path))
+            draw_all(page)
+            assert page.locator("html").get_attribute("lang") == "ru"
+            wider[path] = page.evaluate(OVERFLOW)
+    assert wider == dict.fromkeys(IN_RUSSIAN, 0)
+    assert witness.complaints == []

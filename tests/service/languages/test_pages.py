@@ -1,7 +1,7 @@
 """No page says anything in English to who asks for Russian, but for names."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import pytest
 from lxml import html
@@ -11,7 +11,8 @@ from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - the hook
 from tests.service.sessions import session_bytes, session_id
 
-HEADERS = {"Accept": "text/html", "Accept-Language": "ru"}
+RU = {"Accept-Language": "ru"}
+HEADERS = {"Accept": "text/html"} | RU
 RECORDED = {"operator": "Ю. Орлова", "notes": ""}
 UPLOADS = (session_bytes(month=1, **RECORDED), session_bytes(seed=2, month=2, a3_moved=90.0, **RECORDED))
 SESSION = session_id(UPLOADS[1])
@@ -98,7 +99,12 @@ def english(page: str) -> set[str]:
     for element in tree.xpath(SILENT):
         element.drop_tree()
     said = [*tree.xpath("//text()"), *(text for name in SPOKEN for text in tree.xpath(f"//@{name}"))]
-    return {word for text in said for word in WORD.findall(text) if word not in NAMES}
+    return english_in(said)
+
+
+def english_in(texts: Iterable[str]) -> set[str]:
+    """Words that are Latin and no names."""
+    return {word for text in texts for word in WORD.findall(text) if word not in NAMES}
 
 
 @pytest.mark.parametrize("address", sorted(addresses()))

@@ -1,0 +1,27 @@
+"""Documents in another language: every text of the data that a template is filled with."""
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+NOT_SAID = frozenset(
+    ("key", "shape", "unit", "serial", "unit_type", "notes", "sha256", "who", "number", "address", "code", "sealed_by")
+)
+"""Fields that name something for the template, or hold what people named or wrote."""
+DRAWING = "<svg"
+WRITTEN = re.compile(r"(<text\b[^>]*>)([^<]+)(</text>)")
+"""A text in a drawing."""
+
+
+def document_in(data: Any, say: Callable[[str], str]) -> Any:
+    """Plain dicts and lists with their texts said in another language; drawings keep their layout."""
+    match data:
+        case str():
+            is_drawing = data.lstrip().startswith(DRAWING)
+            return WRITTEN.sub(lambda m: f"{m[1]}{say(m[2])}{m[3]}", data) if is_drawing else say(data)
+        case dict():
+            return {key: value if key in NOT_SAID else document_in(value, say) for key, value in data.items()}
+        case list():
+            return [document_in(value, say) for value in data]
+        case _:
+            return data
