@@ -8,7 +8,8 @@ from estimator.causes import CATALOGUE, ON_TURNTABLE, Cause
 from service.languages import python_sources, typst_sources
 from service.languages.message import LETTERS, PLACE, Message
 from service.languages.short import COUNTED, NAMES, STANDING_ALONE
-from service.languages.templates import Template, literals
+from service.languages.template import Template
+from service.languages.templates import literals
 
 ROOT = Path(__file__).parents[2]
 TEMPLATES = "service/pages/templates"

@@ -45,6 +45,13 @@ def test_what_nobody_translated_stays_as_it_was_written(text: str) -> None:
     assert catalogue_of(Language.RUSSIAN).say(text) == text
 
 
+@pytest.mark.parametrize("joint", [" and ", ", ", "; ", " along that of ", " (", ": the zero of "])
+def test_a_text_that_is_made_to_take_time_does_not(joint: str) -> None:
+    """Its reading ends after a bounded number of parts; the process is not held."""
+    text = joint.join(f"bias x{k} moved" for k in range(300))[:3000]
+    assert "x1" in catalogue_of(Language.RUSSIAN).say(text)
+
+
 def test_values_that_are_no_words_are_never_changed() -> None:
     text = "There is no unit <b>ru.po</b> {n} \\1."
     assert "<b>ru.po</b> {n} \\1" in catalogue_of(Language.RUSSIAN).say(text)

@@ -4,7 +4,8 @@ import pytest
 from jinja2 import Environment
 
 from service.languages.message import Message
-from service.languages.templates import Template, in_language, literals
+from service.languages.template import Template
+from service.languages.templates import in_language, literals
 
 
 def found(source: str) -> list[str | tuple[str, str]]:
