@@ -52,8 +52,8 @@ class Pattern:
     def _shape(self) -> re.Pattern[str]:
         parts = PLACE.split(self.text)
         first = parts[0].lstrip(LEADS)
-        lead = parts[0][: len(parts[0]) - len(first)] or (" " if self.is_fragment else "")
-        head = f"(?:(?P<{HEAD}>.*?)(?P<{LEAD}>{re.escape(lead)}))?" if lead else ""
+        lead = re.escape(parts[0][: len(parts[0]) - len(first)]) or (r"\s" if self.is_fragment else "")
+        head = f"(?:(?P<{HEAD}>.*?)(?P<{LEAD}>{lead}))?" if lead else ""
         tail = f"(?P<{TAIL}>.*)" if self.text.endswith(" ") else ""
         places = "".join(
             self._place(parts, k) + re.escape(parts[k + 1]) for k in range(1, len(parts), 2)

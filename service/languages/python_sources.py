@@ -26,7 +26,7 @@ SPACED = re.compile(
 HEADING = re.compile(r"^[A-Z][a-z]+[.:!?]?$|^[A-Z][a-z]+,? [^\sA-Za-z]{1,3}(, \S+)?$")
 CODE = re.compile(r"[_<>{}\[\]\\|=&#\n]|://|^[a-z]+/|^--|^var\(|:[QTNO]$|^-//|^[a-z]+-[a-z]+, ")
 """What words do not have."""
-SENTENCE = re.compile(r"(\S+ ){4}.*[.:]$")
+SENTENCE = re.compile(r"(\S+ ){4}.*[.:]$|(\S+ ){8}")
 """What may have it all the same: ``with the coverage factor k = 2.``"""
 ENDINGS = ("s", "es")
 MOST = 8

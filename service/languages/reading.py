@@ -121,7 +121,7 @@ class Reader:
         if LEAD not in values:
             form = form.lstrip(LEADS)
         elif pattern.is_fragment and form[0] not in LEADS:
-            form = f" {form}"
+            form = values[LEAD] + form
         said = PLACE.sub(lambda m: read[m[1]].said if m[1] in read else "", form)
         if HEAD not in read and text[0].isalpha() and pattern.text.lstrip(LEADS)[0].isalpha():
             said = cased(said, text)

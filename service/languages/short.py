@@ -17,7 +17,7 @@ WORDS = tuple(
     time | history | both runs | positions | turn | rotation | both | neither | epoch | margin
     direct run | flipped run | allowed | before | after | yes | no | proposed | default | environment | start
     rms | residual | flag | drift | risk | due | latitude | levelling | elevation | turn β | backwards
-    Lower, −U | Upper, +U | reviewed | approved | reviewed by | approved by | small | large
+    Lower, −U | Upper, +U | shifted | parity | reviewed | approved | reviewed by | approved by | small | large
     password | diagnose | certificate | upload | customer | interval | tolerances | stage | recalibrate
     refuse | stand-certificate | question | acknowledge | resolve
     {rate} a year | from row {value} | at row {value} | a steady change of a parameter; a step is a sudden one
