@@ -20,7 +20,7 @@ WORDS = tuple(
     Lower, −U | Upper, +U | shifted | parity | reviewed | approved | reviewed by | approved by | small | large
     password | diagnose | certificate | upload | customer | interval | tolerances | stage | recalibrate
     refuse | stand-certificate | question | acknowledge | resolve
-    {rate} a year | from row {value} | at row {value} | a steady change of a parameter; a step is a sudden one
+    {unit} per {input} | {rate} a year | from row {value} | at row {value} | a steady change of a parameter; a step is a sudden one
     """.strip().splitlines()
     for word in line.split("|")
 )
