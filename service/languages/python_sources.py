@@ -25,6 +25,7 @@ SPACED = re.compile(
 """At least two words, or a word beside a value."""
 HEADING = re.compile(r"^[A-Z][a-z]+[.:!?]?$|^[A-Z][a-z]+,? [^\sA-Za-z]{1,3}(, \S+)?$")
 CODE = re.compile(r"[_<>{}\[\]\\|=&#\n]|://|^[a-z]+/|^--|^var\(|:[QTNO]$|^-//|^[a-z]+-[a-z]+, ")
+QUERY = re.compile(r"^SELECT ")
 """What words do not have."""
 SENTENCE = re.compile(r"(\S+ ){4}.*[.:]$|(\S+ ){8}")
 """What may have it all the same: ``with the coverage factor k = 2.``"""
@@ -100,7 +101,7 @@ def _of(node: ast.expr) -> Iterator[Message]:
 def _is_said(text: str, *, headings: bool) -> bool:
     """Whether it reads as words."""
     bare = PLACE.sub("\x00", text)
-    if CODE.search(bare) and not (SENTENCE.search(bare) and "\n" not in bare):
+    if QUERY.search(bare) or (CODE.search(bare) and not (SENTENCE.search(bare) and "\n" not in bare)):
         return False
     return bool(SPACED.search(bare)) or (headings and bool(HEADING.search(bare)))
 

@@ -20,7 +20,8 @@ WORDS = tuple(
     Lower, −U | Upper, +U | shifted | parity | reviewed | approved | reviewed by | approved by | small | large
     password | diagnose | certificate | upload | customer | interval | tolerances | stage | recalibrate
     refuse | stand-certificate | question | acknowledge | resolve
-    {unit} per {input} | {rate} a year | from row {value} | at row {value} | a steady change of a parameter; a step is a sudden one
+    {unit} per {input} | {rate} a year | from row {value} | at row {value}
+    a steady change of a parameter; a step is a sudden one
     """.strip().splitlines()
     for word in line.split("|")
 )
@@ -90,7 +91,7 @@ COUNTED = (
 NAMES = frozenset(
     (
         *("imu-health", "· imu-health", "OpenAPI", "Kalibr", "ROS 2", "imu-health {software}", "imu-health {version}"),
-        *("about:blank", "https:", "Vary", "Cookie", "Connection", "openid profile email"),
+        *("about:blank", "https:", "private, no-cache", "Vary", "Cookie", "Connection", "openid profile email"),
         *("Liberation Sans", "Libertinus Serif", "General", "begins with", "yyyy-mm-dd hh:mm"),
         *("acc x", "acc y", "gyro x", "gyro y", "gyro z", "sin {turns}", "cos {turns}", "{worst}.bias ({zero})"),
         *("mounting{key}", "{length} ± {expanded} cm"),
