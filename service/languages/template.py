@@ -29,7 +29,7 @@ TAG = re.compile(r"<(/?)([a-zA-Z][\w-]*)[^<>]*>|<![^<>]*>")
 ATTRIBUTE = re.compile(r'([\w-]+)="([^"]*)"')
 LETTERS = re.compile(r"[A-Za-z]{2,}")
 THEIRS = re.compile(
-    r"\b(serial|unit|operator|stand|notes?|why|login|filename|lot|customer\.\w+|issued_by|account)\s*\}\}$"
+    r"\b(serial|unit|unit_type|operator|stand|notes?|why|login|filename|lot|customer\.\w+|issued_by|account)\s*\}\}$"
 )
 """Ends of expressions that say what people named or wrote."""
 FIRST = 0xF0000
