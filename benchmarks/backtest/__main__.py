@@ -2,6 +2,7 @@
 
 import argparse
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -27,11 +28,26 @@ from benchmarks.study.report import table
 from estimator.health.error_laws import USUAL
 
 PAGE = Path(__file__).parents[2] / "docs" / "health" / "backtest.md"
-HISTORIES, TYPES = 300, 5
-"""Of every kind; of every number of sessions."""
-SMALL_HISTORIES, SMALL_TYPES = 6, 1
-MORE = 4
-"""Types with stated dates for each one with due dates: of a date only those that pass a tolerance tell."""
+
+
+@dataclass(frozen=True)
+class Sample:
+    """How much is drawn."""
+
+    histories: int = 300
+    """Of every kind."""
+    types: int = 5
+    """Of every number of sessions, with due dates."""
+    dated: int = 20
+    """Types with stated dates: of a date only those that pass a tolerance tell."""
+
+    @property
+    def smaller(self) -> "Sample":
+        """For the second generator."""
+        return Sample(self.histories // 2, max(self.types * 2 // 3, 1), max(self.dated * 3 // 5, 1))
+
+
+SMALL = Sample(6, 1, 1)
 Row = tuple[str, str, str]
 
 
@@ -42,29 +58,29 @@ def main() -> None:
     asked.add_argument("--seed", type=int, default=1)
     asked.add_argument("--out", type=Path, default=PAGE)
     given = asked.parse_args()
-    count, types = (SMALL_HISTORIES, SMALL_TYPES) if given.small else (HISTORIES, TYPES)
     given.out.parent.mkdir(parents=True, exist_ok=True)
-    given.out.write_text(page(count, types, given.seed), encoding="utf-8")
+    given.out.write_text(page(SMALL if given.small else Sample(), given.seed), encoding="utf-8")
 
 
-def page(count: int, types: int, seed: int) -> str:
-    """Markdown, from ``count`` histories of a kind and ``types`` types of units."""
+def page(sample: Sample, seed: int) -> str:
+    """Markdown, from so many histories and types of units."""
     parts = [
         "# Back-test of drift and forecast",
         f"Made by `python -m benchmarks.backtest --seed {seed}`. Simulated deviations in tolerances T, from two "
         "generators that share nothing with the estimator, nor with one another. Intervals: 95 % (Wilson). "
         "[What is computed](../methods/health.md).",
-        *_first(count, types, np.random.default_rng([seed, 1])),
-        *_second(count // 2, max(types * 2 // 3, 1), np.random.default_rng([seed, 2])),
+        *_first(sample, np.random.default_rng([seed, 1])),
+        *_second(sample.smaller, np.random.default_rng([seed, 2])),
     ]
     return "\n\n".join(parts) + "\n"
 
 
-def _first(count: int, types: int, rng: np.random.Generator) -> list[str]:
+def _first(sample: Sample, rng: np.random.Generator) -> list[str]:
     """The generator that the optimum knows."""
+    count = sample.histories
     rivals, shares = rivals_page(count, rng)
     tails = tails_of(FIRST, rng)
-    due, reached = dues(FIRST, types, rng), dates_reached(FIRST, MORE * types, rng)
+    due, reached = dues(FIRST, sample.types, rng), dates_reached(FIRST, sample.dated, rng)
     hits = {kind: str(rate(found(kind, count, tails, rng))) for kind in ("step", "ramp", "aging")}
     seasonal = followed("seasonal", count, rng)
     rows = [
@@ -86,13 +102,14 @@ def _first(count: int, types: int, rng: np.random.Generator) -> list[str]:
         *_described(FIRST, rows),
         alarms_page(FIRST, (2 * count, tails), rng),
         rivals,
-        *_forecasts(FIRST, types, rng, (due, reached)),
+        *_forecasts(FIRST, sample.types, rng, (due, reached)),
     ]
 
 
-def _second(count: int, types: int, rng: np.random.Generator) -> list[str]:
+def _second(sample: Sample, rng: np.random.Generator) -> list[str]:
     """The generator that no rule knows."""
-    due, reached = dues(SECOND, types, rng), dates_reached(SECOND, MORE * types, rng)
+    count = sample.histories
+    due, reached = dues(SECOND, sample.types, rng), dates_reached(SECOND, sample.dated, rng)
     return [
         "## Uneven workshops",
         "Three to sixty sessions, in campaigns with long gaps between them, each with a standard uncertainty of 0.01 "
@@ -101,7 +118,7 @@ def _second(count: int, types: int, rng: np.random.Generator) -> list[str]:
         *_described(SECOND, _dates(SECOND, due, reached)),
         alarms_page(SECOND, (2 * count, tails_of(SECOND, rng)), rng),
         beside_page(SECOND, count, rng),
-        *_forecasts(SECOND, types, rng, (due, reached)),
+        *_forecasts(SECOND, sample.types, rng, (due, reached)),
     ]
 
 
