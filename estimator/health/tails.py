@@ -10,7 +10,6 @@ every ν: a history that drifts or walks says nothing of tails. κ is the span o
 """
 
 import numpy as np
-from scipy.special import logsumexp
 
 from estimator.health.error_laws import FREEDOMS, log_density
 from estimator.health.fits import Fits, Readings
@@ -32,7 +31,8 @@ def log_tails(readings: Readings, found: Fits) -> Array:
     if readings.base.shape[1] > 1:
         return np.zeros(len(FREEDOMS))
     n, k = readings.value.shape
-    other = float(logsumexp(found.log_evidence())) - np.log(found.log_evidence().size)
+    evidence = found.log_evidence().ravel()
+    other = float(_sum(evidence)) - np.log(evidence.size)
     other -= k * (n - 1) / 2 * np.log(2 * np.pi)
     jumps = found.family.kind == Kind.JUMP
     gap, share = found.family.gap[jumps], found.family.share[jumps]
@@ -40,7 +40,7 @@ def log_tails(readings: Readings, found: Fits) -> Array:
     for freedom in FREEDOMS:
         whole, parted = _levels(readings, freedom, gap)
         jumped = parted + np.log(share * JUMP) - k * np.log(SIZES)
-        logs.append(logsumexp([np.log(NOTHING) + whole, logsumexp(jumped), np.log(ELSE) + other]))
+        logs.append(_sum(np.array([np.log(NOTHING) + whole, float(_sum(jumped)), np.log(ELSE) + other])))
     return np.array(logs) - max(logs)
 
 
@@ -52,9 +52,15 @@ def _levels(readings: Readings, freedom: float, gap: Array) -> tuple[float, Arra
         logs = log_density((value[:, None] - level) / sigma[:, None], freedom) - np.log(sigma)[:, None]
         before = np.cumsum(logs, axis=0)
         step = np.log(level[1] - level[0])
-        whole += float(logsumexp(before[-1])) + step
-        parted += logsumexp(before[gap - 1], axis=1) + logsumexp(before[-1] - before[gap - 1], axis=1) + 2 * step
+        whole += float(_sum(before[-1])) + step
+        parted += _sum(before[gap - 1]) + _sum(before[-1] - before[gap - 1]) + 2 * step
     return whole, parted
+
+
+def _sum(logs: Array) -> Array:
+    """Log of the sum over the last axis; on arrays this small scipy's takes ten times as long."""
+    largest = logs.max(axis=-1, keepdims=True)
+    return np.asarray(np.log(np.exp(logs - largest).sum(axis=-1)) + largest[..., 0])
 
 
 def _nodes(value: Array, sigma: Array) -> Array:
