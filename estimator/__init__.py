@@ -48,9 +48,16 @@ from estimator.on_demand import names_on_demand
 if TYPE_CHECKING:
     from estimator.alignment import AlignmentResult, RateTableResult, align, rate_table
     from estimator.calibration import calibrate_many
-    from estimator.diagnosis import Diagnosis, calibrate_extended, diagnose
+    from estimator.diagnosis import Diagnosis, calibrate_extended
     from estimator.errors import FormatError, Problem, ScheduleError, SessionError
-    from estimator.groups import GroupDiagnosis, SessionStatistics, diagnose_group, diagnose_statistics, statistics_of
+    from estimator.groups import (
+        GroupDiagnosis,
+        SessionStatistics,
+        diagnose,
+        diagnose_group,
+        diagnose_statistics,
+        statistics_of,
+    )
     from estimator.parity import ParityAccumulator, ParityResult, parity_check
     from estimator.programmes import calibrate
     from estimator.reading import read_session
@@ -62,9 +69,9 @@ else:
         {
             "alignment": "AlignmentResult RateTableResult align rate_table",
             "calibration": "calibrate_many",
-            "diagnosis": "Diagnosis calibrate_extended diagnose",
+            "diagnosis": "Diagnosis calibrate_extended",
             "errors": "FormatError Problem ScheduleError SessionError",
-            "groups": "GroupDiagnosis SessionStatistics diagnose_group diagnose_statistics statistics_of",
+            "groups": "GroupDiagnosis SessionStatistics diagnose diagnose_group diagnose_statistics statistics_of",
             "parity": "ParityAccumulator ParityResult parity_check",
             "programmes": "calibrate",
             "reading": "read_session",

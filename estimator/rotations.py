@@ -49,17 +49,18 @@ def left_jacobian(vector: Array) -> Array:
     return np.eye(3) + first * across + second * across @ across
 
 
-def common_turn(vectors: Array, others: Array) -> Array:
+def common_turn(vectors: Array, others: Array, settled: float = SETTLED) -> Array:
     """(3, 3) rotation R, dimensionless, with the least sum of |R·v − w| of n vectors v and others w, (n, 3) each.
 
     Distances, not their squares: the few vectors that moved otherwise hardly drag it (Weiszfeld's reweighting of
     Kabsch). About a line that all vectors share there is no turn. A place to linearise about, not an estimate.
+    ``settled``: change of a direction cosine below which a round has moved nothing.
     """
     both, faint = np.concatenate([others, np.eye(3)]), FAINT * np.eye(3)
     turn = nearest_turn(np.concatenate([vectors, faint]), both)
     for _ in range(ROUNDS):
         near = np.maximum(np.linalg.norm(vectors @ turn.T - others, axis=1), CLOSEST)
         before, turn = turn, nearest_turn(np.concatenate([vectors * (near.min() / near)[:, None], faint]), both)
-        if np.abs(turn - before).max() < SETTLED:
+        if np.abs(turn - before).max() < settled:
             break
     return turn

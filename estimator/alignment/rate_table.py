@@ -24,6 +24,7 @@ from estimator.applied_vector import EARTH_RATE
 from estimator.errors import Problem, ScheduleError
 from estimator.results import Fit
 from estimator.session import GYROSCOPE, RATE_TABLE, Array, CalibrationSession
+from estimator.wording import counted
 
 NAMES = ("E_xz", "E_yz", "kappa_z", "eps_x", "eps_y", "eps_z")
 UNITS = ("rad", "rad", "1", "rad/s", "rad/s", "rad/s")
@@ -120,7 +121,8 @@ def _require_both_ways(turns: Turns) -> None:
             )
             raise ScheduleError([Problem("turn_rate_deg_s", message)])
     if len(turns.rates) < FEWEST_TURNS:
-        message = f"holds {len(turns.rates)} whole turns; give {FEWEST_TURNS} or more, so that their scatter is known"
+        held = counted(len(turns.rates), "whole turn")
+        message = f"holds {held}; give {FEWEST_TURNS} or more, so that their scatter is known"
         raise ScheduleError([Problem("turn_rate_deg_s", message)])
 
 

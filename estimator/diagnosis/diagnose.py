@@ -4,6 +4,7 @@ record → residuals → signatures → selection → explanation
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from estimator.calibration.calibrate import averaged, calibrate
 from estimator.causes.catalogue import CATALOGUE
@@ -19,9 +20,10 @@ from estimator.diagnosis.explanation.record_findings import (
     record_error_finding,
     wrong_record,
 )
-from estimator.diagnosis.record.clipping import unclipped
+from estimator.diagnosis.record.clipping import Clip, unclipped
 from estimator.diagnosis.record.implausible import ImplausibleAxes, implausible_axes
 from estimator.diagnosis.record.nominal import wrong_entry
+from estimator.diagnosis.record.record_error import RecordError
 from estimator.diagnosis.record.turned import expected_axes
 from estimator.diagnosis.record.undo import undo_record_errors
 from estimator.diagnosis.residuals.baseline import Baseline
@@ -41,7 +43,9 @@ def diagnose(
     *,
     catalogue: Sequence[Cause] = CATALOGUE,
 ) -> Diagnosis:
-    """What the simulation gets wrong about a session.
+    """What the simulation gets wrong about a session, as its own readings show it.
+
+    `estimator.diagnose` adds what only all sessions of the unit together show.
 
     Parameters
     ----------
@@ -55,10 +59,37 @@ def diagnose(
     """
     if session.programme == ROTATION_ALIGNMENT:
         return diagnose_alignment(session)
+    return diagnosed(put_right(session, history, catalogue), catalogue)
+
+
+@dataclass(frozen=True, eq=False)
+class PutRight:
+    """A session whose record is put right, and its history, both fitted."""
+
+    rows: CalibrationSession
+    """As its file says, averaged."""
+    clips: tuple[Clip, ...]
+    errors: tuple[RecordError, ...]
+    """What of the record was put right."""
+    right: Baseline
+    earlier: tuple[Baseline, ...]
+    """Of the history, oldest first, without clipped readings."""
+
+
+def put_right(
+    session: CalibrationSession, history: Sequence[CalibrationSession], catalogue: Sequence[Cause]
+) -> PutRight:
+    """The session and its history fitted, the session's record put right first."""
     rows = averaged(session)
     clips, whole = unclipped(rows, catalogue)
-    earlier = [baseline_of(unclipped(averaged(h), catalogue)[1]) for h in history]
+    earlier = tuple(baseline_of(unclipped(averaged(h), catalogue)[1]) for h in history)
     errors, right = undo_record_errors(baseline_of(whole), earlier, catalogue)
+    return PutRight(rows, tuple(clips), tuple(errors), right, earlier)
+
+
+def diagnosed(session: PutRight, catalogue: Sequence[Cause]) -> Diagnosis:
+    """What the simulation gets wrong about a session whose record is put right."""
+    rows, right, earlier = session.rows, session.right, session.earlier
     wrong = mixed_up(right, earlier, catalogue)
     state = unsearched(right, earlier, catalogue) if wrong else searched(right, earlier, catalogue)
     entry = None if earlier or wrong else wrong_entry(without_effects(state, amplitudes(state)), catalogue)
@@ -68,15 +99,15 @@ def diagnose(
     new = newness(state, fitted)
     calibration = extended_calibration(state, fitted)
     return Diagnosis(
-        unit=session.unit,
+        unit=right.session.unit,
         findings=(
-            *clip_findings(clips, rows, state.baseline, calibration),
-            *(record_error_finding(e, rows) for e in errors),
+            *clip_findings(session.clips, rows, state.baseline, calibration),
+            *(record_error_finding(e, rows) for e in session.errors),
             *([] if entry is None else [entry_finding(entry)]),
             *findings(state, fitted, new),
         ),
         structures=(*wrong_record(wrong, right.session), *structures(state)),
-        gain=gain(state, baseline_of(rows) if clips or errors else None, fitted, new),
+        gain=gain(state, baseline_of(rows) if session.clips or session.errors else None, fitted, new),
         limits=limits(state),
         noise=noise_scales(state),
         baseline=calibrate(rows),

@@ -62,6 +62,24 @@ class ParitySplit:
 
 
 @dataclass(frozen=True)
+class OverSessions:
+    """The evidence of several sessions of the unit, where one alone does not show an effect."""
+
+    sessions: int
+    """That speak of it, this one among them."""
+    e_value: float
+    """Without an effect it ever reaches 100 in at most one unit of a hundred."""
+    form: str
+    """``same``, ``varying`` from session to session, or ``since`` a session."""
+    since: str | None
+    """Start of the first session that has it, where earlier ones had not."""
+    spread: tuple[float, ...]
+    """τ between sessions of each sensor in turn, in the unit of its amplitudes."""
+    here: float
+    """Probability that this session has it too."""
+
+
+@dataclass(frozen=True)
 class Finding:
     """One named cause with its evidence."""
 
@@ -86,6 +104,8 @@ class Finding:
     """Where stand and sensor differ; None where there is no redundancy."""
     new: bool | None = None
     """Whether it came since the history; None without history or where the session cannot tell."""
+    over_sessions: OverSessions | None = None
+    """Of what only several sessions show together: the amplitudes are theirs; None of what this session shows."""
 
     @property
     def nonlinear(self) -> dict[str, float]:
@@ -110,6 +130,7 @@ class Finding:
             "advice": self.advice,
             "parity": None if self.parity is None else asdict(self.parity),
             "new": self.new,
+            "over_sessions": None if self.over_sessions is None else asdict(self.over_sessions),
         }
 
 

@@ -88,20 +88,18 @@ def learned_terms(selection: Selection, level: str, sessions: Sequence[Calibrati
     What has a name is left free in every session.
     """
     named = [(f.hypothesis.cause, f.hypothesis.sensor, f.hypothesis.shape) for f in selection.found]
+    whole_type = subject_of(selection.layout.parts[-1].statistics, TYPE)
     places = dict.fromkeys(
-        (
-            h.sensor,
-            subject_of(selection.layout.parts[-1].statistics, level) if level == TYPE and h.sensor else h.subject,
-        )
+        (h.sensor, *((TYPE, whole_type) if level == TYPE and h.sensor else (h.level, h.subject)))
         for h, _ in selection.structures
     )
-    for sensor, subject in places if sessions else ():
+    for sensor, whose, subject in places if sessions else ():
         own = [s for s in sessions if subject in (s.unit, s.unit_type, s.stand.id if s.stand else "")]
         own = [s for s in own if not sensor or sensor in [x.name for x in s.sensors]]
         whole = libraries(own, sensor, named)
         terms = learn(sensor, whole)
         if terms is not None:
-            yield shown(subject, terms, whole)
+            yield replace(shown(subject, terms, whole), level=whose)
 
 
 def subject_of(session: SessionStatistics, level: str) -> str:

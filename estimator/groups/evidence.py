@@ -15,7 +15,6 @@ By Ville's inequality the chance that the mean ever reaches 1/α without an effe
 """
 
 import numpy as np
-from scipy.special import logsumexp
 
 from estimator.session import Array
 
@@ -43,6 +42,11 @@ GROWTH = 1.25
 two of them loses at most a fifth of its sessions to the later."""
 
 
+def log_sum(values: Array) -> Array:
+    """ln Σ exp over the first axis, any shape: `scipy.special.logsumexp` says the same and takes ten times as long."""
+    return np.asarray(np.logaddexp.reduce(values, axis=0))
+
+
 def log_bayes(U: Array, F: Array, first: Array) -> Array:
     """(…, H) ln B, mean over κ; ``U`` (…, H, w), ``F`` (…, H, w, w), ``first`` (H, w, w) F₁.
 
@@ -64,7 +68,7 @@ def log_bayes(U: Array, F: Array, first: Array) -> Array:
             volume = np.linalg.slogdet(total)[1] - np.linalg.slogdet(prior)[1]
         values.append(0.5 * fit - 0.5 * volume)
     seen = (size > 0).any(axis=-1)
-    return np.where(seen, logsumexp(values, axis=0) - np.log(len(STRENGTHS)), 0.0)
+    return np.where(seen, log_sum(np.array(values)) - np.log(len(STRENGTHS)), 0.0)
 
 
 def log_varying(statistic: Array, freedom: Array) -> Array:
@@ -73,7 +77,7 @@ def log_varying(statistic: Array, freedom: Array) -> Array:
     ``statistic`` (H,) sum of the sessions' χ², ``freedom`` (H,) of their degrees of freedom.
     """
     values = [0.5 * statistic * t**2 / (1 + t**2) - 0.5 * freedom * np.log1p(t**2) for t in SPREADS]
-    return np.asarray(logsumexp(values, axis=0) - np.log(len(SPREADS)))
+    return log_sum(np.array(values)) - float(np.log(len(SPREADS)))
 
 
 def beginnings(sessions: int) -> list[int]:

@@ -16,7 +16,7 @@ from estimator.groups.rivals import Near, near
 from estimator.groups.scores import inverse
 from estimator.groups.selection import Found, Selection, concerns
 from estimator.groups.weighing import Scale
-from estimator.session import Array
+from estimator.session import GYROSCOPE, Array
 
 FORM_WORDS = ("same", "varying", "since")
 LARGEST = 700.0
@@ -64,6 +64,7 @@ def finding_of(selection: Selection, one: Told, measurements: Sequence[tuple[str
     """A finding as people see it; ``measurements`` what would separate each of its rivals."""
     f, h = one.found, one.found.hypothesis
     known = cause(h.cause)
+    gyro = known.kind is None and h.kind == GYROSCOPE
     sensors = (h.sensor,) if h.sensor else ()
     weighed = one.scale.weighed[f.place[0]]
     date = selection.layout.parts[f.since].statistics.started_at
@@ -77,7 +78,7 @@ def finding_of(selection: Selection, one: Told, measurements: Sequence[tuple[str
         kind=h.kind,
         amplitude=tuple(one.mean.value.tolist()),
         sigma=tuple(s if s > 0 else None for s in one.mean.sigma.tolist()),
-        units=known.units,
+        units=tuple(u.replace("m/s²", "rad/s") if gyro else u for u in known.units),
         spread=(one.mean.spread,),
         shape=h.shape,
         form=FORM_WORDS[f.form],

@@ -24,9 +24,13 @@ from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.groups.candidates import candidates_of
 from estimator.groups.layout import EVERY
-from estimator.groups.results import GroupFinding
+from estimator.groups.library import library
+from estimator.groups.results import EmpiricalTerm, GroupFinding
 from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
+
+EMPIRICAL = "empirical-term"
+"""In place of a cause: a term that was learned, and has no physical name."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +50,8 @@ class FixedEffect:
     """Time constant, s; None where the cause has none."""
     varies: bool
     """Whether it differs every time, so that the session has a say."""
+    words: tuple[str, ...] = ()
+    """Of a learned term: what each amplitude multiplies, as in its equation; none of a cause."""
 
 
 def fixed(finding: GroupFinding) -> FixedEffect:
@@ -60,6 +66,11 @@ def fixed(finding: GroupFinding) -> FixedEffect:
         shape=finding.shape,
         varies=finding.form == "varying",
     )
+
+
+def fixed_term(term: EmpiricalTerm) -> FixedEffect:
+    """A learned term as the effect that its sessions have: the same in all of them."""
+    return FixedEffect(EMPIRICAL, term.sensors, "", term.amplitude, term.sigma, None, varies=False, words=term.words)
 
 
 def in_one_session(sigma: Sequence[float], spread: Sequence[float]) -> tuple[float, ...]:
@@ -104,13 +115,19 @@ def calibrate_with(
     added = None if baseline is None else added_by(baseline, effects, causes)
     if baseline is None or added is None:
         return calibrate_extended(session, causes) if causes else calibrate(session)
-    residuals = WhitenedResiduals.of(baseline)
+    without, more = taken_out(baseline, added)
+    return enlarged(calibrate_extended(without, causes) if causes else calibrate(without), more)
+
+
+def taken_out(baseline: Baseline, added: Added) -> tuple[CalibrationSession, Array]:
+    """A fitted session without what effects add to its readings, and what is not known of them as covariance of the
+    parameters (P, P), SI."""
+    residuals, session = WhitenedResiduals.of(baseline), baseline.session
     value, covariance = amplitude_in(residuals, added)
-    without = replace(rows, readings=rows.readings - in_readings(baseline, added.columns @ value))
-    plain = calibrate_extended(without, causes) if causes else calibrate(without)
+    without = replace(session, readings=session.readings - in_readings(baseline, added.columns @ value))
     response = residuals.response @ residuals.whitened(added.columns)
     response = response * baseline.parameters.si_factors(baseline.setting.norm)[:, None]
-    return enlarged(plain, response @ covariance @ response.T)
+    return without, response @ covariance @ response.T
 
 
 def added_by(baseline: Baseline, effects: Sequence[FixedEffect], causes: Sequence[Accepted]) -> Added | None:
@@ -136,6 +153,9 @@ def _places(
     baseline: Baseline, effect: FixedEffect, taken: set[tuple[str, str]]
 ) -> Iterator[tuple[Array, Array, Array, list[str]]]:
     """Columns (R, m, w), amplitude (w,), its variance (w,) and the sensors, place after place."""
+    if effect.words:
+        yield from _learned(baseline, effect, taken)
+        return
     blocks = [(b, columns) for b, columns in candidates_of(baseline, cause(effect.cause)) if b.shape == effect.shape]
     for k, place in enumerate(effect.sensors or ("",)):
         own = [
@@ -148,6 +168,20 @@ def _places(
             part = slice(k * own[0][0].width, (k + 1) * own[0][0].width)
             value, sigma = np.array(effect.amplitude[part]), np.array(effect.sigma[part])
             yield np.sum([columns for _, columns in own], axis=0), value, sigma**2, [b.sensor for b, _ in own]
+
+
+def _learned(
+    baseline: Baseline, effect: FixedEffect, taken: set[tuple[str, str]]
+) -> Iterator[tuple[Array, Array, Array, list[str]]]:
+    """The same of a learned term; what of it this session lacks, as a temperature, is left out."""
+    sensor = effect.sensors[0] if effect.sensors else ""
+    if (effect.cause, sensor) in taken or (sensor and sensor not in [s.name for s in baseline.session.sensors]):
+        return
+    known = {word: term.columns[..., k] for term in library(baseline, sensor) for k, word in enumerate(term.words)}
+    own = [k for k, word in enumerate(effect.words) if word in known]
+    if own:
+        columns = np.stack([known[effect.words[k]] for k in own], axis=-1)
+        yield columns, np.array(effect.amplitude)[own], np.array(effect.sigma)[own] ** 2, [sensor]
 
 
 def amplitude_in(residuals: WhitenedResiduals, added: Added) -> tuple[Array, Array]:

@@ -7,7 +7,7 @@ no columns in sessions that it does not speak of.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -82,7 +82,12 @@ class Layout:
         """Of sessions, oldest first."""
         wide, known, parts = level != UNIT, {}, []
         numbers: dict[int, dict[Hypothesis, int]] = {}
+        alike: dict[tuple[object, ...], Part] = {}
         for s in sessions:
+            key = s.blocks, s.unit, s.unit_type, s.stand
+            if key in alike:
+                parts.append(replace(alike[key], statistics=s))
+                continue
             own, sums = _places(s, wide)
             found: dict[int, list[tuple[int, Array]]] = {}
             for h, columns in own:
@@ -97,6 +102,7 @@ class Layout:
                     {w: np.array([c for _, c in rows]) for w, rows in found.items()},
                 )
             )
+            alike[key] = parts[-1]
         hypotheses = {w: tuple(table) for w, table in numbers.items()}
         return cls(hypotheses, log_priors(hypotheses, list(known), level), tuple(parts))
 

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.special import logsumexp
 
 from estimator.groups.evidence import (
     FORMS,
@@ -13,6 +12,7 @@ from estimator.groups.evidence import (
     beginnings,
     first_seen,
     log_bayes,
+    log_sum,
     log_varying,
 )
 from estimator.groups.layout import UNIT, Layout
@@ -30,7 +30,7 @@ def e_process(statistics: Sequence[SessionStatistics], level: str = UNIT) -> Arr
     looks = [_looks(pool, w, m, scale) for w, m in pool.moments.items()]
     prior = sum(float(np.exp(p).sum()) for p in layout.log_prior.values())
     rest = np.full((len(statistics), 1), np.log1p(-prior) if prior < 1 else -np.inf)
-    return np.asarray(logsumexp(np.concatenate([*looks, rest], axis=1), axis=1))
+    return log_sum(np.concatenate([*looks, rest], axis=1).T)
 
 
 def scales(layout: Layout, pool: Pool) -> Array:
@@ -69,5 +69,5 @@ def _looks(pool: Pool, w: int, m: Moments, scale: Array) -> Array:
         value[k:] = log_bayes(after_U / by[k:, :, None], after_F / by[k:, :, None, None], first_seen(F[k:]))
         parts.append(value + np.log(share))
         left[k:] -= share
-    since = logsumexp([*parts, np.log(left)[:, None] * np.ones((1, H))], axis=0) + np.log(FORMS[SINCE])
+    since = log_sum(np.array([*parts, np.log(left)[:, None] * np.ones((1, H))])) + np.log(FORMS[SINCE])
     return np.asarray(np.concatenate([x + log_prior[named] for x in (same, varying, since)], axis=1))

@@ -162,6 +162,8 @@ class EmpiricalTerm:
     """From it, on the pool, standard errors of a reading."""
     picture: dict[str, Any]
     """Pooled residual against its variable, before and after."""
+    level: str = ""
+    """``unit``, ``type`` or ``stand``: whose it is."""
 
     def to_dict(self) -> dict[str, Any]:
         found = asdict(self)

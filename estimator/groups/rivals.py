@@ -3,10 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import logsumexp
 
 from estimator.diagnosis.explanation.rivals import CREDIBLE, DISTINGUISHED
-from estimator.groups.evidence import VARYING
+from estimator.groups.evidence import VARYING, log_sum
 from estimator.groups.layout import Hypothesis, Layout
 from estimator.groups.pool import Place, Pool, columns_in, extended, without
 from estimator.groups.scores import inverse
@@ -76,7 +75,7 @@ def near(selection: Selection, found: Found, scale: Scale) -> list[Near]:
     """
     ranked = list(scale.ranked())
     values = np.array([value for _, _, value in ranked])
-    share = np.exp(values - logsumexp(values))
+    share = np.exp(values - log_sum(values))
     signature = Signature.of(selection, found, scale.pool)
     reached, kept = 0.0, []
     for (place, hypothesis, _), p in zip(ranked, share, strict=True):

@@ -84,9 +84,9 @@ class Selection:
         return weigh(pooled(self.layout, self.model(without), self.scale), self.barred)
 
 
-def select(layout: Layout) -> Selection:
-    """The findings of a group."""
-    state = Selection(layout, larger_than_stated(layout))
+def select(layout: Layout, barred: frozenset[tuple[str, ...]] = frozenset()) -> Selection:
+    """The findings of a group; ``barred`` hypotheses are not tried."""
+    state = Selection(layout, larger_than_stated(layout), barred=barred)
     for _ in range(ROUNDS):
         scale = state.weighed()
         step = plainly_nameless(state, scale)
@@ -105,15 +105,15 @@ def larger_than_stated(layout: Layout) -> Array:
 
     Those that were put right by themselves are asked apart. The largest effect of the unit is no scatter.
     """
-    plain = weigh(pooled(layout))
+    plain = pooled(layout)
     energy: dict[tuple[str, bool], Array] = {}
     for part in layout.parts:
         s = part.statistics
         own = energy.setdefault(believed(s), np.zeros(2))
         own += [s.energy.sum(), s.freedom.sum()]
     most = dict.fromkeys((unit for unit, _ in energy), 0.0)
-    for w, weighed in plain.weighed.items():
-        for h, t in zip(layout.hypotheses[w], weighed.statistic, strict=True):
+    for w, moments in plain.moments.items():
+        for h, t in zip(layout.hypotheses[w], batch(*moments.pooled)[0], strict=True):
             if h.subject in most:
                 most[h.subject] = max(most[h.subject], float(t))
             elif h.level == STAND:

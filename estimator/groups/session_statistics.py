@@ -19,7 +19,7 @@ from estimator.diagnosis.record.clipping import unclipped
 from estimator.diagnosis.record.undo import undo_record_errors
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
-from estimator.diagnosis.residuals.flipped_run import with_its_flip
+from estimator.diagnosis.residuals.flipped_run import about_its_flip
 from estimator.diagnosis.residuals.refitted import refitted
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.start import as_they_scatter
@@ -80,7 +80,7 @@ def statistics_of(session: CalibrationSession) -> SessionStatistics:
     """
     clips, whole = unclipped(averaged(session), CATALOGUE)
     errors, right = undo_record_errors(baseline_of(whole), (), CATALOGUE)
-    baseline = with_its_flip(right.session)
+    baseline = about_its_flip(right)
     words = [f"{session.sensors[c.sensor].name} clipped" for c in clips]
     words += [e.undone.cause.identifier for e in errors]
     return kept(session, baseline, tuple(words))
@@ -220,8 +220,9 @@ def of_sensors(seen: Seen, values: Array) -> Array:
 def contradicted(baseline: Baseline, energy: Array, freedom: Array) -> list[list[int]]:
     """Sensors whose scatter is not as stated, those that are off by one factor together.
 
-    All of a kind are, where together they contradict it and half of them lean the same way; else those that
-    contradict it each by itself. ``energy`` (m,) χ² with its degrees of ``freedom`` (m,).
+    All of a kind are, where together they contradict it and half of them lean the same way; else those that scatter
+    more each by itself. One alone that scatters less is believed as stated: with few readings, what all share of a row
+    can be laid on it until nothing is left of its noise. ``energy`` (m,) χ² with its degrees of ``freedom`` (m,).
     """
     free = np.maximum(freedom, 1e-3)
     less, more = chdtr(free, energy), chdtrc(free, energy)
@@ -236,7 +237,7 @@ def contradicted(baseline: Baseline, energy: Array, freedom: Array) -> list[list
         if min(tails) < DOUBTFUL and 2 * leaning.sum() >= len(own):
             claims.append(own.tolist())
         else:
-            claims += [[int(i)] for i in own if min(less[i], more[i]) < DOUBTFUL / len(energy)]
+            claims += [[int(i)] for i in own if more[i] < DOUBTFUL / len(energy)]
     return claims
 
 

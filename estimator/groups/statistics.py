@@ -12,14 +12,14 @@ keeps a session's record in some hundred kilobytes.
 import base64
 import zlib
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 
 from estimator.session import Array
 
-FORMAT = "imu-session-statistics/1"
+FORMAT = "imu-session-statistics/2"
 HARMONIC = "harmonic"
 """Nameless structure: a wave of β."""
 STEPS = 32767
@@ -87,14 +87,12 @@ class SessionStatistics:
     def information(self) -> Array:
         """(D, D) F in units of ``size``, dimensionless."""
         D = len(self.size)
-        full = np.zeros((D, D))
-        low = np.tril_indices(D)
+        full, low = np.zeros((D, D)), lower(D)
         full[low] = self.correlation / STEPS
-        full.T[low] = full[low]
-        return full
+        return np.asarray(full + np.tril(full, -1).T)
 
     def to_dict(self) -> dict[str, Any]:
-        """``imu-session-statistics/1``; arrays are packed."""
+        """``imu-session-statistics/2``; arrays are packed."""
         return {
             "format": FORMAT,
             "unit": self.unit,
@@ -143,7 +141,13 @@ def quantised(information: Array, size: Array) -> Array:
     """(D·(D+1)/2,) int16 lower triangle of an information (D, D), SI, in units of ``size`` (D,)."""
     scale = np.where(size > 0, size, np.inf)
     relative = information / scale[:, None] / scale
-    return np.round(relative[np.tril_indices(len(size))] * STEPS).astype(np.int16)
+    return np.round(relative[lower(len(size))] * STEPS).astype(np.int16)
+
+
+@lru_cache(maxsize=2)
+def lower(size: int) -> tuple[Array, Array]:
+    """Rows and columns of the lower triangle of a matrix (size, size), dimensionless; kept for the next session."""
+    return np.tril_indices(size)
 
 
 def _packed(values: Array, kind: str) -> str:

@@ -16,7 +16,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import logsumexp
 
 from estimator.calibration.calibrate import averaged
 from estimator.diagnosis.residuals.baseline import Baseline
@@ -24,7 +23,7 @@ from estimator.diagnosis.residuals.flipped_run import with_its_flip
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.groups.candidates import columns_of
-from estimator.groups.evidence import ALPHA, log_bayes
+from estimator.groups.evidence import ALPHA, log_bayes, log_sum
 from estimator.groups.library import library
 from estimator.groups.pictures import Pictured, drawn, left_without, pooled_picture
 from estimator.groups.results import EmpiricalTerm
@@ -182,7 +181,7 @@ def strongest(whole: Sequence[Library], every: Sequence[Key], chosen: tuple[Key,
     """The term with the largest evidence given those chosen; None where the library's e-value is below 1/α."""
     rest = [k for k in every if k not in chosen]
     values = evidence(whole, rest, chosen)
-    if logsumexp(values) - np.log(len(every)) < -np.log(ALPHA):
+    if log_sum(values) - np.log(len(every)) < -np.log(ALPHA):
         return None
     return rest[int(np.argmax(values))]
 

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import logsumexp
 
 from estimator.groups.evidence import (
     FORMS,
@@ -15,6 +14,7 @@ from estimator.groups.evidence import (
     first_seen,
     log_bayes,
     log_since,
+    log_sum,
     log_varying,
 )
 from estimator.groups.layout import Hypothesis
@@ -45,7 +45,7 @@ class Weighed:
     @property
     def log_evidence(self) -> Array:
         """(H,) ln of what each adds to the e-value of the group."""
-        return np.asarray(self.log_prior + logsumexp(self.forms, axis=0))
+        return np.asarray(self.log_prior + log_sum(self.forms))
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,9 +58,9 @@ class Scale:
     @property
     def log_e_value(self) -> float:
         """ln of the e-value of the group: against nothing at all beside what was found."""
-        each = [logsumexp(w.log_evidence) for w in self.weighed.values() if np.isfinite(w.log_evidence).any()]
+        each = [log_sum(w.log_evidence) for w in self.weighed.values() if np.isfinite(w.log_evidence).any()]
         rest = np.log1p(-min(self.prior, 1.0)) if self.prior < 1 else -np.inf
-        return float(logsumexp([*each, rest])) if each else 0.0
+        return float(log_sum(np.array([*each, rest]))) if each else 0.0
 
     @property
     def prior(self) -> float:
@@ -107,7 +107,7 @@ def _weighed(pool: Pool, w: int, m: Moments, barred: frozenset[tuple[str, ...]])
         forms[VARYING, named] = log_varying(*_each_session(m, named)) + np.log(FORMS[VARYING])
         began = log_since(m.evidence[:, named], m.F[:, named])
         if len(began):
-            forms[SINCE, named] = logsumexp(began, axis=0) + np.log(FORMS[SINCE])
+            forms[SINCE, named] = log_sum(began) + np.log(FORMS[SINCE])
             since[named] = np.array(beginnings(len(m.F)))[began.argmax(axis=0)]
     forms[:, gone] = np.log(FORMS)[:, None]
     prior = pool.layout.log_prior[w].copy()

@@ -255,7 +255,7 @@ def _warmth(readings: Readings, temperature: Array, rival: Change | None, level:
     if not tells_of_temperature(temperature):
         return None
     column = _centred(temperature)
-    found = fits(readings, _alone(column))
+    found = fits(readings, alone(column))
     score, information = found.score[..., 0], found.information[..., 0]
     best = int(np.argmax((found.log_likelihood + score**2 / information / 2).sum(axis=1)))
     size, information = score[best] / information[best], information[best]
@@ -267,10 +267,10 @@ def _warmth(readings: Readings, temperature: Array, rival: Change | None, level:
 
 def _explained(readings: Readings, column: Array) -> float:
     """Twice the log likelihood ratio of a column against noise alone."""
-    found = fits(readings, _alone(column), np.zeros(1))
+    found = fits(readings, alone(column), np.zeros(1))
     return float((found.score**2 / np.maximum(found.information, 1e-300)).sum())
 
 
-def _alone(column: Array) -> Shapes:
+def alone(column: Array) -> Shapes:
     """One shape, a column (n,) of any unit, for a fit of its size."""
     return Shapes(column[:, None], np.zeros(1, int), np.zeros(1, int), np.ones(1), np.ones(1))

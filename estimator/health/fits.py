@@ -34,6 +34,8 @@ PART_KINDS = np.array([kind for kind, _ in PARTS])
 """(P,) `Kind` of each."""
 PART_SIZES = np.array([size for _, size in PARTS])
 """(P,) one sigma of the size, T or T a year."""
+CHANGES = tuple(dict.fromkeys(kind for kind, _ in PARTS if kind is not Kind.NONE))
+"""Kinds with a shape, in the order of their parts."""
 LEAST = 1e-6
 """Smallest sigma of a reading, T: below it nothing in a file is exact."""
 
@@ -87,21 +89,21 @@ class Fits:
     def log_evidence(self) -> Array:
         """(Q, P) log marginal likelihood at each strength of the walk, of each part, without unit."""
         none = self.log_likelihood.sum(axis=1)
-        ratios = [np.zeros(len(none))]
-        for part in range(1, len(PARTS)):
-            weighed = self.log_ratios(part) + np.log(self.family.share[self.of_kind(part)])
-            ratios.append(np.logaddexp.reduce(weighed, axis=1) if weighed.shape[1] else np.zeros(len(none)))
-        return none[:, None] + np.stack(ratios, axis=1)
+        ratios = [np.zeros((1, len(none)))]
+        for kind in CHANGES:
+            weighed = self.log_ratios(kind) + np.log(self.family.share[self.of_kind(kind)])
+            ratios.append(np.logaddexp.reduce(weighed, axis=2) if weighed.shape[2] else np.zeros(weighed.shape[:2]))
+        return np.asarray((none + np.concatenate(ratios)).T)
 
-    def log_ratios(self, part: int) -> Array:
-        """(Q, H') log Bayes factor of the shapes of a part's kind against no change; dimensionless."""
-        own, s2 = self.of_kind(part), PART_SIZES[part] ** 2
+    def log_ratios(self, kind: Kind) -> Array:
+        """(S, Q, H') log Bayes factor of the shapes of a kind at each of its sizes against no change; no unit."""
+        own, s2 = self.of_kind(kind), PART_SIZES[kind == PART_KINDS][:, None, None, None] ** 2
         spread = s2 * self.information[..., own]
-        return 0.5 * np.asarray(s2 * self.score[..., own] ** 2 / (1 + spread) - np.log1p(spread)).sum(axis=1)
+        return 0.5 * np.asarray(s2 * self.score[..., own] ** 2 / (1 + spread) - np.log1p(spread)).sum(axis=2)
 
-    def of_kind(self, part: int) -> Array:
-        """(H',) places of the shapes of a part's kind."""
-        return np.flatnonzero(self.family.kind == PART_KINDS[part])
+    def of_kind(self, kind: Kind) -> Array:
+        """(H',) places of the shapes of a kind."""
+        return np.flatnonzero(self.family.kind == kind)
 
 
 def fits(readings: Readings, family: Shapes, walks: Array = WALKS) -> Fits:

@@ -22,7 +22,7 @@ from scipy.stats import ncx2
 from estimator.health.fits import PART_KINDS, PART_SIZES
 from estimator.health.pooled import Prior
 from estimator.health.posterior import Draws
-from estimator.health.shapes import Kind, course
+from estimator.health.shapes import DRIFTS, Kind, course
 from estimator.session import Array
 
 AHEAD = np.concatenate([[0.0], np.geomspace(0.02, 12.0, 30)])
@@ -31,25 +31,38 @@ MEDIAN, EARLY = 0.5, 0.1
 """Chances whose dates are stated: as likely as not, and the 90 % bound."""
 WHICHEVER = 0.2
 """Chance of reaching the tolerance before the 90 % bound of a history that turns out to drift: twice that of all."""
+ALIKE = (*((kind,) for kind in DRIFTS), (Kind.LATE, Kind.START))
+"""Drifts that a date holds for: each kind of its own, and steady ones whenever they began."""
 RISK_LEVEL = 0.05
 """Chance of a unit being out of tolerance that its next calibration must come before."""
 DISTANCES = np.linspace(0.0, 1.0, 41)
 """(41,) T, at which chances of passing are tabulated; linear between them is right to 1e-3."""
+PATHS, SEED = 1601, 1986
+"""Random walks that are followed, more than there are draws, so that no parameter takes one twice; and their seed."""
 FRACTIONS = (np.arange(8) + 0.5) / 8
 """(8,) of the time ahead, at which a drift may have begun: the middle of eighths."""
 
 
 def followed(draws: Draws, ahead: Array, rng: np.random.Generator) -> Array:
     """(N, k, h) levels of every draw at increasing years ahead (h,), new jumps and drifts apart; T."""
-    n, k = draws.level.shape
-    steps = np.diff(ahead, prepend=0.0)
-    walked = np.cumsum(rng.standard_normal((n, k, len(ahead))) * np.sqrt(steps), axis=2) * draws.walk[:, None, None]
-    level = walked + (draws.level[..., None] + draws.rate[..., None] * ahead)
+    level = draws.level[..., None] + draws.rate[..., None] * ahead
+    walks = np.flatnonzero(draws.walk)
+    path = (walks + rng.integers(PATHS)) % PATHS
+    level[walks] += _paths(level.shape[1], ahead.tobytes())[path] * draws.walk[walks, None, None]
     ages = draws.aging.any(axis=1)
     constant = draws.constant[ages, None]
     aged = course(draws.age + ahead, constant) - course(np.full(1, draws.age), constant)
     level[ages] += draws.aging[ages, :, None] * aged[:, None, :]
     return np.asarray(level)
+
+
+@lru_cache(maxsize=4)
+def _paths(k: int, ahead: bytes) -> Array:
+    """(`PATHS`, k, h) random walks of 1 a root year at years ``ahead`` (h,), as its bytes: every parameter of a unit
+    takes the same in an order of its own."""
+    steps = np.diff(np.frombuffer(ahead), prepend=0.0)
+    taken = np.random.default_rng(SEED).standard_normal((PATHS, k, len(steps)))
+    return np.cumsum(taken * np.sqrt(steps), axis=2)
 
 
 def passage(draws: Draws, prior: Prior, swing: float, rng: np.random.Generator) -> Array:
@@ -64,16 +77,17 @@ def passed(weight: Array, stays: Array) -> Array:
 
 
 def earliest(draws: Draws, stays: Array, *, drifts: bool) -> float:
-    """Years before which the tolerance is reached with the chance `EARLY`, and with `WHICHEVER` at most of a drift, and
-    of an aging, that the history leaves open; with `EARLY` of it too once it is known that it ``drifts``.
+    """Years before which the tolerance is reached with the chance `EARLY`, and with `WHICHEVER` at most of every kind
+    of drift that the history leaves open; with `EARLY` of it too once it is known that it ``drifts``.
 
     Over all that a history may be, one that goes on hides behind those that do not: at a share s of it the chance
-    `EARLY` of all may be `EARLY`/s of its own. A kind with a share below `EARLY` cannot break the claim.
+    `EARLY` of all may be `EARLY`/s of its own. So does a young and steep drift behind a slow one from the start. A kind
+    with a share below `EARLY` cannot break the claim.
     """
     level = EARLY if drifts else WHICHEVER
     found = [float(reach(passed(draws.weight, stays)[None], EARLY)[0])]
-    for going in (draws.rate, draws.aging):
-        own = draws.weight * going.any(axis=1)
+    for kinds in ALIKE:
+        own = draws.weight * np.isin(draws.kind, kinds)
         if own.sum() >= EARLY:
             found.append(float(reach(passed(own / own.sum(), stays)[None], level)[0]))
     return min(found)
@@ -86,11 +100,14 @@ def staying(draws: Draws, prior: Prior, swing: float, rng: np.random.Generator) 
     ----------
     swing : T, that temperature takes off the tolerance on either side.
     """
-    length = np.linalg.norm(followed(draws, AHEAD, rng), axis=1) + swing
-    inside = np.maximum(1 - length, 0.0)
-    spread = draws.walk[:, None] ** 2 * np.diff(AHEAD) + 1e-12
-    stays = -np.expm1(-2 * inside[:, :-1] * inside[:, 1:] / spread)
-    within = np.cumprod(np.concatenate([(inside[:, :1] > 0).astype(float), stays], axis=1), axis=1)
+    level = followed(draws, AHEAD, rng)
+    length = (np.abs(level[:, 0]) if level.shape[1] == 1 else np.hypot(level[:, 0], level[:, 1])) + swing
+    within = (length < 1).astype(float)
+    walks = np.flatnonzero(draws.walk)
+    inside = np.maximum(1 - length[walks], 0.0)
+    spread = draws.walk[walks, None] ** 2 * np.diff(AHEAD)
+    within[walks, 1:] = -np.expm1(-2 * inside[:, :-1] * inside[:, 1:] / spread)
+    within = np.cumprod(within, axis=1)
     return np.asarray(within * np.exp(-_hazard(np.minimum(length, 1.0), prior, draws.level.shape[1])))
 
 
@@ -186,8 +203,10 @@ def future(draws: Draws, prior: Prior, ahead: Array, rng: np.random.Generator) -
     level = followed(draws, ahead, rng)
     n, k, _ = level.shape
     for part in np.flatnonzero(prior.rate):
-        come = rng.exponential(1 / prior.rate[part], n)
-        size = PART_SIZES[part] * rng.standard_normal((n, k, 1))
+        chance = -np.expm1(-prior.rate[part] * ahead[-1])
+        struck = np.flatnonzero(rng.random(n) < chance)
+        come = -np.log1p(-chance * rng.random(len(struck))) / prior.rate[part]
+        size = PART_SIZES[part] * rng.standard_normal((len(struck), k, 1))
         since = np.maximum(ahead - come[:, None], 0.0)[:, None, :]
-        level = level + size * (since if PART_KINDS[part] == Kind.LATE else since > 0)
+        level[struck] += size * (since if PART_KINDS[part] == Kind.LATE else since > 0)
     return Future(draws.weight, level)

@@ -36,9 +36,12 @@ def spread(values: Array, sigmas: Array) -> tuple[float, float]:
     return centre, float(brentq(excess, 0.0, widest * 1.01))
 
 
-def standing_out(z: Sequence[float], level: float = 0.01) -> tuple[bool, ...]:
-    """Which of n members are further out than the furthest of n is with probability ``level`` (Šidák)."""
-    single = -np.expm1(np.log1p(-level) / max(len(z), 1))
+def standing_out(z: Sequence[float], level: float = 0.01, among: int = 0) -> tuple[bool, ...]:
+    """Which of n members are further out than the furthest of n is with probability ``level`` (Šidák).
+
+    ``z`` may be those alone that are furthest out of ``among`` members.
+    """
+    single = -np.expm1(np.log1p(-level) / max(len(z), among, 1))
     return tuple(bool(x) for x in np.abs(np.array(z)) > -ndtri(single / 2))
 
 

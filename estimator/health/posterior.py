@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.health.fits import PART_KINDS, PART_SIZES, PARTS, WALKS, Fits, Readings, fits
+from estimator.health.fits import CHANGES, PART_KINDS, PART_SIZES, WALKS, Fits, Readings, fits
 from estimator.health.pooled import Prior
 from estimator.health.shapes import Kind, Shapes
 from estimator.session import Array
@@ -35,6 +35,8 @@ class Draws:
     """(N,) τ of the aging, years."""
     walk: Array
     """(N,) T a root year."""
+    kind: Array
+    """(N,) `Kind` of the change in force."""
     age: float
     """Years from the first session to the last."""
 
@@ -62,11 +64,12 @@ def weighed(found: Fits, prior: Prior) -> Hypotheses:
     expected = np.log(np.maximum(prior.parts(found.span), 1e-300))
     none = found.log_likelihood.sum(axis=1) + np.log(prior.walk)
     logs, parts, places = [none[:, None] + expected[0]], [np.zeros(1, dtype=int)], [np.zeros(1, dtype=int)]
-    for p in range(1, len(PARTS)):
-        shape = found.of_kind(p)
-        logs.append(none[:, None] + expected[p] + found.log_ratios(p) + np.log(found.family.share[shape]))
-        parts.append(np.full(len(shape), p))
-        places.append(shape)
+    for kind in CHANGES:
+        shape, own = found.of_kind(kind), np.flatnonzero(kind == PART_KINDS)
+        for p, ratios in zip(own, found.log_ratios(kind) + np.log(found.family.share[shape]), strict=True):
+            logs.append(none[:, None] + expected[p] + ratios)
+            parts.append(np.full(len(shape), p))
+            places.append(shape)
     log = np.concatenate(logs, axis=1)
     weight = np.exp(log - log.max())
     walk, column = np.indices(log.shape).reshape(2, -1)
@@ -100,6 +103,7 @@ def draw(readings: Readings, family: Shapes, prior: Prior, rng: np.random.Genera
         aging=np.where(kind == Kind.AGING, size, 0.0),
         constant=family.constant[shape],
         walk=WALKS[q],
+        kind=PART_KINDS[part],
         age=found.span,
     )
 

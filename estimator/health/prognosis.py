@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from estimator.health.detection import LEVEL, Change, Detected, Warmth, detect, tells_of_temperature, warmed
+from estimator.health.detection import LEVEL, Change, Detected, Warmth, alone, detect, tells_of_temperature, warmed
 from estimator.health.fits import Readings, fits
 from estimator.health.forecast import AHEAD, MEDIAN, Future, earliest, future, passed, reach, staying, together
 from estimator.health.pooled import Evidence, Prior
@@ -100,7 +100,8 @@ def evidence(track: Track) -> Evidence:
     if tells_of_temperature(temperature):
         readings = warmed(readings, 0.0, dof, temperature, LEVEL).readings
     found = fits(readings, shapes(readings.time))
-    return Evidence(found.span, found.log_evidence(), log_tails(readings, found))
+    logs = found.log_evidence()
+    return Evidence(found.span, logs, log_tails(readings, found.family, logs))
 
 
 def prognosis(tracks: Sequence[Track], priors: Sequence[Prior], ahead: Array) -> Prognosis:
@@ -190,11 +191,9 @@ def _rate(detected: Detected, draws: Draws, prior: Prior, way: Array) -> tuple[f
         middle = float(draws.mean(rates))
         return middle, float(np.sqrt(draws.mean((rates - middle) ** 2)))
     readings = detected.readings
-    family = shapes(readings.time)
-    found = fits(readings, family, np.array([prior.usual_walk]))
-    start = int(np.flatnonzero(family.kind == Kind.START)[0])
-    variance = 1 / (found.information[0, :, start] + STEEPEST**-2)
-    return float((variance * found.score[0, :, start]) @ way), float(np.sqrt(variance @ way**2))
+    found = fits(readings, alone(readings.time), np.array([prior.usual_walk]))
+    variance = 1 / (found.information[0, :, 0] + STEEPEST**-2)
+    return float((variance * found.score[0, :, 0]) @ way), float(np.sqrt(variance @ way**2))
 
 
 def _swing(warmth: Warmth | None, track: Track) -> float:

@@ -16,6 +16,7 @@ change of the first year.
 
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import lru_cache
 
 import numpy as np
 
@@ -65,7 +66,13 @@ class Shapes:
 
 
 def shapes(time: Array) -> Shapes:
-    """Of sessions at (n,) years since the first, increasing; at least two."""
+    """Of sessions at (n,) years since the first, increasing; at least two. All parameters of a unit share them."""
+    return _shapes(time.tobytes())
+
+
+@lru_cache(maxsize=8)
+def _shapes(moments: bytes) -> Shapes:
+    time = np.frombuffer(moments)
     gap = np.diff(time)
     places = 1 + np.flatnonzero(gap > BARELY)
     among = gap[places - 1] / max(gap[places - 1].sum(), BARELY)

@@ -161,6 +161,6 @@ def too_saturated(saturated: tuple[str, ...], total: int, clean: int) -> str:
 def never_still(used: int, total: int) -> str:
     """Nothing at rest."""
     return (
-        f"only {used} of {total} blocks are at rest, {FEWEST_GROUPS} are needed; let the block stand still for a "
-        "while, or judge it in motion if its sensors sit in one point"
+        f"only {used} of {total} blocks {'is' if used == 1 else 'are'} at rest, {FEWEST_GROUPS} are needed; let the "
+        "block stand still for a while, or judge it in motion if its sensors sit in one point"
     )

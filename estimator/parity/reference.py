@@ -107,7 +107,10 @@ def too_few(used: int, present: int, kind: str) -> str:
             f"the reference calibration knows scale, bias and axis of {used} of {present} {kind}s; parity needs "
             f"{FEWEST}: calibrate the block first in a programme that shows all three"
         )
-    return f"{present} {kind}s leave no redundancy; parity needs {FEWEST} or more, otherwise calibrate instead"
+    return (
+        f"{present} {kind}{'' if present == 1 else 's'} {'leaves' if present == 1 else 'leave'} no redundancy; "
+        f"parity needs {FEWEST} or more, otherwise calibrate instead"
+    )
 
 
 def assembled(used: list[tuple[int, Sensor, SensorCalibration]], calibration: Calibration, kind: str) -> Reference:

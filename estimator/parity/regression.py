@@ -101,7 +101,8 @@ def regress(selection: Selection, reference: Reference, norm: float | None, *, s
     """
     groups = selection.groups
     if groups < FEWEST_GROUPS:
-        raise ScheduleError([Problem("table", f"{groups} separate stretches; {FEWEST_GROUPS} or more are needed")])
+        held = f"{groups} separate stretch{'' if groups == 1 else 'es'}"
+        raise ScheduleError([Problem("table", f"{held}; {FEWEST_GROUPS} or more are needed")])
     n = reference.vector(selection.blocks.mean)
     w = selection.blocks.samples / selection.blocks.samples.mean()
     size = norm or max(float(np.sqrt((n**2).sum(axis=1).mean())), np.finfo(float).tiny)

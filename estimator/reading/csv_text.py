@@ -15,6 +15,7 @@ from estimator.reading.columns import Column
 from estimator.reading.json_text import parse_json
 from estimator.reading.problems import Problems, shown
 from estimator.reading.shape import check_extent
+from estimator.wording import counted
 
 SEPARATORS = ",;\t"
 """Of cells; the one that the header has most of."""
@@ -80,7 +81,7 @@ def _parse_table(text: str, start: int, problems: Problems) -> dict[str, Column]
         rows = [row if len(row) == len(header) else (row + [""] * len(header))[: len(header)] for row in rows]
         for k, cells in enumerate(parts):
             cells.append(_cells([row[k] for row in rows]))
-    problems.add_rows("table", uneven, lambda j: f"has {uneven[j]} cells where the header has {len(header)}")
+    problems.add_rows("table", uneven, lambda j: f"has {counted(uneven[j], 'cell')} where the header has {len(header)}")
     return named_columns(header, [_joined(cells) for cells in parts], problems)
 
 

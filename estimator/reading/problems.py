@@ -52,7 +52,11 @@ class Problems:
         for index in faulty[:ROWS_SHOWN]:
             self.add(field, message(index), index + 1)
         if more := len(faulty[ROWS_SHOWN:]):
-            self.add(field, f"{more} more rows have such a fault, the last of them row {faulty[-1] + 1}")
+            self.add(
+                field,
+                f"{more} more row{'' if more == 1 else 's'} {'has' if more == 1 else 'have'} such a fault, "
+                f"up to row {faulty[-1] + 1}",
+            )
 
     def fail(self, field: str, message: str) -> FormatError:
         """The error to raise when nothing more can be read; holds what was found before, too."""
@@ -75,7 +79,8 @@ class Problems:
         self._found.append(Problem(printable(field), printable(message), row))
 
     def _all(self) -> list[Problem]:
-        more = [Problem("file", f"{self._unsaid} more problems")] if self._unsaid else []
+        unsaid = self._unsaid
+        more = [Problem("file", f"{unsaid} more problem{'' if unsaid == 1 else 's'}")] if unsaid else []
         return self._found + more
 
 

@@ -11,6 +11,7 @@ from estimator.reading.columns import Column, Columns
 from estimator.reading.fields import Fields
 from estimator.reading.keys import COLUMNS, UNKNOWN_LOOKED_AT, meant_key
 from estimator.reading.problems import Problems, shown
+from estimator.wording import counted
 
 SENSOR_LIKE = re.compile(r"(a|g|w|acc|accel|gyr|gyro)?[ _]?([xyz]|\d{1,3})", re.IGNORECASE)
 """Names that people give to sensors: a1, gx, acc_3."""
@@ -70,7 +71,8 @@ def _row_count(lists: Mapping[str, Column], problems: Problems) -> int:
         return 0
     for name, cells in lists.items():
         if len(cells) != rows:
-            problems.add(name, f"has {len(cells)} values where the other columns have {rows}; give one per row")
+            held = counted(len(cells), "value")
+            problems.add(name, f"has {held} where the other columns have {rows}; give one per row")
     return rows
 
 

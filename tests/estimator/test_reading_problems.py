@@ -209,12 +209,19 @@ def test_a_single_position_cannot_be_calibrated(document, field):
     assert caught.value.problems[0].field == field
 
 
-def test_faulty_rows_beyond_five_are_counted():
+@pytest.mark.parametrize(("faulty", "told"), [(180, "175 more rows have"), (6, "1 more row has")])
+def test_faulty_rows_beyond_five_are_counted(faulty, told):
     document = builders.accelerometer_block(positions=100)
-    document["table"]["A1"][20:] = ["x"] * 180
+    document["table"]["A1"][20 : 20 + faulty] = ["x"] * faulty
     found = problems_of(document)
     assert [problem.row for problem in found] == [21, 22, 23, 24, 25, None]
-    assert "175 more rows have such a fault, the last of them row 200" in found[-1].message
+    assert f"{told} such a fault, up to row {20 + faulty}" in found[-1].message
+
+
+def test_a_column_of_one_value_is_told_as_one():
+    document = builders.accelerometer_block()
+    document["table"]["A1"] = [1.0]
+    assert "has 1 value where" in problems_of(document)[0].message
 
 
 def test_a_fault_of_every_row_is_one_problem():

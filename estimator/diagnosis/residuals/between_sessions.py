@@ -41,18 +41,25 @@ def deviation(now: SensorParameters, then: SensorParameters, norm: Array) -> Arr
 def carried(now: SensorParameters, frames: Array) -> Array:
     """(P, P) dimensionless: a change along tangents ``frames`` (m, 3, 2) as one along the tangents of ``now``."""
     m = len(frames)
-    full, one = np.eye(5 * m).reshape(m, 5, m, 5), np.arange(m)
-    full[one, 3:, one, 3:] = np.swapaxes(tangents(now.axis), -1, -2) @ frames
+    full, one = np.zeros((m, 5, m, 5)), np.arange(m)
+    full[one, :, one, :] = carried_each(now, frames)
     return full.reshape(5 * m, 5 * m)
 
 
+def carried_each(now: SensorParameters, frames: Array) -> Array:
+    """(m, 5, 5) dimensionless: the same of every sensor, whose parameters stay its own."""
+    each = np.broadcast_to(np.eye(5), (len(frames), 5, 5)).copy()
+    each[:, 3:, 3:] = np.swapaxes(tangents(now.axis), -1, -2) @ frames
+    return each
+
+
 def inverse_root(matrix: Array) -> Array:
-    """W (P, P), symmetric up to scale, with W'W the pseudo-inverse of a dimensionless covariance (P, P)."""
-    scale = np.sqrt(np.diagonal(matrix))
-    values, vectors = eigh(matrix / scale[:, None] / scale)
-    kept = values > NO_VARIANCE * values[-1]
+    """W (…, P, P), symmetric up to scale, with W'W the pseudo-inverse of a dimensionless covariance (…, P, P)."""
+    scale = np.sqrt(np.diagonal(matrix, axis1=-2, axis2=-1))
+    values, vectors = eigh(matrix / scale[..., :, None] / scale[..., None, :])
+    kept = values > NO_VARIANCE * values[..., -1:]
     inverse = np.where(kept, 1 / np.sqrt(np.where(kept, values, 1.0)), 0.0)
-    return np.asarray((vectors * inverse) @ vectors.T / scale)
+    return np.asarray((vectors * inverse[..., None, :]) @ np.swapaxes(vectors, -1, -2) / scale[..., None, :])
 
 
 def parameter_change(now: Baseline, history: Sequence[Baseline]) -> ParameterChange | None:

@@ -19,7 +19,7 @@ from scipy.special import chdtrc
 
 from estimator.arrays import tangents
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.between_sessions import carried, deviation, inverse_root
+from estimator.diagnosis.residuals.between_sessions import carried, carried_each, deviation, inverse_root
 from estimator.diagnosis.residuals.gauge import turn_response
 from estimator.rotations import common_turn, turn_of, vector_of
 from estimator.session import Array, CalibrationSession
@@ -28,6 +28,9 @@ ROUNDS = 20
 """Of Gauss–Newton; three to six are usual."""
 NEGLIGIBLE = 1e-10
 """rad (2e-5″): a step that no longer moves the place of linearisation."""
+NEAR = 1e-6
+"""Change of a direction cosine (0.2″) below which the start of Gauss–Newton is near enough: what is left to it is a
+step or two."""
 HUBER = 3.0
 """Standard errors of a sensor's change (root of χ² over its 5 elements, each) beyond which it weighs less."""
 SEEN = 1e-6
@@ -63,16 +66,20 @@ def turned_baseline(baseline: Baseline, turn: Array) -> Baseline:
     return replace(baseline, session=turned_session(baseline.session, turn), setting=setting, turn=vector_of(turn))
 
 
+def of_each(covariance: Array) -> Array:
+    """(m, 5, 5) of every sensor's own parameters, from the covariance (P, P) of all."""
+    m = len(covariance) // 5
+    return np.asarray(covariance.reshape(m, 5, m, 5)[np.arange(m), :, np.arange(m)])
+
+
 def turn_between(now: Baseline, earlier: Baseline) -> Array:
     """(3, 3) rotation, dimensionless, that takes the axes of an earlier session onto those of ``now``."""
     p, q = now.parameters, earlier.parameters
-    own, origin, design = now.covariance, earlier.covariance, turn_response(p)
-    m = len(design) // 5
-    turn, response = common_turn(q.axis, p.axis), design.reshape(m, 5, 3)
+    own, origin, response = of_each(now.covariance), of_each(earlier.covariance), turn_response(p).reshape(-1, 5, 3)
+    turn = common_turn(q.axis, p.axis, NEAR)
     for _ in range(ROUNDS):
-        mapping = carried(p, turn @ tangents(q.axis))
-        blocks = (own + mapping @ origin @ mapping.T).reshape(m, 5, m, 5)[np.arange(m), :, np.arange(m)]
-        roots = np.stack([inverse_root(block) for block in blocks])
+        mapping = carried_each(p, turn @ tangents(q.axis))
+        roots = inverse_root(own + mapping @ origin @ np.swapaxes(mapping, -1, -2))
         step = roots @ deviation(p, replace(q, axis=q.axis @ turn.T), now.setting.norm)[..., None]
         length = np.linalg.norm(step, axis=1, keepdims=True) / np.sqrt(5)
         weight = np.sqrt(np.minimum(1.0, HUBER / np.maximum(length, HUBER)))

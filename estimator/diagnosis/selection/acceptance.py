@@ -8,9 +8,9 @@ from estimator.diagnosis.selection.common_or_own import common_or_own
 from estimator.diagnosis.selection.lack_of_fit import with_unlike_noise, without_common_rows, without_misfits
 from estimator.diagnosis.selection.noise_claim import (
     doubted,
-    is_quieter,
     of_whole_kinds,
     sensors_of,
+    with_quieter_kinds_whole,
     with_unknown_scale,
     without_names_in_no_noise,
 )
@@ -56,8 +56,9 @@ def whatever_the_scale(start: SearchState, claims: tuple[NoiseClaim, ...]) -> Se
     wide = of_whole_kinds(start, claims)
     found = believed(with_unknown_scale(start, wide))
     left = doubted(found)
-    if sensors_of(left) != sensors_of(wide) and not is_quieter(start, left):
-        found = believed(with_unknown_scale(start, left, found.found))
+    again = with_quieter_kinds_whole(start, left)
+    if left and sensors_of(again) != sensors_of(wide):
+        found = believed(with_unknown_scale(start, again, found.found))
         left = doubted(found) or left
     return replace(found, noise_claims=left) if left else None
 

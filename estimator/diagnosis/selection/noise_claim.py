@@ -154,13 +154,27 @@ def of_whole_kinds(state: SearchState, claims: Iterable[NoiseClaim]) -> tuple[No
     wider, kinds = [], state.baseline.setting.kinds
     for claim in claims:
         if is_quieter(state, [claim]):
-            whole = tuple(i for i, k in enumerate(kinds) if k == claim.kind)
-            wider.append(replace(claim, sensors=whole, freedom=claim.freedom * len(whole) / len(claim.sensors)))
+            wider.append(of_its_kind(state, claim))
             continue
         rest = [i for i, k in enumerate(kinds) if k == claim.kind and i not in claim.sensors]
         others = [NoiseClaim(claim.kind, (i,), 1.0, 0.0) for i in rest]
         wider += [claim, *others]
     return tuple(wider)
+
+
+def of_its_kind(state: SearchState, claim: NoiseClaim) -> NoiseClaim:
+    """The claim, of all sensors of its kind."""
+    whole = tuple(i for i, k in enumerate(state.baseline.setting.kinds) if k == claim.kind)
+    return replace(claim, sensors=whole, freedom=claim.freedom * len(whole) / len(claim.sensors))
+
+
+def with_quieter_kinds_whole(state: SearchState, claims: tuple[NoiseClaim, ...]) -> tuple[NoiseClaim, ...]:
+    """The claims; of a kind of which nothing else is claimed than that it scatters less, its whole is claimed.
+
+    What is claimed of one kind tells nothing of another: that one is believed again, though this is not.
+    """
+    alone = {claim.kind for claim in claims if is_quieter(state, [c for c in claims if c.kind == claim.kind])}
+    return tuple(of_its_kind(state, claim) if claim.kind in alone else claim for claim in claims)
 
 
 def is_quieter(state: SearchState, claims: Iterable[NoiseClaim]) -> bool:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from estimator import CalibrationSession, calibrate, calibrate_extended, diagnose_group
-from estimator.groups.fixed import FixedEffect, calibrate_with, fixed, in_one_session
+from estimator.groups.fixed import EMPIRICAL, FixedEffect, calibrate_with, fixed, in_one_session
 from estimator.results import Calibration
 from tests.blind.world import Effect
 from tests.estimator.groups.cases import measured, worlds
@@ -89,3 +89,26 @@ def test_a_finding_is_fixed_with_the_spread_of_its_sessions() -> None:
     effect = fixed(finding)
     assert (effect.cause, effect.amplitude, effect.varies) == ("beta-eccentricity", finding.amplitude, False)
     assert effect.sigma[0] >= finding.sigma[0]
+
+
+WAVE = Effect("third-harmonic", (2e-4,), (1,), (0.5,))
+LEARNED = FixedEffect(
+    EMPIRICAL, ("A2",), "", (2e-4 * np.cos(0.5), 2e-4 * np.sin(0.5)), (1e-9, 1e-9), None, varies=False,
+    words=("sin 3β", "cos 3β"),
+)  # fmt: skip
+
+
+def test_a_learned_term_is_taken_out_of_the_readings() -> None:
+    world = worlds(1)[0]
+    wavy, truth = measured(world, [WAVE], 5), calibrate(measured(world, [], 5))
+    assert distance(calibrate_with(wavy, [LEARNED]), truth) < 0.05
+    assert distance(calibrate(wavy), truth) > 0.2
+
+
+def test_what_of_a_term_a_session_lacks_is_left_out() -> None:
+    session = replace(measured(worlds(1)[0], [], 5), temperature=None)
+    warm = replace(LEARNED, words=("sin 3β", "(T − T̄)"))
+    alone = replace(LEARNED, words=("sin 3β",), amplitude=LEARNED.amplitude[:1], sigma=LEARNED.sigma[:1])
+    assert np.array_equal(parameters(calibrate_with(session, [warm])), parameters(calibrate_with(session, [alone])))
+    elsewhere = calibrate_with(session, [replace(LEARNED, sensors=("B9",))])
+    assert np.array_equal(parameters(elsewhere), parameters(calibrate(session)))

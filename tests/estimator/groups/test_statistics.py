@@ -7,10 +7,13 @@ import numpy as np
 import pytest
 
 from estimator.calibration.calibrate import averaged
+from estimator.causes.contract import SensorCause
 from estimator.causes.sensor import CubicNonlinearity
 from estimator.diagnosis.residuals.flipped_run import with_its_flip
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.groups import SessionStatistics, statistics_of
+from estimator.groups.candidates import ALIKE, lasting_causes
+from estimator.groups.session_statistics import contradicted
 from tests.estimator.groups.cases import measured, world
 
 SESSION = measured(world(), [], 5)
@@ -40,7 +43,7 @@ def test_the_record_comes_back_from_its_json() -> None:
 
 
 def test_a_record_of_another_format_is_refused() -> None:
-    with pytest.raises(ValueError, match="imu-session-statistics/1"):
+    with pytest.raises(ValueError, match="imu-session-statistics/2"):
         SessionStatistics.from_dict({"format": "imu-session-statistics/0"})
 
 
@@ -67,3 +70,20 @@ def test_noise_that_the_readings_contradict_is_taken_as_they_show_it() -> None:
     assert kept.shrink.min() < 1
     (own,) = range(*block(kept, "cubic-nonlinearity", "A3").indices(len(kept.size)))
     assert kept.size[own] < 2.5 * KEPT.size[own]
+
+
+@pytest.mark.parametrize(("energy", "claims"), [(0.7, []), (60.0, [[1]])])
+def test_one_sensor_alone_is_never_believed_more_than_stated(energy: float, claims: list[list[int]]) -> None:
+    scatter, freedom = np.full(6, 10.5), np.full(6, 10.5)
+    scatter[1] = energy
+    assert contradicted(with_its_flip(averaged(SESSION)), scatter, freedom) == claims
+
+
+@pytest.mark.parametrize("cause", sorted(ALIKE))
+def test_courses_of_time_and_temperature_are_the_same_on_every_sensor(cause: str) -> None:
+    setting = with_its_flip(averaged(SESSION)).setting
+    (known,) = (c for c in lasting_causes() if c.identifier == cause)
+    assert isinstance(known, SensorCause)
+    grid: list[tuple[float, ...]] = [(600.0,)] if known.nonlinear_units else [()]
+    each = [known.terms(setting, i, grid) for i in range(6)]
+    assert all(np.array_equal(one, each[0]) for one in each)

@@ -26,12 +26,16 @@ def joint(of: Readings, q: float, column: Array, size: float) -> Array:
     return walked + np.diag(of.sigma[:, 0] ** 2) + DIFFUSE**2 + size**2 * np.outer(column, column)
 
 
+def place_of(kind: Kind, size: float) -> int:
+    """Among the sizes of a kind."""
+    return [own for of, own in PARTS if of is kind].index(size)
+
+
 def test_ratios_are_those_of_the_joint_distribution() -> None:
     of = one_history()
     family = shapes(of.time)
     found = fits(of, family)
-    part = next(p for p, (kind, size) in enumerate(PARTS) if kind is Kind.JUMP and size == 0.6)
-    for q, ratios in zip(WALKS, found.log_ratios(part), strict=True):
+    for q, ratios in zip(WALKS, found.log_ratios(Kind.JUMP)[place_of(Kind.JUMP, 0.6)], strict=True):
         for place, ratio in zip(np.flatnonzero(family.kind == Kind.JUMP), ratios, strict=True):
             column = family.columns[:, place]
             exact = [stats.multivariate_normal(np.zeros(7), joint(of, q, column, s)).logpdf(of.value[:, 0])
@@ -61,8 +65,8 @@ def test_a_drift_begins_anywhere_within_its_gap() -> None:
     t = np.array([0.0, 0.5, 1.0, 1.5, 2.0])
     one = readings(measured(np.random.default_rng(1), t, 0.8 * np.maximum(t - 1.45, 0.0), 0.03))
     family = shapes(t)
-    part = next(p for p, (kind, size) in enumerate(PARTS) if kind is Kind.LATE and size == 0.9)
-    own = fits(one, family, np.zeros(1)).log_ratios(part)[0][family.gap[family.kind == Kind.LATE] == 3]
+    ratios = fits(one, family, np.zeros(1)).log_ratios(Kind.LATE)[place_of(Kind.LATE, 0.9), 0]
+    own = ratios[family.gap[family.kind == Kind.LATE] == 3]
 
     def likelihood(onset: float, size: float = 0.9) -> float:
         of = stats.multivariate_normal(np.zeros(5), joint(one, 0.0, np.maximum(t - onset, 0.0), size))

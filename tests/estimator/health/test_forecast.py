@@ -10,6 +10,7 @@ from estimator.health.forecast import AHEAD, earliest, future, passage, reach, s
 from estimator.health.pooled import Prior, general_prior, learn
 from estimator.health.posterior import Draws
 from estimator.health.prognosis import Track, evidence, prognosis
+from estimator.health.shapes import Kind
 from estimator.session import Array
 from tests.estimator.health.histories import dates, measured, walk
 
@@ -24,7 +25,8 @@ def draws(count: int, level: Array, rate: float = 0.0, strength: float = 0.0) ->
     moving = np.zeros((count, k))
     moving[:, 0] = rate
     flat = np.ones(count)
-    return Draws(flat / count, np.tile(level, (count, 1)), moving, 0 * moving, flat, strength * flat, 1.0)
+    kind = np.full(count, Kind.START if rate else Kind.NONE)
+    return Draws(flat / count, np.tile(level, (count, 1)), moving, 0 * moving, flat, strength * flat, kind, 1.0)
 
 
 def chance_in(years: float, of: Draws, prior: Prior = NEVER, swing: float = 0.0) -> float:
@@ -46,14 +48,24 @@ def test_a_drift_passes_before_reach_90_in_one_history_of_five_and_a_found_one_i
     still, moving = draws(3500, np.zeros(1)), draws(500, np.zeros(1))
     rate = np.concatenate([still.rate, np.linspace(0.002, 1.0, 500)[:, None]])
     level, weight = np.zeros((4000, 1)), np.full(4000, 1 / 4000)
-    both = Draws(weight, level, rate, 0 * rate, np.ones(4000), np.zeros(4000), 1.0)
+    kind = np.where(rate[:, 0] > 0, Kind.LATE, Kind.NONE)
+    both = Draws(weight, level, rate, 0 * rate, np.ones(4000), np.zeros(4000), kind, 1.0)
     stays = staying(both, NEVER, 0.0, np.random.default_rng(1))
     for is_found, share in ((False, 0.2), (True, 0.1)):
         date = earliest(both, stays, drifts=is_found)
         assert np.mean(rate[rate > 0] * date >= 1) == pytest.approx(share, abs=0.02)
-    alone = replace(moving, rate=rate[3500:])
+    alone = replace(moving, rate=rate[3500:], kind=kind[3500:])
     stays = staying(alone, NEVER, 0.0, np.random.default_rng(1))
     assert earliest(alone, stays, drifts=False) == pytest.approx(1 / 0.9, rel=0.02)
+
+
+def test_a_young_steep_drift_does_not_hide_behind_a_slow_old_one() -> None:
+    """Three in four drift slowly from the start, one began late and is four times as steep: of it one in five at most
+    passes before the date."""
+    rate = np.concatenate([np.linspace(0.1, 0.2, 3000), np.linspace(0.4, 0.8, 1000)])[:, None]
+    both = replace(draws(4000, np.zeros(1)), rate=rate, kind=np.repeat([Kind.START, Kind.LATE], [3000, 1000]))
+    date = earliest(both, staying(both, NEVER, 0.0, np.random.default_rng(1)), drifts=False)
+    assert np.mean(rate[3000:] * date >= 1) == pytest.approx(0.2, abs=0.02)
 
 
 def test_an_axis_is_out_when_it_leaves_the_disc_not_a_square() -> None:

@@ -25,7 +25,8 @@ def history(errors: Array, moved: Array | float = 0.0, law: int = 0) -> Readings
 
 def told(of: Readings) -> Evidence:
     found = fits(of, shapes(of.time))
-    return Evidence(found.span, found.log_evidence(), log_tails(of, found))
+    logs = found.log_evidence()
+    return Evidence(found.span, logs, log_tails(of, found.family, logs))
 
 
 def p_value(of: Readings) -> float:
@@ -51,8 +52,7 @@ def test_heavy_tails_are_learned_from_a_type_and_normal_ones_too() -> None:
 
 @pytest.mark.parametrize("moved", [np.linspace(0.0, 3.0, 10), np.cumsum(np.tile([0.5, -0.3], 5))])
 def test_what_moves_says_nothing_of_tails(moved: Array) -> None:
-    logs = log_tails(of := history(np.random.default_rng(2).standard_normal(10), moved), fits(of, shapes(of.time)))
-    assert np.ptp(logs) < 0.1
+    assert np.ptp(told(history(np.random.default_rng(2).standard_normal(10), moved)).log_tails) < 0.1
 
 
 def test_of_heavy_tails_alarms_are_as_rare_as_stated() -> None:

@@ -1,24 +1,33 @@
 """The stated noise is a claim."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy import stats
+from scipy.optimize import brentq
+from scipy.special import polygamma
 
-from benchmarks.study.other_noise import Wish, in_orientations
+from benchmarks.study.other_noise import Hidden, Wish, beside_gyros, in_logs, in_orientations
 from estimator import diagnose, read_session
+from estimator.causes import cause
 from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.diagnosis.selection.acceptance import whatever_the_scale
 from estimator.diagnosis.selection.noise_claim import doubted, pure_error, without_names_in_no_noise
 from estimator.diagnosis.selection.start import begin
 from estimator.diagnosis.signatures.noise import NoiseClaim
 from estimator.session import ACCELEROMETER, CalibrationSession
 from tests.blind.cases import draw_case
-from tests.estimator.calibration.cases import accelerometers, block
+from tests.estimator.calibration.cases import accelerometers, block, gyros
 from tests.estimator.causes.hiding import Scene
 from tests.estimator.causes.physics import World
 from tests.estimator.causes.worlds import truth_of, wandering
 from tests.estimator.diagnosis.selection.small import SENSOR, candidate, effect, measured, start
 from tests.estimator.diagnosis.selection.test_common_or_own import swaying
+
+PAGE = Path(__file__).parents[4] / "docs" / "diagnosis" / "recordings" / "stated-errors.md"
 
 
 def stated(session: CalibrationSession, factor: float, sensors: slice = slice(None)) -> CalibrationSession:
@@ -59,6 +68,29 @@ def test_in_orientations_too_where_no_sensor_by_itself_tells_its_noise(factor: f
     found = diagnose(read_session(in_orientations(Wish("", hidden=True, seed=(5, 4, 1, 2)), factor).session))
     assert [(f.cause, f.sensors) for f in found.findings] == [("bias-jump", ("A5",))]
     assert [scale.factor for scale in found.noise] == pytest.approx([1 / factor], rel=0.25)
+
+
+@pytest.mark.parametrize("world", [beside_gyros, in_logs])
+@pytest.mark.parametrize("hidden", [False, True])
+def test_a_jump_is_named_and_nothing_else_beside_gyros_and_in_rests_that_settle(
+    world: Callable[[Wish], Hidden], hidden: bool
+) -> None:
+    found = diagnose(read_session(world(Wish("", hidden, seed=(5, 6, 1, 2))).session))
+    assert [f.cause for f in found.findings] == ["bias-jump"] * hidden
+
+
+def test_gyros_whose_effects_passed_for_noise_are_believed_again_beside_accelerometers_that_are_not() -> None:
+    """Two kinds of sensors: half the gyros drift, and the accelerometers' errors are stated three times too large."""
+    schedule = wandering(block((*accelerometers(4), *gyros(4)), 12))
+    noise = np.array([3e-6] * 4 + [0.3] * 4)
+    session = stated(Scene(World(schedule, truth_of(schedule)), noise).measured(1), 3.0, slice(0, 4))
+    ramp = 20 * noise * np.linspace(-1, 1, len(session.readings))[:, None] * [0, 0, 0, 0, 1, -1, 0, 0]
+    begun = begin(baseline_of(replace(session, readings=session.readings + ramp)), [], [cause("bias-ramp")])
+    found = whatever_the_scale(begun, doubted(begun))
+    assert found is not None
+    assert [claim.kind for claim in found.noise_claims] == [ACCELEROMETER]
+    assert found.baseline.unstated.tolist() == [True] * 4 + [False] * 4
+    assert sorted(i for f in found.found for i in f.best.sensors) == [4, 5]
 
 
 def test_one_noisy_sensor_is_excess_noise_and_no_wrong_claim() -> None:
@@ -154,3 +186,16 @@ def test_no_cause_is_told_from_scatter_that_is_no_noise(ratio: float, kept: int)
     named = tuple(candidate(state, "bias-ramp", (sensor,)) for sensor in (SENSOR, 3))
     claim = NoiseClaim(ACCELEROMETER, (SENSOR,), ratio, 20.0)
     assert len(without_names_in_no_noise(replace(state, found=named, noise_claims=(claim,))).found) == kept
+
+
+def test_what_a_prior_in_place_of_the_switch_would_cost_is_what_the_page_says() -> None:
+    """One in a hundred over a thousand candidates, a sensor of fourteen degrees of freedom."""
+    spread = np.log(3) / 2
+    worth = brentq(lambda dof: np.sqrt(polygamma(1, dof / 2)) / 2 - spread, 0.1, 50.0)
+    tail, dof = 0.01 / 1000 / 2, 14 + worth
+    known, unknown = stats.norm.isf(tail), stats.t.isf(tail, dof)
+    assert worth == pytest.approx(2.5, abs=0.05)
+    shown = [100 * stats.norm.sf(known - s) for s in (6, 8)] + [100 * stats.nct.sf(unknown, dof, s) for s in (6, 8)]
+    assert [round(share) for share in shown] == [94, 100, 46, 89]
+    page = " ".join(PAGE.read_text(encoding="utf-8").split())
+    assert "strength 6 in 46 % of its sessions instead of 94 %, of strength 8 in 89 % instead of all" in page

@@ -1,0 +1,104 @@
+"""What the sessions of a unit show together, and whether the latest of them has it.
+
+Theory
+------
+An effect that the pool of all sessions shows may have ended before the latest one. Its amplitude from the n others is
+a ~ N(â, V), with V = σ² + τ² what is not known of it in one session. The latest session with score U and information F
+then says by the factor p(U | a) / p(U | none) whether it has the effect. That n sessions of n had it makes the odds
+n + 1 beforehand (Laplace's rule of succession).
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from estimator.causes.contract import Cause
+from estimator.diagnosis.results import Rival
+from estimator.groups.evidence import log_sum
+from estimator.groups.findings import Told, finding_of, told
+from estimator.groups.layout import UNIT, Layout
+from estimator.groups.random_effects import mean_of
+from estimator.groups.results import GroupFinding
+from estimator.groups.selection import select
+from estimator.groups.statistics import SessionStatistics
+from estimator.groups.terms import predictive
+
+SURE = 0.9
+"""Probability that the latest session has an effect, from which on it is named there: at strength 3 in each of eleven
+sessions one name in twenty is missed, and one in twelve outlasts its effect."""
+
+ENDED = 0.05
+"""Probability below which the latest session is said to lack it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Lasting:
+    """An effect of a unit's sessions, as the latest of them may have it."""
+
+    finding: GroupFinding
+    """Of all sessions."""
+    others: GroupFinding
+    """The same with the amplitude that the others have, without the latest."""
+    sessions: int
+    """That speak of it, the latest among them."""
+    here: float
+    """Probability that the latest session has it."""
+    ranking: tuple[Rival, ...]
+    """It and what the pool does not tell from it, likeliest first."""
+
+
+def lasting(records: Sequence[SessionStatistics], catalogue: Sequence[Cause]) -> list[Lasting]:
+    """What the sessions of a unit, oldest first, show together of what the latest of them can tell."""
+    layout = Layout.of(records, UNIT)
+    known = {cause.identifier for cause in catalogue}
+    tables = layout.hypotheses.values()
+    barred = frozenset(h.group for table in tables for h in table if not h.nameless and h.cause not in known)
+    selection = select(layout, barred)
+    found = []
+    for f in selection.found:
+        one = told(selection, f)
+        whole = finding_of(selection, one, [("", None)] * len(one.rivals))
+        found += list(_in_latest(one, whole))
+    return found
+
+
+def _in_latest(one: Told, whole: GroupFinding) -> Iterator[Lasting]:
+    """The finding as the latest session may have it; nothing where that session cannot tell."""
+    U, F, latest = one.U, one.F, len(one.F) - 1
+    seen = (np.diagonal(F, axis1=1, axis2=2).sum(axis=1) > 0) & (np.arange(len(F)) >= one.found.since)
+    others = seen & (np.arange(len(F)) < latest)
+    if not seen[latest] or not others.any():
+        return
+    mean = mean_of(U[others], F[others])
+    spread = mean.covariance + mean.spread**2 * np.eye(len(mean.value))
+    count = int(others.sum())
+    yield Lasting(
+        finding=whole,
+        others=replace(
+            whole,
+            amplitude=tuple(mean.value.tolist()),
+            sigma=tuple(s if s > 0 else None for s in mean.sigma.tolist()),
+            spread=(mean.spread,),
+        ),
+        sessions=count + 1,
+        here=probability(predictive(mean.value, spread, U[latest], F[latest]), count),
+        ranking=tuple(_ranking(one)),
+    )
+
+
+def _ranking(one: Told) -> Iterator[Rival]:
+    """Shares of all explanations, given that one of them acts."""
+    every = list(one.scale.ranked())
+    whole = float(log_sum(np.array([value for _, _, value in every])))
+    shown = {one.found.hypothesis.group, *(n.hypothesis.group for n in one.rivals)}
+    for (w, k), h, value in every:
+        if h.group in shown:
+            strength = float(np.sqrt(one.scale.weighed[w].statistic[k]))
+            yield Rival(h.cause, (h.sensor,) if h.sensor else (), float(np.exp(value - whole)), strength)
+
+
+def probability(gained: float, others: int) -> float:
+    """That a session has what so many others have; ``gained``: ln of the factor by which its readings speak for it."""
+    odds = np.log(others + 1.0) + gained
+    return float(1 / (1 + np.exp(-np.clip(odds, -50, 50))))

@@ -1,0 +1,154 @@
+"""A diagnosis with the evidence of the unit's earlier sessions: what no session alone shows, and all together do.
+
+A session's own readings are searched first. Then its statistics and those of the earlier sessions are pooled, by the
+rules that hold for a group. An effect that they show together, and the session by itself does not name, is taken out
+of the readings of every session at the amplitude that the others have, and the search is made anew: what is left is
+the session's own. So its name, its amplitude and the gain rest on readings that took no part.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from estimator.causes.catalogue import CATALOGUE, cause
+from estimator.causes.contract import Cause
+from estimator.diagnosis.diagnose import PutRight, diagnosed, put_right
+from estimator.diagnosis.diagnose import diagnose as by_itself
+from estimator.diagnosis.explanation.extended_model import enlarged
+from estimator.diagnosis.explanation.naming import merged, named_cause
+from estimator.diagnosis.record.undo import undo_record_errors
+from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.diagnosis.residuals.flipped_run import about_its_flip
+from estimator.diagnosis.results import Diagnosis, Finding, OverSessions
+from estimator.groups.fixed import added_by, fixed, taken_out
+from estimator.groups.lasting import ENDED, SURE, Lasting, lasting
+from estimator.groups.session_statistics import kept
+from estimator.groups.statistics import SessionStatistics
+from estimator.session import CALIBRATIONS, Array, CalibrationSession
+
+MANY = 16
+"""Sensors from which on the earlier sessions' statistics are not made beside a diagnosis: they would take longer than
+it does. `diagnose_group` makes them, and what was kept of the sessions may be passed in."""
+
+
+def diagnose(
+    session: CalibrationSession,
+    history: Sequence[CalibrationSession] = (),
+    *,
+    catalogue: Sequence[Cause] = CATALOGUE,
+    records: Sequence[SessionStatistics] | None = None,
+) -> Diagnosis:
+    """What the simulation gets wrong about a session, with what only all sessions of the unit together show.
+
+    Parameters
+    ----------
+    session : of a programme that calibrates a block; of an alignment on a turntable, where lever arms are looked for.
+    history : earlier sessions of the unit, oldest first.
+    catalogue : the causes to consider.
+    records : what `statistics_of` kept of earlier sessions, oldest first, of the history and of sessions before it;
+        None where it is to be made of the history.
+
+    Raises
+    ------
+    ScheduleError : the session cannot be calibrated at all.
+    """
+    pooled = session.programme in CALIBRATIONS and (records if records is not None else history)
+    if not pooled:
+        return by_itself(session, history, catalogue=catalogue)
+    begun = put_right(session, history, catalogue)
+    own = diagnosed(begun, catalogue)
+    if records is None:
+        records = () if len(session.sensors) > MANY else [record_of(b, catalogue) for b in begun.earlier]
+    if not records or any(s.of_record for s in own.structures):
+        return own
+    now = kept(begun.right.session, about_its_flip(begun.right), ())
+    return with_lasting(begun, own, lasting([*records, now], catalogue), catalogue)
+
+
+def record_of(earlier: Baseline, catalogue: Sequence[Cause]) -> SessionStatistics:
+    """What is kept of a fitted session of the history, its record put right."""
+    _, right = undo_record_errors(earlier, (), catalogue)
+    return kept(right.session, about_its_flip(right), ())
+
+
+def with_lasting(begun: PutRight, own: Diagnosis, found: Sequence[Lasting], catalogue: Sequence[Cause]) -> Diagnosis:
+    """The session's own diagnosis with the lasting effects that it has and does not show by itself.
+
+    One that it shows once that of the others is taken out has another amplitude here: it is the session's own then.
+    What has ended is taken out of the history, whose parameters absorbed it: else its end would show as a new effect.
+    """
+    ended = [one for one in found if one.here < (SURE if names(own, one) else ENDED)]
+    wanted = [one for one in found if one.here >= SURE and not names(own, one)]
+    while wanted or ended:
+        rest, more = without(begun, wanted, ended)
+        left = diagnosed(rest, catalogue)
+        held = [one for one in wanted if not names(left, one)]
+        if len(held) == len(wanted):
+            named = merged([(cause(one.finding.cause), finding_of(one)) for one in wanted])
+            return replace(
+                left,
+                findings=(*left.findings, *named),
+                gain=replace(left.gain, before=own.gain.before),
+                baseline=own.baseline,
+                calibration=enlarged(left.calibration, more),
+                notes=(*own.notes, *map(words_of_end, ended)),
+            )
+        wanted = held
+    return own
+
+
+def names(diagnosis: Diagnosis, one: Lasting) -> bool:
+    """Whether a diagnosis names an effect by itself."""
+    own = one.finding
+    return any(f.cause == own.cause and set(own.sensors) <= set(f.sensors) for f in diagnosis.findings)
+
+
+def without(begun: PutRight, lasting: Sequence[Lasting], ended: Sequence[Lasting]) -> tuple[PutRight, Array]:
+    """A session without lasting effects and its history without these and those that ended; and what is not known of
+    the lasting ones as covariance of the session's parameters (P, P), SI."""
+    right, more = taken_from(begun.right, lasting)
+    earlier = tuple(taken_from(b, [*lasting, *ended])[0] for b in begun.earlier)
+    return replace(begun, right=right, earlier=earlier), more
+
+
+def taken_from(baseline: Baseline, effects: Sequence[Lasting]) -> tuple[Baseline, Array]:
+    """One session without the effects that it has."""
+    date = baseline.session.started_at or ""
+    own = [fixed(one.others) for one in effects if one.finding.since is None or one.finding.since <= date]
+    added = added_by(baseline, own, ())
+    if added is None:
+        return baseline, np.zeros(baseline.covariance.shape)
+    rest, more = taken_out(baseline, added)
+    return baseline_of(rest), more
+
+
+def finding_of(one: Lasting) -> Finding:
+    """A lasting effect as a finding of the session; its amplitude is that of all sessions."""
+    whole, known = one.finding, cause(one.finding.cause)
+    return replace(
+        named_cause(known, whole.sensors, min(1.0, 1 / whole.e_value), whole.strength),
+        amplitude=whole.amplitude,
+        sigma=tuple(0.0 if s is None else s for s in whole.sigma),
+        units=whole.units,
+        nonlinear_each=({} if whole.shape is None else {"s": whole.shape},),
+        alternatives=whole.alternatives,
+        ranking=one.ranking,
+        new=False if whole.since is None else None,
+        over_sessions=OverSessions(
+            sessions=one.sessions,
+            e_value=whole.e_value,
+            form=whole.form,
+            since=whole.since,
+            spread=whole.spread,
+            here=one.here,
+        ),
+    )
+
+
+def words_of_end(one: Lasting) -> str:
+    """That the session lacks what the earlier ones have."""
+    known = cause(one.finding.cause).name.capitalize()
+    where = f" on {one.finding.sensors[0]}" if one.finding.sensors else ""
+    return f"{known}{where}: {one.sessions - 1} earlier sessions show it together, and this one does not have it."
