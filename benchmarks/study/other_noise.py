@@ -1,4 +1,5 @@
-"""Noise that is not normal, or differs ten times between sensors; and arbitrary orientations beside the stand."""
+"""Noise that is not normal, or differs ten times between sensors; and arbitrary orientations beside the stand, with
+gyros, and as logs that settle after each turn."""
 
 import json
 from collections.abc import Callable, Iterator
@@ -10,6 +11,7 @@ import numpy as np
 
 from benchmarks.study.rates import rate
 from benchmarks.study.report import table
+from benchmarks.study.rests import SCATTER, settling, with_gyros
 from benchmarks.study.stated_noise import HIDDEN, NOISE, restated
 from benchmarks.study.stated_noise import Wish as Stated
 from benchmarks.study.turned_pairs import PROGRAMMES, Programme, draw_pair
@@ -32,7 +34,9 @@ INTRODUCTION = (
     "ten times as noisy as the others, and stated so. And blocks in 24 arbitrary orientations, their errors stated "
     "right, too small, too large, or with such tails. The effect is of strength 12 on the stand; in orientations it is "
     "a zero that jumps, fifteen standard errors in all, of which parameters and unknown directions take up more than "
-    "half in some."
+    "half in some. Such blocks with three gyros, of which it is a gyro's zero that jumps. And such blocks as logs of "
+    "rests of six seconds in which each turn leaves every zero off by another amount, three noises of a sample, that "
+    "settles within a second: means are off by nine of their white standard errors, and the jump is fifteen of these."
 )
 
 
@@ -110,18 +114,40 @@ def in_orientations(wish: Wish, factor: float = 1.0, tails: bool = False) -> Hid
     session = draw_pair(Pair(programme, 0.0), rng).session
     if wish.hidden:
         session = with_jump(session, rng)
-    causes = frozenset({"bias-jump"} if wish.hidden else ())
-    return Hidden(restated(session, Stated(factor, "all", wish.hidden, wish.seed, "")), [], causes)
+    return Hidden(restated(session, Stated(factor, "all", wish.hidden, wish.seed, "")), [], jump_of(wish))
 
 
-def with_jump(session: dict[str, Any], rng: np.random.Generator) -> dict[str, Any]:
-    """The zero of one sensor jumps in the middle half: `STRENGTH` and a fourth more in all, standard errors."""
+def beside_gyros(wish: Wish) -> Hidden:
+    """A block with gyros, one of which may jump."""
+    rng = np.random.default_rng(wish.seed)
+    session = with_gyros(draw_pair(Pair(ORIENTATIONS[0], 0.0), rng).session, rng)
+    return Hidden(with_jump(session, rng, "gyroscope") if wish.hidden else session, [], jump_of(wish))
+
+
+def in_logs(wish: Wish) -> Hidden:
+    """A block whose zeros settle after each turn."""
+    rng = np.random.default_rng(wish.seed)
+    session = draw_pair(Pair(ORIENTATIONS[0], 0.0), rng).session
+    session = with_jump(session, rng, times=SCATTER) if wish.hidden else session
+    return Hidden(settling(session, rng), [], jump_of(wish))
+
+
+def jump_of(wish: Wish) -> frozenset[str]:
+    """What acts where it is wished."""
+    return frozenset({"bias-jump"} if wish.hidden else ())
+
+
+def with_jump(
+    session: dict[str, Any], rng: np.random.Generator, kind: str = "accelerometer", times: float = 1.0
+) -> dict[str, Any]:
+    """The zero of one sensor jumps in the middle half: `STRENGTH` and a fourth more in all, in so many standard
+    errors."""
     document = json.loads(json.dumps(session))
-    name = str(rng.choice([sensor["name"] for sensor in document["sensors"]]))
+    name = str(rng.choice([sensor["name"] for sensor in document["sensors"] if sensor["kind"] == kind]))
     readings, error = np.array(document["table"][name]), document["table"][f"{name}_se"][0]
     rows = len(readings)
     step = np.arange(rows) >= rng.integers(rows // 4, 3 * rows // 4)
-    size = STRENGTH * error / np.sqrt(rows * step.mean() * (1 - step.mean()))
+    size = times * STRENGTH * error / np.sqrt(rows * step.mean() * (1 - step.mean()))
     document["table"][name] = (readings + 1.25 * size * step).tolist()
     return dict(document)
 
@@ -133,6 +159,8 @@ WORLDS: dict[str, Callable[[Wish], Hidden]] = {
     "orientations, stated × ⅓": lambda wish: in_orientations(wish, 1 / 3),
     "orientations, stated × 3": lambda wish: in_orientations(wish, 3.0),
     "orientations, heavy tails": lambda wish: in_orientations(wish, tails=True),
+    "orientations, gyros beside": beside_gyros,
+    "orientations, logs that settle after each turn": in_logs,
 }
 ONLY_SOUND = {"stand, one sensor ten times noisier"}
 

@@ -1,0 +1,101 @@
+"""How PostgreSQL reads what pages of a large fleet ask: the plans, as a section of docs/how-to/large-fleets.md.
+
+``python -m benchmarks.fleet.plans`` fills a fleet of 10,000 units and writes the section anew; with the address of a
+database that was filled so, it reads that one.
+"""
+
+import re
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from sqlalchemy import event, text
+
+from benchmarks.fleet.fill import NOW, Size, fill
+from service.flows.summarise import summarise_all
+from service.records.fleet import FleetQuery, Order
+from service.records.session_list import SessionQuery
+from service.storage import Database, Files, Storage
+from service.storage.queries.flags import FlagQuery
+from service.storage.store import Store
+from tests.databases import postgres_databases
+
+PAGE = Path(__file__).parents[2] / "docs/how-to/large-fleets.md"
+MARK = "<!-- written by python -m benchmarks.fleet.plans -->"
+SIZE = Size(10_000, 20)
+UNIT, STAND = "BA-003-00007", "ODG-1"
+QUESTIONS: dict[str, Callable[[Store], object]] = {
+    "The counts of the fleet page": lambda store: store.fleet.condition(),
+    "A page of units, worst first": lambda store: store.fleet.units(FleetQuery(limit=51)),
+    "The next page, after a unit": lambda store: store.fleet.units(FleetQuery(limit=51, after=UNIT)),
+    "Units last measured on a stand": lambda store: store.fleet.units(
+        FleetQuery(stand=STAND, order=Order.LAST, backwards=True, limit=26)
+    ),
+    "Who drifts unlike the others": lambda store: store.populations.furthest(6),
+    "Due dates": lambda store: store.outlooks.due(1000),
+    "How stands are used": lambda store: store.stands.uses(),
+    "Open flags": lambda store: store.flags.page(FlagQuery(unresolved=True, limit=101)),
+    "Sessions, the newest first": lambda store: store.sessions.wanted(SessionQuery(limit=51)),
+    "What the page of a unit begins with": lambda store: store.fleet.unit_known(UNIT, NOW),
+}
+NODE = re.compile(r"(Seq Scan|Index Only Scan|Index Scan|Bitmap Index Scan)( Backward)?( using (\w+))?( on (\w+))?")
+"""Where rows come from."""
+
+
+def main() -> None:
+    """Writes the section."""
+    if len(sys.argv) > 1:
+        lines = _written(Storage(Database(sys.argv[1]), Files(Path(tempfile.gettempdir()))))
+    else:
+        with postgres_databases() as databases, tempfile.TemporaryDirectory(prefix="imu-plans-") as folder:
+            storage = Storage(Database(databases.migrated()), Files(Path(folder)))
+            fill(storage, SIZE)
+            lines = _written(storage)
+    head = PAGE.read_text(encoding="utf-8").split(MARK)[0]
+    PAGE.write_text(f"{head}{MARK}\n\n{lines}\n", encoding="utf-8")
+
+
+def _written(storage: Storage) -> str:
+    summarise_all(storage, NOW)
+    lines = "\n".join(_lines(storage))
+    storage.database.close()
+    return lines
+
+
+def _lines(storage: Storage) -> Iterator[str]:
+    yield "| what is asked | what PostgreSQL reads |"
+    yield "| --- | --- |"
+    for name, question in QUESTIONS.items():
+        yield f"| {name} | {'; '.join(dict.fromkeys(_reads(storage, question)))} |"
+
+
+def _reads(storage: Storage, question: Callable[[Store], object]) -> Iterator[str]:
+    """The tables and indexes of every statement of a question, as EXPLAIN names them."""
+    asked: list[tuple[str, object]] = []
+
+    def note(_c: object, _k: object, statement: str, parameters: object, *_: object) -> None:
+        asked.append((statement, parameters))
+
+    engine = storage.database.engine
+    event.listen(engine, "before_cursor_execute", note)
+    with storage.database.reading() as store:
+        question(store)
+    event.remove(engine, "before_cursor_execute", note)
+    with engine.connect() as connection:
+        for statement, parameters in asked:
+            rows = connection.exec_driver_sql(f"EXPLAIN {statement}", parameters)  # type: ignore[arg-type]
+            yield from (_read(match) for (line,) in rows for match in NODE.finditer(line))
+        connection.execute(text("ROLLBACK"))
+
+
+def _read(node: re.Match[str]) -> str:
+    """``sessions by pk_sessions``; without an index the whole of a table."""
+    table, index = node[6], node[4]
+    if node[1] == "Bitmap Index Scan":
+        return f"`{table}`"
+    return f"`{table}` by `{index}`" if index else f"all of `{table}`"
+
+
+if __name__ == "__main__":
+    main()
