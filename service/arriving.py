@@ -1,6 +1,7 @@
 """Uploads on their way in: every part is counted, hashed and put on disk as it comes."""
 
 from collections.abc import AsyncIterator
+from dataclasses import dataclass
 from io import BytesIO
 from typing import Annotated
 
@@ -11,11 +12,13 @@ from starlette.datastructures import FormData, Headers, UploadFile
 from starlette.exceptions import HTTPException
 from starlette.formparsers import MultiPartException, MultiPartParser
 
+from estimator.errors import Problem
+from service.admission import PersonOf
 from service.dependencies import PlaceOf, SettingsOf, StorageOf, limited
-from service.errors import TooLargeError
+from service.errors import RefusedError, TooLargeError
+from service.flows.attach_file import Attaching
 from service.ingest.formats import may_be_log
 from service.records.received import Content
-from service.settings import Settings
 from service.storage.landing import Landing, Landings
 
 MOST_FIELDS = 10
@@ -26,9 +29,9 @@ BAD_REQUEST = 400
 class Arriving:
     """Where the files of one request land."""
 
-    def __init__(self, request: Request, place: Landings, settings: Settings) -> None:
+    def __init__(self, request: Request, place: Landings, whole: int, log: int) -> None:
         self._request, self._place = request, place
-        self._whole, self._log = settings.max_upload_bytes, settings.max_log_bytes
+        self._whole, self._log = whole, log
 
     async def body(self) -> Content:
         """The body as one file."""
@@ -102,8 +105,54 @@ class _Form(MultiPartParser):
 
 async def _arriving(request: Request, settings: SettingsOf, storage: StorageOf, _: PlaceOf) -> AsyncIterator[Arriving]:
     with storage.files.arriving() as place:
-        yield Arriving(request, place, settings)
+        yield Arriving(request, place, settings.max_upload_bytes, settings.max_log_bytes)
 
 
+async def _attaching(request: Request, settings: SettingsOf, storage: StorageOf, _: PlaceOf) -> AsyncIterator[Arriving]:
+    with storage.files.arriving() as place:
+        yield Arriving(request, place, settings.max_attachment_bytes, settings.max_attachment_bytes)
+
+
+AttachingOf = Annotated[Arriving, Depends(_attaching, scope="function")]
+"""The same for a file that is attached and never read."""
 ArrivingOf = Annotated[Arriving, Depends(_arriving, scope="function")]
 """Where uploads land, until they were worked on."""
+
+
+LONGEST = {"unit": 200, "session": 200, "text": 2000, "by": 200}
+"""Characters of the form's fields, as everywhere."""
+
+
+@dataclass(frozen=True)
+class SentAttachment:
+    """A file, and who sends it."""
+
+    given: Attaching
+    who: str
+
+
+async def _sent(arriving: AttachingOf, person: PersonOf) -> SentAttachment:
+    """The part `file` of a form, with what its fields say."""
+    form = await arriving.form(most_files=1)
+    file = form.get("file")
+    said = {name: text.strip() if isinstance(text := form.get(name), str) else "" for name in LONGEST}
+    who = person.signs(said.pop("by"))
+    faults = [Problem(name, fault) for name, text in (*said.items(), ("by", who)) if (fault := _fault(name, text))]
+    if not who:
+        faults.append(Problem("by", "is missing: say who attaches the file"))
+    if not isinstance(file, LandedFile) or not file.filename:
+        faults.append(Problem("file", "is missing from the form"))
+    if faults or not isinstance(file, LandedFile):
+        raise RefusedError("The file cannot be attached.", tuple(faults))
+    return SentAttachment(Attaching(file.filename or "", await file.content(), **said), who)
+
+
+def _fault(name: str, text: str) -> str:
+    """Why a field of the form cannot be kept; empty where it can."""
+    if len(text) > LONGEST[name]:
+        return f"is longer than {LONGEST[name]} characters"
+    return "holds a character that cannot be stored" if "\x00" in text else ""
+
+
+SentOf = Annotated[SentAttachment, Depends(_sent)]
+"""The file that was sent."""

@@ -67,6 +67,13 @@ def _reading(request: Request) -> Iterator[Store]:
         yield store
 
 
+def _summarised(request: Request) -> Iterator[Store]:
+    own = application_of(request)
+    own.diagnoses.until_summarised()
+    with own.storage.database.reading() as store:
+        yield store
+
+
 def _reader(request: Request) -> Reader:
     return application_of(request).diagnoses
 
@@ -83,7 +90,8 @@ def _groups(request: Request) -> GroupReader:
 
 def _desk(request: Request, storage: StorageOf) -> Desk:
     own = application_of(request)
-    return Desk(storage, laboratory_of(own.settings), Rules(own.settings.four_eyes), own.seal, asked(request.scope))
+    laboratory = laboratory_of(own.settings)
+    return Desk(storage, own.diagnoses.made, laboratory, Rules(own.settings.four_eyes), own.seal, asked(request.scope))
 
 
 def _language(request: Request) -> Language:
@@ -135,3 +143,5 @@ Now = Annotated[datetime, Depends(_now)]
 """The time of the request, UTC."""
 Reading = Annotated[Store, Depends(_reading, scope="function")]
 """The database as one read-only transaction sees it."""
+ReadingFleet = Annotated[Store, Depends(_summarised, scope="function")]
+"""The same, with what is kept of the fleet as a whole made before, where no process beside the requests makes it."""

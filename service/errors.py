@@ -11,7 +11,8 @@ ServiceError (500)
 ├── NoSpaceError (507)        the disk is full; nothing was stored
 ├── DamagedError (500)        a stored file is not what was uploaded, and is not given out
 └── AwayError (503)           the database or the folder of files cannot be used; try again after `retry_after`
-    └── BusyError (503)       too much is being read at once; nothing was stored
+    ├── BusyError (503)       too much is being read at once; nothing was stored
+    └── PendingError (503)    what is asked for rests on what is still being made; ask again after `retry_after`
 """
 
 from http import HTTPStatus
@@ -101,3 +102,10 @@ class AwayError(ServiceError):
 
 class BusyError(AwayError):
     """Too many large files are being read at once; nothing of this one was stored."""
+
+
+class PendingError(AwayError):
+    """What is asked for rests on what is still being made."""
+
+    retry_after = 2
+    """A larger session is diagnosed in that time."""

@@ -107,6 +107,9 @@ class Settings(BaseSettings):
         description="Largest upload of CSV or Parquet, bytes: beyond max_upload_bytes it must be a raw log, which is "
         "averaged while it is scanned.",
     )
+    max_attachment_bytes: int = Field(
+        default=32 * 1024 * 1024, gt=0, description="Largest file that may be attached to a unit or session, bytes."
+    )
     max_body_bytes: int = Field(
         default=256 * 1024, gt=0, description="Largest body of any other request, such as a note or a form, bytes."
     )

@@ -6,6 +6,7 @@ from fastapi import APIRouter, FastAPI
 
 from service.admission import ADMITTED
 from service.api import (
+    attachments,
     certificates,
     diagnoses,
     events,
@@ -27,6 +28,7 @@ from service.api import (
     unit_types,
     units,
     usable,
+    views,
     webhooks,
 )
 from service.api.held import Held
@@ -51,8 +53,8 @@ def _every() -> APIRouter:
     """The routes of all applications: what a route does depends on its request alone, and building them is slow."""
     api, every = APIRouter(prefix=PREFIX), APIRouter(dependencies=ADMITTED)
     for resource in (
-        groups, sessions, records, certificates, diagnoses, events, usable, labels, units, unit_types, models, plans,
-        stands, templates, layouts, flags, notes, webhooks, feeds, fleet, identity,
+        groups, attachments, sessions, records, certificates, diagnoses, events, usable, labels, units, unit_types,
+        models, plans, stands, templates, layouts, flags, views, notes, webhooks, feeds, fleet, identity,
     ):  # fmt: skip
         api.include_router(resource.router)
     every.include_router(api)

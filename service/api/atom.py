@@ -17,6 +17,7 @@ TITLES = {
     NoticeKind.SEEN: "flag seen again",
     NoticeKind.CLEAR: "flag no longer seen",
     NoticeKind.ACKNOWLEDGED: "flag acknowledged",
+    NoticeKind.ASSIGNED: "flag assigned",
     NoticeKind.RESOLVED: "flag resolved",
     NoticeKind.VERDICT: "verdict changed",
 }

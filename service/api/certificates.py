@@ -62,12 +62,12 @@ def read_certificate(
 
 
 @router.get("/{id}/certificates", responses=errors(404, 422))
-def list_certificates(id: SessionId, desk: DeskOf, now: Now) -> IssueList:
+def list_certificates(id: SessionId, desk: DeskOf) -> IssueList:
     """The numbers under which the session's certificate was issued, the first one first, with who signed them.
 
     The last one holds. What it rests on is worked out again and compared, and `concerns` says what has changed.
     """
-    papers = papers_of(desk, id, now)
+    papers = papers_of(desk, id)
     listed = [
         IssueSchema.model_validate({**vars(one.issue), "signatures": [vars(s) for s in one.signatures]})
         for one in papers.issues

@@ -12,7 +12,6 @@ from service.api.schemas.problem import errors
 from service.dependencies import Now, ReaderOf, StorageOf
 from service.errors import NotFoundError
 from service.flows.accept_model import accept_model
-from service.flows.diagnose import diagnose
 from service.records.model import NewModel
 
 router = APIRouter(prefix="/sessions", tags=["diagnosis"])
@@ -36,8 +35,8 @@ def read_diagnosis(id: SessionId, reader: ReaderOf) -> Response | DiagnosisDocum
     return DiagnosisDocument(**json.loads(found.document), **made)
 
 
-@router.post("/{id}/diagnosis/accept", status_code=201, responses=errors(400, 404, 422))
-def accept_cause(id: SessionId, new: NewModelSchema, storage: StorageOf, now: Now) -> ModelSchema:
+@router.post("/{id}/diagnosis/accept", status_code=201, responses=errors(400, 404, 409, 422))
+def accept_cause(id: SessionId, new: NewModelSchema, storage: StorageOf, reader: ReaderOf, now: Now) -> ModelSchema:
     """Accept a named cause: from the next session on it is part of the model of the unit, unit type or stand."""
-    accepted = accept_model(storage, diagnose(storage, id, now), NewModel(**new.model_dump()), now)
+    accepted = accept_model(storage, reader.made(id), NewModel(**new.model_dump()), now)
     return ModelSchema.model_validate(accepted)

@@ -110,5 +110,9 @@ def _plain(value: Any) -> Any:
 
 def as_file(content: bytes, media_type: str, filename: str) -> Response:
     """Bytes that a browser keeps as a file of this name."""
-    disposition = f"attachment; filename*=UTF-8''{quote(filename, safe='')}"
-    return Response(content, media_type=media_type, headers={"Content-Disposition": disposition})
+    return Response(content, media_type=media_type, headers={"Content-Disposition": disposition(filename)})
+
+
+def disposition(filename: str) -> str:
+    """The header that makes a browser keep an answer under a name, whatever is written in it."""
+    return f"attachment; filename*=UTF-8''{quote(filename, safe='')}"

@@ -1,30 +1,35 @@
 """Flags of the whole fleet, and what people do about them."""
 
+from dataclasses import replace
 from typing import Annotated
 
 from fastapi import APIRouter, Query
 
 from service.admission import PersonOf
 from service.api.schemas.fields import Number, Text, Window, WindowOf
-from service.api.schemas.flags import FlagPage, FlagSchema, Handling
+from service.api.schemas.flags import Assigned, Assigning, AssigningSeveral, FlagPage, FlagSchema, Handling
 from service.api.schemas.problem import errors
 from service.dependencies import Now, Reading, StorageOf
+from service.flows.assign_flags import Assignment, assign_flag, assign_flags
 from service.flows.handle_flag import acknowledge_flag, resolve_flag
 from service.records.flag import FlagState
 from service.storage.queries.flags import FlagQuery
 from service.storage.store import Store
+from service.views.assigned import assignee_meant
 
 router = APIRouter(prefix="/flags", tags=["flags"])
 WantedState = Annotated[FlagState | None, Query(description="Only flags in this state.")]
 
+ASSIGNED = "Only flags of this login or name; `me`: of whoever asks; `nobody`: of nobody in particular."
 
-def flag_page(store: Store, unit: str | None, state: FlagState | None, window: Window) -> FlagPage:
+
+def flag_page(store: Store, wanted: FlagQuery, window: Window) -> FlagPage:
     """One page of flags as the API answers it; NotFoundError for a unit that there is not."""
-    if unit is not None:
-        store.units.key(unit)
-    wanted = FlagQuery(unit, state, window.offset, window.limit)
-    found = [FlagSchema.model_validate(flag) for flag in store.flags.page(wanted)]
-    return FlagPage(flags=found, page=window.page, limit=window.limit, next_page=window.next_after(len(found)))
+    if wanted.unit is not None:
+        store.units.key(wanted.unit)
+    found = store.flags.page(replace(wanted, offset=window.offset, limit=window.limit))
+    flags = [FlagSchema.model_validate(flag) for flag in found]
+    return FlagPage(flags=flags, page=window.page, limit=window.limit, next_page=window.next_after(len(flags)))
 
 
 @router.get("", responses=errors(404, 422))
@@ -33,9 +38,30 @@ def list_flags(
     window: WindowOf,
     state: WantedState = None,
     unit: Annotated[Text | None, Query(description="Only flags of this serial number.")] = None,
+    after: Annotated[
+        int | None, Query(ge=1, le=2_000_000_000, description="Only those that come after this one.")
+    ] = None,
+    assigned: Annotated[Text | None, Query(description=ASSIGNED)] = None,
+    *,
+    person: PersonOf,
 ) -> FlagPage:
     """Flags with their lives, open ones first."""
-    return flag_page(store, unit, state, window)
+    assignee = assignee_meant(store, assigned or "", person)
+    return flag_page(store, FlagQuery(unit, state, after=after, assignee=assignee), window)
+
+
+@router.post("/assign", responses=errors(400, 404, 422))
+def assign_several(given: AssigningSeveral, storage: StorageOf, now: Now, person: PersonOf) -> Assigned:
+    """Give several flags to somebody, all or none."""
+    said = Assignment(given.to, person.signs(given.by), given.why)
+    return Assigned(changed=assign_flags(storage, given.flags, said, now))
+
+
+@router.post("/{id}/assign", responses=errors(400, 404, 409, 422))
+def assign(id: Number, given: Assigning, storage: StorageOf, now: Now, person: PersonOf) -> FlagSchema:
+    """Say who is to look after the flag."""
+    said = Assignment(given.to, person.signs(given.by), given.why)
+    return FlagSchema.model_validate(assign_flag(storage, id, said, now))
 
 
 @router.post("/{id}/acknowledge", responses=errors(400, 404, 409, 422))

@@ -9,7 +9,7 @@ from service.api.negotiated import FORMS, wanted_form
 from service.api.schemas.fields import Page, Window
 from service.api.schemas.problem import errors
 from service.api.schemas.units import FleetSchema, UnitPage, UnitSummarySchema
-from service.dependencies import Now, Reading
+from service.dependencies import Now, Reading, ReadingFleet
 from service.languages.language import asked
 from service.records.fleet import FleetQuery
 from service.reports.fleet_paper import fleet_pdf
@@ -42,7 +42,7 @@ def read_fleet(store: Reading) -> FleetSchema:
 )
 def report_fleet(
     request: Request,
-    store: Reading,
+    store: ReadingFleet,
     now: Now,
     format: Annotated[
         Literal["json", "csv", "parquet", "arrow", "xlsx", "pdf"] | None,

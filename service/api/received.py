@@ -28,6 +28,12 @@ Supersedes = Annotated[
 ]
 By = Annotated[Text | None, Query(description="Who says so; with `supersedes`.")]
 Why = Annotated[LongText | None, Query(description="What was wrong; with `supersedes`.")]
+Check = Annotated[
+    bool,
+    Query(description="Whether it is only a check: judged and kept, and the next calibration is due as it was before."),
+]
+YES = ("true", "1", "yes", "on")
+"""As forms say it."""
 FIELDS = ("supersedes", "by", "why")
 """That a corrected file may bring as parts of its form too."""
 
@@ -40,9 +46,11 @@ async def _received(
     supersedes: Supersedes = None,
     by: By = None,
     why: Why = None,
+    check: Check = False,
 ) -> SentFile:
     """The file, from the body or from the part `file` of a form."""
     sent = await _sent(request, arriving, {"supersedes": supersedes, "by": person.signs(by or ""), "why": why})
+    sent = replace(sent, is_check=sent.is_check or check)
     if sent.replaces is None:
         return sent
     if not person.may(Role.ENGINEER):
@@ -66,7 +74,8 @@ async def _from_form(arriving: Arriving, stated: dict[str, str | None]) -> SentF
     own = {name: text for name in FIELDS if isinstance(text := form.get(name), str)}
     name, sent = file.filename or "upload", form.get("mapping")
     mapping = held(await sent.content()) if isinstance(sent, LandedFile) else str(sent or "").encode()
-    return SentFile(name, await file.content(), _replaced(stated | own), _mapping(mapping, name))
+    is_check = str(form.get("check", "")).strip().lower() in YES
+    return SentFile(name, await file.content(), _replaced(stated | own), _mapping(mapping, name), is_check)
 
 
 def _mapping(text: bytes, filename: str) -> dict[str, Any] | None:
@@ -108,6 +117,7 @@ REQUEST_BODY: dict[str, Any] = {
                     "required": ["file"],
                     "properties": {"file": {"type": "string", "format": "binary", "description": "The session file."}}
                     | {name: {"type": "string"} for name in FIELDS}
+                    | {"check": {"type": "boolean", "description": "Whether it is only a check."}}
                     | {"mapping": {"type": "string", "description": "imu-mapping/1, for a table of one's own layout."}},
                 }
             },

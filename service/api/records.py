@@ -3,7 +3,7 @@
 from fastapi import APIRouter, Request
 
 from service.admission import PersonOf
-from service.api.schemas.events import ServiceSchema
+from service.api.schemas.events import NewCheck, ServiceSchema
 from service.api.schemas.fields import Number, Serial, SessionId
 from service.api.schemas.flags import Handling
 from service.api.schemas.problem import errors
@@ -15,6 +15,7 @@ from service.flows.accept_session import accept_session
 from service.flows.choose_reference import choose_reference
 from service.flows.correct_session import correct_session
 from service.flows.receive import deriving
+from service.flows.set_check import set_check
 from service.flows.supersede_session import successor_of, supersede_session
 from service.flows.withdraw_service import withdraw_service
 from service.flows.withdraw_session import withdraw_session
@@ -48,6 +49,15 @@ def accept(id: SessionId, handling: Handling, reception: ReceptionOf, now: Now, 
     """Say that a session counts that was questioned, withdrawn or superseded."""
     step = Step(person.signs(handling.by), now, handling.why)
     session, _ = accept_session(reception.storage, deriving(reception, now), id, step)
+    reception.ring()
+    return SessionSchema.model_validate(session)
+
+
+@router.put("/sessions/{id}/check", responses=errors(400, 404, 422), tags=["sessions"])
+def mark_check(id: SessionId, new: NewCheck, reception: ReceptionOf, now: Now, person: PersonOf) -> SessionSchema:
+    """Say that a session is only a check, or a calibration after all; its unit's dates are worked out again."""
+    step = Step(person.signs(new.by), now, new.why)
+    session = set_check(reception.storage, deriving(reception, now), id, step, is_check=new.is_check)
     reception.ring()
     return SessionSchema.model_validate(session)
 

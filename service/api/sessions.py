@@ -77,11 +77,12 @@ def list_sessions(
     verdict: Annotated[Verdict | None, Query(description="Only those with this verdict.")] = None,
     order: Annotated[SessionOrder, Query(description="By date of measurement newest first, by upload …")] = NEWEST,
     backwards: Annotated[bool, Query(description="The same order, last first.")] = False,
+    after: Annotated[Text | None, Query(description="Only those that come after this session.")] = None,
 ) -> SessionPage:
     """Sessions, newest measurement first unless another order is asked for."""
     wanted = SessionQuery(
         unit=unit, unit_type=unit_type, stand=stand, since=since, until=until, state=state, verdict=verdict,
-        order=order, backwards=backwards, offset=window.offset, limit=window.limit,
+        order=order, backwards=backwards, after=after, offset=window.offset, limit=window.limit,
     )  # fmt: skip
     listed = [SessionSchema.model_validate(session) for session in store.sessions.wanted(wanted)]
     return SessionPage(sessions=listed, page=window.page, limit=window.limit, next_page=window.next_after(len(listed)))

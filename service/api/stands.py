@@ -7,7 +7,7 @@ from service.api.schemas.fields import StandName
 from service.api.schemas.papers import NewStandCertificate, StandCertificateList, StandCertificateSchema
 from service.api.schemas.problem import errors
 from service.api.schemas.stands import StandList, StandSchema
-from service.dependencies import Now, Reading, StorageOf
+from service.dependencies import Now, Reading, ReadingFleet, StorageOf
 from service.flows.record_stand_certificate import record_stand_certificate
 from service.records.paper import StandCertificate
 from service.views.stands import stand_conditions
@@ -16,7 +16,7 @@ router = APIRouter(prefix="/stands", tags=["stands"])
 
 
 @router.get("", responses=errors())
-def list_stands(store: Reading) -> StandList:
+def list_stands(store: ReadingFleet) -> StandList:
     """Every stand: whether it shifts all units that are measured on it, since when, by how much."""
     return StandList(stands=[StandSchema.model_validate(found) for found in stand_conditions(store)])
 

@@ -21,13 +21,14 @@ from service.api.schemas.units import (
     UnitReportSchema,
     UnitSummarySchema,
 )
-from service.dependencies import CREW, Now, ReaderOf, Reading, SettingsOf, StorageOf
+from service.dependencies import CREW, Now, ReaderOf, Reading, ReadingFleet, SettingsOf, StorageOf
 from service.flows.recalibrate import recalibrate
 from service.flows.set_customer import set_customer
 from service.flows.set_lot import set_lot
 from service.records.fleet import FleetQuery, Order
 from service.records.outlook import RiskPoint
 from service.records.paper import Customer
+from service.storage.queries.flags import FlagQuery
 from service.views.outlook import outlook_of
 from service.views.unit_report import unit_report
 
@@ -50,12 +51,13 @@ def list_units(
     flagged: Annotated[bool, Query(description="Only those with an open flag.")] = False,
     order: Annotated[Order, Query(description="By condition worst first, by due date, serial number …")] = WORST_FIRST,
     backwards: Annotated[bool, Query(description="The same order, last first.")] = False,
+    after: Annotated[Text | None, Query(description="Only those that come after this serial number.")] = None,
 ) -> UnitPage:
     """Units, worst first unless another order is asked for."""
     wanted = FleetQuery(
         verdict, text, window.offset, window.limit, reserved,
         due_before=due_before, unit_type=unit_type, stand=stand, lot=lot, flagged=flagged,
-        order=order, backwards=backwards,
+        order=order, backwards=backwards, after=after,
     )  # fmt: skip
     found = store.fleet.units(wanted)
     listed = [UnitSummarySchema.model_validate(unit) for unit in found]
@@ -87,13 +89,13 @@ def read_history(request: Request, serial: Serial, store: Reading, asked: Annota
 @router.get("/{serial:path}/flags", responses=errors(404, 422))
 def read_flags(serial: Serial, store: Reading, window: WindowOf, state: WantedState = None) -> FlagPage:
     """The unit's flags with their lives, open ones first."""
-    return flag_page(store, serial, state, window)
+    return flag_page(store, FlagQuery(serial, state), window)
 
 
 @router.get("/{serial:path}/outlook", responses=errors(404, 422))
 def read_outlook(
     serial: Serial,
-    store: Reading,
+    store: ReadingFleet,
     now: Now,
     reader: ReaderOf,
     until: Annotated[Moment | None, Query(description="Also the risk of waiting until this date.")] = None,

@@ -8,6 +8,7 @@ from service.background.helper import Helper
 from service.background.pool_waiting import pool_next
 from service.background.recompute_waiting import recompute_next
 from service.background.refresh_waiting import refresh_next
+from service.background.summarise_waiting import summarise_next
 
 LOOK_EVERY = 1.0
 """Seconds between two looks at what other services left; what this one takes in rings."""
@@ -32,7 +33,9 @@ def work_beside(own: Diagnosing, stop: Event) -> None:
 
 def _work(own: Diagnosing, helper: Helper, stop: Event) -> bool:
     """A diagnosis, an outlook and a unit under another model, so that none waits for all of the others; whether there
-    was any. A group waits for all: every diagnosis changes what it rests on."""
+    was any. Summaries wait for all outlooks, and a group waits for all: every diagnosis changes what it rests on."""
     refreshed = refresh_next(own, helper, stop)
     recomputed = recompute_next(own, helper, stop)
-    return diagnose_next(own, helper, stop) or refreshed or recomputed or pool_next(own, helper, stop)
+    if diagnose_next(own, helper, stop) or refreshed or recomputed:
+        return True
+    return summarise_next(own, helper, stop) or pool_next(own, helper, stop)

@@ -6,7 +6,7 @@ from service.background.guard import Alone, plainly
 from service.flows.flagging.settle import Occasion, raise_flag, resolve_as_done
 from service.records.flag import Concern, Matter
 from service.storage import Storage
-from service.views.outlook import own_outlook
+from service.views.outlook import dated
 from service.words.names import day_of
 
 
@@ -23,7 +23,7 @@ def flag_overdue(storage: Storage, now: datetime, alone: Alone = plainly) -> Non
 def _settle(storage: Storage, serial: str, now: datetime) -> None:
     with storage.database.writing() as store:
         occasion = Occasion(store.units.hold(serial), None, now)
-        outlook = own_outlook(store, serial, now)
+        outlook = dated(store.outlooks.of_unit(serial), now)
         opened = tuple(flag for flag in store.flags.open_of(occasion.unit) if flag.matter is Matter.OVERDUE)
         if outlook is None or not outlook.overdue:
             for flag in opened:

@@ -6,11 +6,11 @@ from datetime import datetime
 from service.background.guard import Alone, plainly
 from service.errors import ServiceError
 from service.flows.flagging.settle import Occasion, propose, raise_flag, see_again
+from service.judging.stand_health import stand_health
 from service.records.flag import Concern, Flag, FlagState, Matter
 from service.records.stand import StandCondition
 from service.storage import Storage
 from service.storage.queries.flags import FlagQuery
-from service.views.stands import stand_conditions
 
 EVERY = 10_000
 """Flags of one unit: more than any unit has."""
@@ -20,7 +20,7 @@ GONE = "The units measured on {stand} no longer show that it has shifted."
 def flag_shifted_stands(storage: Storage, now: datetime, alone: Alone = plainly) -> None:
     """One flag a unit and stand; a shift whose flag was resolved after it began is known and raises no other."""
     with storage.database.reading() as store:
-        conditions = stand_conditions(store)
+        conditions = stand_health(store)
         opened = store.flags.open_about(Matter.SHIFTED)
     shifted = [one for one in conditions if one.has_shifted]
     for one in shifted:

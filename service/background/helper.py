@@ -1,5 +1,5 @@
-"""A process of its own that makes diagnoses, outlooks, what groups show and what follows from other models: numerical
-work in threads stands in the way of requests.
+"""A process of its own that makes diagnoses, outlooks, summaries, what groups show and what follows from other models:
+numerical work in threads stands in the way of requests.
 
 It is forked from one that holds nothing but the loaded program (`forkserver`), so that it has no connection to the
 database, no lock and no file of the service's. It ends with the service: it reads the end of its pipe.
@@ -21,6 +21,7 @@ from service.flows.diagnose import diagnose
 from service.flows.recompute import recompute
 from service.flows.refresh_beside import refresh_beside
 from service.flows.refresh_group import refresh_group
+from service.flows.summarise import summarise
 from service.ingest import limits
 from service.log import write_log
 from service.records.group import Group
@@ -57,6 +58,8 @@ class Job(StrEnum):
     """What the sessions of a unit, a unit type or a stand show together."""
     MODEL = "model"
     """A unit's sessions under another model."""
+    SUMMARY = "summary"
+    """How the units of a type drift, or how stands stand."""
 
 
 class Helper:
@@ -90,6 +93,10 @@ class Helper:
     def pool(self, group: Group, now: datetime, still: Still) -> Failure | None:
         """The same for what a group of sessions shows."""
         return self._answer(Job.GROUP, group, now, still)
+
+    def summarise(self, group: Group, now: datetime, still: Still) -> Failure | None:
+        """The same for how the units of a type drift, or how stands stand."""
+        return self._answer(Job.SUMMARY, group, now, still)
 
     def recompute(self, task: Task, now: datetime, still: Still) -> Failure | None:
         """The same for a unit's sessions under another model."""
@@ -144,6 +151,8 @@ def _made(storage: Storage, job: Job, of: Any, now: datetime, coverage_factor: f
             refresh_group(storage, of, now)
         elif job is Job.OUTLOOK:
             refresh_beside(storage, of, now)
+        elif job is Job.SUMMARY:
+            summarise(storage, of, now)
         elif job is Job.MODEL:
             recompute(storage, of, now, coverage_factor)
         else:

@@ -13,13 +13,16 @@ from service.background.bell import Bell
 from service.background.diagnose_waiting import PUT_OFF, WORK
 from service.background.guard import Guard
 from service.background.refresh_waiting import OUTLOOKS
-from service.errors import ServiceError
+from service.background.summarise_waiting import SUMMARIES
+from service.errors import PendingError, ServiceError
 from service.flows.diagnose import diagnose, give_up, known_of
 from service.flows.refresh_beside import refresh_beside
+from service.flows.summarise import summarise_all
 from service.metrics import Metrics
 from service.records.diagnosis import StoredDiagnosis
 from service.records.pending import Claim, Pending
 from service.storage import Storage
+from service.words.diagnosis import STILL_MADE
 
 PATIENCE = 15.0
 """Seconds that a program is let wait: a usual diagnosis takes one or two, and a few may be before it."""
@@ -62,6 +65,16 @@ class Reader:
         finally:
             self._places.release()
 
+    def made(self, id: str) -> StoredDiagnosis:
+        """The diagnosis of a session for what rests on it, where the program failed one that says so.
+
+        PendingError while it is still being made.
+        """
+        found = self.read(id)
+        if found is None:
+            raise PendingError(STILL_MADE)
+        return found
+
     def until_dated(self, serial: str, patience: float = PATIENCE) -> bool:
         """Waits for the outlook of a unit whose history has changed, or makes it where nobody else does; whether it is
         as the history says."""
@@ -75,6 +88,16 @@ class Reader:
             return self._dated(serial, monotonic() + patience)
         finally:
             self._places.release()
+
+    def until_summarised(self) -> None:
+        """Makes what pages of the fleet read, where nobody else does."""
+        if self.workers:
+            return
+        with self.storage.database.reading() as store:
+            is_asked = store.pending_summaries.any()
+        if is_asked:
+            with Guard(self.metrics).at_request(SUMMARIES.name, ""):
+                summarise_all(self.storage, self.clock())
 
     def _date(self, serial: str) -> bool:
         """Here; where the program fails that is kept, and nobody waits for it."""

@@ -17,7 +17,15 @@ from service.api.problems import problem
 from service.boundary.pace import LATE, allowance
 
 UPLOADS = frozenset(
-    {f"{PREFIX}/sessions", f"{PREFIX}/layouts/preview", f"{PREFIX}/plan/missing", "/upload", "/upload/layout"}
+    {
+        f"{PREFIX}/sessions",
+        f"{PREFIX}/layouts/preview",
+        f"{PREFIX}/plan/missing",
+        f"{PREFIX}/attachments",
+        "/upload",
+        "/upload/layout",
+        "/attachments",
+    }
 )
 """Where files are received; these routes count what comes themselves."""
 TOO_LARGE, TOO_SLOW = 413, 408

@@ -1,35 +1,33 @@
 """The fleet in one picture: how much of its tolerance each unit uses."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from functools import cache
 from typing import Any
 
 import altair as alt
 
+from estimator.wording import counted
 from service.charts import DATA_FORM, ChartSet, Panel, specification
-from service.records.unit import UnitSummary
+from service.records.fleet import LAST, NOT_JUDGED, STEP, Tally
 from service.words.conditions import CONDITIONS, Condition, condition_of
 
 HEIGHT = 120
 """Pixels: the whole fleet in one low strip above its table."""
-STEP, LAST = 10, 200
-"""Per cent of the tolerance: width of a bar, and where the bar of everything beyond begins."""
 TITLE = f"tolerance used by the worst parameter, U included, %; the last bar holds all from {LAST} on"
 TICKS = list(range(0, LAST + 1, 2 * STEP))
 """Of the axis of the tolerance: every other bar is numbered, so that numbers do not run into each other."""
 
 
-def fleet_chart(units: Sequence[UnitSummary]) -> ChartSet:
+def fleet_chart(tallies: Iterable[Tally]) -> ChartSet:
     """Units by the share of the tolerance that their worst parameter uses, uncertainty included."""
     counts: dict[tuple[int, Condition], int] = {}
-    for unit in units:
-        condition = condition_of(unit.verdict, is_reference=unit.is_reference)
-        if unit.margin is not None and condition in CONDITIONS:
-            used = 100 * (1 - unit.margin)
-            key = (min(STEP * int(used // STEP), LAST), condition)
-            counts[key] = counts.get(key, 0) + 1
+    for tally in tallies:
+        condition = condition_of(tally.verdict, is_reference=tally.is_reference)
+        if tally.bar != NOT_JUDGED and condition in CONDITIONS:
+            key = (tally.bar * STEP, condition)
+            counts[key] = counts.get(key, 0) + tally.units
     rows = _stacked(counts)
-    text = f"{sum(counts.values())} units by the tolerance that they use"
+    text = f"{counted(sum(counts.values()), 'unit')} by tolerance used"
     return ChartSet("fleet", "Tolerance used", _spec(), (Panel("", text, None, {DATA_FORM: rows}),))
 
 

@@ -1,5 +1,9 @@
 """What the service answers, as `docs/api.md` describes it; SI, moments in UTC. `document` is always the whole answer,
-with the fields that are not named here."""
+with the fields that are not named here.
+
+These are types of what comes over the wire: a program that asks needs nothing of the service's own, whose records they
+resemble where an answer is one.
+"""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -69,6 +73,7 @@ class Unit(Said):
     worst_sensor: str | None
     worst_parameter: str | None
     margin: float | None
+    """1 − (|d| + U)/T of the worst parameter: 0 is the edge of pass."""
     flags: int
     due: datetime | None
     lot: str | None
@@ -87,9 +92,11 @@ class Point:
     u: float | None
     """Standard uncertainty of the value."""
     lower: float | None
+    """The value less U, upper with U more."""
     upper: float | None
     reference: float | None
     deviation: float | None
+    """From the reference: relative for scale, else SI."""
     expanded: float | None
     """U of the deviation."""
     tolerance: float | None

@@ -171,7 +171,7 @@ def verify(
     if not is_there:
         say("The hash that was noted is not in the trail: lines were cut off, or it is another trail.")
         raise typer.Exit(FAILED)
-    screen().print(f"All {check.lines} lines follow from one another. Last hash: {check.last}")
+    screen().print(f"All lines ({check.lines}) follow from one another. Last hash: {check.last}")
 
 
 @audit.command("list")

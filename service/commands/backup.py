@@ -7,7 +7,8 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from service.commands.exits import FAILED, say
+from estimator.wording import counted
+from service.commands.exits import FAILED, many, say
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.records.identity import COMMAND_LINE as WHO
 from service.storage import Database, Files
@@ -45,7 +46,8 @@ def write(file: File, database_url: DatabaseUrl = None, data_folder: DataFolder 
     manifest = write_backup(settings.database, Files(settings.files), file, datetime.now(UTC))
     typer.echo(f"{file}: {_told(manifest)}.")
     if manifest.lost:
-        say(f"{len(manifest.lost)} uploaded files are missing or damaged and not in it: {', '.join(manifest.lost)}.")
+        lost, one = counted(len(manifest.lost), "uploaded file"), len(manifest.lost) == 1
+        say(f"{lost} {'is' if one else 'are'} missing or damaged and not in it: {', '.join(manifest.lost)}.")
         raise typer.Exit(FAILED)
 
 
@@ -86,16 +88,16 @@ def _write_down(url: str, restored: Restored, now: datetime) -> None:
 
 def _say_who_is_in(doors: Doors) -> None:
     if doors.browsers:
-        say(f"{doors.browsers} signed-in browsers were signed out.")
+        say(f"{counted(doors.browsers, 'signed-in browser')} {'was' if doors.browsers == 1 else 'were'} signed out.")
     if doors.tokens and doors.revoked:
-        say(f"{doors.tokens} tokens were revoked: make new ones.")
+        say(f"{counted(doors.tokens, 'token')} {'was' if doors.tokens == 1 else 'were'} revoked: make new ones.")
     elif doors.tokens:
         say(
-            f"{doors.tokens} tokens hold again, also those that were revoked since the backup: look at `imu-health "
-            "token list`. --revoke-tokens would have revoked them all."
+            f"{counted(doors.tokens, 'token')} {'holds' if doors.tokens == 1 else 'hold'} again, revoked since the "
+            "backup or not: look at `imu-health token list`. --revoke-tokens would have revoked them all."
         )
 
 
 def _told(manifest: Manifest) -> str:
     rows = sum(table.rows for table in manifest.tables)
-    return f"{rows:,} rows, {len(manifest.files):,} files, schema {manifest.revision}"
+    return f"{many(rows, 'row')}, {many(len(manifest.files), 'file')}, schema {manifest.revision}"

@@ -45,7 +45,10 @@ CATALOGUE = {
         "usable.usable",
         "Say whether a unit may be used: exit code 0 for yes, 1 for no, for a unit nobody knows, and in doubt.",
     ),
-    "flags": Entry("flags.flags", "Show what somebody must look after; acknowledge or resolve it."),
+    "flags": Entry(
+        "flags.flags", "Show what somebody must look after; give it to somebody, acknowledge or resolve it."
+    ),
+    "views": Entry("views.views", "List the views of the pages that were saved under a name, with their addresses."),
     "models": Entry(
         "models.models",
         "Show accepted causes and what they moved; accept what sessions show together, or withdraw it.",
@@ -62,7 +65,11 @@ CATALOGUE = {
         "records.withdraw_service",
         "Take a service back: it stays on record and is no break any more.",
     ),
-    "note": Entry("events.write_note", "Write a note on a unit's history."),
+    "note": Entry("events.write_note", "Write a note on a unit's history, or on a session."),
+    "attach": Entry(
+        "events.attach_files",
+        "Attach files to a unit or a session: photographs, protocols. They are kept as they are and never opened.",
+    ),
     "certificate": Entry("certificate.certificate", "Write the certificate of a session."),
     "sign": Entry(
         "sign.sign",
@@ -100,6 +107,14 @@ CATALOGUE = {
     "user": Entry("accounts.user", "Make and change accounts."),
     "token": Entry("accounts.token", "Make and revoke tokens."),
     "audit": Entry("accounts.audit", "Read and check the audit trail."),
+    "open": Entry(
+        "open_page.open_page",
+        "Open the page of a unit or a session in the browser, and print its address; without one the fleet.",
+    ),
+    "doctor": Entry(
+        "doctor.doctor",
+        "Look at everything the service needs on this machine, and say what to do; exit code 1 where something fails.",
+    ),
     "db": Entry("database.database", "Bring the database's schema up or down."),
     "backup": Entry(
         "backup.backup",

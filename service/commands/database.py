@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from service.commands.exits import FAILED, say
+from estimator.wording import counted
+from service.commands.exits import FAILED, many, say
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.settings import Settings
 from service.storage import Files
@@ -68,11 +69,11 @@ def _write_backup(settings: Settings, target: Path | None) -> None:
     now = datetime.now(UTC)
     file = target or settings.data_folder / f"before-downgrade-{now:%Y%m%d-%H%M%S}.backup"
     lost = write_backup(settings.database, Files(settings.files), file, now).lost
-    say(f"Backup: {file}" + (f", without {len(lost)} uploaded files that are missing or damaged." if lost else "."))
+    say(f"Backup: {file}" + (f", without {counted(len(lost), 'uploaded file')}, missing or damaged." if lost else "."))
 
 
 def _told(loss: Loss) -> str:
     """What would be gone of a table."""
-    parts = [f"{loss.rows:,} rows"] if loss.rows else []
-    parts += [f"{column} of {rows:,} rows" for column, rows in loss.values]
+    parts = [many(loss.rows, "row")] if loss.rows else []
+    parts += [f"{column} of {many(rows, 'row')}" for column, rows in loss.values]
     return f"Will be deleted from {loss.table}: {', '.join(parts)}"

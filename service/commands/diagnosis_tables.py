@@ -10,6 +10,7 @@ from rich.text import Text
 from estimator.diagnosis import Diagnosis
 from estimator.diagnosis.results import Gain, Limit, Score, Structure
 from estimator.session import CalibrationSession
+from estimator.wording import counted
 from service.measures import number
 from service.records.diagnosis import DiagnosisState, state_of
 from service.words.diagnosis import NOT_APPLICABLE, errors_of, nothing_of, what_to_do
@@ -100,4 +101,4 @@ def _unseen(limits: Sequence[Limit]) -> Iterator[Text]:
     for row in blind_causes(limits):
         yield Text(f"  Not seen ({row.reason}): {row.causes}", "dim")
     seen = sum(bool(limit.amplitude) for limit in limits)
-    yield Text(f"  Smallest effects that would have been found: {seen} causes, see --json", "dim")
+    yield Text(f"  Smallest effects that would have been found: {counted(seen, 'cause')}, see --json", "dim")

@@ -8,6 +8,11 @@ UNUSABLE = 2
 """Exit code where a file cannot be used."""
 
 
+def many(number: int, thing: str) -> str:
+    """``1 row``, ``12,000 rows``."""
+    return f"{number:,} {thing}{'' if number == 1 else 's'}"
+
+
 def say(line: str) -> None:
     """One line on standard error."""
     typer.echo(" ".join(line.split()), err=True)

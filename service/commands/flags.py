@@ -16,7 +16,7 @@ flags = typer.Typer(
     name="flags",
     add_completion=False,
     invoke_without_command=True,
-    help="Show what somebody must look after; acknowledge or resolve it.",
+    help="Show what somebody must look after; give it to somebody, acknowledge or resolve it.",
 )
 By = Annotated[str, typer.Option("--by", help="Your name.")]
 Why = Annotated[str, typer.Option("--why", help="Why; what was found or done.")]
@@ -28,13 +28,17 @@ def list_flags(
     context: typer.Context,
     unit: Annotated[str | None, typer.Option(help="Only of this serial number.")] = None,
     state: Annotated[FlagState | None, typer.Option(help="Only in this state.", show_default="open ones")] = None,
+    assigned: Annotated[
+        str | None, typer.Option(help="Only of this login or name; `me`: of the token's account; `nobody`.")
+    ] = None,
     server: Server = DEFAULT_SERVER,
+    *,
     as_json: AsJson = False,
 ) -> None:
     """Show flags; without a state those that are open."""
     if context.invoked_subcommand is not None:
         return
-    wanted = {"unit": unit, "state": None if state is None else state.value}
+    wanted = {"unit": unit, "state": None if state is None else state.value, "assigned": assigned}
     with connect(server) as client:
         found = client.get("/flags", limit="1000", **{k: v for k, v in wanted.items() if v}).json()["flags"]
     shown = [flag for flag in found if state is not None or flag["state"] != FlagState.RESOLVED]
@@ -57,6 +61,21 @@ def resolve(id: Id, by: By, why: Why, server: Server = DEFAULT_SERVER) -> None:
     _handle(id, "resolve", by, why, server)
 
 
+@flags.command("assign")
+def assign(
+    ids: Annotated[list[int], typer.Argument(metavar="FLAG...", help="Numbers of the flags.", show_default=False)],
+    to: Annotated[str, typer.Option("--to", help="Login or name; empty for nobody in particular.")],
+    by: By,
+    why: Annotated[str, typer.Option("--why", help="Why.")] = "",
+    *,
+    server: Server = DEFAULT_SERVER,
+) -> None:
+    """Say who is to look after flags; `imu-health flags --assigned NAME` finds them."""
+    with connect(server) as client:
+        for id in ids:
+            screen().print(_line(client.post(f"/flags/{id}/assign", {"to": to, "by": by, "why": why})))
+
+
 def _handle(id: int, what: str, by: str, why: str, server: str) -> None:
     with connect(server) as client:
         flag = client.post(f"/flags/{id}/{what}", {"by": by, "why": why})
@@ -74,10 +93,12 @@ def _state(flag: dict[str, Any]) -> str:
 
 def _table(found: list[dict[str, Any]]) -> Table:
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    for heading in ("flag", "unit", "state", "since", "where", "what"):
+    for heading in ("flag", "unit", "state", "since", "who", "where", "what"):
         table.add_column(heading, justify="right" if heading == "flag" else "left")
     for flag in found:
         what = f"{flag['summary']} {flag['proposal']}".strip()
         since, place = flag["raised_at"][:10], escape(flag["place"])
-        table.add_row(str(flag["id"]), escape(flag["unit"]), _state(flag), since, place, escape(what))
+        table.add_row(
+            str(flag["id"]), escape(flag["unit"]), _state(flag), since, escape(flag["assignee"]), place, escape(what)
+        )
     return table

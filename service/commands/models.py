@@ -7,6 +7,7 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
+from estimator.wording import counted
 from service.client import Client, connect
 from service.commands.console import DEFAULT_SERVER, AsJson, Server, print_json, screen
 from service.errors import RefusedError, ServiceError
@@ -98,7 +99,7 @@ def _outcome(one: dict[str, Any]) -> str:
     if told is None:
         return str(one["state"])
     moved = [f"{m['session']} {m['before']} → {m['after']}" for m in told["verdicts"]]
-    return f"{told['recomputed']} of {told['sessions']} sessions; {'; '.join(moved) or 'no verdict moved'}"
+    return f"{told['recomputed']} of {counted(told['sessions'], 'session')}; {'; '.join(moved) or 'no verdict moved'}"
 
 
 def _table(found: list[dict[str, Any]]) -> Table:

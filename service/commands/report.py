@@ -8,6 +8,7 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
+from estimator.wording import counted
 from service.client import connect
 from service.commands.console import DEFAULT_SERVER, AsJson, Out, Server, deliver, print_json, screen
 from service.commands.upload import coloured
@@ -78,7 +79,7 @@ def _summary(condition: dict[str, Any]) -> str:
     counts = {Verdict(name): count for name, count in condition["verdicts"].items() if count}
     found = (_counted(verdict, counts[verdict], condition) for verdict in reversed(Verdict) if verdict in counts)
     simulated = f", {condition['simulated']} of them simulated" if condition["simulated"] else ""
-    return f"{condition['units']} units{simulated}: {', '.join(found)}\n"
+    return f"{counted(condition['units'], 'unit')}{simulated}: {', '.join(found)}\n"
 
 
 def _counted(verdict: Verdict, count: int, condition: dict[str, Any]) -> str:

@@ -34,6 +34,8 @@ FIRST_SESSION = datetime(2026, 1, 12, 9, 0, tzinfo=UTC)
 """Fixed, so that the same seed gives the same files."""
 INTERVAL = timedelta(days=60)
 """From one session to the next: two months, as the help says."""
+MOST_AFTER = 4
+"""Sessions that are dated from the first date on; those of a longer series end with them."""
 FLIGHT_AFTER = timedelta(days=30)
 """From a calibration to the recording in service that follows it."""
 SIMULATED = (TWO_AXIS_STAND, IN_SERVICE, ROTATION_ALIGNMENT, RATE_TABLE)
@@ -99,7 +101,7 @@ def simulate_files(
     sensors: Annotated[int, typer.Option("--sensors", "-m", min=3, max=48, help="Accelerometers on the cone.")] = 6,
     alpha: Annotated[float, typer.Option(min=1, max=89, help="Elevation of the head's axis, degrees.")] = 40.0,
     positions: Annotated[int, typer.Option("--positions", "-n", min=3, max=360, help="Positions a run.")] = 24,
-    sessions: Annotated[int, typer.Option(min=1, max=1000, help="Sessions, two months apart.")] = 1,
+    sessions: Annotated[int, typer.Option(min=1, max=500, help="Sessions, two months apart.")] = 1,
     seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same files.")] = 1,
     noise: Annotated[float, typer.Option(min=0, help="One sigma of an averaged reading, µg.")] = 2.5,
     drift: Annotated[
@@ -162,7 +164,7 @@ def _simulated(
     norm = norms(ACCELEROMETER, count)
     start = scattered(schedule.sensors, norm, rng)
     for number in range(sessions):
-        at = FIRST_SESSION + number * INTERVAL
+        at = _measured(number, sessions)
         truth = start.stepped((number + in_service) * step_of(changes, count, ACCELEROMETER), norm)
         if in_service:
             flight = recording(schedule.unit, schedule.sensors, truth, rng)
@@ -191,7 +193,12 @@ def _turned(
         zeros = np.append(start + number * moved[:2, ELEMENT["bias"]] / MICRO, 0.0)
         truth = replace(turntable_truth(zeros, drifts, rng), positions=levers)
         session = make(unit, truth, rng)
-        yield Simulated(_dated(session, FIRST_SESSION + number * INTERVAL), truth, None)
+        yield Simulated(_dated(session, _measured(number, sessions)), truth, None)
+
+
+def _measured(number: int, sessions: int) -> datetime:
+    """Date of a session of so many. Nothing is measured in the future, so a long series begins earlier."""
+    return FIRST_SESSION + (number - max(sessions - MOST_AFTER, 0)) * INTERVAL
 
 
 def _dated(session: CalibrationSession, at: datetime) -> CalibrationSession:

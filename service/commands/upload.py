@@ -33,6 +33,9 @@ Mapping = Annotated[
     Path | None, typer.Option(help="JSON file that says how tables of your own layout are read: imu-mapping/1.")
 ]
 Why = Annotated[str | None, typer.Option(help="What was wrong; with --supersedes.")]
+Check = Annotated[
+    bool, typer.Option("--check", help="Only a check: judged and kept, and the next calibration is due as before.")
+]
 
 
 def upload_files(
@@ -45,12 +48,13 @@ def upload_files(
     why: Why = None,
     wait: Wait = True,
     mapping: Mapping = None,
+    check: Check = False,
 ) -> None:
     """Upload session files and print the verdict of each; a file that is already there is stored once."""
     if supersedes and len(files) > 1:
         raise typer.BadParameter("one corrected file stands for one session", param_hint="--supersedes")
     read_by = None if mapping is None else mapping.read_text(encoding="utf-8")
-    given = {"supersedes": supersedes, "by": by, "why": why, "mapping": read_by}
+    given = {"supersedes": supersedes, "by": by, "why": why, "mapping": read_by, "check": "true" if check else None}
     stated = {name: text for name, text in given.items() if text}
     show: Callable[[dict[str, Any]], None] = print_json if as_json else _print_line
     with connect(server) as client:
@@ -67,9 +71,10 @@ def _uploaded(client: Client, file: Path, stated: dict[str, str], *, wait: bool)
 
 
 def _print_line(answer: dict[str, Any]) -> None:
-    """``BA-017  Fit, but the zero of A2 …  …``"""
+    """``BA-017  3f9a0c5be1d24786aa10  Fit, but the zero of A2 …  …``"""
     verdict = coloured(answer["verdict"], answer["is_reference"], answer["said"])
-    screen().print(f"[bold]{escape(answer['unit'])}[/]  {verdict}  {escape(answer['reason'])}")
+    line = f"[bold]{escape(answer['unit'])}[/]  {answer['id']}  {verdict}  {escape(answer['reason'])}"
+    screen().print(line, soft_wrap=True)
 
 
 def coloured(word: str, is_reference: bool = False, said: str = "") -> str:

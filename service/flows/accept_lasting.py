@@ -4,20 +4,26 @@ The size is the group's: no session fits it again. Whose model it becomes part o
 """
 
 from datetime import datetime
+from math import exp, hypot
 
 from estimator.errors import Problem
 from estimator.groups import GroupFinding
+from estimator.groups.fixed import EMPIRICAL
+from estimator.groups.results import EmpiricalTerm
 from service.errors import ConflictError, RefusedError
 from service.flows.flagging.lasting import settle_accepted
+from service.flows.own_of_group import tell_own
 from service.flows.refresh_group import current, members_of
 from service.records.group import Group, GroupShown
-from service.records.model import Evidence, ModelRevision, NewLasting, Pooled
+from service.records.model import SCOPES, Evidence, ModelRevision, NewLasting, Pooled
 from service.storage import Storage
 from service.storage.group_document import read_group
 from service.storage.store import Store
 from service.words.causes import cause_on
-from service.words.group_finding import SCOPES
+from service.words.learned_term import equation_of
 
+MOST = 700.0
+"""ln of the largest number that a double holds, about."""
 NOT_MADE = "What these sessions show together is being worked out with their latest records: ask for it, then accept."
 
 
@@ -31,27 +37,29 @@ def accept_lasting(storage: Storage, group: Group, new: NewLasting, now: datetim
         if answer is None or answer.document is None:
             raise ConflictError(NOT_MADE)
         shown = read_group(answer.document)
-        finding = _finding(shown, new)
-        scope = SCOPES[finding.level]
+        taken = _term(shown, new) if new.cause == EMPIRICAL else _finding(shown, new)
+        scope = SCOPES[taken.level]
         revision = store.models.add(
             ModelRevision(
                 id=0,
                 scope=scope,
-                subject=finding.subject,
-                cause=finding.cause,
-                sensors=finding.sensors,
+                subject=taken.subject,
+                cause=new.cause,
+                sensors=taken.sensors,
                 session=_latest(store, group),
-                evidence=evidence_of(finding, shown),
+                evidence=term_evidence(taken, shown) if isinstance(taken, EmpiricalTerm) else evidence_of(taken, shown),
                 accepted_by=new.by,
                 note=new.note,
                 accepted_at=now,
             )
         )
-        settle_accepted(store, revision, finding, now)
-        units = store.recomputations.ask(revision.id, scope, finding.subject, now)
-        details = {"revision": revision.id, "cause": finding.cause, "sensors": list(finding.sensors), "units": units}
+        if isinstance(taken, GroupFinding):
+            settle_accepted(store, revision, taken, now)
+        tell_own(store, scope, taken.subject)
+        units = store.recomputations.ask(revision.id, scope, taken.subject, now)
+        details = {"revision": revision.id, "cause": new.cause, "sensors": list(taken.sensors), "units": units}
         shows = {"group": f"{SCOPES[group.level.value]} {group.name}", "sessions": shown.sessions, "note": new.note}
-        store.audit.write(now, new.by, "accept model", f"{scope} {finding.subject}", details | shows)
+        store.audit.write(now, new.by, "accept model", f"{scope} {taken.subject}", details | shows)
         return revision
 
 
@@ -83,6 +91,46 @@ def evidence_of(finding: GroupFinding, shown: GroupShown) -> Evidence:
             log_score=None if gain is None else gain.log_score,
         ),
     )
+
+
+def term_evidence(term: EmpiricalTerm, shown: GroupShown) -> Evidence:
+    """A learned term as a revision keeps it: its evidence is what it gains on the sessions that took no part."""
+    return Evidence(
+        p_value=min(1.0, exp(-max(term.gain, 0.0))),
+        strength=hypot(*(a / s for a, s in zip(term.amplitude, term.sigma, strict=True))),
+        amplitude=term.amplitude,
+        sigma=term.sigma,
+        units=term.units,
+        nonlinear={},
+        alternatives=(),
+        sentence=equation_of(term),
+        gain=None,
+        pooled=Pooled(
+            sessions=shown.sessions,
+            first=shown.first or "",
+            last=shown.last or "",
+            form="same",
+            since=None,
+            kind="",
+            shape=None,
+            spread=(0.0,),
+            e_value=exp(min(term.gain, MOST)),
+            fitted=0,
+            held_out=0,
+            log_score=term.gain,
+            words=term.words,
+        ),
+    )
+
+
+def _term(shown: GroupShown, new: NewLasting) -> EmpiricalTerm:
+    """The learned term that is meant."""
+    found = [t for t in shown.terms if t.level and t.subject and new.sensors in ((), t.sensors)]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise _refused("sensors", "must say which is meant: these sessions taught several terms")
+    raise _refused("cause", "no term was learned from these sessions")
 
 
 def _finding(shown: GroupShown, new: NewLasting) -> GroupFinding:

@@ -7,8 +7,9 @@ from estimator.causes import find
 from estimator.diagnosis import Finding
 from estimator.diagnosis.results import Gain
 from estimator.errors import Problem
-from service.errors import RefusedError
-from service.records.diagnosis import StoredDiagnosis
+from service.errors import ConflictError, RefusedError
+from service.flows.own_of_group import tell_own
+from service.records.diagnosis import DiagnosisState, StoredDiagnosis
 from service.records.model import Evidence, ModelRevision, NewModel, Scope
 from service.records.session import StoredSession
 from service.storage import Storage
@@ -16,7 +17,10 @@ from service.words.causes import UNKNOWN_CAUSE
 
 
 def accept_model(storage: Storage, diagnosis: StoredDiagnosis, new: NewModel, now: datetime) -> ModelRevision:
-    """Adds a numbered revision with its evidence; RefusedError where the session does not show the cause."""
+    """Adds a numbered revision with its evidence; RefusedError where the session does not show the cause, ConflictError
+    where it could not be diagnosed."""
+    if diagnosis.state is DiagnosisState.FAILED:
+        raise ConflictError(diagnosis.summary)
     if diagnosis.found is None:
         raise _not_shown(new.cause, ())
     finding = _finding(diagnosis.found.findings, new.cause)
@@ -36,6 +40,7 @@ def accept_model(storage: Storage, diagnosis: StoredDiagnosis, new: NewModel, no
             accepted_at=now,
         )
         revision = store.models.add(accepted)
+        tell_own(store, revision.scope, revision.subject)
         details = {"cause": new.cause, "sensors": list(finding.sensors), "session": session.id, "note": new.note}
         store.audit.write(
             now, new.by, "accept model", f"{new.scope} {revision.subject}", {"revision": revision.id, **details}
@@ -44,7 +49,11 @@ def accept_model(storage: Storage, diagnosis: StoredDiagnosis, new: NewModel, no
 
 
 def _finding(findings: tuple[Finding, ...], wanted: str) -> Finding:
-    """The finding that is accepted, under its own name or under that of an equal alternative."""
+    """The finding that is accepted, under its own name or under that of an equal alternative.
+
+    What only several sessions show together is accepted from those, at the size that they found.
+    """
+    findings = tuple(f for f in findings if f.over_sessions is None)
     named = [f for f in findings if f.cause == wanted]
     equal = [_as_alternative(f, wanted) for f in findings if wanted in f.alternatives and wanted != UNKNOWN_CAUSE]
     if not named and not equal:

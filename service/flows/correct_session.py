@@ -34,7 +34,10 @@ def correct_session(reception: Reception, id: str, by: str, now: datetime) -> Re
         raise ConflictError(UNKNOWN.format(id=id))
     done = ", ".join(correction.text for correction in corrections)
     content = json.dumps(session_document(corrected(source, corrections, f"Corrected: {done}."))).encode()
-    return receive(reception, SentFile(f"{id}-corrected.json", content, Replaced(id, by, f"corrected: {done}")), now)
+    with reception.storage.database.reading() as store:
+        is_check = store.sessions.get(id).is_check
+    replaced = Replaced(id, by, f"corrected: {done}")
+    return receive(reception, SentFile(f"{id}-corrected.json", content, replaced, is_check=is_check), now)
 
 
 def remedies_of(storage: Storage, id: str) -> Remedies:

@@ -19,6 +19,7 @@ from service.flows.flagging.fold import settle_sessions
 from service.flows.flagging.settle import Occasion
 from service.flows.flagging.verdict import no_longer_overdue, tell_verdict, told_by
 from service.flows.refresh_outlook import END_OF_TIME, refresh_outlook
+from service.flows.summarise import ask_for_summaries
 from service.flows.weigh import weigh_again
 from service.ingest import read_upload
 from service.judging.calibrate import Comparison
@@ -27,6 +28,7 @@ from service.judging.judge import judge, judge_recording
 from service.judging.parameter_values import parameter_values
 from service.records.decision import Judged, Opening
 from service.records.derivation import Counted
+from service.records.group import Level
 from service.records.session import StoredSession
 from service.storage import Files
 from service.storage.files import LOST
@@ -98,7 +100,9 @@ def derive_again(store: Store, way: Deriving, serial: str, since: datetime, touc
     for place in now:
         weigh_again(store, way.files, place.session.id)
     _sum_up(store, way, serial, touched)
-    store.pending_groups.ask(store.groups.of_unit(serial), way.at)
+    groups = store.groups.of_unit(serial)
+    store.pending_groups.ask(groups, way.at)
+    store.pending_summaries.ask((group for group in groups if group.level is not Level.UNIT), way.at)
     return Derived(tuple(p.session.id for p in now), len(later))
 
 
@@ -127,6 +131,7 @@ def derive_batch(store: Store, way: Deriving, serial: str, most: int) -> int:
     left = max(len(waiting) - most, 0)
     if not left:
         _sum_up(store, way, serial, ())
+        ask_for_summaries(store, serial, way.at)
     return left
 
 

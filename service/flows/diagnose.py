@@ -8,11 +8,12 @@ acknowledged upload is never left without one.
 from dataclasses import dataclass, replace
 from datetime import datetime
 
-from estimator.diagnosis import diagnose as find_causes
+from estimator import diagnose as find_causes
 from estimator.errors import SessionError
 from estimator.results import COVERAGE
 from estimator.session import DIAGNOSED, CalibrationSession
 from service.flows.derive_again import Deriving
+from service.flows.earlier_records import as_evidence, kept_before
 from service.flows.flagging.diagnosis import flag_diagnosis
 from service.flows.keep_statistics import keep_statistics
 from service.flows.question_session import question_diagnosed
@@ -118,15 +119,18 @@ def _made(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
 def _found(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
     """The session's causes, and its verdict with them in the model."""
     session = _read(storage.files, task.session)
-    found = find_causes(session, _comparable(storage.files, task, session))
+    earlier = _comparable(storage.files, task, session)
+    with storage.database.reading() as store:
+        kept = kept_before(store, task.session)
+    found = find_causes(session, tuple(earlier.values()), records=as_evidence(session, kept, earlier))
     document = written(diagnosis_to_dict(found))
-    kept = read_diagnosis(document)
+    read = read_diagnosis(document)
     with storage.database.reading() as store:
         by = weighing_of(store, task.session.id, session.block)
-    weighed = Weighed(None, ()) if kept is None else weigh(session, kept, by)
+    weighed = Weighed(None, ()) if read is None else weigh(session, read, by)
     return replace(
         _nothing_found(task, state_of(found), summary_of(found), now),
-        found=kept,
+        found=read,
         document=document,
         verdict_after=weighed.verdict_after,
         reservations=weighed.reservations,
@@ -157,19 +161,20 @@ def _read(files: Files, stored: StoredSession) -> CalibrationSession:
     return read_upload(files.content(stored.sha256), stored.filename)
 
 
-def _comparable(files: Files, task: Task, session: CalibrationSession) -> list[CalibrationSession]:
-    """Earlier sessions of the same sensors measured in the same way; a lost file is passed over.
+def _comparable(files: Files, task: Task, session: CalibrationSession) -> dict[str, CalibrationSession]:
+    """Earlier sessions of the same sensors measured in the same way, oldest first, by their identifier; a lost file is
+    passed over.
 
     One that is questioned is compared with none: it cannot be as it says, and everything about it would seem new.
     """
-    found = []
+    found = {}
     for past in () if task.session.state is RecordState.QUESTIONED else task.earlier:
         try:
             earlier = _read(files, past)
         except (*LOST, SessionError):
             continue
         if _sensors(earlier) == _sensors(session):
-            found.append(earlier)
+            found[past.id] = earlier
     return found
 
 

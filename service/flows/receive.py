@@ -79,7 +79,7 @@ def _stored_or_refused(reception: Reception, file: SentFile, now: datetime) -> R
         with in_turn(where(file.content)):
             return upload(
                 reception.storage, file.content, file.filename, now, coverage_factor=k, who=reception.who,
-                replaces=file.replaces, is_dated_later=reception.is_dated_later,
+                replaces=file.replaces, is_dated_later=reception.is_dated_later, is_check=file.is_check,
             )  # fmt: skip
     except RefusedError as refusal:
         return refusal
@@ -97,14 +97,16 @@ def upload(
     replaces: Replaced | None = None,
     outlook: bool = True,
     is_dated_later: bool = True,
+    is_check: bool = False,
 ) -> Receipt:
     """Stores a session file with its calibration and verdict; the same content again gives the same receipt.
 
     A corrected file names the session that it replaces, whatever unit or date that one is of. Raises RefusedError with
     every problem when the file cannot be used; then only the refusal is recorded. Without ``outlook`` the unit's dates
     stay as they were: another file of it follows. ``is_dated_later``: they are asked for, and made beside the requests.
+    ``is_check``: the session is judged and moves no date; what is stored already stays what it is.
     """
-    received = Received(len(content), content_hash(content), plain_filename(filename), now, who, simulated)
+    received = Received(len(content), content_hash(content), plain_filename(filename), now, who, simulated, is_check)
     way = Deriving(storage.files, coverage_factor, now, outlook=outlook, is_dated_later=is_dated_later)
     with storage.database.reading() as store:
         if replaces is not None:
@@ -201,6 +203,7 @@ def _record(received: Received, new: Calibrated) -> StoredSession:
         stage=session.stage,
         reservations=None,
         temperature=None if session.temperature is None else float(session.temperature.mean()),
+        is_check=received.is_check,
     )
 
 
@@ -214,4 +217,5 @@ def _receipt(record: StoredSession, *, created: bool) -> Receipt:
         is_reference=record.is_reference,
         reservations=record.reservations,
         state=record.state,
+        is_check=record.is_check,
     )

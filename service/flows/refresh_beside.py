@@ -5,6 +5,7 @@ from datetime import datetime
 from service.flows.flagging.drift import flag_drift
 from service.flows.flagging.settle import Occasion
 from service.flows.refresh_outlook import gathered, known_of, worked_out
+from service.flows.summarise import ask_for_summaries
 from service.judging.histories import told_of_type
 from service.storage import Storage
 
@@ -35,6 +36,7 @@ def refresh_beside(storage: Storage, serial: str, now: datetime) -> None:
                 continue
             store.pending_outlooks.settle(unit)
             store.outlooks.put(unit, outlook)
+            ask_for_summaries(store, serial, now)
             summary = store.fleet.unit(serial)
             session = None if summary is None else summary.last_session
             flag_drift(store, Occasion(unit, session, now), store.outlooks.of_unit(serial))

@@ -14,18 +14,20 @@ from estimator.groups import SessionStatistics, diagnose_statistics
 from estimator.session import CalibrationSession
 from service.flows.flagging.lasting import flag_lasting
 from service.flows.keep_statistics import add_statistics
+from service.flows.own_of_group import tell_own
 from service.flows.refresh_outlook import END_OF_TIME
 from service.ingest import read_upload
 from service.log import log
 from service.records.group import Group, GroupAnswer, Level, Member, Members
+from service.records.model import SCOPES
 from service.settings import VERSION
 from service.storage import Files, Storage
 from service.storage.files import LOST
 from service.storage.group_document import group_document, read_group
 from service.storage.store import Store
-from service.words.group import FAILED, own_of_group, summary_of_group
+from service.words.group import FAILED, summary_of_group
 
-RULE = b"2"
+RULE = b"3"
 """Version of what an answer says of its sessions: those made by an earlier one are made again."""
 
 
@@ -73,6 +75,7 @@ def refresh_group(storage: Storage, group: Group, now: datetime) -> GroupAnswer:
     with storage.database.writing() as store:
         if is_new:
             store.groups.put(group, answer)
+            tell_own(store, SCOPES[group.level.value], group.name)
         _flag(store, group, members, answer, now)
         store.pending_groups.settle(asked)
     return answer
@@ -108,8 +111,7 @@ def _answered(
         log.error("group failed", level=group.level.value, name=group.name, exc_info=fault)
         return replace(made, summary=FAILED)
     summary = summary_of_group(found.sessions, found.findings, unexplained=found.unexplained)
-    theirs = own_of_group(group, found)
-    return replace(made, summary=summary, own=theirs, document=group_document(group, found, members))
+    return replace(made, summary=summary, document=group_document(group, found, members))
 
 
 def _pooled(group: Group, members: Members, records: dict[str, SessionStatistics]) -> list[Member]:

@@ -3,6 +3,7 @@
 from datetime import datetime
 
 from service.errors import NotFoundError
+from service.flows.summarise import ask_for_summaries
 from service.records.unit import UnitSummary
 from service.storage import Storage
 
@@ -13,6 +14,7 @@ def set_lot(storage: Storage, serial: str, lot: str | None, now: datetime, *, wh
         store.units.hold(serial)
         was = store.units.set_lot(serial, lot)
         if was != lot:
+            ask_for_summaries(store, serial, now)
             store.audit.write(now, who, "lot", serial, {"before": was, "lot": lot})
         found = store.fleet.unit(serial)
     if found is None:

@@ -3,6 +3,7 @@
 from dataclasses import asdict
 from datetime import datetime
 
+from service.errors import ConflictError
 from service.flows.refresh_outlook import refresh_outlook
 from service.records.unit import Tolerances, UnitType
 from service.storage import Storage
@@ -17,21 +18,32 @@ def set_tolerances(
     *,
     interval_days: float | None = None,
     who: str = "crew",
+    why: str = "",
+    seen: int | None = None,
 ) -> UnitType:
     """Adds a revision of the type's tolerances; the same ones again change nothing, and past decisions keep theirs.
+
+    ConflictError where ``seen``, the revision that somebody changed, is no longer the one in force.
 
     Another interval holds for all units of the type at once; None leaves it as it is.
     """
     with storage.database.writing() as store:
         current = store.unit_types.hold(name)
+        if seen is not None and seen != current.revision:
+            raise ConflictError(
+                f"Somebody set other tolerances meanwhile, revision {current.revision}: look at them, then set yours."
+            )
+        said = {"why": why} if why else {}
         if interval_days is not None and interval_days != current.maximum_interval_days:
             was = current.maximum_interval_days
             current = store.unit_types.set_interval(name, interval_days)
             for serial in store.units.of_type(name):
                 refresh_outlook(store, serial)
-            store.audit.write(now, who, "interval", name, {"before": was, "maximum_interval_days": interval_days})
+            store.audit.write(
+                now, who, "interval", name, {"before": was, "maximum_interval_days": interval_days} | said
+            )
         if (current.tolerances, current.gyro_tolerances) == (tolerances, gyro_tolerances):
             return current
         revised = store.unit_types.revise(name, tolerances, gyro_tolerances, now)
-        store.audit.write(now, who, "tolerances", name, {"before": asdict(current), **asdict(revised)})
+        store.audit.write(now, who, "tolerances", name, {"before": asdict(current), **asdict(revised), **said})
         return revised

@@ -71,6 +71,6 @@ def successor_of(storage: Storage, id: str) -> str:
     if len(found) != 1:
         raise ConflictError(
             f"Which session stands for {id} cannot be told: name it in `superseded_by`. "
-            f"{len(found)} were uploaded later of the same unit and date."
+            f"Uploaded later of the same unit and date: {len(found)}."
         )
     return found[0]

@@ -7,6 +7,7 @@ from dataclasses import replace
 from datetime import datetime
 
 from service.errors import ConflictError
+from service.flows.own_of_group import tell_own
 from service.judging.model_in_force import in_force, pooled_of
 from service.records.model import ModelRevision
 from service.storage import Storage
@@ -21,6 +22,7 @@ def withdraw_model(storage: Storage, revision: int, by: str, why: str, now: date
         made = store.models.add(
             replace(known, evidence=None, accepted_by=by, note=why, accepted_at=now, withdraws=known.id)
         )
+        tell_own(store, known.scope, known.subject)
         if pooled_of(known) is not None:
             store.recomputations.ask(made.id, known.scope, known.subject, now)
         details = {"revision": made.id, "withdraws": known.id, "cause": known.cause, "why": why}

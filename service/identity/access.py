@@ -45,11 +45,17 @@ GET /account
 POST /account/password
 POST /account/tokens
 POST /account/tokens/{{id}}/revoke
+POST /views
+POST /views/{{id}}/remove
 GET {API}/sessions
 GET {SESSION}
 GET {SESSION}/calibration
 GET {SESSION}/file
 GET {SESSION}/states
+GET {SESSION}/notes
+GET {SESSION}/attachments
+GET {UNIT}/attachments
+GET {API}/attachments/{{id}}/file
 GET {SESSION}/certificates
 GET {SESSION}/certificates/{{number}}
 GET {SESSION}/correction
@@ -87,6 +93,9 @@ GET {API}/me
 GET {API}/tokens
 POST {API}/tokens
 DELETE {API}/tokens/{{id}}
+GET {API}/views
+POST {API}/views
+DELETE {API}/views/{{id}}
 """
 
 CREW = f"""
@@ -100,17 +109,25 @@ POST /units/{{serial:path}}/services
 POST /units/{{serial:path}}/notes
 POST /units/{{serial:path}}/customer
 POST /notes/{{id}}/withdraw
+POST /sessions/{{id}}/notes
+POST /attachments
+POST /attachments/{{id}}/withdraw
 POST /sessions/{{id}}/stage
+POST /sessions/{{id}}/check
 POST {API}/sessions
 POST {API}/layouts/preview
 POST {API}/plan/missing
 PUT {SESSION}/stage
+PUT {SESSION}/check
 GET {SESSION}/certificate
 POST {UNIT}/services
 POST {UNIT}/notes
 PUT {UNIT}/lot
 PUT {UNIT}/customer
 POST {API}/notes/{{id}}/withdraw
+POST {SESSION}/notes
+POST {API}/attachments
+POST {API}/attachments/{{id}}/withdraw
 """
 
 ENGINEER = f"""
@@ -121,8 +138,10 @@ POST /groups/accept
 POST /models/{{id}}/withdraw
 POST /flags/acknowledge
 POST /flags/resolve
+POST /flags/assign
 POST /flags/{{id}}/acknowledge
 POST /flags/{{id}}/resolve
+POST /flags/{{id}}/assign
 POST /sessions/{{id}}/withdraw
 POST /sessions/{{id}}/certificate/signatures
 POST /sessions/{{id}}/accept
@@ -131,6 +150,7 @@ POST /sessions/{{id}}/stand
 POST /sessions/{{id}}/reference
 POST /services/{{id}}/withdraw
 POST /stands/{{name:path}}/certificates
+POST /unit-types/{{name:path}}/tolerances
 POST {SESSION}/withdraw
 POST {SESSION}/certificate/signatures
 POST {SESSION}/accept
@@ -146,6 +166,8 @@ POST {API}/services/{{id}}/withdraw
 POST {API}/models/{{id}}/withdraw
 POST {API}/flags/{{id}}/acknowledge
 POST {API}/flags/{{id}}/resolve
+POST {API}/flags/{{id}}/assign
+POST {API}/flags/assign
 PUT {API}/unit-types/{{name:path}}
 PUT {API}/stands/{{name:path}}/certificate
 """

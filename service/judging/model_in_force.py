@@ -69,6 +69,7 @@ def _effect(revision: ModelRevision, evidence: Evidence, pooled: Pooled) -> Fixe
         sigma=in_one_session(evidence.sigma, pooled.spread),
         shape=pooled.shape,
         varies=pooled.form == "varying",
+        words=pooled.words,
     )
 
 

@@ -49,8 +49,9 @@ def verdicts_under_alternatives(
     """Under each of the likeliest alternatives of the strongest finding, in its place beside the other names.
 
     None where the record is wrong: the session is to be uploaded again. None of an alignment: it takes off what is
-    looked for in it.
+    looked for in it. None of what only several sessions show together: this one cannot fit it.
     """
+    findings = tuple(f for f in findings if f.over_sessions is None)
     if (
         session.programme not in CALIBRATIONS
         or not findings

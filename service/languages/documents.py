@@ -8,6 +8,8 @@ NOT_SAID = frozenset(
     ("key", "shape", "unit", "serial", "unit_type", "notes", "sha256", "who", "number", "address", "code", "sealed_by")
 )
 """Fields that name something for the template, or hold what people named or wrote."""
+VALUE, BY_SOMEBODY = "value", "is_written"
+"""Of a line of a paper: its value, and whether somebody wrote that."""
 DRAWING = "<svg"
 WRITTEN = re.compile(r"(<text\b[^>]*>)([^<]+)(</text>)")
 """A text in a drawing."""
@@ -20,7 +22,8 @@ def document_in(data: Any, say: Callable[[str], str]) -> Any:
             is_drawing = data.lstrip().startswith(DRAWING)
             return WRITTEN.sub(lambda m: f"{m[1]}{say(m[2])}{m[3]}", data) if is_drawing else say(data)
         case dict():
-            return {key: value if key in NOT_SAID else document_in(value, say) for key, value in data.items()}
+            kept = NOT_SAID | {VALUE} if data.get(BY_SOMEBODY) else NOT_SAID
+            return {key: value if key in kept else document_in(value, say) for key, value in data.items()}
         case list():
             return [document_in(value, say) for value in data]
         case _:

@@ -1,7 +1,7 @@
 """The words of the Python sources, found without a mark: string literals that read as words, f-strings with places.
 
 An f-string's places bear the names of what stands in them. A conditional ending, ``{'' if n == 1 else 's'}``, makes
-a plural of the message; other conditional words make a message each.
+a plural of the message, and so does a verb that the same number decides; other conditional words make a message each.
 """
 
 import ast
@@ -117,7 +117,10 @@ def _of_f(node: ast.JoinedStr) -> Iterator[Message]:
     plural = next((v for v in node.values if _ending(v)), None)
     if plural is not None and isinstance(plural, ast.FormattedValue):
         names.count(node, plural)
-        yield Message(_filled(node, names, {plural: 0}), _filled(node, names, {plural: 1}))
+        agreeing = [v for v in node.values if _choice(v) and _test(v) == _test(plural)]
+        of_one = _choice(plural).index("")
+        one, many = (_filled(node, names, dict.fromkeys(agreeing, side)) for side in (of_one, 1 - of_one))
+        yield Message(one, many)
         return
     choices = [v for v in node.values if _choice(v)]
     for chosen in islice(product((0, 1), repeat=len(choices)), MOST):
@@ -130,8 +133,7 @@ def _filled(node: ast.JoinedStr, names: "_Names", chosen: dict[ast.expr, int]) -
         if isinstance(value, ast.Constant):
             text += str(value.value)
         elif isinstance(value, ast.FormattedValue) and value in chosen:
-            choice = sorted(_ending(value)) if _ending(value) else _choice(value)
-            text += choice[chosen[value]]
+            text += _choice(value)[chosen[value]]
         elif isinstance(value, ast.FormattedValue) and not text.endswith("}"):
             text += f"{{{names.of(value.value)}}}"
     return text
@@ -144,6 +146,13 @@ def _choice(value: ast.expr) -> list[str]:
         words = [b.value for b in both if isinstance(b, ast.Constant) and isinstance(b.value, str)]
         return words if len(words) == len(both) else []
     return []
+
+
+def _test(value: ast.expr) -> str:
+    """What decides between the words."""
+    if isinstance(value, ast.FormattedValue) and isinstance(value.value, ast.IfExp):
+        return ast.unparse(value.value.test)
+    return ""
 
 
 def _ending(value: ast.expr) -> list[str]:

@@ -26,8 +26,8 @@ WORSE = 4
 ENDS = ".,:;…!"
 DEEPEST = 16
 """Messages within messages: what is said to people is not nested deeper."""
-MOST_READ = 1500
-"""Parts of one text that are read: ten times what the longest sentence has; somebody may write one to take time."""
+MOST_READ = 500
+"""Parts of one text that are read: three times what the longest sentence has; somebody may write one to take time."""
 MOST_PARTS = 24
 """Of a text: what has more is a list of names or what somebody wrote."""
 MOST_WORDS = 4
@@ -152,7 +152,7 @@ class Reader:
         if len(parts) < 2 or len(parts) > (MOST_WORDS if joint == " " else MOST_PARTS):
             return
         whole = self._joined(parts, joint, depth)
-        if joint in STRONG or whole.untold == 0 or (joint != " " and self._all_told(parts, depth)):
+        if joint in STRONG or whole.untold == 0 or (joint != " " and whole.messages and self._all_told(parts, depth)):
             yield replace(whole, sure=joint in STRONG and whole.untold == 0)
 
     def _all_told(self, parts: list[str], depth: int) -> bool:

@@ -19,7 +19,7 @@ WORDS = tuple(
     rms | residual | flag | drift | risk | due | latitude | levelling | elevation | turn β | backwards
     Lower, −U | Upper, +U | shifted | parity | reviewed | approved | reviewed by | approved by | small | large
     password | diagnose | certificate | upload | customer | interval | tolerances | stage | recalibrate
-    refuse | stand-certificate | question | acknowledge | resolve
+    refuse | stand-certificate | question | acknowledge | resolve | assigned | check | attach
     {unit} per {input} | {rate} a year | from row {value} | at row {value}
     a steady change of a parameter; a step is a sudden one
     """.strip().splitlines()

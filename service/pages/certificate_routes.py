@@ -22,12 +22,10 @@ router = APIRouter(include_in_schema=False)
 
 
 @router.get("/sessions/{id}/certificate")
-def show_certificate(
-    request: Request, id: Key, store: Reading, desk: DeskOf, person: PersonOf, now: Now
-) -> HTMLResponse:
+def show_certificate(request: Request, id: Key, store: Reading, desk: DeskOf, person: PersonOf) -> HTMLResponse:
     """Every issue of the session's certificate, and who signed it."""
     four_eyes = desk.rules.four_eyes
-    page = certificate_page(store.sessions.get(id), papers_of(desk, id, now), person, four_eyes=four_eyes)
+    page = certificate_page(store.sessions.get(id), papers_of(desk, id), person, four_eyes=four_eyes)
     return render(request, "certificate.html", page)
 
 
@@ -48,7 +46,7 @@ def take_signature(
     try:
         sign(desk, signing, Attempt(person.login, address_of(request)), now)
     except SignInError as wrong:
-        papers, four_eyes = papers_of(desk, id, now), desk.rules.four_eyes
+        papers, four_eyes = papers_of(desk, id), desk.rules.four_eyes
         with desk.storage.database.reading() as store:
             session = store.sessions.get(id)
         page = certificate_page(session, papers, person, four_eyes=four_eyes, wrong=wrong.detail)

@@ -9,7 +9,6 @@ from fastapi.responses import HTMLResponse, RedirectResponse
 from service.background.read_diagnosis import GLANCE
 from service.dependencies import Now, ReaderOf, Reading, SettingsOf, StorageOf
 from service.flows.accept_model import accept_model
-from service.flows.diagnose import diagnose
 from service.flows.recalibrate import recalibrate
 from service.flows.withdraw_model import withdraw_model
 from service.pages.diagnosis import diagnosis_page
@@ -32,6 +31,7 @@ def show_diagnosis(request: Request, store: Reading, id: Key, reader: ReaderOf) 
 def accept(
     id: Key,
     storage: StorageOf,
+    reader: ReaderOf,
     now: Now,
     *,
     cause: Annotated[str, Form(max_length=200, pattern=NO_NUL)],
@@ -40,7 +40,7 @@ def accept(
     note: Annotated[str, Form(max_length=2000, pattern=NO_NUL)] = "",
 ) -> RedirectResponse:
     """Accepts a named cause, and shows the models that concern the session."""
-    accept_model(storage, diagnose(storage, id, now), NewModel(cause, scope, by, note), now)
+    accept_model(storage, reader.made(id), NewModel(cause, scope, by, note), now)
     return RedirectResponse(f"/sessions/{id}/diagnosis#models", SEE_OTHER)
 
 

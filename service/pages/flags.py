@@ -3,8 +3,9 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from service.pages.flags_view import ORDERS, PAGE_SIZE, FlagsView
 from service.pages.flags_view import STATES as CHOICES
-from service.pages.flags_view import FlagsView
+from service.pages.saved import Saved
 from service.records.flag import Flag, FlagState, Matter, Notice, NoticeKind
 from service.words.conditions import FIT, NOT_JUDGED, UNDECIDED, UNFIT, Condition
 
@@ -25,6 +26,7 @@ DONE = {
     NoticeKind.SEEN: "seen again",
     NoticeKind.CLEAR: "no longer seen",
     NoticeKind.ACKNOWLEDGED: "acknowledged",
+    NoticeKind.ASSIGNED: "assigned",
     NoticeKind.RESOLVED: "resolved",
     NoticeKind.VERDICT: "verdict changed",
 }
@@ -67,18 +69,42 @@ class FlagsPage:
     """Everything the page of all open flags shows."""
 
     cards: tuple[FlagCard, ...]
-    more: bool
-    """Whether there are more than the page lists."""
+    earlier: str
+    """Address of the page before this one; empty where it is the first."""
+    later: str
+    """Address of the next page; empty where it is the last."""
     view: FlagsView
     matters: Mapping[str, str]
     states: Mapping[str, str]
     """What the list can be narrowed to, in words."""
+    orders: Mapping[str, str]
+    assigned: Mapping[str, str]
+    """Whose flags can be asked for: what stands in the address, and the name or words."""
+    people: tuple[str, ...]
+    """Whom a flag can be given to; empty where anybody may be named."""
+    saved: Saved
+    """Views of the list that were kept."""
 
 
-def flags_page(flags: Sequence[Flag], view: FlagsView, most: int) -> FlagsPage:
-    """The page of the fleet's open flags."""
-    matters = {matter.value: word for matter, word in MATTERS.items()}
-    return FlagsPage(flag_cards(flags[:most]), len(flags) > most, view, matters, CHOICES)
+def flags_page(
+    found: Sequence[Flag], view: FlagsView, assigned: Mapping[str, str], people: Sequence[str], kept: Saved
+) -> FlagsPage:
+    """One page of open flags; one more than fit on it says that there are others in the direction of reading."""
+    backwards, others = bool(view.before), len(found) > PAGE_SIZE
+    shown = found[-PAGE_SIZE:] if backwards else found[:PAGE_SIZE]
+    is_first, is_last = (not others, False) if backwards else (not view.after, not others)
+    return FlagsPage(
+        cards=flag_cards(shown),
+        earlier="" if is_first or not shown else view.url(before=shown[0].id, after=""),
+        later="" if is_last or not shown else view.url(after=shown[-1].id, before=""),
+        view=view,
+        matters={matter.value: word for matter, word in MATTERS.items()},
+        states=CHOICES,
+        orders=ORDERS,
+        assigned=assigned,
+        people=tuple(people),
+        saved=kept,
+    )
 
 
 def flag_cards(flags: Sequence[Flag]) -> tuple[FlagCard, ...]:

@@ -4,12 +4,28 @@ from dataclasses import dataclass
 
 from pydantic import BaseModel
 
-from service.pages.list_view import Asked, address_of
-from service.records.flag import FlagState, Matter
+from service.pages.list_view import Asked, ListView, known_order
+from service.records.flag import Assignee, FlagState, Matter
 from service.storage.queries.flags import FlagQuery
+from service.views.assigned import ME, OF_NOBODY
 
+PAGE_SIZE = 50
+"""Flags on a page: as many as anybody ticks one by one."""
 STATES = {FlagState.RAISED.value: "Not acknowledged", FlagState.ACKNOWLEDGED.value: "Acknowledged"}
 """Choices, in words."""
+NEWEST, OLDEST = "newest", "oldest"
+ORDERS = {NEWEST: "newest first", OLDEST: "oldest first"}
+MINE, NOBODYS = "Assigned to me", "Assigned to nobody"
+NAMES = {
+    "text": "q", "matter": "matter", "state": "state", "assigned": "assigned", "sort": "sort", "after": "after",
+    "before": "before",
+}  # fmt: skip
+"""Fields of a view as they are called in an address."""
+
+PLAIN = {"sort": NEWEST}
+"""What an address need not say."""
+FIRST = {"after": "", "before": ""}
+"""What leads to the first page."""
 
 
 class FlagsAsked(BaseModel):
@@ -18,36 +34,70 @@ class FlagsAsked(BaseModel):
     q: Asked = ""
     matter: Asked = ""
     state: Asked = ""
+    assigned: Asked = ""
+    sort: Asked = ""
+    after: Asked = ""
+    before: Asked = ""
 
 
 @dataclass(frozen=True)
-class FlagsView:
-    """Empty where nothing is asked: all that are open."""
+class FlagsView(ListView):
+    """Flags that are open."""
 
+    PATH = "/flags"
+    NAMES = NAMES
+    PLAIN = PLAIN
+    FIRST = FIRST
+    ORDERS = ORDERS
+    sort: str = NEWEST
     text: str = ""
     matter: str = ""
     state: str = ""
+    assigned: str = ""
+    """A name or a login, `me` or `nobody`."""
+    after: str = ""
+    """The flag that this page follows."""
+    before: str = ""
+    """The flag that it comes before."""
 
     @classmethod
     def of(cls, asked: FlagsAsked) -> "FlagsView":
         """The view of an address; what it asks that nobody knows is left out."""
         return cls(
+            sort=known_order(asked.sort.removeprefix("-"), ORDERS, NEWEST),
             text=asked.q.strip(),
             matter=asked.matter if asked.matter in set(Matter) else "",
             state=asked.state if asked.state in STATES else "",
+            assigned=asked.assigned,
+            after=_number(asked.after),
+            before="" if _number(asked.after) else _number(asked.before),
         )
 
-    def url(self, path: str) -> str:
-        """The address of this view."""
-        asked = {"q": self.text, "matter": self.matter, "state": self.state}
-        return address_of(path, asked)
+    def doing(self, what: str) -> str:
+        """Where the form of ticked flags is sent, so that this view comes back."""
+        return self.url().replace(self.PATH, f"{self.PATH}/{what}", 1)
 
-    def query(self, limit: int) -> FlagQuery:
-        """What the store is asked."""
+    def query(self, assignee: Assignee | None) -> FlagQuery:
+        """What the store is asked: one flag more than fit on the page, which says whether there are others."""
         return FlagQuery(
             state=FlagState(self.state) if self.state else None,
-            limit=limit,
+            limit=PAGE_SIZE + 1,
             matter=Matter(self.matter) if self.matter else None,
             text=self.text or None,
             unresolved=True,
+            assignee=assignee,
+            after=int(self.after) if self.after else None,
+            before=int(self.before) if self.before else None,
+            oldest_first=self.sort == OLDEST,
         )
+
+
+def choices_of(assignees: tuple[Assignee, ...], *, is_signed_in: bool) -> dict[str, str]:
+    """Whose flags can be asked for, in words."""
+    own = {ME: MINE} if is_signed_in else {}
+    return own | {OF_NOBODY: NOBODYS} | {one.login or one.name: one.name for one in assignees}
+
+
+def _number(asked: str) -> str:
+    """A flag's number; empty where it is none."""
+    return asked if asked.isascii() and asked.isdecimal() and 0 < int(asked) <= 2_000_000_000 else ""

@@ -4,20 +4,23 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
-from service.pages.fleet_view import DUE, ORDERS, PAGE_SIZE, FleetView
+from service.judging.standouts import Standout
+from service.pages.fleet_view import DUE, FIRST, ORDERS, PAGE_SIZE, FleetView
 from service.pages.group import FoundLine
+from service.pages.saved import Saved
 from service.records.fleet import FleetChoices
 from service.records.reservation import Reservations
+from service.records.saved_view import ListPage
 from service.records.stand import StandCondition
 from service.records.state import Questioned
 from service.records.unit import FleetCondition, UnitSummary
-from service.views.standouts import Standout
 from service.words.conditions import REFERENCE, UNDECIDED, Condition, condition_of
 from service.words.due import needed_now
 
 MOST_STANDOUTS = 6
 """Lines above the list of units, so that the list stays in sight."""
 NO_CHOICES = FleetChoices()
+NONE_SAVED = Saved(ListPage.FLEET, (), "", own=False, may_share=False)
 BAR_LIMIT = 150.0
 """The margin bar ends at one and a half tolerances, per cent."""
 
@@ -75,8 +78,10 @@ class FleetPage:
     tiles: tuple[Tile, ...]
     rows: tuple[FleetRow, ...]
     total: int
-    more: bool
-    """Whether there is a next page."""
+    earlier: str
+    """Address of the page before this one; empty where it is the first."""
+    later: str
+    """Address of the next page; empty where it is the last."""
     simulated: int
     flags: str
     """How many are open on all units together, in words; empty where none is."""
@@ -96,6 +101,8 @@ class FleetPage:
     """Choices of the next calibration's date, in words."""
     orders: Mapping[str, str]
     """Of the list, in words."""
+    saved: Saved
+    """Views of the list that were kept."""
 
     @property
     def first(self) -> int:
@@ -120,33 +127,51 @@ def fleet_page(
     stands: Sequence[StandCondition] = (),
     questioned: Sequence[Questioned] = (),
     choices: FleetChoices = NO_CHOICES,
+    kept: Saved = NONE_SAVED,
 ) -> FleetPage:
-    """One page of units; one unit more than fit on it says that there is a next page."""
+    """One page of units; one more than fit on it says that there are others in the direction of reading."""
+    backwards, others = bool(view.before), len(units) > PAGE_SIZE
+    shown = units[-PAGE_SIZE:] if backwards else units[:PAGE_SIZE]
     return FleetPage(
         view=view,
         tiles=tuple(
             _tile(condition_of(v), n, condition.reserved.get(v, 0), view)
             for v, n in reversed(condition.verdicts.items())
         ),
-        rows=tuple(fleet_row(unit, now) for unit in units[:PAGE_SIZE]),
+        rows=tuple(fleet_row(unit, now) for unit in shown),
         total=condition.units,
-        more=len(units) > PAGE_SIZE,
+        earlier=_earlier(view, shown),
+        later=_later(view, shown) if backwards or others else "",
         simulated=condition.simulated,
         flags=flags_in_words(condition.flags),
-        stands=tuple(stand for stand in stands if stand.shifts),
-        standouts=tuple(unlike[:MOST_STANDOUTS]),
+        stands=tuple(stands),
+        standouts=tuple(unlike),
         questioned=tuple(questioned),
         together=together,
         overdue=f"{overdue} unit{'' if overdue == 1 else 's'} overdue for calibration" if overdue else "",
         choices=choices,
         dates=DUE,
         orders=ORDERS,
+        saved=kept,
     )
+
+
+def _earlier(view: FleetView, shown: Sequence[UnitSummary]) -> str:
+    """The first page is read from its beginning, so that nothing new is missed before it."""
+    if view.page == 1:
+        return ""
+    if view.page == 2 or not shown:
+        return view.url(**FIRST)
+    return view.url(page=view.page - 1, before=shown[0].serial, after="")
+
+
+def _later(view: FleetView, shown: Sequence[UnitSummary]) -> str:
+    return view.url(page=view.page + 1, after=shown[-1].serial, before="") if shown else ""
 
 
 def _tile(condition: Condition, count: int, reserved: int, view: FleetView) -> Tile:
     chosen = view.condition == condition.key
-    return Tile(condition, count, reserved, chosen, view.url(condition="" if chosen else condition.key, page=1))
+    return Tile(condition, count, reserved, chosen, view.url(condition="" if chosen else condition.key, **FIRST))
 
 
 def flags_in_words(count: int) -> str:

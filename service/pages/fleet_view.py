@@ -24,12 +24,12 @@ ORDERS: dict[str, str] = {
 }
 NAMES = {
     "text": "q", "condition": "condition", "due": "due", "unit_type": "type", "stand": "stand", "lot": "lot",
-    "flagged": "flagged", "sort": "sort", "page": "page",
+    "flagged": "flagged", "sort": "sort", "page": "page", "after": "after", "before": "before",
 }  # fmt: skip
 """Fields of a view as they are called in an address."""
 PLAIN = {"page": 1, "sort": Order.CONDITION.value}
 """What an address need not say."""
-FIRST = {"page": 1}
+FIRST: dict[str, str | int] = {"page": 1, "after": "", "before": ""}
 """What leads to the first page."""
 
 
@@ -45,6 +45,8 @@ class FleetAsked(BaseModel):
     flagged: Asked = ""
     sort: Asked = ""
     page: Annotated[int, Field(ge=1, le=1_000_000)] = 1
+    after: Asked = ""
+    before: Asked = ""
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,11 @@ class FleetView(ListView):
     lot: str = ""
     flagged: str = ""
     page: int = 1
+    """Its number, for people; what is read begins after a unit."""
+    after: str = ""
+    """The unit that this page follows."""
+    before: str = ""
+    """The unit that it comes before."""
 
     @classmethod
     def of(cls, asked: FleetAsked) -> "FleetView":
@@ -79,6 +86,8 @@ class FleetView(ListView):
             lot=asked.lot,
             flagged=asked.flagged,
             page=asked.page,
+            after=asked.after,
+            before="" if asked.after else asked.before,
         )
 
     def query(self, now: datetime) -> FleetQuery:
@@ -87,7 +96,9 @@ class FleetView(ListView):
         return FleetQuery(
             verdict=Verdict(self.condition) if self.condition in set(Verdict) else None,
             text=self.text or None,
-            offset=(self.page - 1) * PAGE_SIZE,
+            offset=0 if self.after or self.before else (self.page - 1) * PAGE_SIZE,
+            after=self.after or None,
+            before=self.before or None,
             limit=PAGE_SIZE + 1,
             reserved=True if self.condition == RESERVED.key else None,
             due_before=until.get(self.due),

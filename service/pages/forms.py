@@ -21,4 +21,6 @@ def _by(person: PersonOf, by: Annotated[str, Form(max_length=200, pattern=SAYS_S
 
 By = Annotated[str, Depends(_by)]
 """Somebody's name: the account's, or as they wrote it where nobody signs in."""
+Perhaps = Annotated[str, Form(max_length=2000, pattern=NO_NUL)]
+"""What may be said and need not."""
 Why = Annotated[str, Form(max_length=2000, pattern=SAYS_SOMETHING)]

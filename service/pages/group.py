@@ -12,10 +12,12 @@ from service.charts.groups import forest_chart, picture_chart, picture_table
 from service.flows.refresh_group import current
 from service.judging.model_in_force import in_force
 from service.records.group import Group, Level
+from service.records.model import SCOPES
+from service.settings import VERSION
 from service.storage.group_document import read_group
 from service.storage.queries.models import ModelQuery
 from service.storage.store import Store
-from service.words.group_finding import SCOPES, GroupView, group_view
+from service.words.group_finding import GroupView, group_view
 
 HOMES = {Level.UNIT: "units", Level.TYPE: "unit-types", Level.STAND: "stands"}
 """Of the pages of groups, and of their answers as JSON."""
@@ -80,8 +82,11 @@ def whose(group: Group) -> str:
 
 def group_section(store: Store, level: Level, name: str) -> GroupSection:
     """What the sessions of a unit, a unit type or a stand show together, where it is made of its records of now."""
-    group = store.groups.find(level, name)
-    answer = current(store, group)
+    key = store.units.key(name) if level is Level.UNIT else store.groups.find(level, name).key
+    group = Group(level, key, name)
+    answer = store.groups.standing(group, VERSION)
+    if answer is None and level is Level.UNIT:  # what was asked for again may rest on the same records as before
+        answer = current(store, group)
     if answer is None:
         return GroupSection(group, None, "")
     if answer.document is None:
@@ -89,7 +94,7 @@ def group_section(store: Store, level: Level, name: str) -> GroupSection:
     shown = read_group(answer.document)
     if not shown.sessions:
         return GroupSection(group, None, "")
-    accepted = in_force(store.models.page(ModelQuery(limit=MOST_REVISIONS))) if shown.findings else ()
+    accepted = in_force(store.models.page(ModelQuery(limit=MOST_REVISIONS))) if shown.findings or shown.terms else ()
     return GroupSection(
         group,
         group_view(answer, shown, accepted),

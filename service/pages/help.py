@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from service.records.state import RecordState
-from service.words.help import MEASURES, WHEN, WORDS, plainly
+from service.words.help import KEYS, MEASURES, WHEN, WORDS, plainly
 from service.words.states import MEANINGS, STATES
 
 COUNTS = "It counts: what is known of its unit rests on it."
@@ -18,9 +18,11 @@ class HelpPage:
     states: tuple[tuple[str, str], ...]
     measures: tuple[tuple[str, str], ...]
     words: tuple[tuple[str, str], ...]
+    keys: tuple[tuple[tuple[str, ...], str], ...]
+    """Keys, and what they do."""
 
 
 def help_page() -> HelpPage:
     """It is the same for everybody."""
     states = tuple((STATES[state], MEANINGS[state] or COUNTS) for state in RecordState)
-    return HelpPage(WHEN, states, MEASURES, tuple((word, plainly(meaning)) for word, meaning in WORDS))
+    return HelpPage(WHEN, states, MEASURES, tuple((word, plainly(meaning)) for word, meaning in WORDS), KEYS)

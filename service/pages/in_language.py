@@ -1,8 +1,10 @@
 """Every answer that people read, in their language: what is refused is said in it, and caches are told."""
 
 import json
+from time import monotonic
 from typing import Any
 
+from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -15,6 +17,9 @@ PROBLEM = "application/problem+json"
 PAPERS = ("application/pdf", "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet")
 """Made in the language of the one who asks, or kept in that of the one who approved them."""
 SAID = ("title", "detail")
+PATIENCE = 2.0
+"""Seconds that a refusal's sentences are looked up for; a file may be made so that they are many and take long, and
+the rest is then told in English."""
 
 
 class InOneLanguage:
@@ -70,7 +75,8 @@ class _Speaker:
             await self._send(start)
             await self._send({"type": "http.response.body", "body": b""})
             return
-        body = json.dumps(in_words_of(self._language, json.loads(self._body)), ensure_ascii=False).encode()
+        told = await run_in_threadpool(in_words_of, self._language, json.loads(self._body))
+        body = json.dumps(told, ensure_ascii=False).encode()
         MutableHeaders(scope=start)["Content-Length"] = str(len(body))
         await self._send(start)
         await self._send({"type": "http.response.body", "body": body})
@@ -78,7 +84,12 @@ class _Speaker:
 
 def in_words_of(language: Language, problem: dict[str, Any]) -> dict[str, Any]:
     """A problem with its sentences said in a language; its keys and fields stay."""
-    say = catalogue_of(language).say
+    catalogue = catalogue_of(language)
+    end = monotonic() + PATIENCE
+
+    def say(text: str) -> str:
+        return catalogue.say(text) if monotonic() < end else text
+
     told = problem | {key: say(problem[key]) for key in SAID if key in problem}
     if "problems" in told:
         told["problems"] = [one | {"message": say(one["message"])} for one in told["problems"]]

@@ -1,5 +1,7 @@
 """The address of the page of a table of one's own layout: looked at, corrected, looked at again, confirmed."""
 
+from dataclasses import replace
+
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
@@ -18,6 +20,8 @@ from service.views.layout_preview import Preview, facts_of, preview
 from service.views.pattern import type_names
 
 NO_FILE = "The table did not come with the form: choose it again."
+STORE, CHECK = "store", "check"
+"""Buttons of the form that keep the session; a check moves no date."""
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 
@@ -31,9 +35,10 @@ def show_layout(request: Request, form: LayoutFormOf, reception: ReceptionOf, no
     with reception.storage.database.reading() as store:
         types = type_names(store)
     page = layout_page(form.file, found, form, types)
-    if form.fields.get("do") == "store" and page.can_store and found.mapping == form.mapping:
+    done = form.fields.get("do")
+    if done in (STORE, CHECK) and page.can_store and found.mapping == form.mapping:
         try:
-            receipt = receive_mapped(reception, form.file, found.mapping, now)
+            receipt = receive_mapped(reception, replace(form.file, is_check=done == CHECK), found.mapping, now)
         except RefusedError as fault:
             failed = Preview(**{**vars(found), "problems": fault.problems, "session": None})
             return render(request, "layout.html", layout_page(form.file, failed, form, types), fault.status)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from urllib.parse import quote
 
+from estimator.groups.fixed import EMPIRICAL
 from service.judging.model_in_force import in_force, pooled_of
 from service.pages.follow import SOONEST
 from service.records.model import ModelRevision, Pooled, Scope
@@ -87,7 +88,7 @@ def model_page(
 
 def _amplitudes(revision: ModelRevision) -> tuple[str, ...]:
     evidence = revision.evidence
-    if evidence is None:
+    if evidence is None or revision.cause == EMPIRICAL:  # the equation of a learned term states them
         return ()
     own = Amounts(revision.cause, revision.sensors, evidence.amplitude, evidence.sigma, evidence.units)
     return tuple(amplitudes_of(own))

@@ -15,7 +15,8 @@ async def _files(arriving: ArrivingOf) -> tuple[SentFile, ...]:
     """The chosen files."""
     form = await arriving.form(MOST_FILES)
     chosen = [file for file in form.getlist("files") if isinstance(file, LandedFile) and file.filename]
-    return tuple([SentFile(file.filename or "upload", await file.content()) for file in chosen])
+    is_check = bool(form.get("check"))
+    return tuple([SentFile(file.filename or "upload", await file.content(), is_check=is_check) for file in chosen])
 
 
 FormFiles = Annotated[tuple[SentFile, ...], Depends(_files)]

@@ -11,6 +11,7 @@ from service.flows.accept_session import accept_session
 from service.flows.choose_reference import choose_reference
 from service.flows.correct_session import correct_session
 from service.flows.receive import deriving
+from service.flows.set_check import set_check
 from service.flows.supersede_session import supersede_session
 from service.flows.withdraw_service import withdraw_service
 from service.flows.withdraw_session import withdraw_session
@@ -35,6 +36,16 @@ def accept(id: Key, by: By, why: Why, reception: ReceptionOf, now: Now) -> Redir
     accept_session(reception.storage, deriving(reception, now), id, Step(by, now, why))
     reception.ring()
     return RedirectResponse(f"/sessions/{id}", SEE_OTHER)
+
+
+@router.post("/sessions/{id}/check")
+def mark_check(
+    id: Key, by: By, why: Why, reception: ReceptionOf, now: Now, *, is_check: Annotated[bool, Form()] = False
+) -> RedirectResponse:
+    """A session is only a check, or a calibration after all."""
+    set_check(reception.storage, deriving(reception, now), id, Step(by, now, why), is_check=is_check)
+    reception.ring()
+    return RedirectResponse(f"/sessions/{id}#stage", SEE_OTHER)
 
 
 @router.post("/sessions/{id}/correct")

@@ -6,33 +6,36 @@ from fastapi import APIRouter, Query, Request
 from fastapi.responses import HTMLResponse
 from pydantic import BaseModel, Field
 
-from service.dependencies import Now, Reading, ReceptionOf, SettingsOf, StorageOf
+from service.admission import PersonOf
+from service.dependencies import Now, Reading, ReadingFleet, ReceptionOf, SettingsOf, StorageOf
 from service.flows.correct_session import remedies_of
 from service.flows.receive import receive_all
 from service.ingest import is_own_layout
 from service.judging.model_in_force import model_as_of
-from service.pages.fleet import fleet_page
+from service.judging.standouts import fleet_standouts
+from service.pages.fleet import MOST_STANDOUTS, fleet_page
 from service.pages.fleet_view import FleetAsked, FleetView
 from service.pages.follow import SOONEST, follow_seconds
 from service.pages.forms import Key
 from service.pages.group import found_line, group_section
 from service.pages.received import FormFiles
+from service.pages.remarks import remarks
 from service.pages.render import render
+from service.pages.saved import saved
 from service.pages.session import session_page
 from service.pages.unit import unit_page
 from service.pages.upload import outcome_of, outcomes_of, table_outcome, upload_page
 from service.records.doubt import Remedies
 from service.records.group import Level
 from service.records.received import where
+from service.records.saved_view import ListPage
 from service.records.state import RecordState
 from service.storage.queries.flags import FlagQuery
 from service.views.found_and_left import found_and_left
 from service.views.history import recent_history
-from service.views.outlook import own_outlook
+from service.views.outlook import dated
 from service.views.pattern import type_names
 from service.views.session_report import session_report
-from service.views.standouts import fleet_standouts
-from service.views.stands import stand_conditions
 from service.views.traceability import traceability_of
 from service.views.unit_report import unit_report
 from service.words.recalibrated import recalibrated_in_words
@@ -50,8 +53,9 @@ router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 @router.get("/")
 def show_fleet(
     request: Request,
-    store: Reading,
+    store: ReadingFleet,
     now: Now,
+    person: PersonOf,
     asked: Annotated[FleetAsked, Query()],
 ) -> HTMLResponse:
     """The fleet, worst unit first unless another order is asked for."""
@@ -63,10 +67,11 @@ def show_fleet(
         now,
         overdue=store.outlooks.overdue(now),
         together=found_line(store),
-        unlike=fleet_standouts(store),
-        stands=stand_conditions(store),
+        unlike=fleet_standouts(store, MOST_STANDOUTS),
+        stands=store.stands.shifts(),
         questioned=store.states.questioned(MOST_QUESTIONED),
         choices=store.fleet.choices(),
+        kept=saved(store.saved_views.of(person.login, ListPage.FLEET), view, ListPage.FLEET, person),
     )
     return render(request, "fleet.html", shown)
 
@@ -103,10 +108,11 @@ def show_unit(
             flags=store.flags.page(FlagQuery(serial, limit=FLAG_LIMIT)),
             notes=store.notes.of_unit(serial),
             pair=found_and_left(store, report.unit_type, report.sessions, report.services, settings.coverage_factor),
-            outlook=own_outlook(store, serial, now),
+            outlook=dated(report.outlook, now),
             group=group_section(store, Level.UNIT, serial),
             recalibrated=recalibrated_in_words(asked.recomputed, asked.unchanged, asked.left),
             follow=SOONEST if is_coming and settings.diagnosis_workers else None,
+            said=remarks(serial, "", (), store.attachments.of_unit(serial), settings.max_attachment_bytes),
         ),
     )
 
@@ -126,6 +132,13 @@ def show_session(
         follow=None if made else follow_seconds(report.session.uploaded_at, now, settings.diagnosis_workers),
         model=model_as_of(store.models.of_session(id), report.session.revision),
         computed=store.calibrations.revisions(id),
+        said=remarks(
+            report.session.unit,
+            id,
+            store.notes.of_session(id),
+            store.attachments.of_session(id),
+            settings.max_attachment_bytes,
+        ),
     )
     return render(request, "session.html", page)
 

@@ -25,6 +25,7 @@ from service.measures import (
 )
 from service.pages.diagnosis_line import DiagnosisLine, diagnosis_line
 from service.pages.parity import ParityView, parity_view
+from service.pages.remarks import Remarks
 from service.pages.residual_table import ResidualTable, residual_table
 from service.records.decision import Decision, Verdict, nominal_factor_of
 from service.records.diagnosis import DiagnosisSummary
@@ -108,6 +109,8 @@ class SessionPage:
     """What would put it right, where it is questioned."""
     traceability: Traceability | None
     """What its numbers hang on."""
+    said: Remarks | None
+    """What people say of it; None where the page is made without a service."""
     follow: int | None
     """Seconds after which the page looks again whether it is diagnosed; None where it is."""
     causes: tuple[str, ...] = ()
@@ -125,6 +128,7 @@ def session_page(
     follow: int | None = None,
     model: Sequence[ModelRevision] = (),
     computed: Sequence[int] = (),
+    said: Remarks | None = None,
 ) -> SessionPage:
     """The page of a session; ``model``: the causes that it was calibrated with, ``computed``: under which revisions."""
     calibration, decisions = report.calibration, report.decisions
@@ -156,6 +160,7 @@ def session_page(
         states=tuple(state_in_words(line) for line in reversed(report.states)),
         remedies=remedies,
         traceability=traceability,
+        said=said,
         follow=follow,
         causes=tuple(cause_on(one.cause, one.sensors) for one in model),
         earlier=tuple(revision for revision in computed if revision != report.session.revision),

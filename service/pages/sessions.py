@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from service.pages.saved import Saved
 from service.pages.session_lines import SessionLine, session_lines
 from service.pages.sessions_view import ORDERS, PAGE_SIZE, STATE_CHOICES, VERDICTS, SessionsView
 from service.records.fleet import FleetChoices
@@ -24,9 +25,13 @@ class SessionsPage:
     states: Mapping[str, str]
     verdicts: Mapping[str, str]
     orders: Mapping[str, str]
+    saved: Saved
+    """Views of the list that were kept."""
 
 
-def sessions_page(found: Sequence[StoredSession], view: SessionsView, choices: FleetChoices) -> SessionsPage:
+def sessions_page(
+    found: Sequence[StoredSession], view: SessionsView, choices: FleetChoices, kept: Saved
+) -> SessionsPage:
     """One page of sessions; one more than fit on it says that there are others in the direction of reading."""
     backwards, others = bool(view.before), len(found) > PAGE_SIZE
     shown = found[-PAGE_SIZE:] if backwards else found[:PAGE_SIZE]
@@ -40,4 +45,5 @@ def sessions_page(found: Sequence[StoredSession], view: SessionsView, choices: F
         states=STATE_CHOICES,
         verdicts=VERDICTS,
         orders=ORDERS,
+        saved=kept,
     )

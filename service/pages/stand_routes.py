@@ -7,7 +7,7 @@ from urllib.parse import quote
 from fastapi import APIRouter, Form, Request
 from fastapi.responses import HTMLResponse, RedirectResponse
 
-from service.dependencies import Now, Reading, StorageOf
+from service.dependencies import Now, ReadingFleet, StorageOf
 from service.flows.record_stand_certificate import record_stand_certificate
 from service.pages.forms import SAYS_SOMETHING, SEE_OTHER, By, Key
 from service.pages.group import group_section
@@ -23,13 +23,13 @@ Day = Annotated[date, Form()]
 
 
 @router.get("/stands")
-def show_stands(request: Request, store: Reading, now: Now) -> HTMLResponse:
+def show_stands(request: Request, store: ReadingFleet, now: Now) -> HTMLResponse:
     """Every stand, what needs a hand first."""
     return render(request, "stands.html", stands_page(every_stand(store), now))
 
 
 @router.get("/stands/{name:path}")
-def show_stand(request: Request, store: Reading, now: Now, name: Key) -> HTMLResponse:
+def show_stand(request: Request, store: ReadingFleet, now: Now, name: Key) -> HTMLResponse:
     """One stand: may it be used today, and what was measured on it."""
     return render(
         request, "stand.html", stand_page(stand_report(store, name), now, group_section(store, Level.STAND, name))

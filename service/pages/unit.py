@@ -10,6 +10,7 @@ from service.charts.tracks import Track, TrackPoint, tolerance_text, tracks_of
 from service.pages.events import KINDS, Event, StageTable, events_of, stage_table
 from service.pages.flags import FlagCard, flag_cards
 from service.pages.group import GroupSection
+from service.pages.remarks import Remarks
 from service.pages.session_lines import SessionLine, session_lines
 from service.records.event import Note, Service
 from service.records.flag import Flag
@@ -86,6 +87,8 @@ class UnitPage:
     """Whether what the whole block did is left in."""
     group: GroupSection | None
     """What its sessions show together; None where that is not made of its records of now."""
+    said: Remarks | None
+    """Files that people attached; None where the page is made without a service."""
     follow: int | None
     """Seconds after which the page looks again whether its dates are worked out; None where they are."""
     recalibrated: str = ""
@@ -105,6 +108,7 @@ def unit_page(
     group: GroupSection | None = None,
     follow: int | None = None,
     recalibrated: str = "",
+    said: Remarks | None = None,
 ) -> UnitPage:
     """The page of a unit with its history, flags and notes, as found and as left, and when it must come back."""
     trends = () if outlook is None or raw else outlook.trends
@@ -125,6 +129,7 @@ def unit_page(
         next=None if outlook is None else next_calibration(outlook, now),
         raw=raw,
         group=group,
+        said=said,
         follow=follow,
         recalibrated=recalibrated,
     )

@@ -5,12 +5,14 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 
 from estimator.session import ACCELEROMETER, GYROSCOPE
+from estimator.wording import counted
 from service.judging.tolerances import tolerances_of
 from service.measures import deviation_measure, in_measure, limit, number, scale_measure
 from service.pages.accepted_causes import AcceptedCause, accepted_causes
 from service.pages.fleet import FleetRow, fleet_row
 from service.pages.fleet_view import FleetView
 from service.pages.group import GroupSection
+from service.pages.tolerance_form import ToleranceField, days, tolerance_fields
 from service.records.session import PARAMETERS
 from service.records.unit import ToleranceRevision, TypeUse, UnitType
 from service.views.type_report import MOST, TypeLine, TypeReport
@@ -87,6 +89,10 @@ class TypePage:
     """Whether there are units that are not listed."""
     causes: tuple[AcceptedCause, ...]
     group: GroupSection | None
+    fields: tuple[ToleranceField, ...]
+    """Of the form that sets other tolerances."""
+    days: str
+    """The longest interval, in the form."""
 
 
 def types_page(types: Sequence[TypeLine]) -> TypesPage:
@@ -100,7 +106,7 @@ def type_page(report: TypeReport, now: datetime, group: GroupSection | None = No
     kinds = {name: report.kinds.get(name, known.block) for name in known.sensors}
     return TypePage(
         row=_row(report.line),
-        interval=f"{known.maximum_interval_days:.0f} days",
+        interval=counted(round(known.maximum_interval_days), "day"),
         revisions=tuple(_revision(one, known, report) for one in reversed(report.revisions)),
         sensors=tuple(
             _sensor(name, kinds[name], axis, scale)
@@ -110,6 +116,8 @@ def type_page(report: TypeReport, now: datetime, group: GroupSection | None = No
         more=len(report.units) > MOST,
         causes=accepted_causes(report.models),
         group=group,
+        fields=tolerance_fields(known),
+        days=days(known),
     )
 
 

@@ -58,3 +58,31 @@ class Note:
     who: str
     recorded_at: datetime
     withdrawal: Withdrawal | None
+    session: str | None = None
+    """That it is about; None for the unit as a whole."""
+
+
+@dataclass(frozen=True)
+class NewAttachment:
+    """A file that somebody attached."""
+
+    session: str | None
+    """None for the unit as a whole."""
+    sha256: str
+    filename: str
+    """As it was called, printable; only ever shown, never used as a path."""
+    size: int
+    """Bytes."""
+    text: str
+    """What it shows."""
+    who: str
+    at: datetime
+
+
+@dataclass(frozen=True)
+class Attachment(NewAttachment):
+    """The same, as it is kept."""
+
+    id: int
+    unit: str
+    withdrawal: Withdrawal | None

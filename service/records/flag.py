@@ -46,8 +46,23 @@ class NoticeKind(StrEnum):
     CLEAR = "flag.clear"
     """A later session no longer shows it: somebody may resolve the flag."""
     ACKNOWLEDGED = "flag.acknowledged"
+    ASSIGNED = "flag.assigned"
+    """Somebody is to look after it, or nobody any more."""
     RESOLVED = "flag.resolved"
     VERDICT = "verdict.changed"
+
+
+@dataclass(frozen=True)
+class Assignee:
+    """Who is to look after flags."""
+
+    name: str
+    """As flags show it; empty for nobody."""
+    login: str = ""
+    """Account; empty where there are none."""
+
+
+NOBODY = Assignee("")
 
 
 @dataclass(frozen=True)
@@ -103,6 +118,8 @@ class Flag:
     """The latest session that showed it."""
     raised_at: datetime
     changed_at: datetime
+    assignee: str = ""
+    """Who is to look after it; empty where nobody in particular is."""
     changes: tuple[Notice, ...] = ()
     """Its life, oldest first."""
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
+from math import sqrt
 
 from service.records.decision import Verdict
 
@@ -40,8 +41,14 @@ class FleetQuery:
     lot: str | None = None
     flagged: bool = False
     """Only units with an open flag."""
+    unfit: bool = False
+    """Only units that somebody must act on: unfit, probably unfit, or undecided."""
     order: Order = Order.CONDITION
     backwards: bool = False
+    after: str | None = None
+    """The unit that the list goes on after; one that is not there begins the list anew."""
+    before: str | None = None
+    """The unit that it ends before."""
 
 
 @dataclass(frozen=True)
@@ -51,3 +58,78 @@ class FleetChoices:
     types: tuple[str, ...] = ()
     stands: tuple[str, ...] = ()
     lots: tuple[str, ...] = ()
+
+
+NOT_KNOWN = -1
+"""Severity of a unit of which no session is accepted."""
+STEP, LAST = 10, 200
+"""Per cent of the tolerance: width of a bar, and where the bar of everything beyond begins."""
+NOT_JUDGED = -1
+"""Bar of a unit of which nothing was judged."""
+
+
+def bar_of(margin: float | None) -> int:
+    """Which tenth of its tolerance a unit uses up, uncertainty included."""
+    if margin is None:
+        return NOT_JUDGED
+    return int(min(100 * (1 - margin), LAST) // STEP)
+
+
+@dataclass(frozen=True)
+class Tally:
+    """How many units are in one condition and use so much of their tolerance."""
+
+    verdict: Verdict
+    is_reference: bool
+    is_simulated: bool
+    bar: int
+    units: int
+    flags: int
+    """That are open on them."""
+    reserved: int
+    """Of how many the verdict is said with a reservation."""
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A rate among those of its type."""
+
+    serial: str
+    sensor: str
+    value: float
+    """Tolerances a year."""
+    sigma: float
+    z: float
+    """Distance from the type's centre, in the spread that is expected of it."""
+    tolerance: float
+    """SI or relative; of the axis rad."""
+
+
+@dataclass(frozen=True)
+class Population:
+    """How the units of a type drift in one parameter."""
+
+    unit_type: str
+    kind: str
+    parameter: str
+    centre: float
+    """Tolerances a year."""
+    spread: float
+    rates: int
+    """That it is of: one a sensor of every unit."""
+    lots: int
+    """Production lots of several units that were set against it."""
+    fast: tuple[Placed, ...]
+    """Of the rates that matter the furthest out, the furthest first."""
+    evident: tuple[Placed, ...]
+    """Of the rates that chance does not explain the furthest out."""
+    far_lots: tuple[tuple[str, float], ...]
+    """The furthest lots and their distances."""
+
+    def z(self, value: float, sigma: float) -> float:
+        """Distance of a rate from the centre, in the spread that is expected of it."""
+        return (value - self.centre) / sqrt(self.spread**2 + sigma**2 + TINY)
+
+
+TINY = 1e-300
+"""Keeps a rate without spread from being divided by nothing."""

@@ -16,6 +16,10 @@ class Scope(StrEnum):
     STAND = "stand"
 
 
+SCOPES = {"unit": Scope.UNIT, "type": Scope.UNIT_TYPE, "stand": Scope.STAND}
+"""Whose model, by the level of the sessions that show it."""
+
+
 @dataclass(frozen=True)
 class NewModel:
     """A cause that an engineer accepts."""
@@ -60,6 +64,8 @@ class Pooled:
     held_out: int
     log_score: float | None
     """That those later ones gained."""
+    words: tuple[str, ...] = ()
+    """Of a learned term: what each amplitude multiplies; none of a cause."""
 
 
 @dataclass(frozen=True)

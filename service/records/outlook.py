@@ -17,6 +17,19 @@ class Rate:
     parameter: str
     value: float
     sigma: float
+    significance: float = 1.0
+    """The chance of changes as evident as those that it was found from, where nothing happens."""
+    tolerance: float = 1.0
+    """SI; relative for scale."""
+
+
+@dataclass(frozen=True)
+class DueDate:
+    """When a unit must come back, and why then."""
+
+    unit: str
+    at: datetime
+    reason: str
 
 
 @dataclass(frozen=True)

@@ -51,6 +51,8 @@ class SentFile:
     replaces: Replaced | None = None
     mapping: Mapping[str, Any] | None = None
     """How a table of one's own layout is read, as it was sent."""
+    is_check: bool = False
+    """Whether it only looks after the unit and moves no date."""
 
 
 @dataclass(frozen=True)
@@ -68,3 +70,5 @@ class Received:
     """That sent it."""
     simulated: bool
     """Whether it is of the demonstration."""
+    is_check: bool = False
+    """Whether it only looks after the unit and moves no date."""

@@ -50,6 +50,8 @@ class StoredSession:
     """The session that stands for a superseded one."""
     temperature: float | None = None
     """°C, the mean over the session; None where it was not recorded."""
+    is_check: bool = False
+    """Whether it only looks after the unit: it is judged, and the next calibration is due when it was due before."""
 
 
 @dataclass(frozen=True)
@@ -82,6 +84,7 @@ class Receipt:
     reservations: Reservations = None
     """What the verdict is said with."""
     state: RecordState = RecordState.ACCEPTED
+    is_check: bool = False
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,14 @@
 """Units and their types with tolerances; the condition of one unit and of the fleet."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 
 from service.records.decision import Verdict
 from service.records.event import Service
+from service.records.fleet import Tally
 from service.records.instants import epoch_ms
+from service.records.outlook import UnitOutlook
 from service.records.paper import NOBODY, Customer
 from service.records.reservation import Reservations
 from service.records.session import StoredSession
@@ -88,6 +91,8 @@ class UnitSummary:
     """How many are open."""
     due: datetime | None = None
     """Of the next calibration."""
+    due_reason: str = ""
+    """Why then, in one sentence."""
     lot: str | None = None
     """Of production."""
     reservations: Reservations = ()
@@ -123,6 +128,32 @@ class FleetCondition:
     reserved: dict[Verdict, int] = field(default_factory=dict)
     """Of how many units with a verdict it is said with a reservation."""
 
+    @classmethod
+    def of(cls, tallies: Sequence[Tally]) -> "FleetCondition":
+        """The sums of some counts."""
+        counts = {verdict: [tally for tally in tallies if tally.verdict is verdict] for verdict in Verdict}
+        return cls(
+            units=sum(tally.units for tally in tallies),
+            verdicts={verdict: sum(tally.units for tally in own) for verdict, own in counts.items()},
+            simulated=sum(tally.units for tally in tallies if tally.is_simulated),
+            flags=sum(tally.flags for tally in tallies),
+            reserved={verdict: sum(tally.reserved for tally in own) for verdict, own in counts.items()},
+        )
+
+
+@dataclass(frozen=True)
+class UnitKnown:
+    """What the page of a unit begins with."""
+
+    summary: UnitSummary
+    unit_type: UnitType
+    waiting: int
+    """Sessions that are still to be judged again after a change of the records."""
+    reference_session: str | None
+    """What the next session will be judged against; None when the next one becomes the reference."""
+    outlook: UnitOutlook | None
+    """None before a session was judged."""
+
 
 @dataclass(frozen=True)
 class UnitReport:
@@ -141,3 +172,5 @@ class UnitReport:
     """Of these services: by whom, when and why."""
     waiting: int = 0
     """Sessions that are still to be judged again after a change of the records."""
+    outlook: UnitOutlook | None = None
+    """None before a session was judged."""

@@ -1,15 +1,16 @@
 """Where certificates are handed out and signed: a new one is made of what is stored, an approved one is kept."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime
 from hashlib import sha256
 
 from service.errors import DamagedError, NotFoundError
-from service.flows.diagnose import diagnose
 from service.flows.identity.attempts import Attempt, attempting
 from service.flows.issue_certificate import Statement, issue_certificate
 from service.flows.sign_certificate import Rules, Signing, require_signer, sign_certificate, signature_of
 from service.languages.language import Language
+from service.records.diagnosis import StoredDiagnosis
 from service.records.paper import Issue, Laboratory
 from service.records.signature import CertificateFile, Meaning, Signature
 from service.reports.certificate import certificate_pdf
@@ -29,6 +30,8 @@ class Desk:
     """What certificates are made from."""
 
     storage: Storage
+    diagnosed: Callable[[str], StoredDiagnosis]
+    """The diagnosis of a session."""
     laboratory: Laboratory
     rules: Rules
     seal: Seal | None
@@ -51,15 +54,15 @@ class HandedOut:
     content: bytes
 
 
-def certified(desk: Desk, id: str, now: datetime) -> tuple[CertifiedSession, Statement]:
+def certified(desk: Desk, id: str) -> tuple[CertifiedSession, Statement]:
     """What a certificate of the session would state now; ConflictError where the session does not count."""
-    found = certified_session(desk.storage, diagnose(desk.storage, id, now), desk.laboratory)
+    found = certified_session(desk.storage, desk.diagnosed(id), desk.laboratory)
     return found, statement_of(found)
 
 
 def hand_out(desk: Desk, id: str, format: str, now: datetime, *, who: str) -> HandedOut:
     """The certificate that holds, under a new number where it states something new."""
-    found, statement = certified(desk, id, now)
+    found, statement = certified(desk, id)
     issue = issue_certificate(desk.storage, statement, now, who=who)
     with desk.storage.database.reading() as store:
         kept = store.signatures.kept(issue.number, format)
@@ -83,7 +86,7 @@ def sign(desk: Desk, signing: Signing, attempt: Attempt, now: datetime) -> Signa
     """Puts a name under the certificate that somebody read, once their password is right."""
     with attempting(desk.storage, attempt, now):
         require_signer(desk.storage, signing)
-    found, statement = certified(desk, signing.session, now)
+    found, statement = certified(desk, signing.session)
     with desk.storage.database.reading() as store:
         signature = signature_of(store, signing, statement, desk.rules, now)
         given = store.signatures.of_certificate(signing.number)

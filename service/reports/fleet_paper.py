@@ -2,12 +2,14 @@
 
 from dataclasses import dataclass
 
+from estimator.wording import counted
 from service.charts.fleet import fleet_chart
 from service.languages.language import Language
 from service.measures import COVERAGE, deviation_measure, measured, signed
 from service.records.decision import Verdict
-from service.records.outlook import ParameterTrend, UnitOutlook
-from service.records.unit import FleetCondition, UnitSummary
+from service.records.fleet import NOT_JUDGED, FleetQuery, Placed, Population, Tally
+from service.records.outlook import DueDate
+from service.records.unit import FleetCondition
 from service.reports.fleet_sections import Line, Section, line_of, sections_of
 from service.reports.pictures import picture
 from service.reports.typeset import typeset
@@ -22,8 +24,8 @@ MOST_SECTIONS = 40
 """Units with a section of their own, two to three on a page."""
 MOST_NOTICES = 8
 """Units that are listed as overdue, and parameters that stand out."""
-STANDS_OUT, SIGNIFICANT = 5.0, 0.001
-"""Distance from the type's other units, in their robust spread, and the chance of such a rate without a drift."""
+STANDS_OUT = 5.0
+"""Distance from the type's other units, in their robust spread."""
 WIDTH = 700
 """Of the drawn chart, pixels: the whole page."""
 NOT_FIT = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL, Verdict.UNDECIDABLE)
@@ -74,22 +76,21 @@ def fleet_pdf(store: Store, report: FleetReport, language: Language = Language.E
 
 def fleet_paper(store: Store, report: FleetReport) -> FleetPaper:
     """What the paper says."""
-    not_fit = [unit for unit in report.units if _is_not_fit(unit)]
-    judged = [unit for unit in report.units if unit.margin is not None and _condition(unit) is not REFERENCE]
-    overdue = sorted((o for o in report.outlooks if o.overdue), key=lambda o: (o.due or report.at, o.serial))
-    chart = fleet_chart(report.units)
+    judged = [t for t in report.tallies if t.bar != NOT_JUDGED and _condition(t) is not REFERENCE]
+    overdue = [one for one in store.outlooks.due(MOST_NOTICES) if one.at < report.at]
+    chart = fleet_chart(report.tallies)
     return FleetPaper(
         day=day_of(report.at),
         total=report.condition.units,
         simulated=report.condition.simulated,
         counts=_counts(report.condition),
         chart=picture(chart, chart.panels[0], WIDTH) if judged else "",
-        overdue=tuple(Notice(o.serial, _since(o, report)) for o in overdue[:MOST_NOTICES]),
-        more_overdue=max(0, len(overdue) - MOST_NOTICES),
-        standing_out=_standing_out(report),
-        ranked=tuple(line_of(unit) for unit in report.units[:MOST_RANKED]),
-        sections=sections_of(store, not_fit[:MOST_SECTIONS]),
-        not_fit=len(not_fit),
+        overdue=tuple(Notice(one.unit, _since(one, report)) for one in overdue),
+        more_overdue=report.overdue - len(overdue),
+        standing_out=_standing_out(store),
+        ranked=tuple(line_of(unit) for unit in store.fleet.units(FleetQuery(limit=MOST_RANKED))),
+        sections=sections_of(store, store.fleet.units(FleetQuery(unfit=True, limit=MOST_SECTIONS))),
+        not_fit=sum(tally.units for tally in report.tallies if _is_not_fit(tally)),
         software=report.software,
     )
 
@@ -100,34 +101,31 @@ def _counts(fleet: FleetCondition) -> tuple[Count, ...]:
     return tuple(Count(condition_of(verdict), count, fleet.reserved.get(verdict, 0)) for verdict, count in found)
 
 
-def _since(outlook: UnitOutlook, report: FleetReport) -> str:
+def _since(one: DueDate, report: FleetReport) -> str:
     """``since 3 Mar 2026 (263 days)``."""
-    due = outlook.due or report.at
-    return f"since {day_of(due)} ({(report.at - due).days} days)"
+    due = one.at
+    return f"since {day_of(due)} ({counted((report.at - due).days, 'day')})"
 
 
-def _standing_out(report: FleetReport) -> tuple[Notice, ...]:
-    found = [
-        (abs(trend.population_z), outlook.serial, trend)
-        for outlook in report.outlooks
-        for trend in outlook.trends
-        if trend.population_z is not None and abs(trend.population_z) > STANDS_OUT and trend.significance < SIGNIFICANT
-    ]
-    furthest = sorted(found, key=lambda entry: (-entry[0], entry[1], entry[2].sensor, entry[2].parameter))
-    return tuple(Notice(serial, _drift(trend)) for _, serial, trend in furthest[:MOST_NOTICES])
+def _standing_out(store: Store) -> tuple[Notice, ...]:
+    """The furthest out of their types, of those whose drift chance does not explain."""
+    populations = store.populations.most_evident(MOST_NOTICES)
+    found = [(one, own) for own in populations for one in own.evident if abs(one.z) > STANDS_OUT]
+    furthest = sorted(found, key=lambda pair: (-abs(pair[0].z), pair[0].serial, pair[0].sensor, pair[1].parameter))
+    return tuple(Notice(one.serial, _drift(one, own)) for one, own in furthest[:MOST_NOTICES])
 
 
-def _drift(trend: ParameterTrend) -> str:
+def _drift(one: Placed, own: Population) -> str:
     """``A6 bias drifts +62 ± 4 µg a year``."""
-    unit = deviation_measure(trend.kind, trend.parameter, abs(trend.rate_per_year))
-    write = measured if trend.parameter == "axis" else signed
-    rate = write(trend.rate_per_year, COVERAGE * trend.rate_sigma, unit)
-    return f"{trend.sensor} {trend.parameter} drifts {rate} a year"
+    rate, sigma = one.value * one.tolerance, one.sigma * one.tolerance
+    unit = deviation_measure(own.kind, own.parameter, abs(rate))
+    write = measured if own.parameter == "axis" else signed
+    return f"{one.sensor} {own.parameter} drifts {write(rate, COVERAGE * sigma, unit)} a year"
 
 
-def _condition(unit: UnitSummary) -> Condition:
-    return condition_of(unit.verdict, is_reference=unit.is_reference)
+def _condition(tally: Tally) -> Condition:
+    return condition_of(tally.verdict, is_reference=tally.is_reference)
 
 
-def _is_not_fit(unit: UnitSummary) -> bool:
-    return unit.verdict in NOT_FIT and _condition(unit) is not REFERENCE
+def _is_not_fit(tally: Tally) -> bool:
+    return tally.verdict in NOT_FIT and _condition(tally) is not REFERENCE

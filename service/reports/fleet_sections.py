@@ -1,6 +1,6 @@
 """A unit in the fleet's report: its line in the ranking, and its section where it is not fit."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -71,7 +71,7 @@ def line_of(unit: UnitSummary) -> Line:
     )
 
 
-def sections_of(store: Store, units: list[UnitSummary]) -> tuple[Section, ...]:
+def sections_of(store: Store, units: Sequence[UnitSummary]) -> tuple[Section, ...]:
     """Sections of units, with three queries for all of them."""
     serials = tuple(unit.serial for unit in units)
     decisions = _grouped((serial, decision) for serial, _, decision in store.fleet_rows.latest_decisions(serials))

@@ -2,34 +2,40 @@
 
 import io
 from collections.abc import Iterator
+from datetime import datetime
 
 from service.languages.language import Language
 from service.measures import MEASURES, Measure, in_measure, value_measure
 from service.records.decision import Decision
+from service.records.fleet import FleetQuery
 from service.records.history import HistoryPoint
-from service.records.outlook import UnitOutlook
 from service.records.unit import UnitSummary
 from service.reports.sheets import Cell, Column, Kind, Workbook
 from service.storage.store import Store
-from service.views.fleet_report import FleetReport
+from service.views.fleet_report import MOST_UNITS, FleetReport
 from service.words.conditions import condition_of, said_with
 from service.words.verdict import unit_in_words
 
 MOST_HISTORY_ROWS = 30_000
 """Rows of the sheet of histories; the newest sessions of every unit share them alike."""
+MOST_DETAILED = 1000
+"""Units whose parameters and histories have rows, the worst: more than anybody reads, and so the workbook of a large
+fleet is made in seconds. The tables of the API have all."""
 
+UNIT, SESSION = Column("Unit", width=16, is_named=True), Column("Session", width=23, is_named=True)
+SENSOR = Column("Sensor", width=9, is_named=True)
 FLEET = (
-    Column("Unit", width=16), Column("Type", width=22), Column("Condition", Kind.VERDICT, 24),
-    Column("Worst sensor"), Column("Worst parameter"),
+    UNIT, Column("Type", width=22, is_named=True), Column("Condition", Kind.VERDICT, 24),
+    Column("Worst sensor", is_named=True), Column("Worst parameter"),
     Column("Tolerance used, with U", Kind.SHARE, 12), Column("Margin to tolerance", Kind.SHARE, 12),
     Column("Last session, UTC", Kind.TIME, 17), Column("Next calibration due", Kind.DATE, 13),
     Column("Overdue", width=9),
     Column("Sessions", Kind.NUMBER, 9), Column("Open flags", Kind.NUMBER, 9), Column("Simulated", width=10),
     Column("Why", width=60), Column("Why due then", width=50), Column("What the simulation gets wrong", width=60),
-    Column("Session", width=23), Column("Verdict in words", width=60),
+    SESSION, Column("Verdict in words", width=60),
 )  # fmt: skip
 PARAMETERS = (
-    Column("Unit", width=16), Column("Session", width=23), Column("Sensor", width=9), Column("Kind"),
+    UNIT, SESSION, SENSOR, Column("Kind"),
     Column("Parameter", width=13), Column("Value", Kind.NUMBER), Column("Reference", Kind.NUMBER),
     Column("Unit of value", width=12), Column("Deviation", Kind.CHANGE), Column("U of deviation", Kind.CHANGE),
     Column("k", Kind.NUMBER, 5), Column("Tolerance", Kind.CHANGE), Column("Unit of deviation", width=12),
@@ -37,11 +43,11 @@ PARAMETERS = (
     Column("Verdict", Kind.VERDICT, 15), Column("Rule", width=34),
 )  # fmt: skip
 HISTORIES = (
-    Column("Unit", width=16), Column("Measured, UTC", Kind.TIME, 17), Column("Sensor", width=9), Column("Kind"),
+    UNIT, Column("Measured, UTC", Kind.TIME, 17), SENSOR, Column("Kind"),
     Column("Parameter", width=13), Column("Value", Kind.NUMBER), Column("Lower, −U", Kind.NUMBER),
     Column("Upper, +U", Kind.NUMBER), Column("Unit of value", width=12), Column("Deviation", Kind.CHANGE),
     Column("U of deviation", Kind.CHANGE), Column("Unit of deviation", width=12), Column("Verdict", Kind.VERDICT, 15),
-    Column("Model revision", Kind.NUMBER, 9), Column("Session", width=23),
+    Column("Model revision", Kind.NUMBER, 9), SESSION,
 )  # fmt: skip
 ABOUT = (Column("What", width=26), Column("Value", width=110))
 """The columns of the four sheets; widths in characters, for the longest usual text."""
@@ -50,31 +56,32 @@ ABOUT = (Column("What", width=26), Column("Value", width=110))
 def fleet_xlsx(store: Store, report: FleetReport, language: Language = Language.ENGLISH) -> bytes:
     """The workbook; its rows are read and written one after another."""
     target = io.BytesIO()
-    sessions = _sessions_shown(store)
-    outlooks = {outlook.serial: outlook for outlook in report.outlooks}
+    units = store.fleet.units(FleetQuery(limit=MOST_UNITS))
+    serials = tuple(unit.serial for unit in units[:MOST_DETAILED])
+    sessions = _sessions_shown(store, serials)
     book = Workbook(target, report.at, "Fleet report", language)
-    book.table("Fleet", FLEET, (_fleet_row(unit, outlooks.get(unit.serial)) for unit in report.units))
-    book.table("Parameters", PARAMETERS, (_parameter_row(*row) for row in store.fleet_rows.latest_decisions()))
-    book.table("Histories", HISTORIES, (_history_row(*row) for row in store.fleet_rows.histories(sessions)))
-    book.table("About", ABOUT, _about(report, sessions))
+    book.table("Fleet", FLEET, (_fleet_row(unit, report.at) for unit in units))
+    book.table("Parameters", PARAMETERS, (_parameter_row(*row) for row in store.fleet_rows.latest_decisions(serials)))
+    book.table("Histories", HISTORIES, (_history_row(*row) for row in store.fleet_rows.histories(serials, sessions)))
+    book.table("About", ABOUT, _about(report, sessions, len(serials) if len(units) > len(serials) else None))
     book.close()
     return target.getvalue()
 
 
-def _sessions_shown(store: Store) -> int:
+def _sessions_shown(store: Store, serials: tuple[str, ...]) -> int:
     """Sessions of every unit that the histories have room for."""
-    return max(1, MOST_HISTORY_ROWS // max(1, store.fleet_rows.points_of_latest()))
+    return max(1, MOST_HISTORY_ROWS // max(1, store.fleet_rows.points_of_latest(serials)))
 
 
-def _fleet_row(unit: UnitSummary, outlook: UnitOutlook | None) -> tuple[Cell, ...]:
+def _fleet_row(unit: UnitSummary, now: datetime) -> tuple[Cell, ...]:
     condition = condition_of(unit.verdict, is_reference=unit.is_reference)
     word = said_with(condition, unit.reservations).word
     return (
         unit.serial, unit.unit_type, word, unit.worst_sensor, unit.worst_parameter,
         None if unit.margin is None else 1 - unit.margin, unit.margin, unit.last_at,
-        None if outlook is None else outlook.due, None if outlook is None else outlook.overdue,
+        unit.due, unit.due is not None and unit.due < now,
         unit.sessions, unit.flags, unit.simulated,
-        unit.reason, None if outlook is None else outlook.reason, unit.diagnosis, unit.last_session,
+        unit.reason, unit.due_reason or None, unit.diagnosis, unit.last_session,
         unit_in_words(unit),
     )  # fmt: skip
 
@@ -105,11 +112,15 @@ def _units(kind: str, parameter: str) -> tuple[Measure, Measure]:
     return value_measure(kind, parameter, 0.0), MEASURES[kind, parameter]
 
 
-def _about(report: FleetReport, sessions: int) -> Iterator[tuple[Cell, ...]]:
+def _about(report: FleetReport, sessions: int, only: int | None) -> Iterator[tuple[Cell, ...]]:
     yield "Made", f"{report.at:%Y-%m-%d %H:%M} UTC by imu-health {report.software}"
     yield "Units", f"{report.condition.units}, of them {report.condition.simulated} simulated"
-    yield "Sheet Parameters", "The latest session of every unit: each parameter against its reference."
-    yield "Sheet Histories", f"The newest sessions of every unit, at most {sessions} of each."
+    if only is None:
+        yield "Sheet Parameters", "The latest session of every unit: each parameter against its reference."
+        yield "Sheet Histories", f"The newest sessions of every unit, at most {sessions} of each."
+    else:
+        yield "Sheet Parameters", f"The latest session of each of the {only} units at the top of the sheet Fleet."
+        yield "Sheet Histories", f"The newest sessions of these {only} units, at most {sessions} of each."
     yield "U", "Expanded uncertainty, k times the standard one."
     yield "Deviation", "From the unit's reference session, without what all sensors did together."
     yield "Tolerance used, with U", "(|deviation| + U) / tolerance of the parameter closest to its tolerance."

@@ -2,6 +2,7 @@
 
 import json
 import re
+from functools import lru_cache
 from typing import Any
 
 import vl_convert
@@ -30,6 +31,9 @@ VARIABLE = re.compile(r"var\(--([\w-]+)\)")
 """How a specification names a colour of the pages' style."""
 MEASURED, PRINTED = "Liberation Sans", "Libertinus Serif"
 """The font that charts are laid out with, a little wider, and the one that they are printed in."""
+KEPT = 128
+"""Drawings that are kept: a certificate is looked at, signed and sent, and drawing it anew takes most of the time; some
+20 kB each."""
 
 
 def picture(charts: ChartSet, panel: Panel, width: int) -> str:
@@ -38,5 +42,10 @@ def picture(charts: ChartSet, panel: Panel, width: int) -> str:
     spec: dict[str, Any] = json.loads(coloured)
     spec |= {"datasets": {**spec.get("datasets", {}), **panel.datasets}, "width": width}
     spec["config"]["font"] = MEASURED
+    return _drawn(json.dumps(spec)).replace(MEASURED, PRINTED)
+
+
+@lru_cache(maxsize=KEPT)
+def _drawn(spec: str) -> str:
     drawn: str = vl_convert.vegalite_to_svg(spec)
-    return drawn.replace(MEASURED, PRINTED)
+    return drawn

@@ -22,6 +22,8 @@ BREAKS = frozenset("\n\t")
 
 def printable(text: str) -> str:
     """The text with every character that cannot be printed as its code point."""
+    if text.isascii() and text.isprintable():
+        return text
     return "".join(c if is_printable(c) else f"‹U+{ord(c):04X}›" for c in text)
 
 

@@ -46,6 +46,8 @@ class Column:
     name: str
     kind: Kind = Kind.TEXT
     width: float = 14.0
+    is_named: bool = False
+    """Whether people name what stands in it: that is written as they did, in every language."""
 
 
 class Workbook:
@@ -75,23 +77,24 @@ class Workbook:
         last = 0
         for last, row in enumerate(rows, 1):
             for place, (column, cell) in enumerate(zip(columns, row, strict=True)):
-                self._write(sheet, last, place, column.kind, cell)
+                self._write(sheet, last, place, column, cell)
         sheet.autofilter(0, 0, max(last, 1), len(columns) - 1)
         self._colour(sheet, columns, last)
 
-    def _write(self, sheet: Worksheet, row: int, place: int, kind: Kind, cell: Cell) -> None:
+    def _write(self, sheet: Worksheet, row: int, place: int, column: Column, cell: Cell) -> None:
         match cell:
             case None:
                 return
             case bool():
                 sheet.write_string(row, place, self._say("yes" if cell else "no"))
             case datetime():
-                sheet.write_datetime(row, place, naive(cell), self._formats[kind])
+                sheet.write_datetime(row, place, naive(cell), self._formats[column.kind])
             case int() | float():
-                sheet.write_number(row, place, cell, self._formats[kind])
+                sheet.write_number(row, place, cell, self._formats[column.kind])
             case str():
                 look = self._quoted if FORMULA.match(cell) else self._formats[Kind.TEXT]
-                sheet.write_string(row, place, self._say(cell)[:LONGEST_TEXT], look)
+                said = cell if column.is_named else self._say(cell)
+                sheet.write_string(row, place, said[:LONGEST_TEXT], look)
 
     def _colour(self, sheet: Worksheet, columns: Sequence[Column], last: int) -> None:
         """Verdicts in their colours, as rules of the sheet: they follow when somebody sorts or edits. No word of one

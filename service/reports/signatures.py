@@ -1,7 +1,6 @@
 """How the certificates of a session stand: who signed them, and whether they still state what is stored."""
 
 from dataclasses import dataclass
-from datetime import datetime
 
 from service.errors import ConflictError
 from service.records.paper import Issue
@@ -35,7 +34,7 @@ class Papers:
     """What speaks against using the latest one, in words."""
 
 
-def papers_of(desk: Desk, id: str, now: datetime) -> Papers:
+def papers_of(desk: Desk, id: str) -> Papers:
     """Every issue; of the latest one what it rests on is worked out again and compared."""
     with desk.storage.database.reading() as store:
         store.sessions.get(id)
@@ -44,16 +43,16 @@ def papers_of(desk: Desk, id: str, now: datetime) -> Papers:
     if not issues:
         return Papers((), is_current=False, concerns=())
     latest = issues[-1]
-    counts, is_current = _compared(desk, id, latest.issue, now)
+    counts, is_current = _compared(desk, id, latest.issue)
     told = ((CHANGED_HASH, _is_other(latest)), (NOT_COUNTED, not counts), (NO_LONGER, counts and not is_current))
     concerns = (words.format(number=latest.issue.number, done=_done(latest)) for words, holds in told if holds)
     return Papers(issues, is_current=is_current, concerns=tuple(concerns))
 
 
-def _compared(desk: Desk, id: str, issue: Issue, now: datetime) -> tuple[bool, bool]:
+def _compared(desk: Desk, id: str, issue: Issue) -> tuple[bool, bool]:
     """Whether the session counts, and whether its certificate would state the same today."""
     try:
-        _, statement = certified(desk, id, now)
+        _, statement = certified(desk, id)
     except ConflictError:
         return False, False
     return True, statement.content_hash == issue.content_hash

@@ -3,7 +3,9 @@
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from copy import copy
+from datetime import datetime
 
+from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from service.errors import AwayError
@@ -47,6 +49,7 @@ class Database:
         with database_faults(), turn, Session(self._writing_engine) as session:
             store = Store(session, self._account)
             yield store
+            store.tallies.settle()
             store.audit.seal()
             session.commit()
 
@@ -57,6 +60,14 @@ class Database:
         fault = unfit(found)
         if fault is not None:
             raise AwayError(fault)
+
+    def server_time(self) -> datetime | None:
+        """What the database's own clock says; None where it has none but this machine's."""
+        if self.engine.name == "sqlite":
+            return None
+        with database_faults(), self.engine.connect() as connection:
+            found: datetime = connection.execute(select(func.clock_timestamp())).scalar_one()
+            return found
 
     def close(self) -> None:
         """Gives back every connection."""

@@ -11,6 +11,7 @@ from estimator.diagnosis.results import (
     Gain,
     Limit,
     NoiseScale,
+    OverSessions,
     ParitySplit,
     Rival,
     Score,
@@ -83,7 +84,10 @@ def evidence_from_dict(entry: dict[str, Any]) -> Evidence | None:
 
 
 def _pooled(entry: dict[str, Any] | None) -> Pooled | None:
-    return None if entry is None else Pooled(**entry | {"spread": tuple(entry["spread"])})
+    if entry is None:
+        return None
+    words = tuple(entry.get("words", ()))  # absent from earlier versions
+    return Pooled(**entry | {"spread": tuple(entry["spread"]), "words": words})
 
 
 def finite(value: Any) -> Any:
@@ -129,7 +133,12 @@ def _finding(entry: dict[str, Any]) -> Finding:
         advice=entry["advice"],
         parity=None if entry["parity"] is None else ParitySplit(**_named(entry["parity"])),
         new=entry["new"],
+        over_sessions=_over_sessions(entry.get("over_sessions")),  # absent from earlier versions
     )
+
+
+def _over_sessions(entry: dict[str, Any] | None) -> OverSessions | None:
+    return None if entry is None else OverSessions(**entry | {"spread": _numbers(entry["spread"])})
 
 
 def _separation(entry: dict[str, Any]) -> Separation:

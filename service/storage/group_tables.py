@@ -44,18 +44,29 @@ class GroupDiagnosisRow(Base):
     created_at: Mapped[datetime]
 
 
-class PendingGroupRow(Base):
+class AskedRow:
     """Somebody asks for what a group shows, because a session of it changed.
 
     Every asking is a row of its own: so none waits for another, whatever else both of them hold.
     """
 
-    __tablename__ = "pending_groups"
-    __table_args__ = (Index("ix_pending_groups_level_group_id", "level", "group_id"),)
     id: Mapped[int] = mapped_column(primary_key=True)
     level: Mapped[str] = mapped_column(String(10))
     group_id: Mapped[int]
     asked_at: Mapped[datetime]
     claimed_until: Mapped[datetime | None]
     attempts: Mapped[int]
-    """Claims that ended without a word: the process died."""
+
+
+class PendingGroupRow(AskedRow, Base):
+    """For what its sessions show together."""
+
+    __tablename__ = "pending_groups"
+    __table_args__ = (Index("ix_pending_groups_level_group_id", "level", "group_id"),)
+
+
+class PendingSummaryRow(AskedRow, Base):
+    """Of a unit type for how its units drift, of a stand for its own health."""
+
+    __tablename__ = "pending_summaries"
+    __table_args__ = (Index("ix_pending_summaries_level_group_id", "level", "group_id"),)

@@ -6,7 +6,8 @@ from typing import Any
 from sqlalchemy import JSON, ForeignKey, Index, String
 from sqlalchemy.orm import Mapped, mapped_column
 
-from service.storage.tables import IS_WAITING, Base, only_where
+from service.storage.columns import IS_WAITING, only_where
+from service.storage.tables import Base
 
 
 class RecomputationRow(Base):

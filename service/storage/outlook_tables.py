@@ -14,7 +14,11 @@ class OutlookRow(Base):
 
     __tablename__ = "outlooks"
     unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), primary_key=True, autoincrement=False)
-    due: Mapped[datetime | None]
+    due: Mapped[datetime | None] = mapped_column(index=True)
+    reason: Mapped[str]
+    """Why then, in one sentence."""
+    rates: Mapped[list[Any]]
+    """How every parameter drifts, for the type: ``[sensor, kind, parameter, rate, sigma, significance, tolerance]``."""
     document: Mapped[dict[str, Any]]
     drawn: Mapped[dict[str, Any]]
 

@@ -1,4 +1,4 @@
-"""What is kept of a session for its groups, as bytes and back: imu-session-statistics/1, deflated."""
+"""What is kept of a session for its groups, as bytes and back: imu-session-statistics/2, deflated."""
 
 import json
 import zlib

@@ -6,6 +6,7 @@ from sqlalchemy.orm import Session
 
 from service.storage.queries.accounts import Accounts
 from service.storage.queries.arrivals import Arrivals
+from service.storage.queries.attachments import Attachments
 from service.storage.queries.attempts import Attempts
 from service.storage.queries.audit import Audit
 from service.storage.queries.calibrations import Calibrations
@@ -25,9 +26,11 @@ from service.storage.queries.notes import Notes
 from service.storage.queries.notices import Notices
 from service.storage.queries.outlooks import Outlooks
 from service.storage.queries.pending import PendingDiagnoses
-from service.storage.queries.pending_groups import PendingGroups
+from service.storage.queries.pending_groups import PendingGroups, PendingSummaries
 from service.storage.queries.pending_outlooks import PendingOutlooks
+from service.storage.queries.populations import Populations
 from service.storage.queries.recomputations import Recomputations
+from service.storage.queries.saved_views import SavedViews
 from service.storage.queries.services import Services
 from service.storage.queries.sessions import Sessions
 from service.storage.queries.sign_ins import SignIns
@@ -36,6 +39,7 @@ from service.storage.queries.stand_certificates import StandCertificates
 from service.storage.queries.stands import Stands
 from service.storage.queries.states import States
 from service.storage.queries.statistics import Statistics
+from service.storage.queries.tallies import Tallies
 from service.storage.queries.tokens import Tokens
 from service.storage.queries.unit_types import UnitTypes
 from service.storage.queries.units import Units
@@ -119,6 +123,21 @@ class Store:
         return PendingGroups(self._session)
 
     @cached_property
+    def pending_summaries(self) -> PendingSummaries:
+        """Types and stands whose summaries are to be made again."""
+        return PendingSummaries(self._session)
+
+    @cached_property
+    def populations(self) -> Populations:
+        """How the units of types drift."""
+        return Populations(self._session)
+
+    @cached_property
+    def tallies(self) -> Tallies:
+        """Counts of the fleet."""
+        return Tallies(self._session)
+
+    @cached_property
     def models(self) -> Models:
         """Causes that engineers accepted, as numbered revisions."""
         return Models(self._session)
@@ -137,6 +156,11 @@ class Store:
     def notes(self) -> Notes:
         """Remarks on units' histories."""
         return Notes(self._session)
+
+    @cached_property
+    def attachments(self) -> Attachments:
+        """Files that people attached."""
+        return Attachments(self._session)
 
     @cached_property
     def flags(self) -> Flags:
@@ -177,6 +201,11 @@ class Store:
     def webhooks(self) -> Webhooks:
         """Addresses that are told of notices, and their outbox."""
         return Webhooks(self._session)
+
+    @cached_property
+    def saved_views(self) -> SavedViews:
+        """Views of lists that people keep."""
+        return SavedViews(self._session)
 
     @cached_property
     def fleet(self) -> Fleet:

@@ -1,6 +1,5 @@
-"""The tables. What was measured and computed is written once. Only summaries that can be rebuilt are ever updated:
-`conditions`, `outlooks`, `flags`, which repeat their notices, and of a session the revision in force with its verdict,
-which repeat its calibration's, and its stage, whose changes are in the audit. A delivery says how far it has come.
+"""The tables. What was measured and computed is written once; only summaries that can be rebuilt are ever updated:
+`conditions`, `outlooks`, `flags`, `fleet_tables`, and of a session the revision in force, its verdict and its stage.
 
 unit_types ──< tolerance_revisions          stands ──< stand_certificates, append-only
     └──< units ──< services                   │
@@ -19,24 +18,17 @@ unit_types ──< tolerance_revisions          stands ──< stand_certificate
                    ├──< certificates ──< certificate_signatures, certificate_files   papers issued, append-only
                    └──< model_revisions ──< recomputations   causes that engineers accepted, and what they moved
 group_diagnoses, pending_groups               what the sessions of a unit, a unit type or a stand show together
+saved_views                                    lists as people asked for them, under a name
 accounts ──< tokens, sign_ins, sign_in_links, identities   who may sign in, and what they show for it; attempts
 """
 
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import JSON, ForeignKey, Index, LargeBinary, MetaData, String, UniqueConstraint, text
+from sqlalchemy import JSON, ForeignKey, Index, LargeBinary, MetaData, String, UniqueConstraint, false
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
-from service.storage.columns import UtcDateTime
-
-IS_OPEN, IS_WAITING = "state <> 'resolved'", "state = 'waiting'"
-"""Rows of flags and of deliveries that are looked for all the time: few of many, so each has an index of its own."""
-
-
-def only_where(condition: str) -> dict[str, Any]:
-    """An index of those rows only, on both engines."""
-    return {"sqlite_where": text(condition), "postgresql_where": text(condition)}
+from service.storage.columns import IS_OPEN, IS_QUESTIONED, IS_WAITING, UtcDateTime, only_where
 
 
 class Base(DeclarativeBase):
@@ -108,11 +100,15 @@ class SessionRow(Base):
     """One uploaded session; the id is the head of the content's hash."""
 
     __tablename__ = "sessions"
-    __table_args__ = (Index("ix_sessions_unit_id_started_at", "unit_id", "started_at", "id"),)
+    __table_args__ = (
+        Index("ix_sessions_unit_id_started_at", "unit_id", "started_at", "id"),
+        Index("ix_sessions_stand_id_started_at", "stand_id", "started_at"),
+        Index("ix_sessions_questioned", "uploaded_at", **only_where(IS_QUESTIONED)),
+    )
     id: Mapped[str] = mapped_column(String(20), primary_key=True)
     sha256: Mapped[str] = mapped_column(String(64), unique=True)
     unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"))
-    stand_id: Mapped[int | None] = mapped_column(ForeignKey("stands.id"), index=True)
+    stand_id: Mapped[int | None] = mapped_column(ForeignKey("stands.id"))
     filename: Mapped[str]
     size: Mapped[int]
     block: Mapped[str] = mapped_column(String(20))
@@ -136,10 +132,11 @@ class SessionRow(Base):
     basis: Mapped[str | None] = mapped_column(String(160), index=True)
     tells: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
     temperature: Mapped[float | None]
+    is_check: Mapped[bool] = mapped_column(server_default=false())
 
 
 class CalibrationRow(Base):
-    """The whole imu-calibration/1 of a session under one model revision, and the verdict it led to; JSON, deflated."""
+    """The whole imu-calibration/1 of a session under one model revision, and its verdict; JSON, deflated."""
 
     __tablename__ = "calibrations"
     session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), primary_key=True)
@@ -260,13 +257,18 @@ class ConditionRow(Base):
     """A unit's line on the fleet page: its latest session in short, rewritten with every upload."""
 
     __tablename__ = "conditions"
-    __table_args__ = (Index("ix_conditions_worst_first", "severity", "margin", "unit_id"),)
+    __table_args__ = (
+        Index("ix_conditions_worst_first", "severity", "margin", "unit_id"),
+        Index("ix_conditions_stand_id_last_at", "stand_id", "last_at"),
+    )
     unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), primary_key=True, autoincrement=False)
     sessions: Mapped[int]
     last_session: Mapped[str] = mapped_column(ForeignKey("sessions.id"))
     severity: Mapped[int]
     margin: Mapped[float | None]
     flags: Mapped[int]
+    last_at: Mapped[datetime | None] = mapped_column(index=True)
+    stand_id: Mapped[int | None]
 
 
 class ServiceRow(Base):
@@ -285,28 +287,6 @@ class ServiceRow(Base):
     state: Mapped[str] = mapped_column(String(20), default="accepted")
 
 
-class NoteRow(Base):
-    """A remark on a unit's history; the database itself refuses to change or delete one."""
-
-    __tablename__ = "notes"
-    id: Mapped[int] = mapped_column(primary_key=True)
-    unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), index=True)
-    at: Mapped[datetime]
-    text: Mapped[str]
-    who: Mapped[str]
-    recorded_at: Mapped[datetime]
-
-
-class WithdrawalRow(Base):
-    """Why a note no longer holds; append-only too."""
-
-    __tablename__ = "note_withdrawals"
-    note_id: Mapped[int] = mapped_column(ForeignKey("notes.id"), primary_key=True, autoincrement=False)
-    at: Mapped[datetime]
-    who: Mapped[str]
-    why: Mapped[str]
-
-
 class FlagRow(Base):
     """A matter that somebody must look after, as its notices left it; of one matter only one flag is open."""
 
@@ -314,6 +294,7 @@ class FlagRow(Base):
     __table_args__ = (
         Index("ix_flags_unit_id", "unit_id", "id"),
         Index("ix_flags_state", "state", "id"),
+        Index("ix_flags_open", "id", **only_where(IS_OPEN)),
         Index("uq_flags_open", "unit_id", "matter", "place", unique=True, **only_where(IS_OPEN)),
     )
     id: Mapped[int] = mapped_column(primary_key=True)
@@ -327,6 +308,8 @@ class FlagRow(Base):
     session_id: Mapped[str | None] = mapped_column(ForeignKey("sessions.id"))
     raised_at: Mapped[datetime]
     changed_at: Mapped[datetime]
+    assignee: Mapped[str] = mapped_column(String(200), server_default="")
+    assignee_login: Mapped[str] = mapped_column(String(60), server_default="")
 
 
 class NoticeRow(Base):
@@ -386,8 +369,7 @@ class RefusalRow(Base):
 
 
 class AuditRow(Base):
-    """Who did what when, each line with a hash of itself and of the one before; the database itself refuses to change
-    or delete a line."""
+    """Who did what when, each line with a hash of itself and of the one before; the database refuses to change it."""
 
     __tablename__ = "audit"
     id: Mapped[int] = mapped_column(primary_key=True)

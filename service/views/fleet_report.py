@@ -1,14 +1,12 @@
-"""The whole fleet for a report, worst units first."""
+"""The whole fleet for a report: what is kept of it, and its units as they are asked for."""
 
 from dataclasses import dataclass
 from datetime import datetime
 
-from service.records.fleet import FleetQuery
-from service.records.outlook import UnitOutlook
-from service.records.unit import FleetCondition, UnitSummary
+from service.records.fleet import Tally
+from service.records.unit import FleetCondition
 from service.settings import VERSION
 from service.storage.store import Store
-from service.views.outlook import outlooks_of_fleet
 
 MOST_UNITS = 10_000
 """More than a report is read of; it bounds what one answer holds in memory."""
@@ -20,20 +18,21 @@ class FleetReport:
 
     at: datetime
     condition: FleetCondition
-    units: tuple[UnitSummary, ...]
-    """Worst first."""
-    outlooks: tuple[UnitOutlook, ...]
-    """When each must be calibrated next, and why."""
+    tallies: tuple[Tally, ...]
+    """Units by verdict and by how much of their tolerance they use."""
+    overdue: int
+    """Units that should have been calibrated by now."""
     software: str
     """Version."""
 
 
 def fleet_report(store: Store, now: datetime) -> FleetReport:
-    """The condition of every unit."""
+    """The condition of the fleet."""
+    tallies = store.fleet.tallies()
     return FleetReport(
         at=now,
-        condition=store.fleet.condition(),
-        units=store.fleet.units(FleetQuery(limit=MOST_UNITS)),
-        outlooks=outlooks_of_fleet(store, now),
+        condition=FleetCondition.of(tallies),
+        tallies=tallies,
+        overdue=store.outlooks.overdue(now),
         software=VERSION,
     )

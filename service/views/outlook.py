@@ -1,27 +1,17 @@
-"""When a unit must be calibrated next and why; the same of the whole fleet.
+"""When a unit must be calibrated next and why.
 
 What is stored is worked out when a unit's history changes (`refresh_outlook`); read, it is only set against the clock
-and against the rates of the type's other units.
+and against what is kept of the rates of its type (`summarise`).
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import replace
 from datetime import datetime
 
-from estimator.health.population import standing
 from service.errors import NotFoundError
-from service.records.outlook import ParameterTrend, Rate, UnitOutlook
-from service.storage import Storage
+from service.records.fleet import Population
+from service.records.outlook import ParameterTrend, UnitOutlook
 from service.storage.store import Store
-
-FEWEST_UNITS = 3
-"""Units of a type that make a population."""
-
-
-def fleet_outlook(storage: Storage, now: datetime) -> tuple[UnitOutlook, ...]:
-    """Every unit's outlook as it is now, by serial number; without fans and risk, which `outlook_of` has."""
-    with storage.database.reading() as store:
-        return outlooks_of_fleet(store, now)
 
 
 def outlook_of(store: Store, serial: str, now: datetime) -> UnitOutlook:
@@ -31,18 +21,12 @@ def outlook_of(store: Store, serial: str, now: datetime) -> UnitOutlook:
         if not store.units.exists(serial):
             raise NotFoundError(f"There is no unit {serial!r}.")
         return nothing_known(serial)
-    return compared((own,), store.outlooks.rates(own.unit_type), now)[0]
+    return compared(own, store.populations.of_type(own.unit_type), now)
 
 
-def own_outlook(store: Store, serial: str, now: datetime) -> UnitOutlook | None:
-    """One unit's outlook, not set against the others of its type; None before a session was judged."""
-    own = store.outlooks.of_unit(serial)
-    return None if own is None else replace(own, overdue=own.due is not None and own.due < now)
-
-
-def outlooks_of_fleet(store: Store, now: datetime) -> tuple[UnitOutlook, ...]:
-    """Every unit's outlook within a transaction, in two queries; without fans and risk, which `outlook_of` has."""
-    return compared(store.outlooks.every(), store.outlooks.rates(), now)
+def dated(outlook: UnitOutlook | None, now: datetime) -> UnitOutlook | None:
+    """Set against the clock alone, and not against the others of its type."""
+    return None if outlook is None else compared(outlook, (), now)
 
 
 def nothing_known(serial: str) -> UnitOutlook:
@@ -51,28 +35,16 @@ def nothing_known(serial: str) -> UnitOutlook:
     return UnitOutlook(serial, None, False, reason, None, None, None, None, None, ())
 
 
-def compared(outlooks: Sequence[UnitOutlook], rates: Sequence[Rate], now: datetime) -> tuple[UnitOutlook, ...]:
+def compared(outlook: UnitOutlook, populations: Iterable[Population], now: datetime) -> UnitOutlook:
     """Set against the clock, and every rate against those of the same parameter in other units of the type."""
-    z = dict(zip(((r.serial, r.sensor, r.kind, r.parameter) for r in rates), population_z(rates), strict=True))
-
-    def placed(serial: str, trend: ParameterTrend) -> ParameterTrend:
-        return replace(trend, population_z=z.get((serial, trend.sensor, trend.kind, trend.parameter)))
-
-    return tuple(
-        replace(o, overdue=o.due is not None and o.due < now, trends=tuple(placed(o.serial, t) for t in o.trends))
-        for o in outlooks
-    )
+    known = {(one.kind, one.parameter): one for one in populations if one.rates}
+    trends = tuple(_placed(trend, known.get((trend.kind, trend.parameter))) for trend in outlook.trends)
+    return replace(outlook, overdue=outlook.due is not None and outlook.due < now, trends=trends)
 
 
-def population_z(rates: Sequence[Rate]) -> list[float | None]:
-    """How far each rate stands from the same parameter's in its type, in their robust spread; None with few units."""
-    groups: dict[tuple[str, str, str], list[int]] = {}
-    for place, rate in enumerate(rates):
-        groups.setdefault((rate.unit_type, rate.kind, rate.parameter), []).append(place)
-    found: list[float | None] = [None] * len(rates)
-    for places in groups.values():
-        if len({rates[place].serial for place in places}) >= FEWEST_UNITS:
-            z = standing([(rates[place].value, rates[place].sigma) for place in places])
-            for place, value in zip(places, z, strict=True):
-                found[place] = value
-    return found
+def _placed(trend: ParameterTrend, among: Population | None) -> ParameterTrend:
+    """In tolerances a year, as rates of a type are compared."""
+    if among is None:
+        return trend
+    z = among.z(trend.rate_per_year / trend.tolerance, trend.rate_sigma / trend.tolerance)
+    return replace(trend, population_z=z)

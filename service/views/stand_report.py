@@ -69,9 +69,7 @@ def stand_report(store: Store, name: str) -> StandReport:
     use = store.stands.use(name)
     flags = store.flags.page(FlagQuery(unresolved=True, matters=AT_FAULT, place=name, limit=MOST + 1))
     return StandReport(
-        line=StandLine(
-            use, _condition(stand_conditions(store), name), store.stand_certificates.of_stand(name), len(flags)
-        ),
+        line=StandLine(use, store.stands.condition(name), store.stand_certificates.of_stand(name), len(flags)),
         flags=flags,
         units=store.fleet.units(FleetQuery(stand=name, order=Order.LAST, backwards=True, limit=MOST + 1)),
         sessions=store.sessions.wanted(SessionQuery(stand=name, limit=MOST + 1)),

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from estimator.causes import find
 from estimator.diagnosis import Finding
+from estimator.groups.fixed import EMPIRICAL
 from estimator.groups.layout import EVERY
 from service.measures import HARD, number
 from service.words.names import spaced
@@ -12,6 +13,8 @@ UNKNOWN_CAUSE = "unexplained"
 """Stands among the alternatives of a finding that a cause which is not in the catalogue explains as well."""
 EVERY_SENSOR = "every sensor of its kind"
 """Where what a group shows acts on all of them."""
+LEARNED = "empirical term"
+"""What a term is called that was learned, in place of a cause."""
 ONE_NOT_KNOWN = "one that is not in the catalogue"
 COMPARABLE = 3.0
 """Times that one share of probability may be another's and both still pass for equally likely: evidence below that is
@@ -26,6 +29,8 @@ def cause_name(identifier: str) -> str:
     """``bias temperature``; a cause that this version does not know is called by its identifier."""
     if identifier == UNKNOWN_CAUSE:
         return ONE_NOT_KNOWN
+    if identifier == EMPIRICAL:
+        return LEARNED
     known = find(identifier)
     return spaced(identifier) if known is None else known.name
 

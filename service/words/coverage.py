@@ -11,10 +11,9 @@ def coverage_in_words(calibration: Calibration, k: float) -> str:
     if not dofs:
         return f"k = {number(k)}"
     most, least = (coverage_factor(k, dof) for dof in (min(dofs), max(dofs)))
-    return (
-        f"k = {_range(least, most, 2)}, by Student's t: the readings tell their noise to "
-        f"{_range(min(dofs), max(dofs), 0)} effective degrees of freedom"
-    )
+    told = _range(min(dofs), max(dofs), 0)
+    degrees = "one effective degree" if told == "1" else f"{told} effective degrees"
+    return f"k = {_range(least, most, 2)}, by Student's t: the readings tell their noise to {degrees} of freedom"
 
 
 def noise_is_estimated(calibration: Calibration) -> bool:

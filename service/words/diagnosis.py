@@ -29,6 +29,7 @@ HEADLINES = {
     DiagnosisState.NOT_APPLICABLE: "Not applicable to this programme",
 }
 """Where the answer itself is not at hand."""
+STILL_MADE = "The diagnosis that this rests on is still being made: ask again in some seconds."
 AGREE = "Measurement and simulation agree within the noise: no cause of the catalogue and no other structure shows."
 RESTATE = (
     "No cause of the catalogue and no other structure shows. But the readings scatter otherwise than the file says: "

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from datetime import datetime
 
+from estimator.wording import counted
 from service.records.decision import Verdict
 from service.records.outlook import Action, ParameterTrend
 from service.records.session import StoredSession
@@ -38,7 +39,7 @@ def why_due(
     is_longest: bool,
 ) -> str:
     """Why the unit comes back then; ``first`` is the trend that reaches its tolerance first."""
-    interval = f"calibrate every {longest_days:.0f} days at least"
+    interval = f"calibrate every {counted(round(longest_days), 'day')} at least"
     if not trends:
         return f"One session since the reference was set tells no trend; {interval}."
     if first is None or first.reach_90 is None:

@@ -2,16 +2,18 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from math import floor, isfinite, log10
 
 from estimator.causes import find
 from estimator.causes.noise import ExcessNoise
 from estimator.diagnosis import Finding
-from estimator.diagnosis.results import ParitySplit
+from estimator.diagnosis.results import OverSessions, ParitySplit
 from service.measures import HARD, number
 from service.records.model import ModelRevision
 from service.words.amplitudes import amplitudes_of, shape_of
-from service.words.causes import cause_name, is_level, is_lone, what_is_wrong
+from service.words.causes import cause_name, is_level, is_lone, percent, what_is_wrong
+from service.words.names import day_of
 from service.words.rivals import Bar, Choice, choices_of, ranking_of
 
 SURE = 1e-12
@@ -48,6 +50,8 @@ class FindingView:
     """Causes that can become part of a model: identifier and name."""
     held: bool
     """Whether the model holds it in every session, accepted or not."""
+    together: bool
+    """Whether only several sessions of the unit show it."""
     sensors: tuple[str, ...]
     accepted: tuple[int, ...]
     """Revisions that already hold it for this session."""
@@ -64,7 +68,8 @@ def finding_view(
     names = (finding.cause, *finding.alternatives)
     first = find(finding.cause)
     of_noise, held = isinstance(first, ExcessNoise), first is not None and first.always_modelled
-    known = [] if held else [one for name in names if (one := find(name)) and one.can_be_modelled]
+    together = finding.over_sessions
+    known = [] if held or together else [one for name in names if (one := find(name)) and one.can_be_modelled]
     return FindingView(
         cause=finding.cause,
         name=cause_name(finding.cause),
@@ -76,13 +81,16 @@ def finding_view(
         advice=finding.advice,
         amplitudes=tuple(amplitudes_of(finding)),
         shape=shape_of(finding),
-        evidence=evidence(finding.strength, finding.p_value, by_stated_noise=by_stated_noise and not of_noise),
+        evidence=evidence(finding.strength, finding.p_value, by_stated_noise=by_stated_noise and not of_noise)
+        if together is None
+        else evidence_together(finding.strength, together),
         choices=tuple(choices_of(finding)),
         ranking=tuple(ranking_of(finding)),
         parity=_parity(finding.parity),
-        since=_since(finding.new),
+        since=_since(finding.new) if together is None else since_together(together),
         acceptable=tuple((one.identifier, one.name) for one in known),
         held=held,
+        together=together is not None,
         sensors=finding.sensors,
         accepted=tuple(r.id for r in revisions if r.cause in names),
     )
@@ -95,6 +103,23 @@ def evidence(strength: float, p_value: float, *, by_stated_noise: bool = False) 
     """
     condition = ", if the noise is as stated" if by_stated_noise and isfinite(p_value) else ""
     return f"{standard_errors(strength)}; {_chance(p_value)}{condition}"
+
+
+def evidence_together(strength: float, over: OverSessions) -> str:
+    """How strong an effect is that no session shows alone, and how likely this one has it."""
+    return (
+        f"{standard_errors(strength)} over {over.sessions} sessions of the unit together; that this one has it too: "
+        f"{percent(over.here)}"
+    )
+
+
+def since_together(over: OverSessions) -> str:
+    """Whether earlier sessions had it."""
+    if over.since is not None:
+        return f"It began on {day_of(datetime.fromisoformat(over.since))}."
+    if over.form == "varying":
+        return "It was there in the earlier sessions too, but different every time."
+    return _since(False)
 
 
 def standard_errors(strength: float) -> str:

@@ -68,7 +68,7 @@ def _detail(fit: Fit) -> str:
     if fit.p_value is not None:
         percent = "less than 0.01" if fit.p_value < SMALLEST else number(100 * fit.p_value, 1 + (fit.p_value < 0.01))
         chance = f"; a sound model would give this much or more in {percent} % of sessions"
-    return f"χ² = {number(fit.chi2, 1)} for {fit.dof} degrees of freedom{chance}."
+    return f"χ² = {number(fit.chi2, 1)} for {fit.dof} degree{'' if fit.dof == 1 else 's'} of freedom{chance}."
 
 
 def _warnings(fit: Fit) -> list[str]:

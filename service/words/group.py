@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from estimator.groups import GroupDiagnosis, GroupFinding
+from estimator.groups import GroupFinding
 from service.records.group import Group
 from service.records.model import Scope
 from service.words.causes import cause_name, cause_on
@@ -33,11 +33,14 @@ def summary_of_group(sessions: int, findings: Sequence[GroupFinding], *, unexpla
     return f"{over(sessions)}: nothing wrong found."
 
 
-def own_of_group(group: Group, found: GroupDiagnosis) -> str:
-    """Of what the sessions show, that which is of the group itself; empty for nothing."""
+def own_of_group(group: Group, findings: Sequence[GroupFinding], *, unexplained: bool) -> str:
+    """Of what the sessions show, that which is of the group itself; empty for nothing.
+
+    ``unexplained``: whether they share structure of its own that no cause explains.
+    """
     mine = (group.level.value, group.name)
-    said = [statement(f) for f in found.findings if (f.level, f.subject) == mine]
-    if any(structure.subject == group.name for structure in found.structures):
+    said = [statement(f) for f in findings if (f.level, f.subject) == mine]
+    if unexplained:
         said.append(UNKNOWN)
     return " ".join(said)
 

@@ -1,5 +1,6 @@
 """A lasting effect in words: how large, since when, told from what, and in which sessions."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
@@ -8,7 +9,7 @@ from estimator.groups import GroupFinding
 from estimator.groups.results import PoolLimit, Rival, SessionAmplitude
 from estimator.session import ACCELEROMETER
 from service.records.group import GroupAnswer, GroupShown
-from service.records.model import ModelRevision, Scope
+from service.records.model import SCOPES, ModelRevision
 from service.words.amplitudes import amplitudes_of
 from service.words.causes import cause_on, percent
 from service.words.finding import standard_errors
@@ -21,8 +22,8 @@ FORMS = {
     "same": "in all of these sessions",
     "varying": "in these sessions, but different every time",
 }
-SCOPES = {"unit": Scope.UNIT, "type": Scope.UNIT_TYPE, "stand": Scope.STAND}
-"""Whose model, by whose effect it is."""
+MOMENT = re.compile(r"\d{4}-\d\d-\d\dT[\d:.]+(?:Z|[+-]\d\d:\d\d)?")
+"""A moment as files state it, ISO 8601."""
 BLIND = "–"
 """In place of a size that no number of such sessions shows."""
 
@@ -93,9 +94,9 @@ def group_view(answer: GroupAnswer, shown: GroupShown, accepted: Sequence[ModelR
         left_out=shown.left_out,
         effects=tuple(_effect(finding, accepted) for finding in shown.findings),
         structures=shown.structures,
-        terms=tuple(map(term_view, shown.terms)),
+        terms=tuple(term_view(term, accepted) for term in shown.terms),
         gain=gain_in_words(shown.gain),
-        notes=shown.notes,
+        notes=tuple(map(with_days, shown.notes)),
         limits=tuple(_limit(limit) for limit in shown.limits if limit.pool.amplitude),
     )
 
@@ -141,6 +142,11 @@ def _row(finding: GroupFinding, one: SessionAmplitude) -> ForestRow:
 def _limit(limit: PoolLimit) -> tuple[str, str, str]:
     of_one = size_of(limit.session, ACCELEROMETER) if limit.session.amplitude else BLIND
     return cause_on(limit.pool.cause, ()), size_of(limit.pool, ACCELEROMETER), of_one
+
+
+def with_days(note: str) -> str:
+    """A note with its moments as days."""
+    return MOMENT.sub(lambda found: day_in_words(found.group()), note)
 
 
 def day_in_words(started_at: str) -> str:

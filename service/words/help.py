@@ -71,6 +71,15 @@ WHEN = (
 )  # fmt: skip
 """What one meets, and what to do."""
 
+KEYS = (
+    (("/",), "to the field that searches the list"),
+    (("j", "k"), "to the next or the previous row, session or flag"),
+    (("Enter",), "opens the row"),
+    (("x",), "ticks the flag"),
+    (("?",), "this page"),
+)
+"""Keys, and what each does."""
+
 
 def plainly(meaning: str) -> str:
     """Without the marks that the glossary is set with."""

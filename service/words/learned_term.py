@@ -1,10 +1,12 @@
 """A term that sessions taught, in words: its equation in people's measures, its worth, and what comes near it."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from estimator.groups.fixed import EMPIRICAL
 from estimator.groups.results import EmpiricalTerm, GroupGain
 from service.measures import COVERAGE, HARD, measured, number
+from service.records.model import SCOPES, ModelRevision
 from service.words.amplitude_measures import amplitude_measure
 from service.words.causes import cause_name
 
@@ -23,10 +25,16 @@ class TermView:
     """Whose sessions taught it."""
     worth: str
     nearest: str
+    sensors: tuple[str, ...] = ()
+    model: str = ""
+    """Whose model it can become part of: ``unit BA-017``; empty where the sessions name none."""
+    accepted: tuple[int, ...] = ()
+    """Revisions in force that hold it."""
 
 
-def term_view(term: EmpiricalTerm) -> TermView:
-    """What an engineer reads of a learned term."""
+def term_view(term: EmpiricalTerm, accepted: Sequence[ModelRevision] = ()) -> TermView:
+    """What an engineer reads of a learned term; ``accepted``: the revisions that are in force."""
+    scope = SCOPES.get(term.level) if term.subject else None
     near = f"{number(term.separation, 1)} standard errors from it"
     return TermView(
         lines=tuple(_lines(term)),
@@ -34,7 +42,22 @@ def term_view(term: EmpiricalTerm) -> TermView:
         worth=f"It removes {number(100 * term.explained, 0)}{HARD}% of what the sessions that took no part in learning "
         "it show too much.",
         nearest=f"Nearest in the catalogue: {cause_name(term.nearest)}, {near}." if term.nearest else "",
+        sensors=term.sensors,
+        model="" if scope is None else f"{scope} {term.subject}",
+        accepted=tuple(r.id for r in accepted if holds_term(r, term)),
     )
+
+
+def holds_term(revision: ModelRevision, term: EmpiricalTerm) -> bool:
+    """Whether a revision accepted a learned term of this place: an equation that was learned anew is another one of
+    it, and not beside it."""
+    own = (revision.cause, revision.scope, revision.subject, revision.sensors)
+    return own == (EMPIRICAL, SCOPES.get(term.level), term.subject, term.sensors)
+
+
+def equation_of(term: EmpiricalTerm) -> str:
+    """``A3 reads more by (3.1 ± 0.2) µg · sin 3β.``"""
+    return " ".join(f"{what[:1].upper()}{what[1:]} {equation}." for what, equation in _lines(term))
 
 
 def _lines(term: EmpiricalTerm) -> Iterator[tuple[str, str]]:

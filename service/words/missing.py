@@ -15,7 +15,9 @@ def missing_in_words(found: Missing) -> tuple[str, ...]:
     """A sentence how far it is, then one a run or a line a direction, then what is open until then."""
     if found.is_complete:
         return (f"Complete: {found.done} positions, and every parameter is observed.",)
-    lines = [f"{found.done} positions are done, {len(found.settings) or len(found.directions)} are to come."]
+    to_come = len(found.settings) or len(found.directions)
+    done = found.done
+    lines = [f"{done} position{'' if done == 1 else 's'} {'is' if done == 1 else 'are'} done, {to_come} still to come."]
     for run, settings in groupby(found.settings, key=lambda one: one[0]):
         angles = [f"{number(float(np.degrees(beta)), 2).rstrip('0').rstrip('.')}°" for _, beta in settings]
         rest = f" and {len(angles) - MOST} more" if len(angles) > MOST else ""

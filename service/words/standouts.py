@@ -1,13 +1,12 @@
 """How a unit or a production lot drifts unlike the others of its type, in words."""
 
-from service.records.outlook import Rate
 from service.words.names import PARAMETER_NAMES
 
 
-def drift_stands_out(rate: Rate) -> str:
-    """Of one parameter of one unit."""
-    drift = f"drifts by {100 * abs(rate.value):.0f} % of its tolerance a year, unlike the other units of its type."
-    return f"{rate.sensor} {PARAMETER_NAMES[rate.parameter]} {drift}"
+def drift_stands_out(sensor: str, parameter: str, value: float) -> str:
+    """Of one parameter of one unit; its rate in tolerances a year."""
+    drift = f"drifts by {100 * abs(value):.0f} % of its tolerance a year, unlike the other units of its type."
+    return f"{sensor} {PARAMETER_NAMES[parameter]} {drift}"
 
 
 def lot_stands_out(lot: str, unit_type: str, parameter: str) -> str:

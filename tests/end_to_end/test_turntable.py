@@ -1,4 +1,4 @@
-"""Alignments and rate tables from upload to history and pages, over HTTP, on both databases."""
+"""Alignments and rate tables from upload to history and pages, over HTTP; what is stored, on both databases."""
 
 import json
 
@@ -6,6 +6,8 @@ import httpx
 import pytest
 
 from estimator.results import ARCSEC
+from tests.databases import ENGINES
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - the hook
 from tests.service.sessions import session_bytes
 from tests.service.turntable import MICRO_G, alignment_bytes, rate_table_bytes
 
@@ -96,6 +98,7 @@ def test_the_pages_show_them(client: httpx.Client, content: bytes) -> None:
     assert client.get("/").status_code == 200
 
 
+@pytest.mark.parametrize("databases", ENGINES, indirect=True)
 @pytest.mark.parametrize("content", [alignment_bytes(), rate_table_bytes()], ids=["alignment", "rate table"])
 def test_the_stored_document_is_complete(client: httpx.Client, content: bytes) -> None:
     id = post(client, content)["id"]

@@ -9,19 +9,22 @@ import zlib
 from collections.abc import Iterator
 from datetime import UTC, datetime
 from threading import Event
+from typing import Any
 
 import httpx
 import pytest
 from sqlalchemy import text
 
 from service.app import create_app
+from service.background import read_diagnosis
 from service.background.bell import Bell
-from service.background.diagnose_waiting import MOST_ATTEMPTS, Diagnosing, diagnose_next
+from service.background.diagnose_waiting import CLAIM, MOST_ATTEMPTS, Diagnosing, diagnose_next
 from service.background.guard import AT_FAULT
 from service.background.helper import Helper
 from service.flows.receive import upload
 from service.metrics import Metrics
 from service.records.diagnosis import DiagnosisState
+from service.records.pending import Claim
 from service.settings import Settings
 from service.storage import Storage
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
@@ -86,6 +89,51 @@ def test_this_version_fails_once_for_whoever_reads_and_counts_it(shown: httpx.Cl
         assert shown.get(f"/api/v1/sessions/{ID}/diagnosis").status_code == 404
     counted = 'imu_health_background_faults_total{fault="KeyError",work="pending diagnoses"} 1.0'
     assert counted in shown.get("/metrics").text
+
+
+@pytest.fixture
+def forgetful(storage: Storage, settings: Settings) -> Iterator[httpx.Client]:
+    """HTTP to a service in which only a diagnosis fails: what the reference tells of flags is damaged."""
+    for content in (REFERENCE, LATER):
+        upload(storage, content, "warm.json", NOW)
+    with storage.database.engine.begin() as connection:
+        connection.execute(text("UPDATE sessions SET tells = '{}' WHERE id = :id"), {"id": session_id(REFERENCE)})
+    with http_client(create_app(settings)) as client:
+        yield client
+
+
+def test_a_certificate_states_that_the_program_failed(written: io.StringIO, forgetful: httpx.Client) -> None:
+    paper = forgetful.get(f"/api/v1/sessions/{ID}/certificate?format=dcc")
+    assert (paper.status_code, "a fault of the program, not of the session" in paper.text) == (200, True)
+    [failure] = [line for line in lines(written) if line["event"] == "background work failed"]
+    assert (failure["level"], failure["place"]) == ("error", ID)
+
+
+@pytest.mark.parametrize(
+    ("path", "form"),
+    [
+        (f"/api/v1/sessions/{ID}/diagnosis/accept", {"json": {"cause": "warm-up", "scope": "unit", "by": "K. Ito"}}),
+        (f"/sessions/{ID}/diagnosis/accept", {"data": {"cause": "warm-up", "scope": "unit", "by": "K. Ito"}}),
+    ],
+)
+def test_nothing_is_accepted_of_it_and_the_same_is_said(
+    forgetful: httpx.Client, path: str, form: dict[str, Any]
+) -> None:
+    refused = forgetful.post(path, **form)
+    assert (refused.status_code, "a fault of the program, not of the session" in refused.text) == (409, True)
+
+
+def test_what_rests_on_a_diagnosis_that_somebody_is_making_is_asked_for_again(
+    storage: Storage, settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    upload(storage, REFERENCE, "warm.json", NOW)
+    id = session_id(REFERENCE)
+    with storage.database.writing() as store:
+        store.pending.claim(Claim(id, "somebody else", datetime.now(UTC) + CLAIM), NOW)
+    monkeypatch.setattr(read_diagnosis, "PATIENCE", 0.0)
+    with http_client(create_app(settings)) as client:
+        answer = client.get(f"/api/v1/sessions/{id}/certificate")
+    assert (answer.status_code, answer.headers["Retry-After"]) == (503, "2")
 
 
 def test_what_the_program_fails_at_is_tried_some_times_beside_the_requests(

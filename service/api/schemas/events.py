@@ -86,6 +86,7 @@ class NoteSchema(BaseModel):
     who: str = Field(description="Who said it.")
     recorded_at: datetime = Field(description="When it was written, UTC.")
     withdrawal: WithdrawalSchema | None = Field(description="Why it no longer holds; null while it does.")
+    session: str | None = Field(description="The session that it is about; null for the unit as a whole.")
 
 
 class NoteList(BaseModel):
@@ -102,6 +103,18 @@ class NewStage(BaseModel):
 
     stage: Stage | None = Field(description="Before or after the unit was worked on; null for neither.")
     by: Name = Field(description="Who says so.")
+
+
+class NewCheck(BaseModel):
+    """Whether a session is only a check."""
+
+    model_config = ConfigDict(
+        extra="forbid", json_schema_extra={"example": {"is_check": True, "by": "K. Ito", "why": "after transport"}}
+    )
+
+    is_check: bool = Field(description="A check is judged and kept, and moves no due date.")
+    by: Name = Field(description="Who says so.")
+    why: Reason = Field(description="Why.")
 
 
 class FoundAndLeftLine(BaseModel):

@@ -1,11 +1,14 @@
 """Flags and what happens to them."""
 
 from datetime import datetime
+from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from service.api.schemas.fields import Name, Reason
+from service.api.schemas.fields import LongText, Name, Reason, Text
 from service.records.flag import FlagState, Matter, NoticeKind
+
+FlagNumber = Annotated[int, Field(ge=1, le=2_000_000_000)]
 
 
 class NoticeSchema(BaseModel):
@@ -35,6 +38,7 @@ class FlagSchema(BaseModel):
     session: str | None = Field(description="The latest session that showed it.")
     raised_at: datetime = Field(description="When it was first raised, UTC.")
     changed_at: datetime = Field(description="When it last changed, UTC.")
+    assignee: str = Field(description="Who is to look after it; empty where nobody in particular is.")
     changes: list[NoticeSchema] = Field(description="Its life, oldest first; nothing of it is ever changed.")
 
 
@@ -45,6 +49,30 @@ class FlagPage(BaseModel):
     page: int = Field(description="Which page this is, from 1.")
     limit: int = Field(description="How many fit on a page.")
     next_page: int | None = Field(description="The next page; null after the last.")
+
+
+class Assigning(BaseModel):
+    """Who is to look after a flag."""
+
+    model_config = ConfigDict(
+        extra="forbid", json_schema_extra={"example": {"to": "k.ito", "by": "K. Ito", "why": "knows the stand"}}
+    )
+
+    to: Text = Field(description="Login or name of an account, any name where there are none; empty for nobody.")
+    by: Name = Field(description="Who says so.")
+    why: LongText = Field(default="", description="Why.")
+
+
+class AssigningSeveral(Assigning):
+    """Who is to look after several flags."""
+
+    flags: list[FlagNumber] = Field(min_length=1, max_length=200, description="Numbers of the flags.")
+
+
+class Assigned(BaseModel):
+    """What became of several flags."""
+
+    changed: int = Field(description="How many have another assignee now; resolved ones are left alone.")
 
 
 class Handling(BaseModel):

@@ -21,6 +21,7 @@ RECEIPT_EXAMPLE: JsonDict = {
     "reservations": [],
     "said": "Unfit",
     "state": "accepted",
+    "is_check": False,
     "url": "http://127.0.0.1:8000/api/v1/sessions/3f9a0c5be1d24786aa10",
 }
 
@@ -39,6 +40,7 @@ class ReceiptSchema(SaidVerdict):
         description="Whether later sessions are judged against this one; then its own verdict is `undecidable`."
     )
     state: RecordState = Field(description="`questioned` where the file cannot be as it says; then it tells nothing.")
+    is_check: bool = Field(description="Whether it is only a check; of what was stored before, as that was.")
     url: str = Field(description="Where the session can be read.")
 
     def _is_questioned(self) -> bool:
@@ -66,6 +68,7 @@ class SessionSchema(SaidVerdict):
     is_reference: bool = Field(description="Whether later sessions are judged against this one.")
     simulated: bool = Field(description="Whether it belongs to the demonstration fleet.")
     revision: int = Field(description="Model revision that its calibration in force was made under; 0 is the baseline.")
+    is_check: bool = Field(description="Whether it is only a check, which moves no due date unless it is a reference.")
     stage: str | None = Field(description="`as-found`, `as-left`, or null where neither was said.")
     state: RecordState = Field(description="Only an accepted session tells of its unit.")
     superseded_by: str | None = Field(description="The session that stands for a superseded one.")

@@ -65,8 +65,11 @@ def _of_finding(
 ) -> Iterator[Concern]:
     """Where several causes are equally possible, all that are known must act on the sensor, or all on the stand.
 
-    A mere change since earlier sessions is left to the tolerances: they say whether it matters.
+    A mere change since earlier sessions is left to the tolerances: they say whether it matters. What only several
+    sessions show together has a flag of theirs.
     """
+    if finding.over_sessions is not None:
+        return
     name, what = finding.cause, what_is_wrong(finding, findings)
     possible = [cause(identifier) for identifier in (name, *finding.alternatives) if identifier != UNKNOWN_CAUSE]
     if all(one.is_of_sensor for one in possible):

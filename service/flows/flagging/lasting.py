@@ -12,10 +12,10 @@ from service.flows.flagging.settle import SERVICE, Occasion, propose, raise_flag
 from service.judging.model_in_force import in_force
 from service.records.flag import Concern, Flag, FlagState, Matter, NoticeKind
 from service.records.group import Group, Member
-from service.records.model import ModelRevision
+from service.records.model import SCOPES, ModelRevision
 from service.storage.store import Store
 from service.words.group import lasting_place, lasting_summary
-from service.words.group_finding import SCOPES, holds
+from service.words.group_finding import holds
 
 GONE = "The sessions together no longer show it."
 ACCEPTED = "Accepted into the model of {whose}, revision {revision}."

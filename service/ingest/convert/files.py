@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.errors import FormatError, Problem
+from estimator.wording import counted
 
 
 def refuse(path: Path, field: str, message: str, row: int | None = None) -> FormatError:
@@ -31,7 +32,8 @@ def read_numbers(path: Path, width: int) -> NDArray[np.float64]:
     except ValueError as fault:
         raise refuse(path, "text", f"{fault}; every line must hold {width} numbers separated by blanks") from fault
     if values.shape[1] != width:
-        raise refuse(path, "text", f"holds {len(values)} lines of {values.shape[1]} numbers; must hold {width} a line")
+        told = f"{counted(len(values), 'line')} of {counted(values.shape[1], 'number')}"
+        raise refuse(path, "text", f"holds {told}; must hold {width} a line")
     unusable = np.flatnonzero(~np.isfinite(values).all(axis=1))
     if len(unusable):
         raise refuse(path, "text", "holds a value that is not a finite number", row=int(unusable[0]) + 1)

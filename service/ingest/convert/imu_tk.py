@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from estimator.wording import counted
 from service.ingest.convert.contract import Converter, Document
 from service.ingest.convert.documents import columns, session, triad
 from service.ingest.convert.files import expect_count, one_containing, read_numbers, refuse
@@ -25,7 +26,9 @@ def convert(paths: list[Path]) -> list[tuple[str, Document]]:
     accelerometer, gyro = one_containing(paths, "acc"), one_containing(paths, "gyro")
     acc, gyr = read_numbers(accelerometer, 4), read_numbers(gyro, 4)
     if len(acc) != len(gyr):
-        raise refuse(gyro, "text", f"has {len(gyr)} lines and {accelerometer.name} has {len(acc)}; they must match")
+        raise refuse(
+            gyro, "text", f"has {counted(len(gyr), 'line')} and {accelerometer.name} has {len(acc)}; they must match"
+        )
     sensors = triad("A", COUNTS, "count") + triad("G", GYRO_COUNTS, "count", gyro=True)
     for entry in sensors:
         entry["nominal_offset"] = HALF_RANGE

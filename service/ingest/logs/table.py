@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from estimator.session import ACCELEROMETER, GYROSCOPE
+from estimator.wording import counted
 from service.ingest.limits import check_table, refusal
 from service.ingest.logs.streams import Array, Stream, in_order
 
@@ -66,14 +67,15 @@ def _left_out(streams: Sequence[Stream], sound: Sequence[Stream]) -> Iterator[st
     """What of a log is not in its table."""
     for stream, kept in zip(streams, sound, strict=True):
         if len(kept.time) < len(stream.time):
-            yield f"{stream.label}: {len(stream.time) - len(kept.time)} samples are no numbers and were left out."
+            gone = len(stream.time) - len(kept.time)
+            yield f"{stream.label}: {gone} sample{'' if gone == 1 else 's'} left out for want of a number."
         if len(kept.time) < FEWEST:
-            yield f"{stream.label} has {len(kept.time)} samples only and was left out."
+            yield f"{stream.label} has {counted(len(kept.time), 'sample')} only and was left out."
 
 
 def _torn(kept: int, rows: int) -> Iterator[str]:
     if kept < rows:
-        yield f"{rows - kept} of {rows} rows were left out: some IMU says nothing in them."
+        yield f"{rows - kept} of {rows} rows left out: some IMU says nothing there."
 
 
 def _rate(stream: Stream) -> float:

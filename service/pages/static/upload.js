@@ -66,6 +66,7 @@ function send(file, card) {
   return new Promise((done) => {
     const body = new FormData();
     body.append("files", file);
+    if (form.elements.check?.checked) body.append("check", "yes");
     const request = new XMLHttpRequest();
     const bar = card.querySelector("progress");
     request.upload.onprogress = (event) => {

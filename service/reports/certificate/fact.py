@@ -9,3 +9,5 @@ class Fact:
 
     name: str
     value: str
+    is_written: bool = False
+    """Whether the value is what somebody named or wrote: it is the same in every language."""

@@ -25,14 +25,14 @@ def facts_of(found: CertifiedSession) -> tuple[Fact, ...]:
     """What was measured, with what, by whom, under which conditions."""
     session, source = found.report.session, found.source
     return (
-        Fact("Unit", session.unit),
-        Fact("Unit type", found.unit_type.name),
+        Fact("Unit", session.unit, is_written=True),
+        Fact("Unit type", found.unit_type.name, is_written=True),
         Fact("Sensors", _sensors(source)),
         Fact("Programme", spaced(session.programme)),
         Fact("Method", f"{method_name(found.report.calibration.method)}, version {found.software}"),
         Fact("Measured", _measured(found)),
-        Fact("Operator", stated(session.operator)),
-        Fact("Stand", _stand(source)),
+        Fact("Operator", stated(session.operator), is_written=bool(session.operator)),
+        Fact("Stand", _stand(source), is_written=source.stand is not None),
         Fact("Site", _site(source)),
         Fact("Judged against", _judged_against(found)),
         Fact("State of the unit", _state(found)),

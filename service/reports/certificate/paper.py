@@ -40,9 +40,9 @@ def paper_of(found: CertifiedSession, issue: Issue) -> Paper:
         replaces=issue.replaces or "",
         draft=draft_in_words(missing),
         parties=(
-            Fact("Laboratory", _joined(own.name, own.address, own.country)),
-            Fact("Customer", _joined(customer.name, customer.address)),
-            Fact("Place of calibration", stated(own.place or own.address)),
+            _party("Laboratory", own.name, own.address, own.country),
+            _party("Customer", customer.name, customer.address),
+            _party("Place of calibration", own.place or own.address),
             Fact("Date of issue", day_of(issue.issued_at)),
         ),
         traceability=found.traceability.text,
@@ -51,8 +51,10 @@ def paper_of(found: CertifiedSession, issue: Issue) -> Paper:
     )
 
 
-def _joined(*parts: str) -> str:
-    return ", ".join(stated(part) for part in parts) if any(parts) else stated("")
+def _party(name: str, *parts: str) -> Fact:
+    if not any(parts):
+        return Fact(name, stated(""))
+    return Fact(name, ", ".join(stated(part) for part in parts), is_written=True)
 
 
 def _statements(found: CertifiedSession) -> tuple[Fact, ...]:

@@ -86,9 +86,9 @@ def _write_table(archive: zipfile.ZipFile, connection: Connection, table: Table)
 
 
 def _named(connection: Connection, tables: list[Table]) -> set[str]:
-    """Hashes of the files that sessions were made of."""
-    (sessions,) = (table for table in tables if table.name == "sessions")
-    return set(connection.scalars(select(sessions.columns.sha256)))
+    """Hashes of the files that sessions were made of, and of those that were attached."""
+    holding = [table for table in tables if table.name in ("sessions", "attachments")]
+    return {digest for table in holding for digest in connection.scalars(select(table.columns.sha256))}
 
 
 def _write_file(archive: zipfile.ZipFile, files: Files, digest: str) -> bool:

@@ -1,12 +1,16 @@
 """What all queries share."""
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from sqlalchemy import Integer, literal_column
+from sqlalchemy import Integer, Table, insert, literal_column
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
 from service.storage.tables import Base
+
+TOUCHED = "tallied"
+"""Units whose counts are to be brought in line, in the session's own notes."""
 
 
 class Queries:
@@ -23,8 +27,20 @@ class Queries:
         """The key of a unit that this transaction has met."""
         return self._session.info.get(serial)
 
+    def touch(self, *units: int) -> None:
+        """Notes that these units may count otherwise in the fleet by the end of the transaction."""
+        self._session.info.setdefault(TOUCHED, set()).update(units)
+
+    def insert_many(self, table: type[Base], rows: Sequence[Mapping[str, Any]]) -> None:
+        """Inserts rows in one statement, without an object for each."""
+        if rows:
+            self._session.flush()
+            own = table.__table__
+            assert isinstance(own, Table)
+            self._session.execute(insert(own), list(rows))
+
     def insert_once(self, table: type[Base], **values: Any) -> bool:
         """Inserts a row unless a unique constraint says it is there; waits for a rival that is inserting the same."""
-        insert = postgresql.insert if self._session.get_bind().dialect.name == "postgresql" else sqlite.insert
-        inserted = insert(table).values(**values).on_conflict_do_nothing().returning(literal_column("1", Integer))
+        own = postgresql.insert if self._session.get_bind().dialect.name == "postgresql" else sqlite.insert
+        inserted = own(table).values(**values).on_conflict_do_nothing().returning(literal_column("1", Integer))
         return self._session.scalar(inserted) is not None

@@ -4,6 +4,7 @@ import json
 import zlib
 from collections.abc import Iterable
 from datetime import datetime
+from functools import lru_cache
 
 from sqlalchemy import select
 
@@ -14,6 +15,9 @@ from service.storage.calibration_document import calibration_from_dict
 from service.storage.queries.base import Queries
 from service.storage.queries.sessions import worst_columns
 from service.storage.tables import CalibrationRow, SessionRow
+
+AT_HAND = 32
+"""Calibrations that are kept as they were read: an upload reads its own two or three times, and its reference."""
 
 
 class Calibrations(Queries):
@@ -58,13 +62,19 @@ class Calibrations(Queries):
             .join(SessionRow, SessionRow.id == CalibrationRow.session_id)
             .where(CalibrationRow.revision == SessionRow.revision, SessionRow.id.in_(sessions))
         )
-        return {id: calibration_from_dict(json.loads(zlib.decompress(document))) for id, document in rows}
+        return {id: _read(zlib.decompress(document)) for id, document in rows}
 
     def get(self, session: str, revision: int | None = None) -> Calibration:
         """The calibration of a session, as it was computed."""
-        return calibration_from_dict(json.loads(self.json(session, revision)))
+        return _read(self.json(session, revision))
 
     def revisions(self, session: str) -> tuple[int, ...]:
         """The model revisions that a session was computed under, in order."""
         query = select(CalibrationRow.revision).where(CalibrationRow.session_id == session)
         return tuple(self._session.scalars(query.order_by(CalibrationRow.revision)))
+
+
+@lru_cache(maxsize=AT_HAND)
+def _read(document: bytes) -> Calibration:
+    """The calibration that was written; frozen, so that the same one serves whoever reads it."""
+    return calibration_from_dict(json.loads(document))

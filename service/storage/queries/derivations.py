@@ -125,6 +125,7 @@ class Derivations(Queries):
 
     def forget_diagnoses(self, unit: int, since: datetime, but: Iterable[str]) -> tuple[str, ...]:
         """Diagnoses from a date on looked at what has changed since: they are to be made again; all but some."""
+        self.touch(unit)
         later = select(SessionRow.id).where(
             SessionRow.unit_id == unit, SessionRow.started_at >= since, SessionRow.id.not_in(tuple(but))
         )

@@ -11,7 +11,7 @@ from service.records.reservation import Reservation
 from service.storage.diagnosis_document import read_diagnosis
 from service.storage.queries.base import Queries
 from service.storage.reservation_document import reservations_from_list, reservations_to_list
-from service.storage.tables import DiagnosisRow
+from service.storage.tables import DiagnosisRow, SessionRow
 
 
 class Diagnoses(Queries):
@@ -25,6 +25,7 @@ class Diagnoses(Queries):
         failed = DiagnosisRow.state == DiagnosisState.FAILED
         outdated = DiagnosisRow.estimator_version != found.estimator_version
         self._session.execute(delete(DiagnosisRow).where(DiagnosisRow.session_id == found.session, failed, outdated))
+        self._touch(found.session)
         return self.insert_once(
             DiagnosisRow,
             session_id=found.session,
@@ -42,6 +43,7 @@ class Diagnoses(Queries):
         """Says anew what a verdict is said with, because the verdict or its model changed."""
         own = DiagnosisRow.session_id == session
         written = reservations_to_list(reservations)
+        self._touch(session)
         self._session.execute(update(DiagnosisRow).where(own).values(reservations=written))
         self._session.expire_all()
 
@@ -74,6 +76,12 @@ class Diagnoses(Queries):
         """Whether a session could not be diagnosed."""
         found = self.summary(session)
         return found is not None and found.state is DiagnosisState.FAILED
+
+    def _touch(self, session: str) -> None:
+        """The unit's verdict may be said with a reservation now, or without."""
+        unit = self._session.scalar(select(SessionRow.unit_id).where(SessionRow.id == session))
+        if unit is not None:
+            self.touch(unit)
 
     def exists(self, session: str) -> bool:
         """Whether a session was diagnosed."""

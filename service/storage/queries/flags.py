@@ -5,10 +5,11 @@ from dataclasses import dataclass
 from datetime import datetime
 from itertools import groupby
 
-from sqlalchemy import ColumnElement, Row, select, update
+from sqlalchemy import ColumnElement, Row, and_, case, or_, select, update
+from sqlalchemy.orm import aliased
 
 from service.errors import NotFoundError
-from service.records.flag import Concern, Flag, FlagState, Matter, Notice
+from service.records.flag import Assignee, Concern, Flag, FlagState, Matter, Notice
 from service.storage.queries.base import Queries
 from service.storage.queries.notices import notice_of
 from service.storage.tables import FlagRow, NoticeRow, UnitRow
@@ -30,6 +31,22 @@ class FlagQuery:
     """Any of these; empty where any will do."""
     place: str | None = None
     """The sensor or the stand that it is about."""
+    assignee: Assignee | None = None
+    """Who looks after it, by the account or, where the flag names none, by the name; of nobody none is anybody's."""
+    after: int | None = None
+    """Flags that follow this one in the list."""
+    before: int | None = None
+    """Flags that come before it; of open ones only."""
+    oldest_first: bool = False
+
+    @property
+    def is_falling(self) -> bool:
+        """Whether rows are read from the largest number on; those before a flag are read backwards."""
+        return self.oldest_first == (self.before is not None)
+
+
+IS_RESOLVED = case((FlagRow.state == FlagState.RESOLVED, 1), else_=0)
+"""A number that orders open flags before those that are resolved."""
 
 
 def _wanted(wanted: FlagQuery) -> Iterator[ColumnElement[bool]]:
@@ -45,8 +62,29 @@ def _wanted(wanted: FlagQuery) -> Iterator[ColumnElement[bool]]:
         yield FlagRow.matter.in_(wanted.matters)
     if wanted.place is not None:
         yield FlagRow.place == wanted.place
+    if wanted.assignee is not None:
+        yield _is_of(wanted.assignee)
+    place = wanted.after or wanted.before
+    if place is not None:
+        yield _beyond(wanted, place)
     if wanted.unresolved:
         yield FlagRow.state != FlagState.RESOLVED
+
+
+def _beyond(wanted: FlagQuery, place: int) -> ColumnElement[bool]:
+    """Whether a flag lies beyond another one, in the direction of reading."""
+    further = FlagRow.id < place if wanted.is_falling else FlagRow.id > place
+    if wanted.unresolved:
+        return further
+    known = aliased(FlagRow)
+    state = select(case((known.state == FlagState.RESOLVED, 1), else_=0)).where(known.id == place).scalar_subquery()
+    return or_(state < IS_RESOLVED, (state == IS_RESOLVED) & further)
+
+
+def _is_of(assignee: Assignee) -> ColumnElement[bool]:
+    """Whether a flag is somebody's. An account may be renamed, so its login tells; where a flag has none, the name."""
+    by_name = and_(FlagRow.assignee == assignee.name, FlagRow.assignee_login == "")
+    return or_(FlagRow.assignee_login == assignee.login, by_name) if assignee.login else by_name
 
 
 class Flags(Queries):
@@ -94,9 +132,9 @@ class Flags(Queries):
         return found[0]
 
     def page(self, wanted: FlagQuery) -> tuple[Flag, ...]:
-        """Flags with their lives, open ones first, newest first, in one query."""
-        resolved = FlagRow.state == FlagState.RESOLVED
-        chosen = select(FlagRow.id).order_by(resolved, FlagRow.id.desc())
+        """Flags with their lives, open ones first, newest first unless asked otherwise, in one query."""
+        number = FlagRow.id.desc() if wanted.is_falling else FlagRow.id.asc()
+        chosen = select(FlagRow.id).order_by(*(() if wanted.unresolved else (IS_RESOLVED,)), number)
         if wanted.unit is not None or wanted.text:
             chosen = chosen.join(UnitRow, UnitRow.id == FlagRow.unit_id)
         ids = chosen.where(*_wanted(wanted)).offset(wanted.offset).limit(wanted.limit).subquery()
@@ -105,9 +143,21 @@ class Flags(Queries):
             .join(ids, ids.c.id == FlagRow.id)
             .join(UnitRow, UnitRow.id == FlagRow.unit_id)
             .join(NoticeRow, NoticeRow.flag_id == FlagRow.id)
-            .order_by(resolved, FlagRow.id.desc(), NoticeRow.id)
+            .order_by(IS_RESOLVED, number, NoticeRow.id)
         )
-        return _with_lives(self._session.execute(query))
+        found = _with_lives(self._session.execute(query))
+        return found if wanted.before is None else found[::-1]
+
+    def assignee_of(self, id: int) -> Assignee:
+        """Who looks after a flag."""
+        query = select(FlagRow.assignee, FlagRow.assignee_login).where(FlagRow.id == id)
+        return Assignee(*self._session.execute(query).one())
+
+    def assignees(self) -> tuple[Assignee, ...]:
+        """Who looks after open flags, by name."""
+        query = select(FlagRow.assignee, FlagRow.assignee_login).distinct().order_by(FlagRow.assignee)
+        found = self._session.execute(query.where(FlagRow.state != FlagState.RESOLVED, FlagRow.assignee != ""))
+        return tuple(Assignee(name, login) for name, login in found)
 
     def add(self, unit: int, concern: Concern, session: str | None, at: datetime) -> int:
         """Stores a raised flag and returns its number."""
@@ -155,5 +205,6 @@ def _flag(row: FlagRow, serial: str, changes: tuple[Notice, ...] = ()) -> Flag:
         session=row.session_id,
         raised_at=row.raised_at,
         changed_at=row.changed_at,
+        assignee=row.assignee,
         changes=changes,
     )

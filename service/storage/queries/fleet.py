@@ -1,30 +1,37 @@
 """All units at a glance: one short row a unit, rewritten when a session of it is stored."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from datetime import datetime
 from typing import Any
 
-from sqlalchemy import delete, func, literal, select, union_all, update
-from sqlalchemy.orm import defer
+from sqlalchemy import ScalarSelect, delete, func, literal, or_, select, union_all, update
+from sqlalchemy.orm import aliased, defer
 
+from estimator.session import PROGRAMMES
 from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState
 from service.records.flag import FlagState
-from service.records.fleet import FleetChoices, FleetQuery
+from service.records.fleet import NOT_KNOWN, FleetChoices, FleetQuery, Tally
 from service.records.paper import Customer
 from service.records.reservation import Reservations
-from service.records.unit import FleetCondition, UnitSummary, UnitType
+from service.records.state import RecordState
+from service.records.unit import FleetCondition, UnitKnown, UnitSummary
+from service.storage.fleet_tables import FleetTallyRow
 from service.storage.outlook_tables import OutlookRow
 from service.storage.pending_tables import NEVER, PendingOutlookRow
-from service.storage.queries.accepted import IS_ACCEPTED
+from service.storage.queries.accepted import IS_ACCEPTED, IS_BREAK
 from service.storage.queries.base import Queries
+from service.storage.queries.outlooks import outlook_of
+from service.storage.queries.sessions import NOT_JUDGED
 from service.storage.queries.unit_types import unit_type_of
-from service.storage.queries.wanted_units import Summaries, matching
+from service.storage.queries.wanted_units import Summaries, beyond, keys, matching
 from service.storage.reservation_document import reservations_from_list
 from service.storage.tables import (
     ConditionRow,
     DiagnosisRow,
     FlagRow,
+    ServiceRow,
     SessionRow,
     StandRow,
     ToleranceRow,
@@ -32,6 +39,8 @@ from service.storage.tables import (
     UnitTypeRow,
 )
 
+Other = aliased(SessionRow)
+"""A session of the unit, beside its latest one."""
 CHOICES = ("types", "stands", "lots")
 """Of `FleetChoices`."""
 
@@ -53,6 +62,7 @@ class Fleet(Queries):
 
     def refresh(self, unit: int) -> Refreshed:
         """Rewrites a unit's row from its latest accepted session; without one it has none."""
+        self.touch(unit)
         row = self._session.get(ConditionRow, unit)
         own = (SessionRow.unit_id == unit, IS_ACCEPTED)
         count = self._session.scalar(select(func.count()).select_from(SessionRow).where(*own))
@@ -74,20 +84,39 @@ class Fleet(Queries):
             self._session.add(row)
         row.sessions, row.last_session = count or 0, last.id
         row.severity, row.margin = Verdict(last.verdict).severity, last.margin
+        row.last_at, row.stand_id = last.started_at, last.stand_id
         self._session.flush()
         return refreshed
 
     def count_flags(self, unit: int) -> None:
         """Rewrites how many flags of a unit are open."""
+        self.touch(unit)
         opened = select(func.count()).where(FlagRow.unit_id == unit, FlagRow.state != FlagState.RESOLVED)
         self._session.execute(
             update(ConditionRow).where(ConditionRow.unit_id == unit).values(flags=opened.scalar_subquery())
         )
 
     def units(self, wanted: FleetQuery) -> tuple[UnitSummary, ...]:
-        """The wanted units, worst first, in one query."""
-        query = matching(_summaries(), wanted).offset(wanted.offset).limit(wanted.limit)
-        return tuple(_summary(row) for row in self._session.execute(query))
+        """The wanted units, worst first; one more query where the list goes on from a unit."""
+        place = self._place(wanted)
+        if place is None:
+            wanted = replace(wanted, after=None, before=None)
+        chosen = matching(_summaries().with_only_columns(UnitRow.id, maintain_column_froms=True), wanted)
+        if place is not None:
+            chosen = chosen.where(beyond(wanted, place))
+        ids = chosen.offset(wanted.offset).limit(wanted.limit).subquery()
+        query = _summaries().join(ids, ids.c.id == UnitRow.id).order_by(*(key.order for key in keys(wanted)))
+        found = tuple(_summary(row) for row in self._session.execute(query))
+        return found if wanted.before is None else found[::-1]
+
+    def _place(self, wanted: FleetQuery) -> Sequence[Any] | None:
+        """What a unit that a list goes on from is ordered by."""
+        named = wanted.after if wanted.before is None else wanted.before
+        if named is None:
+            return None
+        columns = [key.column for key in keys(wanted)]
+        query = _summaries().with_only_columns(*columns, maintain_column_froms=True)
+        return self._session.execute(query.where(UnitRow.serial == named)).one_or_none()
 
     def choices(self) -> FleetChoices:
         """Types, stands and lots that there are, in one query."""
@@ -102,34 +131,37 @@ class Fleet(Queries):
         row = self._session.execute(_summaries(measured=False).where(UnitRow.serial == serial)).one_or_none()
         return None if row is None else _summary(row)
 
-    def unit_with_type(self, serial: str) -> tuple[UnitSummary, UnitType] | None:
-        """One unit, and its type with the tolerances that hold now, in one query."""
+    def unit_known(self, serial: str, now: datetime) -> UnitKnown | None:
+        """One unit with what its page begins with, in one query."""
         in_force = (ToleranceRow.unit_type_id == UnitTypeRow.id) & (ToleranceRow.revision == UnitTypeRow.revision)
-        query = _summaries(measured=False).add_columns(UnitTypeRow, ToleranceRow).join(ToleranceRow, in_force)
-        row = self._session.execute(query.where(UnitRow.serial == serial)).one_or_none()
+        query = _summaries(measured=False).add_columns(
+            _waiting(), _reference(now), OutlookRow, UnitTypeRow, ToleranceRow
+        )
+        row = self._session.execute(query.join(ToleranceRow, in_force).where(UnitRow.serial == serial)).one_or_none()
         if row is None:
             return None
         self.remember_unit(serial, row[0].id)
-        return _summary(row[:-2]), unit_type_of(*row[-2:])
+        unit_type, outlook = unit_type_of(*row[-2:]), row[-3]
+        return UnitKnown(
+            summary=_summary(row[:-5]),
+            unit_type=unit_type,
+            waiting=row[-5] or 0,
+            reference_session=row[-4],
+            outlook=None if outlook is None else outlook_of(outlook, row[0].lot, unit_type.name),
+        )
 
     def condition(self) -> FleetCondition:
         """How many units are in which condition."""
-        rows = self._session.execute(
-            select(
-                ConditionRow.severity, UnitRow.simulated, func.count(), func.sum(ConditionRow.flags),
-                func.count(DiagnosisRow.reservations),
-            )
-            .join(UnitRow, UnitRow.id == ConditionRow.unit_id)
-            .outerjoin(DiagnosisRow, DiagnosisRow.session_id == ConditionRow.last_session)
-            .group_by(ConditionRow.severity, UnitRow.simulated)
-        ).all()  # fmt: skip
-        counts = {verdict: [row for row in rows if row[0] == verdict.severity] for verdict in Verdict}
-        return FleetCondition(
-            units=sum(row[2] for row in rows),
-            verdicts={verdict: sum(row[2] for row in own) for verdict, own in counts.items()},
-            simulated=sum(row[2] for row in rows if row[1]),
-            flags=sum(row[3] for row in rows),
-            reserved={verdict: sum(row[4] for row in own) for verdict, own in counts.items()},
+        return FleetCondition.of(self.tallies())
+
+    def tallies(self) -> tuple[Tally, ...]:
+        """Units with an accepted session, by their verdict and by how much of their tolerance they use."""
+        row = FleetTallyRow
+        key = (row.severity, row.is_reference, row.is_simulated, row.bar)
+        counts = (func.sum(row.units), func.sum(row.flags), func.sum(row.reserved))
+        query = select(*key, *counts).where(row.units > 0, row.severity != NOT_KNOWN).group_by(*key).order_by(*key)
+        return tuple(
+            Tally(list(Verdict)[row[0]], row[1], row[2], row[3], *row[4:]) for row in self._session.execute(query)
         )
 
 
@@ -145,15 +177,40 @@ def _summaries(*, measured: bool = True) -> Summaries:
             OutlookRow.due,
             PendingOutlookRow.ticket,
             PendingOutlookRow.claimed_until,
+            OutlookRow.reason,
         )
         .options(defer(DiagnosisRow.document))
         .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
         .join(ConditionRow, ConditionRow.unit_id == UnitRow.id, isouter=not measured)
-        .join(SessionRow, SessionRow.id == ConditionRow.last_session, isouter=not measured)
+        .outerjoin(SessionRow, SessionRow.id == ConditionRow.last_session)
         .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
         .outerjoin(OutlookRow, OutlookRow.unit_id == UnitRow.id)
         .outerjoin(PendingOutlookRow, PendingOutlookRow.unit_id == UnitRow.id)
     )
+
+
+def _waiting() -> ScalarSelect[int]:
+    """How many accepted sessions of a unit are to be judged."""
+    own = (Other.unit_id == UnitRow.id, Other.basis == NOT_JUDGED, Other.state == RecordState.ACCEPTED)
+    return select(func.count()).select_from(Other).where(*own).scalar_subquery()
+
+
+def _reference(now: datetime) -> ScalarSelect[str]:
+    """The session that a unit's next one will be judged against: of the epoch that now is in."""
+    known = (ServiceRow.unit_id == UnitRow.id, IS_BREAK)
+    since, until = (
+        select(bound).where(*known, side).correlate(UnitRow).scalar_subquery()
+        for bound, side in (
+            (func.max(ServiceRow.at), ServiceRow.at <= now),
+            (func.min(ServiceRow.at), ServiceRow.at > now),
+        )
+    )
+    own = (
+        Other.unit_id == UnitRow.id, Other.block == UnitTypeRow.block, Other.programme.in_(PROGRAMMES),
+        Other.is_reference, Other.state == RecordState.ACCEPTED,
+        or_(since.is_(None), Other.started_at >= since), or_(until.is_(None), Other.started_at < until),
+    )  # fmt: skip
+    return select(Other.id).where(*own).order_by(Other.started_at, Other.id).limit(1).scalar_subquery()
 
 
 def _summary(row: Sequence[Any]) -> UnitSummary:
@@ -181,6 +238,7 @@ def _summary(row: Sequence[Any]) -> UnitSummary:
         customer=Customer(unit.customer, unit.customer_address),
         is_undated=row[6] is not None,
         is_given_up=row[7] == NEVER,
+        due_reason=row[8] or "",
     )
 
 

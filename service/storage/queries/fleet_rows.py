@@ -25,8 +25,8 @@ Points = Select[str, ParameterRow, DecisionRow, bool]
 class FleetRows(Queries):
     """Rows of many units, by serial number."""
 
-    def latest_decisions(self, serials: tuple[str, ...] | None = None) -> Iterator[tuple[str, str, Decision]]:
-        """Serial number, session and what was decided there, of the latest session of every unit, or of some."""
+    def latest_decisions(self, serials: tuple[str, ...]) -> Iterator[tuple[str, str, Decision]]:
+        """Serial number, session and what was decided there, of the latest session of some units."""
         query = (
             select(UnitRow.serial, DecisionRow)
             .select_from(ConditionRow)
@@ -36,16 +36,15 @@ class FleetRows(Queries):
                 DecisionRow,
                 (DecisionRow.session_id == SessionRow.id) & (DecisionRow.revision == SessionRow.revision),
             )
+            .where(UnitRow.serial.in_(serials))
             .order_by(UnitRow.serial, DecisionRow.position)
             .execution_options(yield_per=AT_A_TIME)
         )
-        if serials is not None:
-            query = query.where(UnitRow.serial.in_(serials))
         for serial, row in self._session.execute(query):
             yield serial, row.session_id, decision_record(row)
 
-    def points_of_latest(self) -> int:
-        """How many parameters the latest sessions of all units have."""
+    def points_of_latest(self, serials: tuple[str, ...]) -> int:
+        """How many parameters the latest sessions of some units have."""
         query = (
             select(func.count())
             .select_from(ConditionRow)
@@ -54,15 +53,20 @@ class FleetRows(Queries):
                 ParameterRow,
                 (ParameterRow.session_id == SessionRow.id) & (ParameterRow.revision == SessionRow.revision),
             )
+            .join(UnitRow, UnitRow.id == ConditionRow.unit_id)
+            .where(UnitRow.serial.in_(serials))
         )
         return self._session.scalar(query) or 0
 
-    def histories(self, sessions: int) -> Iterator[tuple[str, HistoryPoint]]:
-        """The parameters of the newest sessions of every unit, so many of each, oldest first."""
+    def histories(self, serials: tuple[str, ...], sessions: int) -> Iterator[tuple[str, HistoryPoint]]:
+        """The parameters of the newest sessions of some units, so many of each, oldest first."""
         place = func.row_number().over(
             partition_by=SessionRow.unit_id, order_by=(SessionRow.started_at.desc(), SessionRow.id.desc())
         )
-        newest = select(SessionRow.id.label("id"), place.label("place")).where(IS_ACCEPTED).subquery()
+        numbered = select(SessionRow.id.label("id"), place.label("place")).join(
+            UnitRow, UnitRow.id == SessionRow.unit_id
+        )
+        newest = numbered.where(UnitRow.serial.in_(serials), IS_ACCEPTED).subquery()
         wanted = select(newest.c.id).where(newest.c.place <= sessions)
         query = _points().where(SessionRow.id.in_(wanted))
         yield from _by_serial(self._session.execute(query.execution_options(yield_per=AT_A_TIME)))

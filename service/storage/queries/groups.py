@@ -3,7 +3,7 @@
 import zlib
 from datetime import datetime
 
-from sqlalchemy import ColumnElement, Select, and_, case, delete, func, or_, select
+from sqlalchemy import ColumnElement, Select, and_, case, delete, func, or_, select, update
 
 from estimator.groups.statistics import FORMAT
 from estimator.session import CALIBRATIONS
@@ -86,11 +86,20 @@ class Groups(Queries):
     def get(self, group: Group) -> GroupAnswer | None:
         """What is stored of a group; None where nothing is."""
         row = self._session.get(GroupDiagnosisRow, (group.level.value, group.key))
-        if row is None:
+        return None if row is None else _answer(row)
+
+    def standing(self, group: Group, version: str) -> GroupAnswer | None:
+        """What is stored of a group, unless a session of it has changed since, in one query.
+
+        None too where another version of the program failed at it.
+        """
+        row, asked = GroupDiagnosisRow, PendingGroupRow
+        again = select(asked.id).where(asked.level == row.level, asked.group_id == row.group_id).exists()
+        own = (row.level == group.level.value, row.group_id == group.key, ~again)
+        found = self._session.scalar(select(row).where(*own))
+        if found is None or (found.document is None and found.estimator_version != version):
             return None
-        document = None if row.document is None else zlib.decompress(row.document).decode()
-        made = (row.estimator_version, row.created_at)
-        return GroupAnswer(row.rests_on, row.sessions, row.summary, row.own, document, *made)
+        return _answer(found)
 
     def found(self, limit: int) -> tuple[int, tuple[FoundTogether, ...]]:
         """How many groups show something of their own, and the first of them: stands before types before units.
@@ -117,8 +126,21 @@ class Groups(Queries):
         self.insert_once(GroupDiagnosisRow, level=group.level, group_id=group.key, **values)
         self._session.expire_all()
 
+    def put_own(self, group: Group, own: str) -> None:
+        """Stores what a group shows of its own, in a line."""
+        row = GroupDiagnosisRow
+        known = update(row).where(row.level == group.level, row.group_id == group.key)
+        self._session.execute(known.values(own=own))
+        self._session.expire_all()
+
 
 _COUNTS = (IS_ACCEPTED, SessionRow.programme.in_(CALIBRATIONS))
+
+
+def _answer(row: GroupDiagnosisRow) -> GroupAnswer:
+    document = None if row.document is None else zlib.decompress(row.document).decode()
+    made = (row.estimator_version, row.created_at)
+    return GroupAnswer(row.rests_on, row.sessions, row.summary, row.own, document, *made)
 
 
 def _belongs(group: Group) -> ColumnElement[bool]:

@@ -46,25 +46,21 @@ class History(Queries):
 
     def add(self, unit: int, record: StoredSession, values: Iterable[ParameterValue]) -> None:
         """Stores the parameters of a session under its model revision, sensor after sensor."""
-        self._session.add_all(
-            ParameterRow(
-                session_id=record.id,
-                revision=record.revision,
-                unit_id=unit,
-                at=record.started_at,
-                sensor=value.sensor,
-                sensor_index=value.sensor_index,
-                kind=value.kind,
-                parameter=value.parameter,
-                value=value.value,
-                u=value.u,
-                axis_x=None if value.axis is None else value.axis[0],
-                axis_y=None if value.axis is None else value.axis[1],
-                axis_z=None if value.axis is None else value.axis[2],
-            )
+        own = {"session_id": record.id, "revision": record.revision, "unit_id": unit, "at": record.started_at}
+        rows = [
+            {
+                **own,
+                "sensor": value.sensor,
+                "sensor_index": value.sensor_index,
+                "kind": value.kind,
+                "parameter": value.parameter,
+                "value": value.value,
+                "u": value.u,
+                **dict(zip(("axis_x", "axis_y", "axis_z"), value.axis or (None, None, None), strict=True)),
+            }
             for value in values
-        )
-        self._session.flush()
+        ]
+        self.insert_many(ParameterRow, rows)
 
     def drop(self, record: StoredSession) -> None:
         """Takes out what a session gave under its model revision: a recording moves another calibration now."""

@@ -7,15 +7,16 @@ from sqlalchemy import Select, select
 from service.errors import NotFoundError
 from service.records.event import Note, Withdrawal
 from service.storage.queries.base import Queries
-from service.storage.tables import NoteRow, UnitRow, WithdrawalRow
+from service.storage.remark_tables import NoteRow, WithdrawalRow
+from service.storage.tables import UnitRow
 
 
 class Notes(Queries):
     """Notes by unit; a row is written once."""
 
-    def add(self, unit: int, at: datetime, text: str, who: str, now: datetime) -> int:
+    def add(self, unit: int, at: datetime, text: str, who: str, now: datetime, *, session: str | None = None) -> int:
         """Stores a note and returns its number."""
-        row = NoteRow(unit_id=unit, at=at, text=text, who=who, recorded_at=now)
+        row = NoteRow(unit_id=unit, at=at, text=text, who=who, recorded_at=now, session_id=session)
         self._session.add(row)
         self._session.flush()
         return row.id
@@ -36,6 +37,11 @@ class Notes(Queries):
         found = self._session.execute(_notes().where(UnitRow.serial == serial).order_by(NoteRow.at, NoteRow.id))
         return tuple(_note(*row) for row in found)
 
+    def of_session(self, id: str) -> tuple[Note, ...]:
+        """All notes on a session, withdrawn ones too, in the order in which they were written."""
+        found = self._session.execute(_notes().where(NoteRow.session_id == id).order_by(NoteRow.id))
+        return tuple(_note(*row) for row in found)
+
 
 def _notes() -> Select[NoteRow, str, WithdrawalRow]:
     return (
@@ -53,5 +59,6 @@ def _note(row: NoteRow, serial: str, withdrawn: WithdrawalRow | None) -> Note:
         text=row.text,
         who=row.who,
         recorded_at=row.recorded_at,
+        session=row.session_id,
         withdrawal=None if withdrawn is None else Withdrawal(withdrawn.at, withdrawn.who, withdrawn.why),
     )

@@ -1,16 +1,14 @@
 """Outlooks, one a unit, and the changes through time that they are made of."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
-from typing import Any
 
-from sqlalchemy import ColumnElement, Row, Select, delete, func, select
-from sqlalchemy.orm import defer
+from sqlalchemy import ColumnElement, Select, delete, func, or_, select
 
 from estimator.health.pooled import Evidence
 from estimator.session import IN_SERVICE
-from service.records.outlook import Rate, UnitOutlook
+from service.records.outlook import DueDate, ParameterTrend, Rate, UnitOutlook
 from service.storage.history_document import packed
 from service.storage.outlook_document import outlook_from_dicts, outlook_to_dicts
 from service.storage.outlook_tables import HistoryRow, OutlookRow
@@ -20,6 +18,9 @@ from service.storage.tables import DecisionRow, SessionRow, UnitRow, UnitTypeRow
 
 MOST_UNITS = 60
 """Whose histories a type is learned from: hundreds of parameters, which no further unit changes much."""
+
+MOVES_DATES = or_(~SessionRow.is_check, SessionRow.is_reference)
+"""A check moves no date; one that is a reference counts, for all changes are counted from it."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,7 @@ class Outlooks(Queries):
     """When units must come back."""
 
     def changes(self, unit: int, since: datetime | None) -> tuple[ChangeRow, ...]:
-        """Every judged change of a unit since a time, oldest first; not those of a recording in service."""
+        """Every judged change of a unit since a time, oldest first; not those of a recording in service or a check."""
         query = (
             select(
                 SessionRow.started_at, SessionRow.block, SessionRow.programme, DecisionRow.sensor, DecisionRow.kind,
@@ -67,7 +68,8 @@ class Outlooks(Queries):
             .join(DecisionRow, DecisionRow.session_id == SessionRow.id)
             .where(DecisionRow.revision == SessionRow.revision, DecisionRow.change.is_not(None))
         )  # fmt: skip
-        query = query.where(*_within(unit, since)).order_by(SessionRow.started_at, SessionRow.id, DecisionRow.position)
+        order = (SessionRow.started_at, SessionRow.id, DecisionRow.position)
+        query = query.where(*_within(unit, since), MOVES_DATES).order_by(*order)
         found = self._session.execute(query)
         return tuple(ChangeRow(*row) for row in found)
 
@@ -80,8 +82,8 @@ class Outlooks(Queries):
         return tuple(ReferenceRow(*row) for row in found)
 
     def last_calibration(self, unit: int) -> tuple[str, datetime] | None:
-        """The session that last measured the unit, recordings in service apart, and when."""
-        newest = _newest(unit).where(SessionRow.programme != IN_SERVICE)
+        """The session that last measured the unit, recordings in service and checks apart, and when."""
+        newest = _newest(unit).where(SessionRow.programme != IN_SERVICE, MOVES_DATES)
         found = self._session.execute(newest).one_or_none()
         return None if found is None else (found[0], found[1])
 
@@ -93,7 +95,8 @@ class Outlooks(Queries):
     def put(self, unit: int, outlook: UnitOutlook) -> None:
         """Rewrites a unit's outlook."""
         document, drawn = outlook_to_dicts(outlook)
-        self._session.merge(OutlookRow(unit_id=unit, due=outlook.due, document=document, drawn=drawn))
+        read = {"due": outlook.due, "reason": outlook.reason, "rates": [_rate(trend) for trend in outlook.trends]}
+        self._session.merge(OutlookRow(unit_id=unit, document=document, drawn=drawn, **read))
         self._session.flush()
 
     def drop(self, unit: int) -> None:
@@ -134,12 +137,22 @@ class Outlooks(Queries):
         """The outlook of one unit; None before its first session is judged."""
         query = _outlooks().where(UnitRow.serial == serial)
         row = self._session.execute(query).one_or_none()
-        return None if row is None else _outlook(row, row[0].drawn)
+        return None if row is None else outlook_of(*row)
 
-    def rates(self, unit_type: str | None = None) -> tuple[Rate, ...]:
-        """Every drift of a type's units, or of the fleet's, in one query."""
-        query = _undrawn() if unit_type is None else _undrawn().where(UnitTypeRow.name == unit_type)
-        return tuple(rate for row in self._session.execute(query) for rate in _rates(*row))
+    def rates(self, unit_type: int) -> tuple[Rate, ...]:
+        """Every drift of a type's units, in one query."""
+        query = (
+            select(UnitTypeRow.name, UnitRow.lot, UnitRow.serial, OutlookRow.rates)
+            .join(UnitRow, UnitRow.id == OutlookRow.unit_id)
+            .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+            .where(UnitTypeRow.id == unit_type)
+            .order_by(UnitRow.serial)
+        )
+        return tuple(
+            Rate(of_type, lot, serial, *rate)
+            for of_type, lot, serial, rates in self._session.execute(query)
+            for rate in rates
+        )
 
     def overdue(self, now: datetime) -> int:
         """How many units should have been calibrated by now."""
@@ -150,9 +163,14 @@ class Outlooks(Queries):
         query = select(UnitRow.serial).join(OutlookRow, OutlookRow.unit_id == UnitRow.id).where(OutlookRow.due < now)
         return tuple(self._session.scalars(query.order_by(UnitRow.serial)))
 
-    def every(self) -> tuple[UnitOutlook, ...]:
-        """Of the whole fleet, by serial number, in one query; without what only a unit's page draws."""
-        return tuple(_outlook(row) for row in self._session.execute(_undrawn().order_by(UnitRow.serial)))
+    def due(self, most: int, since: datetime | None = None) -> tuple[DueDate, ...]:
+        """When units must come back and why, the first to come first; those that are overdue before all."""
+        query = select(UnitRow.serial, OutlookRow.due, OutlookRow.reason)
+        query = query.join(UnitRow, UnitRow.id == OutlookRow.unit_id).where(OutlookRow.due.is_not(None))
+        if since is not None:
+            query = query.where(OutlookRow.due >= since)
+        rows = self._session.execute(query.order_by(OutlookRow.due, OutlookRow.unit_id).limit(most))
+        return tuple(DueDate(unit, at, reason) for unit, at, reason in rows if at is not None)
 
 
 def _within(unit: int, since: datetime | None) -> list[ColumnElement[bool]]:
@@ -175,17 +193,12 @@ def _outlooks() -> Select[OutlookRow, str | None, str]:
     )
 
 
-def _undrawn() -> Select[OutlookRow, str | None, str]:
-    """Without what only a unit's page draws."""
-    return _outlooks().options(defer(OutlookRow.drawn))
+def _rate(trend: ParameterTrend) -> list[str | float]:
+    """As the fields of `Rate` after those of the unit, in tolerances a year."""
+    value, sigma = trend.rate_per_year / trend.tolerance, trend.rate_sigma / trend.tolerance
+    return [trend.sensor, trend.kind, trend.parameter, value, sigma, trend.significance, trend.tolerance]
 
 
-def _rates(row: OutlookRow, lot: str | None, unit_type: str) -> Iterator[Rate]:
-    serial = row.document["serial"]
-    for t in row.document["trends"]:
-        value, sigma = t["rate_per_year"] / t["tolerance"], t["rate_sigma"] / t["tolerance"]
-        yield Rate(unit_type, lot, serial, t["sensor"], t["kind"], t["parameter"], value, sigma)
-
-
-def _outlook(row: Row[OutlookRow, str | None, str], drawn: dict[str, Any] | None = None) -> UnitOutlook:
-    return replace(outlook_from_dicts(row[0].document, drawn), lot=row[1], unit_type=row[2])
+def outlook_of(row: OutlookRow, lot: str | None, unit_type: str) -> UnitOutlook:
+    """A stored outlook, with what only a unit's page draws."""
+    return replace(outlook_from_dicts(row.document, row.drawn), lot=lot, unit_type=unit_type)

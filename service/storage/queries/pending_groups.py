@@ -6,7 +6,7 @@ from datetime import datetime
 from sqlalchemy import ColumnElement, delete, func, insert, or_, select, update
 
 from service.records.group import Group, Level
-from service.storage.group_tables import PendingGroupRow
+from service.storage.group_tables import AskedRow, PendingGroupRow, PendingSummaryRow
 from service.storage.queries.base import Queries
 from service.storage.queries.groups import Groups
 
@@ -14,57 +14,70 @@ from service.storage.queries.groups import Groups
 class PendingGroups(Queries):
     """Of groups of which a session has changed."""
 
+    _row: type[AskedRow] = PendingGroupRow
+
     def ask(self, groups: Iterable[Group], now: datetime) -> None:
         """Asks for what groups show; what is being made of them now is looked at again."""
         rows = [{"level": g.level.value, "group_id": g.key, "asked_at": now, "attempts": 0} for g in groups]
         if rows:
-            self._session.execute(insert(PendingGroupRow), rows)
+            self._session.execute(insert(self._row), rows)
 
     def asked(self, group: Group) -> tuple[int, ...]:
         """Who asks for a group now: to be read before its sessions are."""
-        return tuple(self._session.scalars(select(PendingGroupRow.id).where(*_of(group))))
+        return tuple(self._session.scalars(select(self._row.id).where(*self._of(group))))
 
     def waiting(self, now: datetime, limit: int) -> tuple[Group, ...]:
         """Groups that nobody is at, the one that was asked for first before all."""
-        key = (PendingGroupRow.level, PendingGroupRow.group_id)
-        until = func.max(PendingGroupRow.claimed_until)
+        key = (self._row.level, self._row.group_id)
+        until = func.max(self._row.claimed_until)
         query = select(*key).group_by(*key).having(or_(until.is_(None), until <= now))
-        first = query.order_by(func.min(PendingGroupRow.asked_at), *key).limit(limit)
+        first = query.order_by(func.min(self._row.asked_at), *key).limit(limit)
         groups = Groups(self._session)
         return tuple(groups.by_key(Level(level), id) for level, id in self._session.execute(first))
 
     def claim(self, group: Group, now: datetime, until: datetime) -> int | None:
         """How often a group was claimed, with this time, since a claim ended with a word; None where another is at
         it."""
-        is_free = or_(PendingGroupRow.claimed_until.is_(None), PendingGroupRow.claimed_until <= now)
-        own = update(PendingGroupRow).where(*_of(group), is_free)
-        claimed = own.values(claimed_until=until, attempts=PendingGroupRow.attempts + 1)
-        return max(self._session.scalars(claimed.returning(PendingGroupRow.attempts)).all(), default=None)
+        is_free = or_(self._row.claimed_until.is_(None), self._row.claimed_until <= now)
+        own = update(self._row).where(*self._of(group), is_free)
+        claimed = own.values(claimed_until=until, attempts=self._row.attempts + 1)
+        return max(self._session.scalars(claimed.returning(self._row.attempts)).all(), default=None)
 
     def extend(self, group: Group, until: datetime) -> None:
         """Whoever claimed it is still at it."""
         self._session.execute(
-            update(PendingGroupRow)
-            .where(*_of(group), PendingGroupRow.claimed_until.is_not(None))
-            .values(claimed_until=until)
+            update(self._row).where(*self._of(group), self._row.claimed_until.is_not(None)).values(claimed_until=until)
         )
 
     def give_back(self, group: Group) -> None:
         """Whoever was at it died: the next one may begin at once."""
-        self._session.execute(update(PendingGroupRow).where(*_of(group)).values(claimed_until=None))
+        self._session.execute(update(self._row).where(*self._of(group)).values(claimed_until=None))
 
     def put_off(self, group: Group, until: datetime | None) -> None:
         """Gives a group back after a word of why: nobody begins it before a time."""
-        self._session.execute(update(PendingGroupRow).where(*_of(group)).values(claimed_until=until, attempts=0))
+        self._session.execute(update(self._row).where(*self._of(group)).values(claimed_until=until, attempts=0))
 
     def blame_none(self, group: Group) -> None:
         """What died was at fault for another reason that is known now: the tries are counted anew."""
-        self._session.execute(update(PendingGroupRow).where(*_of(group)).values(attempts=0))
+        self._session.execute(update(self._row).where(*self._of(group)).values(attempts=0))
 
     def settle(self, asked: Collection[int]) -> None:
         """Who asked has the answer; whoever asked since has not."""
-        self._session.execute(delete(PendingGroupRow).where(PendingGroupRow.id.in_(tuple(asked))))
+        self._session.execute(delete(self._row).where(self._row.id.in_(tuple(asked))))
+
+    def _of(self, group: Group) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
+        return self._row.level == group.level.value, self._row.group_id == group.key
 
 
-def _of(group: Group) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
-    return PendingGroupRow.level == group.level.value, PendingGroupRow.group_id == group.key
+class PendingSummaries(PendingGroups):
+    """Unit types of which a unit drifts otherwise, stands on which a unit was measured."""
+
+    _row = PendingSummaryRow
+
+    def any(self) -> bool:
+        """Whether any is asked for and was not given up."""
+        return self._session.scalar(select(self._row.id).limit(1)) is not None
+
+    def asked_of(self, level: Level) -> tuple[int, ...]:
+        """Who asks for any group of a level now."""
+        return tuple(self._session.scalars(select(self._row.id).where(self._row.level == level.value)))

@@ -126,6 +126,11 @@ class Sessions(Queries):
         self._session.execute(update(SessionRow).where(SessionRow.id == id).values(stage=stage))
         self._session.expire_all()
 
+    def set_check(self, id: str, is_check: bool) -> None:
+        """Says of a session whether it is a check, which moves no date."""
+        self._session.execute(update(SessionRow).where(SessionRow.id == id).values(is_check=is_check))
+        self._session.expire_all()
+
     def of_unit(self, serial: str) -> tuple[StoredSession, ...]:
         """All sessions of a unit, oldest first."""
         query = session_rows().where(UnitRow.serial == serial).order_by(SessionRow.started_at, SessionRow.id)
@@ -203,18 +208,15 @@ class Sessions(Queries):
 
     def add_decisions(self, id: str, decisions: tuple[Decision, ...], revision: int) -> None:
         """Stores what was decided of a session's parameters under a model revision."""
-        self._session.add_all(
-            DecisionRow(
-                session_id=id, revision=revision, position=position, guard_band=decision.guard_band, **asdict(decision)
-            )
-            for position, decision in enumerate(decisions)
-        )
-        self._session.flush()
+        rows = [
+            {"session_id": id, "revision": revision, "position": position, "guard_band": one.guard_band, **vars(one)}
+            for position, one in enumerate(decisions)
+        ]
+        self.insert_many(DecisionRow, rows)
 
     def add_motions(self, id: str, motions: tuple[CommonMotion, ...], revision: int) -> None:
         """Stores what all sensors of a session did together under a model revision."""
-        self._session.add_all(CommonMotionRow(session_id=id, revision=revision, **asdict(motion)) for motion in motions)
-        self._session.flush()
+        self.insert_many(CommonMotionRow, [{"session_id": id, "revision": revision, **vars(one)} for one in motions])
 
     def motions(self, id: str) -> tuple[CommonMotion, ...]:
         """What all sensors of a session did together under the revision in force."""

@@ -1,15 +1,18 @@
 """Common motions by stand."""
 
+from collections.abc import Sequence
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Integer, Select, cast, func, select
+from sqlalchemy import Integer, Select, cast, delete, func, select
 
 from estimator.health.common_motion import SEPARATED
 from service.errors import NotFoundError
-from service.records.stand import STILL, MotionOnStand, StandUse
+from service.records.stand import STILL, MotionOnStand, StandCondition, StandUse
+from service.storage.fleet_tables import StandConditionRow, StandTallyRow
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
+from service.storage.stand_document import condition_from_dict, condition_to_dict
 from service.storage.tables import CommonMotionRow, ConditionRow, SessionRow, StandRow, UnitRow
 
 MOST = 4000
@@ -24,9 +27,8 @@ class Stands(Queries):
         query = (
             select(UnitRow.serial)
             .join(ConditionRow, ConditionRow.unit_id == UnitRow.id)
-            .join(SessionRow, SessionRow.id == ConditionRow.last_session)
-            .join(StandRow, StandRow.id == SessionRow.stand_id)
-            .where(StandRow.name == stand, SessionRow.started_at >= since)
+            .join(StandRow, StandRow.id == ConditionRow.stand_id)
+            .where(StandRow.name == stand, ConditionRow.last_at >= since)
         )
         return tuple(self._session.scalars(query.order_by(UnitRow.serial)))
 
@@ -40,6 +42,31 @@ class Stands(Queries):
         if found is None:
             raise NotFoundError(f"There is no stand {stand!r}: no session was measured on one of that name.")
         return StandUse(*found)
+
+    def conditions(self) -> tuple[StandCondition, ...]:
+        """Every stand's own health as it was last made, by name."""
+        rows = self._session.scalars(_conditions().order_by(StandRow.name))
+        return tuple(map(condition_from_dict, rows))
+
+    def shifts(self) -> tuple[StandCondition, ...]:
+        """Of the stands that have shifted, or had."""
+        rows = self._session.scalars(_conditions().where(StandConditionRow.shifts > 0).order_by(StandRow.name))
+        return tuple(map(condition_from_dict, rows))
+
+    def condition(self, stand: str) -> StandCondition | None:
+        """Of one stand; None where no session tells of it."""
+        document = self._session.scalar(_conditions().where(StandRow.name == stand))
+        return None if document is None else condition_from_dict(document)
+
+    def put_conditions(self, found: Sequence[StandCondition], at: datetime) -> None:
+        """Rewrites what is known of all stands."""
+        keys = {name: key for key, name in self._session.execute(select(StandRow.id, StandRow.name))}
+        known = [keys[one.stand] for one in found]
+        self._session.execute(delete(StandConditionRow).where(StandConditionRow.stand_id.not_in(known)))
+        for one in sorted(found, key=lambda one: keys[one.stand]):
+            own = {"shifts": len(one.shifts), "document": condition_to_dict(one), "made_at": at}
+            self._session.merge(StandConditionRow(stand_id=keys[one.stand], **own))
+        self._session.flush()
 
     def motions(self) -> tuple[MotionOnStand, ...]:
         """The newest common motions on any stand, oldest first, in one query; a reference session's is zero."""
@@ -71,12 +98,15 @@ class Stands(Queries):
 
 def _uses() -> Select[str, int, int, datetime | None]:
     """As the fields of `StandUse`."""
-    units, last = func.count(SessionRow.unit_id.distinct()), func.max(SessionRow.started_at)
-    return (
-        select(StandRow.name, func.count(SessionRow.id), units, last)
-        .outerjoin(SessionRow, (SessionRow.stand_id == StandRow.id) & IS_ACCEPTED)
-        .group_by(StandRow.name)
+    last = select(func.max(SessionRow.started_at)).where(SessionRow.stand_id == StandRow.id, IS_ACCEPTED)
+    counts = (func.coalesce(StandTallyRow.sessions, 0), func.coalesce(StandTallyRow.units, 0))
+    return select(StandRow.name, *counts, last.scalar_subquery()).outerjoin(
+        StandTallyRow, StandTallyRow.stand_id == StandRow.id
     )
+
+
+def _conditions() -> Select[dict[str, Any]]:
+    return select(StandConditionRow.document).join(StandRow, StandRow.id == StandConditionRow.stand_id)
 
 
 def _motions(

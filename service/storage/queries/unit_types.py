@@ -10,9 +10,10 @@ from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
 from service.records.decision import Verdict
 from service.records.unit import ToleranceRevision, Tolerances, TypeUse, UnitType
+from service.storage.fleet_tables import FleetTallyRow
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
-from service.storage.tables import ConditionRow, ParameterRow, SessionRow, ToleranceRow, UnitRow, UnitTypeRow
+from service.storage.tables import ParameterRow, SessionRow, ToleranceRow, UnitRow, UnitTypeRow
 
 
 class UnitTypes(Queries):
@@ -73,11 +74,11 @@ class UnitTypes(Queries):
 
     def uses(self, name: str | None = None) -> dict[str, TypeUse]:
         """Units of every type, or of one, by condition, in one query."""
+        row = FleetTallyRow
         query = (
-            select(UnitTypeRow.name, ConditionRow.severity, func.count(UnitRow.id))
-            .outerjoin(UnitRow, UnitRow.unit_type_id == UnitTypeRow.id)
-            .outerjoin(ConditionRow, ConditionRow.unit_id == UnitRow.id)
-            .group_by(UnitTypeRow.name, ConditionRow.severity)
+            select(UnitTypeRow.name, row.severity, func.coalesce(func.sum(row.units), 0))
+            .outerjoin(row, row.unit_type_id == UnitTypeRow.id)
+            .group_by(UnitTypeRow.name, row.severity)
         )
         if name is not None:
             query = query.where(UnitTypeRow.name == name)

@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 
 import httpx
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Page, Request, sync_playwright
 
 from service.flows.receive import upload as receive
 from tests.builders import Document, accelerometer_block, arbitrary_orientations, gyro_block, true_sensors
@@ -113,8 +113,13 @@ class Witness:
         """Listens to a page from now on."""
         page.on("console", lambda m: m.type in ("error", "warning") and self.complaints.append(m.text))
         page.on("pageerror", lambda fault: self.complaints.append(str(fault)))
-        page.on("requestfailed", lambda request: self.complaints.append(f"failed: {request.url}"))
+        page.on("requestfailed", self._failed)
         page.on("request", lambda request: self.addresses.append(request.url))
+
+    def _failed(self, request: Request) -> None:
+        """What the browser itself let go, leaving a page before its icon came, is nobody's fault."""
+        if request.failure != "net::ERR_ABORTED":
+            self.complaints.append(f"failed: {request.url}: {request.failure}")
 
 
 @contextmanager

@@ -31,6 +31,6 @@ def test_a_workbook_of_ones_own_becomes_a_session(chromium: Browser, site: Site,
         page.get_by_role("button", name="Look again").click()
         page.get_by_text("felt 9.8").wait_for()
         assert page.evaluate("document.documentElement.scrollWidth") <= width
-        page.get_by_role("button", name="Store it").click()
+        page.get_by_role("button", name="Store it", exact=True).click()
         page.get_by_role("heading", name="Reference set").wait_for()
     assert witness.complaints == []

@@ -82,7 +82,12 @@ OVERFLOW = "document.documentElement.scrollWidth - window.innerWidth"
 LEVELS = "[...document.querySelectorAll('h1,h2,h3')].map((h) => +h.tagName[1])"
 CONTROLS = "[...document.querySelectorAll('input:not([type=hidden]),select')]"
 AXE = (files(axe_playwright_python) / "axe.min.js").read_text(encoding="utf-8")
-RULES: dict[Literal["light", "dark"], dict[str, list[str]]] = {"light": {}, "dark": {"runOnly": ["color-contrast"]}}
+FAULTS = {"resultTypes": ["violations"]}
+"""What axe describes: of what is in order it would name every element, which takes it as long as looking."""
+RULES: dict[Literal["light", "dark"], dict[str, list[str]]] = {
+    "light": FAULTS,
+    "dark": FAULTS | {"runOnly": ["color-contrast"]},
+}
 """Of each colour scheme: all of axe's rules, and once more what only colours decide."""
 VIOLATIONS = (
     "(options) => axe.run(options)"
@@ -221,14 +226,30 @@ def test_two_sessions_are_chosen_on_the_unit_s_page(chromium: Browser, site: Sit
         assert page.locator("tr.fail th").all_inner_texts() == ["A3 bias"]
 
 
-def test_pages_in_russian_fit_on_a_phone(chromium: Browser, site: Site) -> None:
-    witness, wider = Witness(), {}
-    with opened(chromium, 390, locale="ru-RU") as (_, page):
+@pytest.mark.parametrize("width", [390, 1024])
+def test_pages_in_russian_fit_and_hold_no_barrier(chromium: Browser, site: Site, width: int) -> None:
+    witness, wider, barriers = Witness(), {}, {}
+    with opened(chromium, width, locale="ru-RU") as (_, page):
         witness.watch(page)
         for path in IN_RUSSIAN:
             page.goto(address(site, path))
             draw_all(page)
             assert page.locator("html").get_attribute("lang") == "ru"
             wider[path] = page.evaluate(OVERFLOW)
+            page.evaluate(AXE)
+            barriers[path] = page.evaluate(VIOLATIONS, RULES["light"])
     assert wider == dict.fromkeys(IN_RUSSIAN, 0)
+    assert barriers == {path: [] for path in IN_RUSSIAN}
     assert witness.complaints == []
+
+
+@pytest.mark.parametrize("locale", ["en-GB", "ru-RU"])
+def test_lists_fit_at_every_width_between(chromium: Browser, site: Site, locale: str) -> None:
+    wider = {}
+    with opened(chromium, locale=locale) as (_, page):
+        for path in ("/", "/sessions", "/stands", "/settings", "/sessions/{unfit}"):
+            page.goto(address(site, path))
+            for width in (740, 860, 990, 1000, 1100, 1200):
+                page.set_viewport_size({"width": width, "height": 900})
+                wider[path, width] = page.evaluate(OVERFLOW)
+    assert {place: by for place, by in wider.items() if by} == {}

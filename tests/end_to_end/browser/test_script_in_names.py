@@ -13,6 +13,7 @@ from pypdf import PdfReader
 
 from service.settings import Settings
 from tests.builders import Document, accelerometer_block
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - the hook
 from tests.end_to_end.browser.conftest import Witness, draw_all, opened
 from tests.serving import serving
 

@@ -7,6 +7,7 @@ import httpx
 
 from tests.builders import arbitrary_orientations
 from tests.conftest import Holding
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - the hook
 from tests.service.sessions import session_id
 
 SAID = "Too few positions to give an uncertainty: add 5"

@@ -21,7 +21,7 @@ def test_a_session_so_far_is_told_what_is_to_come(client: httpx.Client) -> None:
     found = client.post(ADDRESS, json=so_far(accelerometer_block(positions=12), 9)).json()
     assert (found["done"], found["positions"], found["complete"]) == (9, 12, False)
     assert found["settings"][0] == {"run": "direct", "beta_deg": 270.0}
-    assert found["said"][:2] == ["9 positions are done, 15 are to come.", "direct: β = 270°, 300°, 330°"]
+    assert found["said"][:2] == ["9 positions are done, 15 still to come.", "direct: β = 270°, 300°, 330°"]
     assert client.get("/api/v1/sessions").json()["sessions"] == []
 
 

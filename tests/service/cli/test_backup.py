@@ -68,7 +68,7 @@ def test_a_downgrade_says_what_it_would_delete_and_does_nothing_unasked(run: Run
     before = rows(full.database)
     ran = run("db", "downgrade", "0003", *where(full))
     assert ran.code == 1
-    assert "Will be deleted from notes: 1 rows" in ran.err
+    assert "Will be deleted from notes: 1 row\n" in ran.err
     assert "Say --yes" in ran.err
     assert rows(full.database) == before
     assert not list(full.data_folder.glob("*.backup"))
@@ -89,7 +89,7 @@ def test_a_downgrade_that_is_confirmed_writes_a_backup_that_brings_all_back(
 @one_engine
 def test_a_column_that_would_go_is_told_with_what_it_holds(run: Run, full: Settings) -> None:
     ran = run("db", "downgrade", "0008", *where(full))
-    assert "Will be deleted from units: customer of 1 rows" in ran.err
+    assert "Will be deleted from units: customer of 1 row, " in ran.err
 
 
 @one_engine

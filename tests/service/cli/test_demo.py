@@ -12,14 +12,14 @@ from service.demo.cast import CAST, END
 from service.demo.fill import FILES, fill, is_wanted
 from service.demo.history import files_of
 from service.flows.receive import upload
+from service.judging.stand_health import stand_health
 from service.records.decision import Verdict
 from service.records.fleet import FleetQuery
 from service.settings import Settings
 from service.storage import Storage
 from service.storage.queries.flags import FlagQuery
 from service.storage.schema import upgrade
-from service.views.outlook import outlooks_of_fleet
-from service.views.stands import stand_conditions
+from service.views.outlook import outlook_of
 from tests.conftest import StockOf
 from tests.databases import Databases
 from tests.service.cli.conftest import COMMAND, started
@@ -105,8 +105,8 @@ def test_the_fleet_shows_every_condition(demonstration: Storage) -> None:
         stages = [session.stage for session in store.sessions.of_unit("BA-109") if session.stage]
         breaks = {serial: store.services.of_unit(serial) for serial in units}
         sessions = store.sessions.page("BA-107", 0, 50)
-        stands = stand_conditions(store)
-        outlooks = {outlook.serial: outlook for outlook in outlooks_of_fleet(store, END)}
+        stands = stand_health(store)
+        outlooks = {serial: outlook_of(store, serial, END) for serial in units}
     assert {serial: units[serial].verdict for serial in CONDITIONS} == CONDITIONS
     assert ("BA-106", "A6", "acknowledged") in flags
     assert ("BA-107", "A4", "resolved") in flags

@@ -1,6 +1,7 @@
 """`imu-health flags` against a running service."""
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import httpx
 import pytest
@@ -8,7 +9,7 @@ import pytest
 from tests.conftest import StockOf
 from tests.databases import Databases
 from tests.service.cli.conftest import Run
-from tests.service.sessions import FAILED
+from tests.service.sessions import FAILED, session_id
 from tests.serving import serving
 
 
@@ -32,6 +33,33 @@ def test_a_flag_is_handled_and_then_no_longer_open(run: Run, address: str) -> No
     assert run("flags", "--server", address).out == "No flag is open.\n"
     [flag] = run("flags", "--state", "resolved", "--json", "--server", address).documents
     assert [change["who"] for change in flag["changes"]] == ["imu-health", "K. Ito", "K. Ito"]
+
+
+def test_flags_are_given_to_somebody_and_found_by_the_name(run: Run, address: str) -> None:
+    assert run("flags", "--assigned", "M. Sato", "--server", address).out == "No flag is open.\n"
+    given = run("flags", "assign", 1, "--to", "M. Sato", "--by", "K. Ito", "--server", address)
+    assert given.out.startswith("Flag 1  BA-017")
+    [flag] = run("flags", "--assigned", "M. Sato", "--json", "--server", address).documents
+    assert flag["assignee"] == "M. Sato"
+
+
+def test_notes_and_files_are_put_on_a_session(run: Run, address: str, tmp_path: Path) -> None:
+    (tmp_path / "photo.png").write_bytes(b"png")
+    session, own = session_id(FAILED[0]), ("--by", "K. Ito", "--server", address)
+    assert "note 1 recorded" in run("note", session, "the room was warm", *own).out
+    assert "attachment 1  photo.png" in run("attach", tmp_path / "photo.png", "--to", session, *own).out
+    found = httpx.get(f"{address}/api/v1/sessions/{session}/attachments").json()["attachments"]
+    assert [(one["filename"], one["session"]) for one in found] == [("photo.png", session)]
+    assert run("attach", tmp_path / "photo.png", "--to", "nobody", *own).code == 1
+
+
+def test_saved_views_are_listed_with_their_addresses(run: Run, address: str) -> None:
+    assert run("views", "--server", address).out == "No view is saved yet.\n"
+    new = {"page": "fleet", "name": "overdue", "query": "due=overdue", "by": "K. Ito"}
+    httpx.post(f"{address}/api/v1/views", json=new)
+    shown = run("views", "--server", address).out.splitlines()[1].split()
+    assert shown == ["1", "fleet", "overdue", f"{address}/?due=overdue"]
+    assert [view["url"] for view in run("views", "--json", "--server", address).documents] == ["/?due=overdue"]
 
 
 def test_what_cannot_be_done_is_said_on_one_line(run: Run, address: str) -> None:

@@ -14,6 +14,7 @@ from tests.databases import Databases
 from tests.service import tables
 from tests.service.cli.conftest import Run, write
 from tests.service.filled import filled
+from tests.service.sessions import session_id
 from tests.serving import serving
 
 
@@ -63,7 +64,9 @@ def test_a_missing_file_is_unusable_input(run: Run, address: str, tmp_path: Path
 def test_the_verdict_is_printed_in_words(run: Run, address: str, two_sessions: list[Path]) -> None:
     ran = run("upload", *two_sessions, "--server", address)
     assert ran.code == 0
-    assert [line.split("  ")[:2] for line in ran.out.splitlines()] == [["BA-017", "Reference set"], ["BA-017", "Fit"]]
+    units, sessions, verdicts, _ = zip(*(line.split("  ") for line in ran.out.splitlines()), strict=True)
+    assert (units, verdicts) == (("BA-017", "BA-017"), ("Reference set", "Fit"))
+    assert sessions == tuple(session_id(file.read_bytes()) for file in two_sessions)
 
 
 @pytest.mark.parametrize("server", ["http://127.0.0.1:1", "nonsense", "http://[", "http://127.0.0.1:1/" + "a" * 70_000])

@@ -30,6 +30,16 @@ def test_the_same_seed_gives_the_same_bytes_and_another_seed_others(run: Run, tm
     assert first == again != other
 
 
+def test_a_long_series_ends_where_a_short_one_does(run: Run, tmp_path: Path) -> None:
+    def dates(sessions: int) -> list[str]:
+        own = ("--sessions", sessions, "-n", 3, "--json", "--out", tmp_path / str(sessions))
+        files = [document["file"] for document in run("simulate", *own).documents]
+        return [json.loads(Path(file).read_text())["started_at"] for file in files]
+
+    assert dates(9)[-4:] == dates(4)
+    assert dates(2) == ["2026-01-12T09:00:00Z", "2026-03-13T09:00:00Z"]
+
+
 def test_the_options_shape_the_session(run: Run, tmp_path: Path) -> None:
     run("simulate", "--out", tmp_path, "-m", 4, "--alpha", 35, "-n", 10, "--noise", 5, "--unit", "X/1")
     document = json.loads((tmp_path / "X_1-001.json").read_text())

@@ -8,6 +8,8 @@ from typing import Any
 import pytest
 
 from estimator.diagnosis import diagnose as find_causes
+from service.errors import RefusedError
+from service.flows.accept_model import accept_model
 from service.flows.accept_session import accept_session
 from service.flows.diagnose import diagnose
 from service.flows.receive import upload
@@ -16,7 +18,9 @@ from service.flows.refresh_group import current, members_of, refresh_group
 from service.flows.withdraw_session import withdraw_session
 from service.ingest import read_upload
 from service.records.event import NewService
+from service.records.flag import Matter
 from service.records.group import Group, GroupAnswer, Level
+from service.records.model import NewModel, Scope
 from service.settings import VERSION
 from service.storage import Storage
 from service.storage.queries.statistics import GIVEN_UP, MOST_ATTEMPTS
@@ -61,6 +65,34 @@ def test_twelve_sessions_name_what_none_of_them_shows(storage: Storage) -> None:
     assert alone == [()] * 12
     assert [(f["cause"], f["sensors"]) for f in found["findings"]] == [("cubic-nonlinearity", ["A2"])]
     assert (found["sessions"], len(found["findings"][0]["sessions"]), found["left_out"]) == (12, 12, 0)
+
+
+@one_engine
+def test_the_twelfth_is_diagnosed_by_the_evidence_of_all(storage: Storage) -> None:
+    fill(storage, *GROUP)
+    diagnose(storage, session_id(GROUP[0]), NOW)  # its record is kept, and so it counts beyond the ten before
+    made = diagnose(storage, session_id(GROUP[-1]), NOW)
+    assert made.found is not None
+    (finding,) = made.found.findings
+    assert (finding.cause, finding.sensors) == ("cubic-nonlinearity", ("A2",))
+    assert finding.over_sessions is not None
+    assert finding.over_sessions.sessions == 12
+
+
+@one_engine
+def test_a_flag_is_raised_by_all_sessions_together_and_not_by_the_one_that_was_diagnosed_so(storage: Storage) -> None:
+    fill(storage, *GROUP)
+    diagnose(storage, session_id(GROUP[-1]), NOW)
+    with storage.database.reading() as store:
+        assert not [flag for flag in store.flags.open_of(store.units.key(UNIT)) if flag.matter is Matter.CAUSE]
+
+
+@one_engine
+def test_what_all_sessions_show_is_not_accepted_from_one(storage: Storage) -> None:
+    fill(storage, *GROUP)
+    made = diagnose(storage, session_id(GROUP[-1]), NOW)
+    with pytest.raises(RefusedError):
+        accept_model(storage, made, NewModel("cubic-nonlinearity", Scope.UNIT, "K. Ito", ""), NOW)
 
 
 @pytest.mark.parametrize(("level", "name"), [(Level.TYPE, "three"), (Level.STAND, "ODG-1")])

@@ -159,3 +159,30 @@ def since(revision: ModelRevision, date: str) -> ModelRevision:
     assert revision.evidence.pooled is not None
     pooled = replace(revision.evidence.pooled, form="since", since=date)
     return replace(revision, evidence=replace(revision.evidence, pooled=pooled))
+
+
+@one_engine
+def test_what_is_in_a_model_is_no_news_for_the_fleet_until_it_is_withdrawn(storage: Storage) -> None:
+    four_sessions(storage)
+    said = [told_of_fleet(storage)]
+    revision = accept_lasting(storage, group(storage), NEW, NOW)
+    said.append(told_of_fleet(storage))
+    withdraw_model(storage, revision.id, "K. Ito", "mended", NOW)
+    said.append(told_of_fleet(storage))
+    assert said == [["BA-017"], [], ["BA-017"]]
+
+
+@one_engine
+def test_an_answer_that_is_made_again_knows_what_is_in_a_model(storage: Storage) -> None:
+    four_sessions(storage)
+    accept_lasting(storage, group(storage), NEW, NOW)
+    upload(storage, cubic_session(5, cubic=LARGE), "a.json", NOW)
+    refresh_group(storage, group(storage), NOW)
+    assert told_of_fleet(storage) == []
+
+
+def told_of_fleet(storage: Storage) -> list[str]:
+    """Units whose sessions together show something new."""
+    with storage.database.reading() as store:
+        _, found = store.groups.found(10)
+    return [one.group.name for one in found if one.group.level is Level.UNIT]

@@ -71,7 +71,7 @@ def test_rows_in_which_a_sensor_says_nothing_are_left_out() -> None:
     torn = made.Imu(FOUND[0].time[~gap], FOUND[0].force[~gap], FOUND[0].rate[~gap])
     table = table_of(made.ulog([torn, FOUND[1]]))
     assert np.diff(table.columns["time [s]"]).max() == pytest.approx(1.0, abs=0.03)
-    assert "rows were left out: some IMU says nothing" in str(table.facts["notes"])
+    assert "rows left out: some IMU says nothing" in str(table.facts["notes"])
 
 
 def test_an_imu_with_hardly_a_sample_is_left_out_and_named() -> None:
@@ -85,7 +85,7 @@ def test_samples_that_are_no_numbers_are_left_out_and_counted() -> None:
     force = FOUND[0].force.copy()
     force[7:10, 1] = np.nan
     table = table_of(made.ulog([made.Imu(FOUND[0].time, force, FOUND[0].rate), FOUND[1]]))
-    assert "sensor_accel 0: 3 samples are no numbers" in str(table.facts["notes"])
+    assert "sensor_accel 0: 3 samples left out for want of a number" in str(table.facts["notes"])
     assert np.isfinite(np.column_stack(list(table.columns.values()))).all()
 
 

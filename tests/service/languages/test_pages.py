@@ -76,7 +76,7 @@ NAMES = frozenset(
             "sqlite",
             "rev",
         ),
-        *("accelerometer", "nbsp"),
+        *("accelerometer", "nbsp", "Enter"),
     )
 )
 """Words of a Russian page that are no English: names, file formats, units, the keys of roles and rules."""

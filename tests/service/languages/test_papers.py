@@ -11,6 +11,7 @@ from service.languages.documents import document_in
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - the hook
 from tests.service.languages.test_pages import RU, SESSION, UPLOADS, english_in
+from tests.service.sessions import session_bytes
 
 
 @pytest.fixture
@@ -50,6 +51,20 @@ def test_a_workbook_in_russian(judged: httpx.Client) -> None:
     assert book.sheet_names == ["Приборы", "Параметры", "Истории", "О книге"]
     row = book.load_sheet("Приборы").to_polars().rows(named=True)[0]
     assert (row["Прибор"], row["Состояние"]) == ("BA-017", "Не годен")
+
+
+def test_a_name_is_printed_as_it_was_given_in_every_language(judged: httpx.Client) -> None:
+    """`Service` is a word of the catalogue, and `and` one that lists are joined with."""
+    for name in ("Service", "Sea and Air Works"):
+        judged.put("/api/v1/units/BA-017/customer", json={"name": name, "address": "1 Stand Road"}).raise_for_status()
+        text = text_of(judged.get(f"/api/v1/sessions/{SESSION}/certificate", headers=RU))
+        assert f"{name}, 1 Stand Road" in text
+
+
+def test_a_unit_in_a_workbook_keeps_its_name(holding: Holding) -> None:
+    client = holding(session_bytes(unit="Stand"))
+    book = fastexcel.read_excel(client.get("/api/v1/fleet/report?format=xlsx", headers=RU).content)
+    assert book.load_sheet("Приборы").to_polars()["Прибор"].to_list() == ["Stand"]
 
 
 def test_what_names_something_for_a_template_is_left_alone() -> None:

@@ -15,6 +15,10 @@ def found(source: str) -> list[str | tuple[str, str]]:
         ('a = "The disk is full."', ["The disk is full."]),
         ('a = f"{one.place} moved by {moved}."', ["{place} moved by {moved}."]),
         ("""a = f"{n} flag{'' if n == 1 else 's'} are open" """, [("{n} flag are open", "{n} flags are open")]),
+        (
+            """a = f"{n} row{'' if n == 1 else 's'} {'has' if n == 1 else 'have'} it" """,
+            [("{n} row has it", "{n} rows have it")],
+        ),
         ("""a = f"It {'turns' if x else 'turned'} by {y}" """, ["It turns by {y}", "It turned by {y}"]),
         ('a = "Fit by {day:%d}."', ["Fit by {day}."]),
         ('a = counted(3, "row")', [("{n} row", "{n} rows")]),

@@ -39,7 +39,17 @@ def test_a_number_chooses_among_three_forms(count: int, expected: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["", "BA-017", "12.3 ± 0.4 µg", "N. Orlova", "Cable was swapped by the night shift", "5 µm/(m/s²)", "Годен"]
+    "text",
+    [
+        "",
+        "BA-017",
+        "12.3 ± 0.4 µg",
+        "N. Orlova",
+        "Sea and Air Works",
+        "Cable was swapped by the night shift",
+        "5 µm/(m/s²)",
+        "Годен",
+    ],
 )
 def test_what_nobody_translated_stays_as_it_was_written(text: str) -> None:
     assert catalogue_of(Language.RUSSIAN).say(text) == text

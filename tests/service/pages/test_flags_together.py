@@ -2,7 +2,9 @@
 
 import httpx
 import pytest
+from lxml import html
 
+from service.pages import flags, flags_view
 from service.pages.flags_view import FlagsAsked, FlagsView
 from tests.service.sessions import session_bytes
 
@@ -54,6 +56,45 @@ def test_a_flag_that_is_not_there_changes_none(client: httpx.Client, flagged: li
     assert states(client) == ["raised"] * 3
 
 
+def test_ticked_flags_are_given_to_somebody_and_found_by_the_name(client: httpx.Client, flagged: list[int]) -> None:
+    answer = client.post("/flags/assign?matter=out-of-tolerance", data=SAID | {"flag": flagged[1:], "to": "M. Sato"})
+    assert (answer.status_code, answer.headers["location"]) == (303, "/flags?matter=out-of-tolerance")
+    assert [numbers(client, f"?assigned={who}") for who in ("M.+Sato", "nobody", "K.+Ito")] == [
+        flagged[:0:-1],
+        flagged[:1],
+        [],
+    ]
+    assert "M. Sato" in client.get("/flags").text
+
+
+def test_acknowledging_with_a_name_gives_them_too(client: httpx.Client, flagged: list[int]) -> None:
+    client.post("/flags/acknowledge", data=SAID | {"flag": flagged[:1], "to": "M. Sato"})
+    assert states(client) == ["acknowledged", "raised", "raised"]
+    assert numbers(client, "?assigned=M.+Sato") == flagged[:1]
+
+
+def test_a_page_stays_where_it_was_when_flags_before_it_are_settled(
+    client: httpx.Client, flagged: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for module in (flags, flags_view):
+        monkeypatch.setattr(module, "PAGE_SIZE", 1)
+    second = html.fromstring(client.get("/flags").text).xpath("//a[@rel='next']/@href")[0]
+    assert numbers(client, second.removeprefix("/flags")) == [flagged[1]]
+    client.post("/flags/resolve", data=SAID | {"flag": flagged[2:]})
+    shown = client.get(second).text
+    assert numbers(client, second.removeprefix("/flags")) == [flagged[1]]
+    assert html.fromstring(shown).xpath("//a[@rel='next']/@href") == [f"/flags?after={flagged[1]}"]
+    oldest = client.get("/flags?sort=oldest").text
+    assert html.fromstring(oldest).xpath("//a[@rel='next']/@href") == [f"/flags?sort=oldest&after={flagged[0]}"]
+    assert numbers(client, f"?sort=oldest&before={flagged[1]}") == [flagged[0]]
+
+
+def numbers(client: httpx.Client, query: str) -> list[int]:
+    """Of the flags on a page, in its order."""
+    boxes = html.fromstring(client.get(f"/flags{query}").text).xpath("//input[@name='flag']/@value")
+    return [int(number) for number in boxes]
+
+
 def test_a_view_comes_back_from_its_own_address() -> None:
     view = FlagsView.of(FlagsAsked(q=" BA ", matter="stand", state="raised"))
-    assert view.url("/flags") == "/flags?q=BA&matter=stand&state=raised"
+    assert view.url() == "/flags?q=BA&matter=stand&state=raised"

@@ -20,7 +20,7 @@ def test_units_are_numbered_through_the_pages() -> None:
     units = [unit_summary(f"U{i}") for i in range(PAGE_SIZE + 1)]
     page = fleet_page(CONDITION, units, FleetView(page=2), NOON)
     assert (page.first, page.last) == (PAGE_SIZE + 1, 2 * PAGE_SIZE)
-    assert page.more
+    assert page.later
 
 
 def test_changing_the_filter_goes_back_to_the_first_page() -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from tests.conftest import Holding
 from tests.databases import one_engine
-from tests.service.grouped import GROUP
+from tests.service.grouped import GROUP, WAVY
 
 
 def words(client: httpx.Client) -> str:
@@ -73,3 +73,15 @@ def test_an_engineer_accepts_it_and_sees_what_it_moved(twelve: httpx.Client) -> 
 def test_until_it_is_made_the_page_says_where_to_ask(holding: Holding) -> None:
     client = holding(*GROUP[:2])
     assert "What its 2 sessions show together is not worked out with the latest records yet" in words(client)
+
+
+@one_engine
+def test_a_learned_term_is_accepted_from_its_card_and_its_equation_stands_on_its_page(holding: Holding) -> None:
+    client = holding(*WAVY)
+    client.get("/api/v1/units/BA-017/diagnosis").raise_for_status()
+    assert "Accept into the model of unit BA-017" in words(client)
+    form = {"level": "unit", "name": "BA-017", "cause": "empirical-term", "sensors": ["A2"], "by": "K. Ito"}
+    made = client.post("/groups/accept", data=form, headers={"Accept": "text/html"})
+    page = text_of(client, made.headers["Location"])
+    assert re.search(r"Empirical term \(A2\), unit BA-017 A2 reads more by \(.* sin 3β", page)
+    assert "In the model of unit BA-017: revision 1" in words(client)

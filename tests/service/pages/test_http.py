@@ -20,7 +20,7 @@ from tests.serving import http_client, running
 
 HTML = {"Accept": "text/html"}
 MOST_QUERIES = 12
-"""Of the unit page, which shows most: unit, history, flags, notes, dates, and what its sessions show together."""
+"""Of the page of a session, which asks most: what it shows comes from as many tables."""
 
 
 def post(client: httpx.Client, content: bytes, **headers: str) -> httpx.Response:

@@ -6,6 +6,7 @@ from typing import Any
 
 import httpx
 
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - the hook
 from tests.service import tables
 
 TABLE = tables.text_table(tables.own_document()).encode("cp1251")

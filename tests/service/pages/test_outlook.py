@@ -7,6 +7,8 @@ import pytest
 
 from service.charts.history import history_charts
 from service.charts.tracks import tracks_of
+from service.judging.populations import populations
+from service.judging.standouts import Standout, standouts
 from service.pages.fleet import fleet_page
 from service.pages.fleet_view import FleetView
 from service.records.decision import Verdict
@@ -21,7 +23,7 @@ from service.records.outlook import (
     UnitOutlook,
 )
 from service.records.unit import FleetCondition
-from service.views.standouts import standouts
+from service.storage.queries.populations import FarOut
 from service.words.outlook import next_calibration
 from tests.service.pages.records import NOON, bias_point, unit_summary
 
@@ -122,15 +124,21 @@ def rates_of(units: int) -> list[Rate]:
     ]
 
 
+def found_in(rates: list[Rate]) -> tuple[Standout, ...]:
+    """Who stands out of a fleet of one type."""
+    made = populations(rates)
+    return standouts(FarOut(made, sum(one.rates for one in made), sum(one.lots for one in made)))
+
+
 def test_a_unit_that_drifts_unlike_the_others_is_named() -> None:
     wild = replace(rates_of(1)[0], serial="W", value=0.24)
-    assert [(s.unit, s.text) for s in standouts([*rates_of(20), wild])] == [
+    assert [(s.unit, s.text) for s in found_in([*rates_of(20), wild])] == [
         ("W", "A1 bias drifts by 24 % of its tolerance a year, unlike the other units of its type.")
     ]
 
 
 def test_a_lot_that_drifts_unlike_the_others_is_named() -> None:
     lot = [replace(rate, serial=f"X{i}", lot="L9", value=0.09) for i, rate in enumerate(rates_of(8))]
-    assert [s.text for s in standouts([*rates_of(24), *lot])] == [
+    assert [s.text for s in found_in([*rates_of(24), *lot])] == [
         "Lot L9 of RA-6: bias drifts unlike that of the other units."
     ]

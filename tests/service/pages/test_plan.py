@@ -110,6 +110,7 @@ def test_a_stored_unit_type_brings_its_sensors_and_tolerances(client: httpx.Clie
     assert '"/api/v1/plan?unit_type=RA-5&amp;' in form
 
 
+@one_engine
 def test_the_same_plan_is_served_as_json(client: httpx.Client) -> None:
     client.post("/api/v1/sessions", content=session_bytes(m=5, unit_type="RA-5"))
     document = client.get("/api/v1/plan", params={"unit_type": "RA-5", "positions": 12, "axis": 3}).json()
@@ -119,6 +120,7 @@ def test_the_same_plan_is_served_as_json(client: httpx.Client) -> None:
     assert {p["sensor"] for p in document["parameters"]} == {"A1", "A2", "A3", "A4", "A5"}
 
 
+@one_engine
 def test_a_type_that_cannot_be_planned_for_says_why(client: httpx.Client) -> None:
     client.post("/api/v1/sessions", content=alignment_bytes())
     name = client.get("/api/v1/unit-types").json()["unit_types"][0]["name"]

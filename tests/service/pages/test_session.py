@@ -65,6 +65,12 @@ def test_fit_is_judged_in_words(p: float | None, says: str) -> None:
     assert says in fit_in_words(calibration).headline
 
 
+@pytest.mark.parametrize(("dof", "says"), [(1, "for 1 degree of freedom;"), (2, "for 2 degrees of freedom;")])
+def test_one_degree_of_freedom_is_said_as_one(dof: int, says: str) -> None:
+    known = session_report().calibration
+    assert says in fit_in_words(replace(known, fit=replace(known.fit, dof=dof))).detail
+
+
 def test_enlarged_uncertainties_are_a_warning() -> None:
     known = session_report().calibration
     calibration = replace(known, fit=replace(known.fit, covariance_factor=4.0))

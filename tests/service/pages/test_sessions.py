@@ -5,10 +5,13 @@ from dataclasses import replace
 import httpx
 import pytest
 
+from service.pages.saved import saved
 from service.pages.sessions import sessions_page
 from service.pages.sessions_view import PAGE_SIZE, SessionsAsked, SessionsView
 from service.records.decision import Verdict
 from service.records.fleet import FleetChoices
+from service.records.identity import EVERYBODY
+from service.records.saved_view import ListPage
 from service.records.session import StoredSession
 from tests.databases import one_engine
 from tests.service.pages.records import session_report
@@ -75,7 +78,7 @@ def test_a_reference_is_not_undecided() -> None:
 def test_pages_lead_to_one_another(
     session: StoredSession, view: SessionsView, count: int, ways: tuple[str, str]
 ) -> None:
-    page = sessions_page(found(session, count), view, FleetChoices())
+    page = sessions_page(found(session, count), view, FleetChoices(), saved((), view, ListPage.SESSIONS, EVERYBODY))
     assert (page.earlier, page.later) == ways
     assert len(page.lines) == min(count, PAGE_SIZE)
 

@@ -9,7 +9,7 @@ import pytest
 
 from tests.builders import accelerometer_block, arbitrary_orientations, gyro_block, mixed_block, raw_log
 from tests.conftest import Holding
-from tests.databases import one_engine
+from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - the hook
 from tests.service.diagnosed import send
 from tests.service.reports.schema import DCC, SI, faults
 from tests.service.sessions import FAILED, session_bytes, session_id
@@ -52,7 +52,6 @@ SESSIONS = {
 }
 
 
-@one_engine
 @pytest.mark.parametrize("name", SESSIONS)
 def test_every_element_is_where_the_schema_wants_it(client: httpx.Client, name: str) -> None:
     assert faults(dcc(client, send(client, SESSIONS[name]))) == []
@@ -109,7 +108,6 @@ def test_no_text_is_taken_for_markup(client: httpx.Client, name: str) -> None:
     assert faults(root) == []
 
 
-@one_engine
 def test_a_fault_of_the_structure_would_be_seen(client: httpx.Client) -> None:
     root = dcc(client, send(client, accelerometer_block()))
     core = root.find(f".//{DCC}coreData")

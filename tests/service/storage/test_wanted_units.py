@@ -68,3 +68,16 @@ def test_what_a_list_can_be_narrowed_to(fleet: Storage) -> None:
         found = store.fleet.choices()
     assert found == FleetChoices(types=found.types, stands=("ODG-1", "S-2"), lots=("L7",))
     assert len(found.types) == 1
+
+
+@pytest.mark.parametrize("order", Order)
+@pytest.mark.parametrize("backwards", [False, True])
+def test_a_list_read_on_from_unit_to_unit_is_the_whole_list(fleet: Storage, order: Order, backwards: bool) -> None:
+    wanted = FleetQuery(order=order, backwards=backwards)
+    whole, read = listed(fleet, wanted), ""
+    names = {"A": "A-1", "B": "B-1", "C": "C-1"}
+    while len(read) < len(whole):
+        read += listed(fleet, replace(wanted, after=names[read[-1]] if read else None, limit=1))
+    assert read == whole
+    assert listed(fleet, replace(wanted, before=names[whole[-1]], limit=1)) == whole[-2]
+    assert listed(fleet, replace(wanted, after=names[whole[-1]])) == ""

@@ -6,10 +6,11 @@ import httpx
 import pytest
 
 from service.flows.record_service import record_service
+from service.flows.summarise import summarise_all
 from service.records.event import NewService
 from service.records.outlook import UnitOutlook
 from service.storage import Storage
-from service.views.outlook import fleet_outlook, outlook_of
+from service.views.outlook import outlook_of
 from tests.databases import one_engine
 from tests.service.dated import upload_and_date
 from tests.service.sessions import session_bytes
@@ -24,10 +25,10 @@ def measure(storage: Storage, months: dict[int, float], unit: str = "BA-017", **
         upload_and_date(storage, content, "a.json", NOW, outlook=month == max(months))
 
 
-def outlook(storage: Storage, now: datetime) -> UnitOutlook:
-    """Of the unit, at a time."""
+def outlook(storage: Storage, now: datetime, unit: str = "BA-017") -> UnitOutlook:
+    """Of a unit, at a time."""
     with storage.database.reading() as store:
-        return outlook_of(store, "BA-017", now)
+        return outlook_of(store, unit, now)
 
 
 @one_engine
@@ -79,7 +80,9 @@ def test_a_rate_is_set_against_the_type_s_other_units(storage: Storage) -> None:
     for number in range(4):
         measure(storage, {1: 0.0, 4: 0.0, 7: 0.0}, unit=f"BA-00{number}")
     measure(storage, {1: 0.0, 4: 25.0, 7: 50.0}, unit="BA-666")
-    found = {o.serial: o for o in fleet_outlook(storage, NOW)}
+    summarise_all(storage, NOW)
+    serials = [f"BA-00{number}" for number in range(4)] + ["BA-666"]
+    found = {serial: outlook(storage, NOW, serial) for serial in serials}
     z = {serial: next(t for t in o.trends if (t.sensor, t.parameter) == ("A3", "bias")) for serial, o in found.items()}
     assert max(z, key=lambda serial: abs(z[serial].population_z or 0)) == "BA-666"
     assert all(o.trends for o in found.values())

@@ -8,6 +8,7 @@ import pytest
 from sqlalchemy import event
 
 from service.flows.receive import upload
+from service.judging.standouts import fleet_standouts
 from service.records.arrival import ArrivalQuery
 from service.records.fleet import FleetQuery
 from service.records.session_list import SessionQuery
@@ -15,7 +16,7 @@ from service.storage import Storage
 from service.storage.queries.flags import FlagQuery
 from service.storage.queries.history import HistoryQuery
 from service.storage.store import Store
-from service.views.outlook import outlook_of, outlooks_of_fleet
+from service.views.outlook import outlook_of
 from service.views.session_report import session_report
 from service.views.stand_report import every_stand, stand_report
 from service.views.stands import stand_conditions
@@ -30,12 +31,13 @@ PAGES: dict[str, tuple[int, Page]] = {
     "fleet": (1, lambda store: store.fleet.units(FleetQuery())),
     "condition": (1, lambda store: store.fleet.condition()),
     "history": (2, lambda store: store.history.points(store.units.key("BA-000"), HistoryQuery())),
-    "unit": (8, lambda store: unit_report(store, "BA-000", NOW)),
+    "unit": (3, lambda store: unit_report(store, "BA-000", NOW)),
     "sessions": (1, lambda store: store.sessions.page(None, 0, 100)),
     "flags": (1, lambda store: store.flags.page(FlagQuery())),
     "flags of a unit": (1, lambda store: store.flags.page(FlagQuery("BA-000"))),
     "outlook": (2, lambda store: outlook_of(store, "BA-000", NOW)),
-    "outlooks": (2, lambda store: outlooks_of_fleet(store, NOW)),
+    "due dates": (1, lambda store: store.outlooks.due(100)),
+    "standouts": (1, lambda store: fleet_standouts(store, 6)),
     "stands": (1, stand_conditions),
     "types": (1, lambda store: store.unit_types.page(0, 100)),
     "list of sessions": (1, lambda store: store.sessions.wanted(SessionQuery())),
