@@ -52,7 +52,8 @@ study: setup
 	$(BIN)/python -m benchmarks.study --sessions 2000 --seed 1
 	$(BIN)/python -m benchmarks.study.amplitudes --sessions 660 --seed 3
 	$(BIN)/python -m benchmarks.study.open_world --sessions 12 --seed 1
-	$(BIN)/python -m benchmarks.study.groups --groups 40 --seed 6
+	$(BIN)/python -m benchmarks.study.groups --groups 300 --seed 8
+	$(BIN)/python -m benchmarks.study.between_sessions --units 40 --seed 1
 	$(BIN)/python -m benchmarks.study.with_history --groups 53 --seed 1
 
 backtest: setup

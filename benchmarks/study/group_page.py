@@ -144,12 +144,11 @@ A board that is switched on before each session warms, and its z axes say so eac
 quarter off the misfit of the third. Five units measured once each share nothing that five sessions could show.
 
 What is not pooled: record causes, outliers, jumps, clipping and excess noise belong to their session. How parameters
-moved between sessions is not yet used as evidence: residuals alone are.
+moved between sessions is no evidence: [residuals alone are](../decisions/residuals-alone.md).
 
-The table is of few groups, and its intervals are wide: a hundred groups and more are needed to tell 97 % from 93 %. No
-figure contradicts its target but two. The time that a session's record takes is at its limit of a fifth of a diagnosis:
-where nothing is found a diagnosis has become as quick as that. And one of eleven clear effects was not named first:
-levelling of a stand of gyros came second behind an error of the meridian, which is listed with it.
+Every figure below is at its target, or its interval holds it. An amplitude that differs from session to session is
+known a little less well than its sigma says: ten to eighteen sessions tell little of how much it differs. Of two
+effects on one stand that look alike, one may take the name of both.
 """
 
 
