@@ -12,7 +12,7 @@ from estimator.causes.contract import Cause
 from estimator.diagnosis.explanation.detection_limits import limits
 from estimator.diagnosis.explanation.earlier_sessions import newness
 from estimator.diagnosis.explanation.extended_model import amplitudes, extended_calibration, without_effects
-from estimator.diagnosis.explanation.findings import findings, noise_scales, structures
+from estimator.diagnosis.explanation.findings import findings, noise_scales, notes, structures
 from estimator.diagnosis.explanation.gain import gain
 from estimator.diagnosis.explanation.record_findings import (
     clip_findings,
@@ -112,6 +112,7 @@ def diagnosed(session: PutRight, catalogue: Sequence[Cause]) -> Diagnosis:
         noise=noise_scales(state),
         baseline=calibrate(rows),
         calibration=calibration,
+        notes=notes(state),
     )
 
 

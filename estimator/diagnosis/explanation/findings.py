@@ -167,3 +167,14 @@ def place(course: Autocorrelation) -> str:
     if course.plain:
         return f"smooth along {course.order}, in no pattern known"
     return f"larger than stated, as well noise as smooth along {course.order}"
+
+
+def notes(state: SearchState) -> tuple[str, ...]:
+    """What somebody who reads the findings should know, in words."""
+    if not state.in_tails:
+        return ()
+    far = max(f.best.strength for f in state.in_tails)
+    return (
+        f"Single readings lie up to {far:.1f} standard errors off. The errors of all readings have such tails: "
+        "no cause is named for them.",
+    )

@@ -5,6 +5,7 @@ from dataclasses import replace
 from estimator.diagnosis.selection.borne_out import hold, too_sure
 from estimator.diagnosis.selection.chosen_again import without_unpredictive
 from estimator.diagnosis.selection.common_or_own import common_or_own
+from estimator.diagnosis.selection.heavy_tails import without_names_of_tails
 from estimator.diagnosis.selection.lack_of_fit import with_unlike_noise, without_common_rows, without_misfits
 from estimator.diagnosis.selection.noise_claim import (
     doubted,
@@ -27,7 +28,7 @@ def accepted(start: SearchState) -> SearchState:
         state = believed(start)
         claims = doubted(state)
     rival = whatever_the_scale(start, claims) if claims else None
-    return without_names_in_no_noise(borne_out(start, rival or state or believed(start)))
+    return without_names_of_tails(without_names_in_no_noise(borne_out(start, rival or state or believed(start))))
 
 
 def borne_out(start: SearchState, state: SearchState) -> SearchState:

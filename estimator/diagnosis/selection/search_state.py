@@ -70,6 +70,8 @@ class SearchState:
     """Sensors whose scatter is not distributed as noise is."""
     noise_claims: tuple[NoiseClaim, ...] = ()
     """Sensors whose stated noise is taken as known up to a factor only."""
+    in_tails: tuple[Found, ...] = ()
+    """Names taken back, because readings far out in the tails of the errors explain as much."""
     refuted: frozenset[Group] = frozenset()
     """Causes on sensors that would have to act more often than they can."""
 

@@ -1,0 +1,151 @@
+"""A name must hold whether or not the errors are normal: a tail throws single readings far off, and nothing acts there.
+
+Theory
+------
+What the names leave is distributed as Student's t with ν degrees of freedom and the scale s_ν that fits it best, with
+the posterior weights
+
+    w_ν ∝ π_ν·Π_j t_ν(r_j/s_ν)/s_ν,        r_j = z_j/√(freedom of the row)
+
+nearly all of π on the normal law; the r_j of each sensor are divided by their root mean square, since that is for others to
+judge. Under ν a name with the traces X explains, beside the others,
+
+    T_ν = 2·max_a Σ_j [ln t_ν((z_j − X_j·a)/s_ν) − ln t_ν(z_j/s_ν)],
+
+by iterated weights (ν + 1)/(ν + (z_j/s_ν)²) (Lange, Little and Taylor 1989). An effect that many readings show explains
+nearly as much as it does under normal errors; one that rests on a reading or two gains there only
+(ν + 1)·ln(1 + z²/(ν·s_ν²)). Its p-value is the mean of those of T_ν, χ² with the name's degrees of freedom, under the
+weights.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.special import chdtrc, gammaln
+
+from estimator.diagnosis.selection.ranking import extended_basis, family_p_value
+from estimator.diagnosis.selection.search_state import LEVEL, Found, SearchState
+from estimator.session import Array
+
+FREEDOMS = np.array([3.0, 4.0, 5.0, 6.0, 8.0, 11.0, 16.0, 32.0, np.inf])
+"""ν that are weighed: below three errors have hardly a variance, and beyond 32 nobody tells them from normal ones."""
+
+NORMAL = 0.99
+"""π of the normal law; the others share the rest. Readings are means of many samples, and means are nearly normal
+whatever a sample is: it takes a scatter of the others that shows it to say that they are not."""
+
+KNOWN = 0.2
+"""Degrees of freedom that a row must have for its residual to show how errors are distributed: single readings that a
+name takes out have none."""
+
+FEWEST = 20
+"""Readings from which on tails are told at all."""
+
+TINY = float(np.finfo(float).tiny)
+"""Keeps a division by nothing finite."""
+
+ROUNDS = 12
+"""Of the weights; scale and amplitudes have then come to rest within a hundredth."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tails:
+    """How the errors of a session are distributed, for all that its readings show."""
+
+    weight: Array
+    """(Q,) posterior of `FREEDOMS`."""
+    scale: Array
+    """(Q,) s_ν, in the standard errors that are taken."""
+
+    @property
+    def freedom(self) -> float:
+        """ν of the largest weight; infinite for normal errors."""
+        return float(FREEDOMS[int(np.argmax(self.weight))])
+
+
+def without_names_of_tails(state: SearchState) -> SearchState:
+    """The state without names that readings far out in the tails of the errors explain as well, the worst first.
+
+    They must be as rare under the tails that the readings show as under normal errors.
+    """
+    while state.found and (tails := tails_of(state)) is not None:
+        chances = [
+            family_p_value(replace(f.best, p_value=p_value(state, f, tails)), state.families) for f in state.found
+        ]
+        worst = int(np.argmax(chances))
+        if chances[worst] < LEVEL:
+            break
+        gone = state.found[worst]
+        state = replace(state, found=tuple(f for f in state.found if f is not gone), in_tails=(*state.in_tails, gone))
+    return state
+
+
+def tails_of(state: SearchState) -> Tails | None:
+    """What all that was found leaves says of the tails; None where the readings are too few."""
+    n = state.baseline.residual.size
+    freedom = state.residuals.row_freedom[:n] - (state.attributed()[:n] ** 2).sum(axis=1)
+    known = freedom > KNOWN
+    if known.sum() < FEWEST:
+        return None
+    left = state.remaining[:n][known] / np.sqrt(freedom[known])
+    sensor = state.residuals.sensor_of_row[:n][known]
+    size = np.sqrt(np.bincount(sensor, left**2) / np.maximum(np.bincount(sensor), 1))[sensor]
+    left = left / np.where(size > 0, size, 1.0)
+    scale = np.array([scale_of(left, freedom) for freedom in FREEDOMS])
+    prior = np.where(np.isinf(FREEDOMS), NORMAL, (1 - NORMAL) / (len(FREEDOMS) - 1))
+    logs = np.array([log_density(left, v, s).sum() for v, s in zip(FREEDOMS, scale, strict=True)]) + np.log(prior)
+    weight = np.exp(logs - logs.max())
+    return Tails(weight / weight.sum(), scale)
+
+
+def scale_of(left: Array, freedom: float) -> float:
+    """s_ν of residuals (N,), in their unit."""
+    square = float(np.mean(left**2))
+    for _ in range(0 if np.isinf(freedom) else ROUNDS):
+        square = float(np.mean(weights(left, freedom, np.sqrt(square)) * left**2))
+    return float(np.sqrt(square))
+
+
+def weights(left: Array, freedom: float, scale: float) -> Array:
+    """(N,) how much a residual counts, dimensionless: one for normal errors."""
+    if np.isinf(freedom):
+        return np.ones_like(left)
+    return np.asarray((freedom + 1) / (freedom + (left / scale) ** 2))
+
+
+def log_density(left: Array, freedom: float, scale: float) -> Array:
+    """(N,) ln t_ν(r/s)/s of residuals (N,)."""
+    square = (left / scale) ** 2
+    if np.isinf(freedom):
+        return np.asarray(-square / 2 - np.log(scale * np.sqrt(2 * np.pi)))
+    constant = gammaln((freedom + 1) / 2) - gammaln(freedom / 2) - 0.5 * np.log(freedom * np.pi) - np.log(scale)
+    return np.asarray(constant - (freedom + 1) / 2 * np.log1p(square / freedom))
+
+
+def p_value(state: SearchState, found: Found, tails: Tails) -> float:
+    """p-value of a name beside the other names under the tails that the readings show."""
+    beside = replace(state, structures=()).attributed(without=found)
+    own = extended_basis(beside, found.best.trace)[:, beside.shape[1] :]
+    left = state.residuals.z - beside @ (beside.T @ state.residuals.z)
+    normal = float(((own.T @ left) ** 2).sum())
+    readings = np.arange(len(left)) < state.baseline.residual.size
+    shares = [
+        gained(left, own, readings, (freedom, scale)) / max(normal, TINY)
+        for freedom, scale in zip(FREEDOMS, tails.scale, strict=True)
+    ]
+    return float(tails.weight @ chdtrc(found.best.freedom, found.best.statistic * np.minimum(shares, 1.0)))
+
+
+def gained(left: Array, own: Array, readings: Array, law: tuple[float, float]) -> float:
+    """T_ν of directions ``own`` (n, q), orthonormal, in z (n,) of which ``readings`` (n,) follow the ``law`` (ν, s_ν);
+    the others, parameters of earlier sessions, are normal."""
+    amplitude = own.T @ left
+    if np.isinf(law[0]):
+        return float(amplitude @ amplitude)
+    for _ in range(ROUNDS):
+        weight = np.where(readings, weights(left - own @ amplitude, *law) / law[1] ** 2, 1.0)
+        amplitude = np.linalg.solve((own.T * weight) @ own, own.T @ (weight * left))
+    away = left - own @ amplitude
+    normal = float((left[~readings] ** 2).sum() - (away[~readings] ** 2).sum())
+    change = log_density(away[readings], *law) - log_density(left[readings], *law)
+    return max(normal + 2 * float(change.sum()), 0.0)
