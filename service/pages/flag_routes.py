@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from typing import Annotated
-from urllib.parse import quote
 
 from fastapi import APIRouter, Form, Query, Request
 from fastapi.responses import HTMLResponse, RedirectResponse
@@ -12,7 +11,7 @@ from service.admission import PersonOf
 from service.dependencies import Now, Reading, StorageOf
 from service.flows.assign_flags import Assignment, assign_flag, assign_flags
 from service.flows.handle_flag import acknowledge_flag, bring_flags, resolve_flag
-from service.pages.flags import flags_page
+from service.pages.flags import flag_cards, flags_page
 from service.pages.flags_view import FlagsAsked, FlagsView, choices_of
 from service.pages.forms import NO_NUL, SEE_OTHER, By, Number, Perhaps, Why
 from service.pages.render import render
@@ -88,4 +87,5 @@ def resolve(id: Number, by: By, why: Why, storage: StorageOf, now: Now) -> Redir
 
 
 def _back(flag: Flag) -> RedirectResponse:
-    return RedirectResponse(f"/units/{quote(flag.unit)}#flags", SEE_OTHER)
+    (card,) = flag_cards([flag])
+    return RedirectResponse(f"{card.home}#flags", SEE_OTHER)

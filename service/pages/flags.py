@@ -2,11 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from urllib.parse import quote
 
 from service.pages.flags_view import ORDERS, PAGE_SIZE, FlagsView
 from service.pages.flags_view import STATES as CHOICES
 from service.pages.saved import Saved
 from service.records.flag import Flag, FlagState, Matter, Notice, NoticeKind
+from service.records.model import Scope
 from service.words.conditions import FIT, NOT_JUDGED, UNDECIDED, UNFIT, Condition
 
 MATTERS = {
@@ -20,6 +22,7 @@ MATTERS = {
     Matter.LASTING: "Sessions together",
     Matter.OVERDUE: "Calibration overdue",
 }
+HOMES = {Scope.UNIT: "units", Scope.UNIT_TYPE: "unit-types", Scope.STAND: "stands"}
 STATES = {FlagState.RAISED: "open", FlagState.ACKNOWLEDGED: "acknowledged", FlagState.RESOLVED: "resolved"}
 DONE = {
     NoticeKind.RAISED: "raised",
@@ -52,6 +55,16 @@ class FlagCard:
     def stand(self) -> str:
         """The stand that it finds at fault; empty where it is about something else."""
         return self.flag.place if self.flag.matter in (Matter.STAND, Matter.SHIFTED) else ""
+
+    @property
+    def home(self) -> str:
+        """The page of the unit, the type or the stand that it is about."""
+        return f"/{HOMES[self.flag.scope]}/{quote(self.name)}"
+
+    @property
+    def name(self) -> str:
+        """Of the unit, the type or the stand that it is about."""
+        return self.flag.subject or self.flag.unit
 
     @property
     def is_open(self) -> bool:

@@ -9,6 +9,7 @@ from estimator.wording import counted
 from service.judging.tolerances import tolerances_of
 from service.measures import deviation_measure, in_measure, limit, number, scale_measure
 from service.pages.accepted_causes import AcceptedCause, accepted_causes
+from service.pages.flags import FlagCard, flag_cards
 from service.pages.fleet import FleetRow, fleet_row
 from service.pages.fleet_view import FleetView
 from service.pages.group import GroupSection
@@ -87,6 +88,7 @@ class TypePage:
     units: tuple[FleetRow, ...]
     more: bool
     """Whether there are units that are not listed."""
+    flags: tuple[FlagCard, ...]
     causes: tuple[AcceptedCause, ...]
     group: GroupSection | None
     fields: tuple[ToleranceField, ...]
@@ -114,6 +116,7 @@ def type_page(report: TypeReport, now: datetime, group: GroupSection | None = No
         ),
         units=tuple(fleet_row(unit, now) for unit in report.units[:MOST]),
         more=len(report.units) > MOST,
+        flags=flag_cards(report.flags),
         causes=accepted_causes(report.models),
         group=group,
         fields=tolerance_fields(known),

@@ -5,6 +5,8 @@ from datetime import datetime
 from enum import StrEnum
 from uuid import NAMESPACE_URL, uuid5
 
+from service.records.model import Scope
+
 
 class Matter(StrEnum):
     """What a flag is about."""
@@ -27,6 +29,10 @@ class Matter(StrEnum):
     """What the sessions of a unit, a unit type or a stand show together."""
     OVERDUE = "overdue"
     """The unit's calibration is overdue."""
+
+
+AT_FAULT = (Matter.STAND, Matter.SHIFTED)
+"""Of flags on units that find a stand at fault; their place is its name."""
 
 
 class FlagState(StrEnum):
@@ -75,6 +81,10 @@ class Concern:
     severity: int
     """Of one matter: a larger one is worse."""
     summary: str
+    scope: Scope = Scope.UNIT
+    """Whether it is about the unit, or about its whole type or a stand, which the unit only showed last."""
+    subject: str = ""
+    """Name of the type or the stand."""
 
     @property
     def key(self) -> tuple[str, str]:
@@ -120,6 +130,10 @@ class Flag:
     changed_at: datetime
     assignee: str = ""
     """Who is to look after it; empty where nobody in particular is."""
+    scope: Scope = Scope.UNIT
+    """Whether it is about the unit, or about its whole type or a stand, which the unit only showed last."""
+    subject: str = ""
+    """Name of the type or the stand; empty where it is about the unit."""
     changes: tuple[Notice, ...] = ()
     """Its life, oldest first."""
 

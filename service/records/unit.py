@@ -124,19 +124,19 @@ class FleetCondition:
     """Every verdict is a key."""
     simulated: int
     flags: int = 0
-    """How many are open on all units together."""
+    """How many are open: of units, types and stands."""
     reserved: dict[Verdict, int] = field(default_factory=dict)
     """Of how many units with a verdict it is said with a reservation."""
 
     @classmethod
-    def of(cls, tallies: Sequence[Tally]) -> "FleetCondition":
-        """The sums of some counts."""
+    def of(cls, tallies: Sequence[Tally], of_groups: int = 0) -> "FleetCondition":
+        """The sums of some counts; ``of_groups``: open flags of types and stands."""
         counts = {verdict: [tally for tally in tallies if tally.verdict is verdict] for verdict in Verdict}
         return cls(
             units=sum(tally.units for tally in tallies),
             verdicts={verdict: sum(tally.units for tally in own) for verdict, own in counts.items()},
             simulated=sum(tally.units for tally in tallies if tally.is_simulated),
-            flags=sum(tally.flags for tally in tallies),
+            flags=sum(tally.flags for tally in tallies) + of_groups,
             reserved={verdict: sum(tally.reserved for tally in own) for verdict, own in counts.items()},
         )
 

@@ -310,6 +310,8 @@ class FlagRow(Base):
     changed_at: Mapped[datetime]
     assignee: Mapped[str] = mapped_column(String(200), server_default="")
     assignee_login: Mapped[str] = mapped_column(String(60), server_default="")
+    scope: Mapped[str] = mapped_column(String(10), server_default="unit")
+    subject: Mapped[str] = mapped_column(String(200), server_default="")
 
 
 class NoticeRow(Base):

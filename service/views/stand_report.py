@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from service.judging.model_in_force import in_force
-from service.records.flag import Flag, Matter
+from service.records.flag import AT_FAULT, Flag
 from service.records.fleet import FleetQuery, Order
 from service.records.model import ModelRevision, Scope
 from service.records.paper import StandCertificate
@@ -16,8 +16,6 @@ from service.storage.queries.flags import FlagQuery
 from service.storage.store import Store
 from service.views.stands import stand_conditions
 
-AT_FAULT = (Matter.STAND, Matter.SHIFTED)
-"""Of flags that find a stand at fault; their place is its name."""
 MOST = 25
 """Flags, sessions and units that the page of one stand lists: a screen of each; the lists themselves have all."""
 
@@ -67,9 +65,10 @@ def every_stand(store: Store) -> tuple[StandLine, ...]:
 def stand_report(store: Store, name: str) -> StandReport:
     """One stand; NotFoundError where there is none of that name."""
     use = store.stands.use(name)
-    flags = store.flags.page(FlagQuery(unresolved=True, matters=AT_FAULT, place=name, limit=MOST + 1))
+    flags = store.flags.page(FlagQuery(unresolved=True, stand=name, limit=MOST + 1))
+    at_fault = sum(flag.matter in AT_FAULT for flag in flags)
     return StandReport(
-        line=StandLine(use, store.stands.condition(name), store.stand_certificates.of_stand(name), len(flags)),
+        line=StandLine(use, store.stands.condition(name), store.stand_certificates.of_stand(name), at_fault),
         flags=flags,
         units=store.fleet.units(FleetQuery(stand=name, order=Order.LAST, backwards=True, limit=MOST + 1)),
         sessions=store.sessions.wanted(SessionQuery(stand=name, limit=MOST + 1)),

@@ -5,9 +5,11 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from service.judging.model_in_force import in_force
+from service.records.flag import Flag
 from service.records.fleet import FleetQuery
 from service.records.model import ModelRevision, Scope
 from service.records.unit import ToleranceRevision, TypeUse, UnitSummary, UnitType
+from service.storage.queries.flags import FlagQuery
 from service.storage.store import Store
 
 MOST_TYPES = 500
@@ -35,6 +37,8 @@ class TypeReport:
     """Of its tolerances, oldest first."""
     setters: Mapping[datetime, str]
     """Who set the tolerances, by when; the first ones nobody did."""
+    flags: tuple[Flag, ...]
+    """Open ones on what its sessions show together."""
     units: tuple[UnitSummary, ...]
     """Worst first."""
     models: tuple[ModelRevision, ...]
@@ -56,6 +60,7 @@ def type_report(store: Store, name: str) -> TypeReport:
         kinds=store.unit_types.kinds(name),
         revisions=revisions,
         setters=store.audit.who_did("tolerances", name, [revision.since for revision in revisions]),
+        flags=store.flags.page(FlagQuery(unresolved=True, unit_type=name)),
         units=store.fleet.units(FleetQuery(unit_type=name, limit=MOST + 1)),
         models=in_force(store.models.of_subject(Scope.UNIT_TYPE, name)),
     )

@@ -7,6 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from service.api.schemas.fields import LongText, Name, Reason, Text
 from service.records.flag import FlagState, Matter, NoticeKind
+from service.records.model import Scope
 
 FlagNumber = Annotated[int, Field(ge=1, le=2_000_000_000)]
 
@@ -29,7 +30,9 @@ class FlagSchema(BaseModel):
     model_config = ConfigDict(from_attributes=True)
 
     id: int = Field(description="Number of the flag.")
-    unit: str = Field(description="Serial number of the unit.")
+    unit: str = Field(description="Serial number of the unit; of another scope, of the unit that showed it last.")
+    scope: Scope = Field(description="Whether it is about the unit, its whole unit type or a stand.")
+    subject: str = Field(description="Name of the unit type or the stand; empty where it is about the unit.")
     matter: Matter = Field(description="What it is about.")
     place: str = Field(description="The sensor or the stand that it is about; empty for the unit as a whole.")
     state: FlagState = Field(description="`raised`, `acknowledged` or `resolved`.")

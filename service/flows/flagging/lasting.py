@@ -1,4 +1,5 @@
-"""Step: what a group of sessions shows means a flag: raised once an effect, on the unit that was measured last.
+"""Step: what a group of sessions shows means a flag: raised once an effect, of whose it is: the unit,
+the type or the stand. It keeps the unit whose session showed it last.
 
 An effect that an engineer accepted into the model is known and has none. What a person resolved stays resolved; what
 the sessions no longer show is proposed to be resolved.
@@ -12,7 +13,7 @@ from service.flows.flagging.settle import SERVICE, Occasion, propose, raise_flag
 from service.judging.model_in_force import in_force
 from service.records.flag import Concern, Flag, FlagState, Matter, NoticeKind
 from service.records.group import Group, Member
-from service.records.model import SCOPES, ModelRevision
+from service.records.model import SCOPES, ModelRevision, Scope
 from service.storage.store import Store
 from service.words.group import lasting_place, lasting_summary
 from service.words.group_finding import holds
@@ -36,8 +37,9 @@ def flag_lasting(
         if (finding.level, finding.subject) == (group.level.value, group.name):
             place = lasting_place(scope, group.name, finding)
             shown.add(place)
-            _settle(store, Concern(Matter.LASTING, place, 1, lasting_summary(scope, finding)), known.get(place),
-                    _revision(accepted, finding), latest, at)  # fmt: skip
+            subject = "" if scope is Scope.UNIT else group.name
+            concern = Concern(Matter.LASTING, place, 1, lasting_summary(scope, finding), scope, subject)
+            _settle(store, concern, known.get(place), _revision(accepted, finding), latest, at)
     for place, flag in known.items():
         if place not in shown and flag.state is not FlagState.RESOLVED and not flag.proposal:
             propose(store, Occasion(store.units.hold(flag.unit), flag.session, at), flag, GONE)

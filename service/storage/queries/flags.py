@@ -9,7 +9,8 @@ from sqlalchemy import ColumnElement, Row, and_, case, or_, select, update
 from sqlalchemy.orm import aliased
 
 from service.errors import NotFoundError
-from service.records.flag import Assignee, Concern, Flag, FlagState, Matter, Notice
+from service.records.flag import AT_FAULT, Assignee, Concern, Flag, FlagState, Matter, Notice
+from service.records.model import Scope
 from service.storage.queries.base import Queries
 from service.storage.queries.notices import notice_of
 from service.storage.tables import FlagRow, NoticeRow, UnitRow
@@ -25,12 +26,12 @@ class FlagQuery:
     limit: int = 100
     matter: Matter | None = None
     text: str | None = None
-    """Part of the unit's serial number, small and capital letters alike."""
+    """Part of the unit's serial number, or of the name of the type or the stand, small and capital letters alike."""
     unresolved: bool = False
-    matters: tuple[Matter, ...] = ()
-    """Any of these; empty where any will do."""
-    place: str | None = None
-    """The sensor or the stand that it is about."""
+    unit_type: str | None = None
+    """About a type as a whole."""
+    stand: str | None = None
+    """About a stand, whether units, single sessions or all of them together tell of it."""
     assignee: Assignee | None = None
     """Who looks after it, by the account or, where the flag names none, by the name; of nobody none is anybody's."""
     after: int | None = None
@@ -45,23 +46,27 @@ class FlagQuery:
         return self.oldest_first == (self.before is not None)
 
 
+IS_OF_UNIT = FlagRow.scope == Scope.UNIT
+"""About the unit itself, not about its type or a stand."""
 IS_RESOLVED = case((FlagRow.state == FlagState.RESOLVED, 1), else_=0)
 """A number that orders open flags before those that are resolved."""
 
 
 def _wanted(wanted: FlagQuery) -> Iterator[ColumnElement[bool]]:
     if wanted.unit is not None:
-        yield UnitRow.serial == wanted.unit
+        yield and_(UnitRow.serial == wanted.unit, IS_OF_UNIT)
+    if wanted.unit_type is not None:
+        yield and_(FlagRow.scope == Scope.UNIT_TYPE, FlagRow.subject == wanted.unit_type)
+    if wanted.stand is not None:
+        together = and_(FlagRow.scope == Scope.STAND, FlagRow.subject == wanted.stand)
+        yield or_(and_(FlagRow.matter.in_(AT_FAULT), FlagRow.place == wanted.stand), together)
     if wanted.text:
-        yield UnitRow.serial.icontains(wanted.text, autoescape=True)
+        name = case((IS_OF_UNIT, UnitRow.serial), else_=FlagRow.subject)
+        yield name.icontains(wanted.text, autoescape=True)
     if wanted.state is not None:
         yield FlagRow.state == wanted.state
     if wanted.matter is not None:
         yield FlagRow.matter == wanted.matter
-    if wanted.matters:
-        yield FlagRow.matter.in_(wanted.matters)
-    if wanted.place is not None:
-        yield FlagRow.place == wanted.place
     if wanted.assignee is not None:
         yield _is_of(wanted.assignee)
     place = wanted.after or wanted.before
@@ -93,7 +98,8 @@ class Flags(Queries):
     def open_of(self, unit: int) -> tuple[Flag, ...]:
         """The flags of a unit that are not resolved, without their lives."""
         query = select(FlagRow, UnitRow.serial).join(UnitRow, UnitRow.id == FlagRow.unit_id)
-        found = self._session.execute(query.where(FlagRow.unit_id == unit, FlagRow.state != FlagState.RESOLVED))
+        own = (FlagRow.unit_id == unit, IS_OF_UNIT, FlagRow.state != FlagState.RESOLVED)
+        found = self._session.execute(query.where(*own))
         return tuple(_flag(row, serial) for row, serial in found)
 
     def open_about(self, *matters: Matter) -> tuple[Flag, ...]:
@@ -170,6 +176,8 @@ class Flags(Queries):
             summary=concern.summary,
             proposal="",
             session_id=session,
+            scope=concern.scope,
+            subject=concern.subject,
             raised_at=at,
             changed_at=at,
         )
@@ -206,5 +214,7 @@ def _flag(row: FlagRow, serial: str, changes: tuple[Notice, ...] = ()) -> Flag:
         raised_at=row.raised_at,
         changed_at=row.changed_at,
         assignee=row.assignee,
+        scope=Scope(row.scope),
+        subject=row.subject,
         changes=changes,
     )

@@ -13,6 +13,7 @@ from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState
 from service.records.flag import FlagState
 from service.records.fleet import NOT_KNOWN, FleetChoices, FleetQuery, Tally
+from service.records.model import Scope
 from service.records.paper import Customer
 from service.records.reservation import Reservations
 from service.records.state import RecordState
@@ -57,6 +58,12 @@ class Refreshed:
     """Whether the latest session was one that later ones are judged against, where its verdict was another."""
 
 
+OPEN_OF_GROUPS = (
+    select(func.count()).where(FlagRow.scope != Scope.UNIT, FlagRow.state != FlagState.RESOLVED).scalar_subquery()
+)
+"""Open flags of types and stands."""
+
+
 class Fleet(Queries):
     """All units at a glance."""
 
@@ -89,9 +96,10 @@ class Fleet(Queries):
         return refreshed
 
     def count_flags(self, unit: int) -> None:
-        """Rewrites how many flags of a unit are open."""
+        """Rewrites how many flags of a unit are open; those of its type and of stands are not its own."""
         self.touch(unit)
-        opened = select(func.count()).where(FlagRow.unit_id == unit, FlagRow.state != FlagState.RESOLVED)
+        own = (FlagRow.unit_id == unit, FlagRow.scope == Scope.UNIT, FlagRow.state != FlagState.RESOLVED)
+        opened = select(func.count()).where(*own)
         self._session.execute(
             update(ConditionRow).where(ConditionRow.unit_id == unit).values(flags=opened.scalar_subquery())
         )
@@ -152,17 +160,23 @@ class Fleet(Queries):
 
     def condition(self) -> FleetCondition:
         """How many units are in which condition."""
-        return FleetCondition.of(self.tallies())
+        found = self._tallied()
+        return FleetCondition.of([tally for tally, _ in found], max((flags for _, flags in found), default=0))
 
     def tallies(self) -> tuple[Tally, ...]:
         """Units with an accepted session, by their verdict and by how much of their tolerance they use."""
+        return tuple(tally for tally, _ in self._tallied())
+
+    def _tallied(self) -> list[tuple[Tally, int]]:
+        """The same, with the open flags of types and stands beside each."""
         row = FleetTallyRow
         key = (row.severity, row.is_reference, row.is_simulated, row.bar)
         counts = (func.sum(row.units), func.sum(row.flags), func.sum(row.reserved))
-        query = select(*key, *counts).where(row.units > 0, row.severity != NOT_KNOWN).group_by(*key).order_by(*key)
-        return tuple(
-            Tally(list(Verdict)[row[0]], row[1], row[2], row[3], *row[4:]) for row in self._session.execute(query)
-        )
+        query = select(*key, *counts, OPEN_OF_GROUPS).where(row.units > 0, row.severity != NOT_KNOWN)
+        return [
+            (Tally(list(Verdict)[row[0]], row[1], row[2], row[3], *row[4:-1]), row[-1])
+            for row in self._session.execute(query.group_by(*key).order_by(*key))
+        ]
 
 
 def _summaries(*, measured: bool = True) -> Summaries:

@@ -36,7 +36,10 @@ class UnitTypes(Queries):
 
     def get(self, name: str) -> UnitType:
         """The type with the tolerances that hold now."""
-        return self._record(self._row(name))
+        found = self._session.execute(_with_tolerances().where(UnitTypeRow.name == name)).one_or_none()
+        if found is None:
+            raise _missing(name)
+        return unit_type_of(*found)
 
     def of_unit(self, serial: str) -> UnitType:
         """The type of a unit with the tolerances that hold now."""

@@ -1,21 +1,27 @@
 """What sessions show together is flagged once, until it is accepted into the model or somebody settles it."""
 
+from dataclasses import replace
 from datetime import UTC, datetime
 
 import pytest
 
 from service.flows.accept_lasting import accept_lasting
+from service.flows.flagging.lasting import flag_lasting
 from service.flows.handle_flag import resolve_flag
 from service.flows.receive import upload
-from service.flows.refresh_group import refresh_group
+from service.flows.refresh_group import current, members_of, refresh_group
 from service.flows.withdraw_model import withdraw_model
 from service.flows.withdraw_session import withdraw_session
+from service.pages.flags import flag_cards
 from service.pages.group import found_line
 from service.records.flag import Flag, FlagState, Matter
 from service.records.group import Group, Level
-from service.records.model import NewLasting
+from service.records.model import NewLasting, Scope
 from service.storage import Storage
+from service.storage.group_document import read_group
 from service.storage.queries.flags import FlagQuery
+from service.storage.schema import downgrade, upgrade
+from service.storage.store import Store
 from tests.databases import one_engine
 from tests.service.grouped import CUBIC, cubic_session
 from tests.service.records import step, way
@@ -95,3 +101,53 @@ def test_the_fleet_says_what_was_found_while_it_is_of_the_sessions_of_now(flagge
     upload(flagged, GROUP[4], "a.json", NOW)
     with flagged.database.reading() as store:
         assert found_line(store) is None
+
+
+def counted(store: Store) -> tuple[int, int]:
+    """Open flags of the fleet, and of the unit."""
+    unit = store.fleet.unit("BA-017")
+    assert unit is not None
+    return store.fleet.condition().flags, unit.flags
+
+
+def of_stand(storage: Storage, unit: str = "BA-017") -> None:
+    """What the unit shows is told of the stand."""
+    with storage.database.writing() as store:
+        answer = current(store, group(storage))
+        assert answer is not None
+        (shown,) = read_group(answer.document or {}).findings
+        members = members_of(store, group(storage))
+        stand = store.groups.find(Level.STAND, "ODG-1")
+        flag_lasting(store, stand, [replace(shown, level="stand", subject="ODG-1")], members.sessions[-1], NOW)
+
+
+def test_a_stand_s_effect_is_a_flag_of_the_stand_and_of_no_unit(flagged: Storage) -> None:
+    of_stand(flagged)
+    with flagged.database.reading() as store:
+        (about,) = store.flags.page(FlagQuery(stand="ODG-1"))
+        own = store.flags.page(FlagQuery("BA-017"))
+        counts = counted(store)
+    assert (about.scope, about.subject, about.unit) == (Scope.STAND, "ODG-1", "BA-017")
+    assert [flag.scope for flag in own] == [Scope.UNIT]
+    assert counts == (2, 1)
+
+
+@one_engine
+def test_it_leads_to_the_stand_s_page_and_is_found_by_its_name(flagged: Storage) -> None:
+    of_stand(flagged)
+    with flagged.database.reading() as store:
+        found = store.flags.page(FlagQuery(text="odg"))
+    (card,) = flag_cards(found)
+    assert (card.home, card.name) == ("/stands/ODG-1", "ODG-1")
+
+
+def test_it_was_the_unit_s_before_flags_said_whose_they_are(flagged: Storage, store_url: str) -> None:
+    of_stand(flagged)
+    with flagged.database.reading() as store:
+        before = store.flags.page(FlagQuery())
+    flagged.database.close()
+    downgrade(store_url, "0022")
+    upgrade(store_url)
+    with flagged.database.reading() as store:
+        assert store.flags.page(FlagQuery()) == before
+        assert counted(store) == (2, 1)
