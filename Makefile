@@ -3,13 +3,14 @@ PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; 
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 BIN := .venv/bin
 STAMP := .venv/.complete
+DOCS := .venv/.docs
 # Sessions are small matrices: several threads of BLAS only get in each other's way.
 export OPENBLAS_NUM_THREADS ?= 1
 
 # Tests wait now and then, for a browser or a process: one worker more than cores keeps these at work.
 WORKERS ?= $(shell n=$$(nproc 2>/dev/null || echo 2); echo $$((n < 7 ? n + 1 : 8)))
 
-.PHONY: setup run test lint format words bench papers study backtest stands pictures browser lock clean
+.PHONY: setup run test lint format words bench papers study backtest stands pictures docs browser lock clean
 
 setup: $(STAMP)
 
@@ -65,9 +66,17 @@ stands: setup
 pictures: setup browser
 	IMU_HEALTH_PICTURES=1 $(BIN)/pytest tests/end_to_end/browser/test_pictures.py tests/docs
 
+docs: $(DOCS)
+	$(BIN)/python -m docs.site
+
+$(DOCS): $(STAMP) requirements-docs.lock
+	$(BIN)/pip install --quiet --disable-pip-version-check -r requirements-docs.lock
+	touch $@
+
 lock: setup
 	$(BIN)/pip install --quiet uv
 	$(BIN)/uv pip compile --quiet --upgrade --extra test --no-emit-index-url --no-header --no-annotate pyproject.toml -o requirements.lock
+	$(BIN)/uv pip compile --quiet --upgrade --extra docs --constraint requirements.lock --no-emit-index-url --no-header --no-annotate pyproject.toml | grep -vxFf requirements.lock > requirements-docs.lock
 
 clean:
 	rm -rf .venv build dist *.egg-info

@@ -1,6 +1,6 @@
 """`imu-health user`, `token`, `audit`: who may sign in, for whoever may reach the database."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta
 from typing import Annotated
@@ -11,14 +11,16 @@ from rich.table import Table
 
 from service.commands.console import screen
 from service.commands.exits import FAILED, say
+from service.commands.listing import AsLines, FormOf, Listing, rows_of, table_of
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.errors import ConflictError
 from service.flows.identity.accounts import AccountChange, add_account, change_account
 from service.flows.identity.links import make_link
 from service.flows.identity.sign_in_elsewhere import connect
 from service.flows.identity.tokens import make_token, revoke_token
+from service.records.audit import AuditLine
 from service.records.identity import COMMAND_LINE as WHO
-from service.records.identity import Role
+from service.records.identity import Account, Role, Token
 from service.settings import Settings
 from service.storage import Database, Files, Storage
 from service.storage.store import Store
@@ -102,15 +104,21 @@ def change_user(
 
 
 @user.command("list")
-def list_users(database_url: DatabaseUrl = None, data_folder: DataFolder = None) -> None:
+def list_users(
+    database_url: DatabaseUrl = None, data_folder: DataFolder = None, form: FormOf = None, as_json: AsLines = False
+) -> None:
     """Print every account."""
     with _read(settings_from(database_url=database_url, data_folder=data_folder)) as store:
         accounts = store.accounts.every()
-    table = Table("Login", "Name", "Role", "State")
+    Listing(form, as_json).show(rows_of(accounts), lambda: _accounts(accounts))
+
+
+def _accounts(accounts: Sequence[Account]) -> Table:
+    table = table_of("login", "name", "role", "state")
     for one in accounts:
         state = "may sign in" if one.is_active and one.has_password else "no password yet"
         table.add_row(escape(one.login), escape(one.name), one.role, state if one.is_active else "may not sign in")
-    screen().print(table)
+    return table
 
 
 @token.command("add")
@@ -143,15 +151,21 @@ def take_token(
 
 
 @token.command("list")
-def list_tokens(database_url: DatabaseUrl = None, data_folder: DataFolder = None) -> None:
+def list_tokens(
+    database_url: DatabaseUrl = None, data_folder: DataFolder = None, form: FormOf = None, as_json: AsLines = False
+) -> None:
     """Print every token; secrets are not kept."""
     with _read(settings_from(database_url=database_url, data_folder=data_folder)) as store:
         tokens = store.tokens.every()
-    table = Table("Token", "Login", "For", "Role", "Until", "Last used", "Revoked")
+    Listing(form, as_json).show(rows_of(tokens), lambda: _tokens(tokens))
+
+
+def _tokens(tokens: Sequence[Token]) -> Table:
+    table = table_of("token", "login", "for", "role", "until", "last used", "revoked", right=("token",))
     for one in tokens:
         days = (f"{at:%Y-%m-%d}" if at else "" for at in (one.expires_at, one.last_used_at, one.revoked_at))
         table.add_row(str(one.id), escape(one.login), escape(one.label), one.role, *days)
-    screen().print(table)
+    return table
 
 
 @audit.command("verify")
@@ -180,14 +194,21 @@ def list_lines(
     most: Annotated[int, typer.Option(min=1, max=100_000, help="How many lines.")] = 50,
     database_url: DatabaseUrl = None,
     data_folder: DataFolder = None,
+    *,
+    form: FormOf = None,
+    as_json: AsLines = False,
 ) -> None:
     """Print who did what, the newest first."""
     with _read(settings_from(database_url=database_url, data_folder=data_folder)) as store:
         lines = store.audit.page(most, None, subject)
-    table = Table("When", "Who", "Account", "What", "To")
+    Listing(form, as_json).show(rows_of(lines), lambda: _lines(lines))
+
+
+def _lines(lines: Sequence[AuditLine]) -> Table:
+    table = table_of("when", "who", "account", "what", "to")
     for line in lines:
         table.add_row(f"{line.at:%Y-%m-%d %H:%M}", *map(escape, (line.who, line.account, line.action, line.subject)))
-    screen().print(table)
+    return table
 
 
 def _print_link(settings: Settings, login: str, secret: str) -> None:

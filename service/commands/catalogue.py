@@ -38,7 +38,11 @@ CATALOGUE = {
     "convert": Entry("convert.convert_files", "Turn a recording of a public data set into session files."),
     "fleet": Entry(
         "report.fleet",
-        "Show every unit with its condition, the worst first; --json prints how many units are in which.",
+        "Show every unit with its condition, the worst first; some of them by stand, type, due date or flag.",
+    ),
+    "history": Entry(
+        "history.history",
+        "Show the parameters of a unit through time, each beside its reference and its tolerance.",
     ),
     "report": Entry("report.report", "Write the fleet's condition as a file for other programs."),
     "usable": Entry(

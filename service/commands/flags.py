@@ -7,7 +7,8 @@ from rich.markup import escape
 from rich.table import Table
 
 from service.client import connect
-from service.commands.console import DEFAULT_SERVER, AsJson, Server, print_json, screen
+from service.commands.console import DEFAULT_SERVER, Server, screen
+from service.commands.listing import AsLines, FormOf, Listing, table_of
 from service.records.flag import FlagState
 
 COLOURS = {FlagState.RAISED: "red", FlagState.ACKNOWLEDGED: "yellow", FlagState.RESOLVED: "green"}
@@ -33,7 +34,8 @@ def list_flags(
     ] = None,
     server: Server = DEFAULT_SERVER,
     *,
-    as_json: AsJson = False,
+    form: FormOf = None,
+    as_json: AsLines = False,
 ) -> None:
     """Show flags; without a state those that are open."""
     if context.invoked_subcommand is not None:
@@ -42,11 +44,8 @@ def list_flags(
     with connect(server) as client:
         found = client.get("/flags", limit="1000", **{k: v for k, v in wanted.items() if v}).json()["flags"]
     shown = [flag for flag in found if state is not None or flag["state"] != FlagState.RESOLVED]
-    if as_json:
-        for flag in shown:
-            print_json(flag)
-    else:
-        screen().print(_table(shown) if shown else "No flag is open." if state is None else "There is none.")
+    none = "No flag is open." if state is None else "There is none."
+    Listing(form, as_json).show(shown, lambda: _table(shown) if shown else none)
 
 
 @flags.command("acknowledge")
@@ -92,9 +91,7 @@ def _state(flag: dict[str, Any]) -> str:
 
 
 def _table(found: list[dict[str, Any]]) -> Table:
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    for heading in ("flag", "unit", "state", "since", "who", "where", "what"):
-        table.add_column(heading, justify="right" if heading == "flag" else "left")
+    table = table_of("flag", "unit", "state", "since", "who", "where", "what", right=("flag",))
     for flag in found:
         what = f"{flag['summary']} {flag['proposal']}".strip()
         since, place = flag["raised_at"][:10], escape(flag["place"])

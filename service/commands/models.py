@@ -10,6 +10,7 @@ from rich.table import Table
 from estimator.wording import counted
 from service.client import Client, connect
 from service.commands.console import DEFAULT_SERVER, AsJson, Server, print_json, screen
+from service.commands.listing import AsLines, FormOf, Listing, table_of
 from service.errors import RefusedError, ServiceError
 from service.records.group import Level
 
@@ -26,17 +27,15 @@ Id = Annotated[int, typer.Argument(metavar="REVISION", help="Number of the revis
 
 
 @models.callback()
-def list_models(context: typer.Context, server: Server = DEFAULT_SERVER, as_json: AsJson = False) -> None:
+def list_models(
+    context: typer.Context, server: Server = DEFAULT_SERVER, form: FormOf = None, as_json: AsLines = False
+) -> None:
     """Show accepted causes, newest first."""
     if context.invoked_subcommand is not None:
         return
     with connect(server) as client:
         found = client.get("/models", limit="1000").json()["models"]
-    if as_json:
-        for revision in found:
-            print_json(revision)
-    else:
-        screen().print(_table(found) if found else "No cause is accepted.")
+    Listing(form, as_json).show(found, lambda: _table(found) if found else "No cause is accepted.")
 
 
 @models.command("accept")
@@ -103,9 +102,7 @@ def _outcome(one: dict[str, Any]) -> str:
 
 
 def _table(found: list[dict[str, Any]]) -> Table:
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    for heading in ("revision", "model of", "cause", "accepted"):
-        table.add_column(heading, justify="right" if heading == "revision" else "left")
+    table = table_of("revision", "model of", "cause", "accepted", right=("revision",))
     for one in found:
         sensors = f" ({', '.join(one['sensors'])})" if one["sensors"] else ""
         state = f"withdraws {one['withdraws']}" if one["withdraws"] else one["accepted_at"][:10]

@@ -1,16 +1,19 @@
 """`imu-health fleet` and `imu-health report`: the fleet's condition from a running service."""
 
+from datetime import datetime
 from enum import StrEnum
 from typing import Annotated, Any
 from urllib.parse import quote
 
 import typer
+from rich.console import Group
 from rich.markup import escape
 from rich.table import Table
 
 from estimator.wording import counted
 from service.client import connect
-from service.commands.console import DEFAULT_SERVER, AsJson, Out, Server, deliver, print_json, screen
+from service.commands.console import DEFAULT_SERVER, Out, Server, deliver
+from service.commands.listing import AsLines, FormOf, Listing, table_of
 from service.commands.upload import coloured
 from service.measures import number
 from service.records.decision import Verdict
@@ -26,14 +29,33 @@ class Format(StrEnum):
     PDF = "pdf"
 
 
-def fleet(server: Server = DEFAULT_SERVER, as_json: AsJson = False) -> None:
-    """Show every unit with its condition, the worst first; --json prints how many units are in which."""
+Stand = Annotated[str | None, typer.Option(help="Only those last measured on this stand.", show_default="all")]
+UnitType = Annotated[str | None, typer.Option("--unit-type", help="Only those of this type.", show_default="all")]
+DueBefore = Annotated[
+    datetime | None, typer.Option(help="Only those whose next calibration is due before, UTC.", show_default="all")
+]
+Flagged = Annotated[bool, typer.Option("--flagged", help="Only those with an open flag.")]
+
+
+def fleet(
+    server: Server = DEFAULT_SERVER,
+    form: FormOf = None,
+    as_json: AsLines = False,
+    *,
+    stand: Stand = None,
+    unit_type: UnitType = None,
+    due_before: DueBefore = None,
+    flagged: Flagged = False,
+) -> None:
+    """Show every unit with its condition, the worst first; some of them by stand, type, due date or flag."""
+    due = None if due_before is None else f"{due_before.isoformat()}Z"
+    wanted = {"stand": stand, "unit_type": unit_type, "due_before": due, "flagged": flagged or None}
     with connect(server) as client:
         condition = client.get("/fleet").json()
-        if as_json:
-            print_json(condition)
-        else:
-            screen().print(_summary(condition), _table(client.get("/fleet/report").json()["units"]))
+        found = [unit.document for unit in client.units(**wanted)]
+    is_whole = len(found) == condition["units"]
+    heading = _summary(condition) if is_whole else f"{len(found)} of {counted(condition['units'], 'unit')}\n"
+    Listing(form, as_json).show(found, lambda: Group(heading, _table(found)))
 
 
 class LabelFormat(StrEnum):
@@ -89,9 +111,8 @@ def _counted(verdict: Verdict, count: int, condition: dict[str, Any]) -> str:
 
 
 def _table(units: list[dict[str, Any]]) -> Table:
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    for heading in ("unit", "type", "condition", "margin", "last session", "sessions", "why"):
-        table.add_column(heading, justify="right" if heading in ("margin", "sessions") else "left")
+    headings = ("unit", "type", "condition", "margin", "last session", "sessions", "why")
+    table = table_of(*headings, right=("margin", "sessions"))
     for unit in units:
         table.add_row(
             escape(unit["serial"]) + (" [dim](simulated)[/]" if unit["simulated"] else ""),

@@ -44,7 +44,7 @@ def test_an_account_is_made_signs_in_and_is_kept_out(run: Run, settings: Setting
         assert browser.get("/api/v1/me").json()["name"] == "K. Ito"
     run("user", "add", "second", "--role", "admin", *own)
     assert "may not sign in" in run("user", "change", "k.ito", "--inactive", *own).out
-    assert "may not sign in" in run("user", "list", *own).out
+    assert "may not sign in" in run("user", "list", "--format", "table", *own).out
     assert "only account" in run("user", "change", "second", "--role", "crew", *own).err
 
 

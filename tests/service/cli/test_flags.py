@@ -21,7 +21,7 @@ def address(sqlite: Databases, stock_of: StockOf) -> Iterator[str]:
 
 
 def test_open_flags_are_shown(run: Run, address: str) -> None:
-    ran = run("flags", "--server", address)
+    ran = run("flags", "--format", "table", "--server", address)
     assert ran.code == 0
     assert ran.out.splitlines()[1].split()[:3] == ["1", "BA-017", "raised"]
 
@@ -30,13 +30,13 @@ def test_a_flag_is_handled_and_then_no_longer_open(run: Run, address: str) -> No
     own = ("--by", "K. Ito", "--why", "A3 replaced", "--server", address)
     assert "acknowledged" in run("flags", "acknowledge", 1, *own).out
     assert "resolved" in run("flags", "resolve", 1, *own).out
-    assert run("flags", "--server", address).out == "No flag is open.\n"
+    assert run("flags", "--format", "table", "--server", address).out == "No flag is open.\n"
     [flag] = run("flags", "--state", "resolved", "--json", "--server", address).documents
     assert [change["who"] for change in flag["changes"]] == ["imu-health", "K. Ito", "K. Ito"]
 
 
 def test_flags_are_given_to_somebody_and_found_by_the_name(run: Run, address: str) -> None:
-    assert run("flags", "--assigned", "M. Sato", "--server", address).out == "No flag is open.\n"
+    assert run("flags", "--assigned", "M. Sato", "--server", address).out == ""
     given = run("flags", "assign", 1, "--to", "M. Sato", "--by", "K. Ito", "--server", address)
     assert given.out.startswith("Flag 1  BA-017")
     [flag] = run("flags", "--assigned", "M. Sato", "--json", "--server", address).documents
@@ -54,12 +54,12 @@ def test_notes_and_files_are_put_on_a_session(run: Run, address: str, tmp_path: 
 
 
 def test_saved_views_are_listed_with_their_addresses(run: Run, address: str) -> None:
-    assert run("views", "--server", address).out == "No view is saved yet.\n"
+    assert run("views", "--format", "table", "--server", address).out == "No view is saved yet.\n"
     new = {"page": "fleet", "name": "overdue", "query": "due=overdue", "by": "K. Ito"}
     httpx.post(f"{address}/api/v1/views", json=new)
-    shown = run("views", "--server", address).out.splitlines()[1].split()
+    shown = run("views", "--format", "table", "--server", address).out.splitlines()[1].split()
     assert shown == ["1", "fleet", "overdue", f"{address}/?due=overdue"]
-    assert [view["url"] for view in run("views", "--json", "--server", address).documents] == ["/?due=overdue"]
+    assert [view["url"] for view in run("views", "--server", address).documents] == ["/?due=overdue"]
 
 
 def test_what_cannot_be_done_is_said_on_one_line(run: Run, address: str) -> None:

@@ -22,7 +22,7 @@ def address(sqlite: Databases, stock_of: StockOf) -> Iterator[str]:
 
 def test_what_sessions_show_is_accepted_shown_and_withdrawn(run: Run, address: str) -> None:
     own = ("--by", "K. Ito", "--why", "bench", "--server", address)
-    assert run("models", "--server", address).out == "No cause is accepted.\n"
+    assert run("models", "--format", "table", "--server", address).out == "No cause is accepted.\n"
     accepted = run("models", "accept", "unit", "BA-017", "cubic-nonlinearity", *own)
     assert accepted.out.splitlines()[0].startswith("Revision 1  cubic-nonlinearity (A2)  of unit BA-017, accepted by")
     assert "4 of 4 sessions" in accepted.out

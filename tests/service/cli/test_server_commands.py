@@ -78,15 +78,36 @@ def test_a_server_that_does_not_answer_is_said_on_one_line(run: Run, good_file: 
 def test_the_fleet_is_shown_worst_first(run: Run, address: str, two_sessions: list[Path], tmp_path: Path) -> None:
     other = write(tmp_path, "other.json", accelerometer_block(unit="BA-100"))
     run("upload", *two_sessions, other, "--server", address)
-    lines = run("fleet", "--server", address).out.splitlines()
+    lines = run("fleet", "--format", "table", "--server", address).out.splitlines()
     assert lines[0] == "2 units: 1 Undecided, 1 Fit"
     assert [line.split()[0] for line in lines if line.startswith("BA-")] == ["BA-100", "BA-017"]
 
 
-def test_how_many_units_are_in_which_condition_is_there_as_json(run: Run, address: str, good_file: Path) -> None:
+def test_a_pipe_gets_one_unit_a_line_and_who_chooses_a_list(run: Run, address: str, good_file: Path) -> None:
     run("upload", good_file, "--server", address)
-    [condition] = run("fleet", "--server", address, "--json").documents
-    assert (condition["units"], condition["verdicts"]["undecidable"]) == (1, 1)
+    [unit] = run("fleet", "--server", address).documents
+    assert (unit["serial"], unit["verdict"]) == ("BA-017", "undecidable")
+    assert run("fleet", "--server", address, "--json").documents == [unit]
+    assert run("fleet", "--server", address, "--format", "json").documents == [[unit]]
+
+
+def test_some_of_the_fleet_are_shown(run: Run, address: str, two_sessions: list[Path], tmp_path: Path) -> None:
+    document = accelerometer_block(unit="BA-100")
+    document["stand"]["id"] = "S9"
+    run("upload", *two_sessions, write(tmp_path, "other.json", document), "--server", address)
+    assert [unit["serial"] for unit in run("fleet", "--stand", "S9", "--server", address).documents] == ["BA-100"]
+    shown = run("fleet", "--stand", "S9", "--format", "table", "--server", address).out
+    assert shown.startswith("1 of 2 units")
+
+
+def test_a_history_is_shown_beside_its_reference(run: Run, address: str, two_sessions: list[Path]) -> None:
+    run("upload", *two_sessions, "--server", address)
+    asked = ("history", "BA-017", "--sensor", "A3", "--parameter", "bias", "--server", address)
+    assert [point["is_reference"] for point in run(*asked).documents] == [True, False]
+    heading, first, later = run(*asked, "--format", "table").out.splitlines()
+    assert heading.split()[:3] == ["measured", "sensor", "parameter"]
+    assert (first.split()[:3], later.split()[:3]) == (["2026-03-01", "A3", "bias"], ["2026-05-01", "A3", "bias"])
+    assert "±" in later
 
 
 def test_the_report_is_a_table_for_other_programs(run: Run, address: str, good_file: Path, tmp_path: Path) -> None:
