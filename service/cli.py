@@ -8,15 +8,18 @@ import sys
 from collections.abc import Iterator, Mapping
 from functools import cache
 from importlib import import_module
-from typing import Any
+from typing import Annotated, Any
 
 import typer
 from typer.core import TyperCommand, TyperGroup
 from typer.exceptions import TyperException
 
 from service.commands.catalogue import CATALOGUE
+from service.commands.examples import help_of
 from service.commands.exits import FAILED, say
+from service.commands.speech import choose, said
 from service.errors import ServiceError
+from service.languages.language import Language
 
 
 class OnDemand(Mapping[str, Any]):
@@ -59,11 +62,19 @@ class Commands(TyperGroup):
 def _command(name: str) -> Any:
     module, _, member = CATALOGUE[name].home.partition(".")
     found = getattr(import_module(f"service.commands.{module}"), member)
-    if isinstance(found, typer.Typer):
-        return typer.main.get_command(found)
-    single = typer.Typer(add_completion=False, rich_markup_mode="markdown")
-    single.command(name)(found)
-    return typer.main.get_command(single)
+    if not isinstance(found, typer.Typer):
+        single = typer.Typer(add_completion=False)
+        single.command(name)(found)
+        found = single
+    return _taught(typer.main.get_command(found), name)
+
+
+def _taught(command: Any, words: str) -> Any:
+    """A command whose help ends with its examples, and those below it."""
+    command.rich_markup_mode, command.epilog = "markdown", help_of(words)
+    for name, below in getattr(command, "commands", {}).items():
+        _taught(below, f"{words} {name}")
+    return command
 
 
 app = typer.Typer(
@@ -76,8 +87,14 @@ app = typer.Typer(
 
 
 @app.callback()
-def imu_health() -> None:
+def imu_health(
+    lang: Annotated[
+        Language | None, typer.Option(help="Of verdicts, findings and refusals.", show_default="the system's: LANG")
+    ] = None,
+) -> None:
     """In-service health of redundant inertial measurement units."""
+    if lang is not None:
+        choose(lang)
 
 
 def main() -> None:
@@ -89,7 +106,7 @@ def main() -> None:
         sys.exit(FAILED)
     except (ServiceError, OSError) as fault:
         cause = getattr(fault.__cause__, "orig", None)
-        say(f"imu-health: {fault}" + (f" ({cause})" if cause else ""))
+        say(f"imu-health: {said(str(fault))}" + (f" ({cause})" if cause else ""))
         sys.exit(FAILED)
     sys.exit(code if isinstance(code, int) else 0)
 

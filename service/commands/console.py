@@ -13,6 +13,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from estimator.errors import Problem, SessionError
 from service.commands.exits import UNUSABLE, say
+from service.commands.speech import problems_said
 from service.errors import RefusedError
 
 T = TypeVar("T")
@@ -47,7 +48,7 @@ def deliver(content: bytes, out: Path | None) -> None:
 
 def problem_line(file: Path, problems: Iterable[Problem]) -> str:
     """Everything wrong with a file on one line: the file, then each field, row and what to do."""
-    return f"{file}: " + "; ".join(map(str, problems))
+    return f"{file}: {problems_said(problems)}"
 
 
 def for_each(files: list[Path], work: Callable[[Path], T], show: Callable[[T], None], doing: str) -> None:

@@ -11,6 +11,7 @@ from estimator.diagnosis import Diagnosis
 from estimator.diagnosis.results import Gain, Limit, Score, Structure
 from estimator.session import CalibrationSession
 from estimator.wording import counted
+from service.commands.speech import said
 from service.measures import number
 from service.records.diagnosis import DiagnosisState, state_of
 from service.words.diagnosis import NOT_APPLICABLE, errors_of, nothing_of, what_to_do
@@ -32,7 +33,7 @@ def diagnosis_view(session: CalibrationSession, diagnosis: Diagnosis | None) -> 
     """The whole diagnosis of one session; None of a programme in which no causes are looked for."""
     when = f", {session.started_at}" if session.started_at else ""
     heading = Text.assemble((session.unit, "bold"), when)
-    told = [Text(NOT_APPLICABLE, "yellow")] if diagnosis is None else _told(diagnosis)
+    told = [Text(said(NOT_APPLICABLE), "yellow")] if diagnosis is None else _told(diagnosis)
     return Group(heading, *told, Text(""))
 
 
@@ -41,14 +42,14 @@ def _told(diagnosis: Diagnosis) -> Iterator[RenderableType]:
     for finding in diagnosis.findings:
         yield from _finding(finding_view(finding, (), diagnosis.findings), COLOURS[state])
     for structure in diagnosis.structures:
-        yield Text(_structure(structure), COLOURS[DiagnosisState.UNEXPLAINED])
+        yield Text(said(_structure(structure)), COLOURS[DiagnosisState.UNEXPLAINED])
     if state is DiagnosisState.UNEXPLAINED:
-        yield Text(f"  What to do: {what_to_do(diagnosis)}")
+        yield Text(f"  What to do: {said(what_to_do(diagnosis))}")
     if not diagnosis.findings and not diagnosis.structures:
-        yield Text(nothing_of(diagnosis), COLOURS[state])
+        yield Text(said(nothing_of(diagnosis)), COLOURS[state])
     else:
-        yield from (Text(sentence, "yellow") for sentence in errors_of(diagnosis))
-    yield from (Text(note) for note in diagnosis.notes)
+        yield from (Text(said(sentence), "yellow") for sentence in errors_of(diagnosis))
+    yield from (Text(said(note)) for note in diagnosis.notes)
     if diagnosis.findings:
         yield Text(_gain(diagnosis.gain))
     yield from _unseen(diagnosis.limits)
@@ -56,11 +57,11 @@ def _told(diagnosis: Diagnosis) -> Iterator[RenderableType]:
 
 def _finding(finding: FindingView, colour: str) -> Iterator[RenderableType]:
     """The name or the choice, then the evidence."""
-    yield Text(finding.statement, f"bold {colour}")
+    yield Text(said(finding.statement), f"bold {colour}")
     if finding.doubtful and not finding.lone:
         yield _choices(finding)
     else:
-        yield Text(f"  {'If it comes back' if finding.lone else 'What to do'}: {finding.advice}")
+        yield Text(f"  {'If it comes back' if finding.lone else 'What to do'}: {said(finding.advice)}")
     size = ", ".join(finding.amplitudes)
     parts = [f"size {size}" if size else "", finding.shape, finding.evidence, finding.since]
     yield Text("  " + "; ".join(part.rstrip(".") for part in parts if part))

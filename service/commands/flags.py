@@ -9,6 +9,7 @@ from rich.table import Table
 from service.client import connect
 from service.commands.console import DEFAULT_SERVER, Server, screen
 from service.commands.listing import AsLines, FormOf, Listing, table_of
+from service.commands.speech import said
 from service.records.flag import FlagState
 
 COLOURS = {FlagState.RAISED: "red", FlagState.ACKNOWLEDGED: "yellow", FlagState.RESOLVED: "green"}
@@ -82,7 +83,7 @@ def _handle(id: int, what: str, by: str, why: str, server: str) -> None:
 
 
 def _line(flag: dict[str, Any]) -> str:
-    return f"Flag {flag['id']}  [bold]{escape(flag['unit'])}[/]  {_state(flag)}  {escape(flag['summary'])}"
+    return f"Flag {flag['id']}  [bold]{escape(flag['unit'])}[/]  {_state(flag)}  {escape(said(flag['summary']))}"
 
 
 def _state(flag: dict[str, Any]) -> str:
@@ -93,7 +94,7 @@ def _state(flag: dict[str, Any]) -> str:
 def _table(found: list[dict[str, Any]]) -> Table:
     table = table_of("flag", "unit", "state", "since", "who", "where", "what", right=("flag",))
     for flag in found:
-        what = f"{flag['summary']} {flag['proposal']}".strip()
+        what = said(f"{flag['summary']} {flag['proposal']}".strip())
         since, place = flag["raised_at"][:10], escape(flag["place"])
         table.add_row(
             str(flag["id"]), escape(flag["unit"]), _state(flag), since, escape(flag["assignee"]), place, escape(what)

@@ -14,6 +14,7 @@ from estimator.wording import counted
 from service.client import connect
 from service.commands.console import DEFAULT_SERVER, Out, Server, deliver
 from service.commands.listing import AsLines, FormOf, Listing, table_of
+from service.commands.speech import said
 from service.commands.upload import coloured
 from service.measures import number
 from service.records.decision import Verdict
@@ -121,6 +122,6 @@ def _table(units: list[dict[str, Any]]) -> Table:
             number(unit["margin"], 2),
             (unit["last_at"] or "")[:10],
             str(unit["sessions"]),
-            escape(unit["reason"]),
+            escape(said(unit["reason"])),
         )
     return table

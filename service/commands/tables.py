@@ -11,6 +11,7 @@ from rich.text import Text
 
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import CALIBRATIONS, CalibrationSession, Sensor
+from service.commands.speech import said
 from service.measures import COVERAGE, UNKNOWN, deviation_measure, in_measure, measured, number
 from service.words.coverage import coverage_in_words
 from service.words.fit import fit_in_words
@@ -109,7 +110,7 @@ def _off_nominal(scale: Estimate, nominal: float) -> Estimate:
 def _notes(calibration: Calibration) -> Iterator[Text]:
     """Sentences: how model and readings agree, and what this session cannot see."""
     fit = fit_in_words(calibration)
-    yield Text(f"{fit.headline} {fit.detail}")
+    yield Text(said(f"{fit.headline} {fit.detail}"))
     sensors: dict[str, list[str]] = {}
     for sensor in calibration.sensors:
         unseen = ", ".join(name for name, seen in sensor.observable.items() if not seen)
@@ -118,4 +119,4 @@ def _notes(calibration: Calibration) -> Iterator[Text]:
         if unseen:
             yield Text(f"{', '.join(names)}: this session does not observe {unseen}.", "yellow")
     for warning in fit.warnings:
-        yield Text(warning, "yellow")
+        yield Text(said(warning), "yellow")

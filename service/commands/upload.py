@@ -9,6 +9,7 @@ from rich.markup import escape
 
 from service.client import Client, connect
 from service.commands.console import DEFAULT_SERVER, AsJson, Files, Server, for_each, print_json, screen
+from service.commands.speech import said
 from service.records.decision import Verdict
 from service.words.conditions import Condition, condition_of
 
@@ -73,12 +74,12 @@ def _uploaded(client: Client, file: Path, stated: dict[str, str], *, wait: bool)
 def _print_line(answer: dict[str, Any]) -> None:
     """``BA-017  3f9a0c5be1d24786aa10  Fit, but the zero of A2 …  …``"""
     verdict = coloured(answer["verdict"], answer["is_reference"], answer["said"])
-    line = f"[bold]{escape(answer['unit'])}[/]  {answer['id']}  {verdict}  {escape(answer['reason'])}"
+    line = f"[bold]{escape(answer['unit'])}[/]  {answer['id']}  {verdict}  {escape(said(answer['reason']))}"
     screen().print(line, soft_wrap=True)
 
 
-def coloured(word: str, is_reference: bool = False, said: str = "") -> str:
-    """A verdict as the pages word it, with their colour; ``said`` where it is told with its reservations."""
+def coloured(word: str, is_reference: bool = False, as_said: str = "") -> str:
+    """A verdict as the pages word it, with their colour; ``as_said`` where it is told with its reservations."""
     verdict = Verdict(word)
     shown: Condition = condition_of(verdict, is_reference=is_reference)
-    return f"[{COLOURS[verdict]}]{escape(said or shown.word)}[/]"
+    return f"[{COLOURS[verdict]}]{escape(said(as_said or shown.word))}[/]"

@@ -9,6 +9,7 @@ from rich.markup import escape
 from service.client import connect
 from service.commands.console import DEFAULT_SERVER, AsJson, Server, print_json, screen
 from service.commands.exits import FAILED
+from service.commands.speech import said
 
 Unit = Annotated[str, typer.Argument(metavar="UNIT", help="Serial number.")]
 
@@ -20,8 +21,8 @@ def usable(unit: Unit, server: Server = DEFAULT_SERVER, as_json: AsJson = False)
     if as_json:
         print_json(answer)
     else:
-        word = "[green]usable[/]" if answer["usable"] else "[bold red]not usable[/]"
+        word = f"[green]{said('usable')}[/]" if answer["usable"] else f"[bold red]{said('not usable')}[/]"
         lines = (answer["why"], *answer["reasons"][1:], *(f"But: {line}" for line in answer["reservations"]))
-        screen().print(f"[bold]{escape(unit)}[/]  {word}", *map(escape, lines), sep="\n  ")
+        screen().print(f"[bold]{escape(unit)}[/]  {word}", *(escape(said(line)) for line in lines), sep="\n  ")
     if not answer["usable"]:
         raise typer.Exit(FAILED)

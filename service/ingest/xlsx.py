@@ -1,5 +1,6 @@
 """XLSX: sheet `readings` with a header row, sheet `session` with keys and values such as `sensors[1].name` | A1."""
 
+from collections.abc import Sequence
 from string import ascii_uppercase
 from typing import Literal
 
@@ -10,6 +11,7 @@ import polars as pl
 from estimator.reading.columns import Column
 from estimator.reading.csv_text import named_columns
 from estimator.reading.problems import Problems, Where
+from service.ingest.in_russian import CHOSEN, IN_ENGLISH, heading_in_english, key_in_english, value_in_english
 from service.ingest.key_values import TEXTS, last_step, nested
 from service.ingest.limits import in_force, refusal
 from service.ingest.workbook import check_workbook
@@ -18,8 +20,10 @@ BOOLEANS = ("true", "false")
 """How the library writes a cell that is true or false, which as a number would be 1 or 0."""
 DType = Literal["string", "float"]
 Cell = float | str | None
+Names = tuple[str, str]
+"""Of the two sheets that a session needs, as a workbook has them."""
 SHEETS = ("session", "readings")
-"""That a session needs."""
+"""What they are called in English."""
 
 
 def read_xlsx(content: bytes, filename: str) -> dict[str, object]:
@@ -30,25 +34,26 @@ def read_xlsx(content: bytes, filename: str) -> dict[str, object]:
 def read_with_places(content: bytes, filename: str) -> tuple[dict[str, object], Where]:
     """The same, and which cell a field and row stand in."""
     check_workbook(content, filename)
-    session, readings = _sheets(content, filename)
+    names, session, readings = _sheets(content, filename)
     problems = Problems(filename, in_force().extent)
     document = nested([row for row in session if row[0].strip()], problems)
     table = named_columns(*readings, problems)
     problems.raise_if_any()
-    return document | {"table": table}, _places([key for key, _ in session], readings[0])
+    return document | {"table": table}, _places(names, [key for key, _ in session], readings[0])
 
 
-def _places(keys: list[str], header: list[str]) -> Where:
+def _places(names: Names, keys: list[str], header: list[str]) -> Where:
     """``cell C7 of the sheet readings``; a key's line is that of the sheet."""
     lines = {key.strip(): line for line, key in enumerate(keys, start=1)}
     letters = {name.strip(): letters_of(number) for number, name in enumerate(header, start=1)}
+    session, readings = names
 
     def where(field: str, row: int | None) -> str:
         if row is not None and field in letters:
-            return f"cell {letters[field]}{row + 1} of the sheet readings"
+            return f"cell {letters[field]}{row + 1} of the sheet {readings}"
         if row is None and field in letters:
-            return f"column {letters[field]} of the sheet readings"
-        return f"cell B{lines[field]} of the sheet session" if field in lines else ""
+            return f"column {letters[field]} of the sheet {readings}"
+        return f"cell B{lines[field]} of the sheet {session}" if field in lines else ""
 
     return where
 
@@ -71,39 +76,56 @@ def sheet_names(content: bytes, filename: str) -> tuple[str, ...]:
         raise refusal(filename, "is damaged or not a readable XLSX file; save it again") from error
 
 
-def _sheets(content: bytes, filename: str) -> tuple[list[tuple[str, Cell]], tuple[list[str], list[Column]]]:
-    """Keys and values of `session`; header and columns of `readings`."""
+def session_sheets(names: Sequence[str]) -> Names | None:
+    """The two sheets of a session among those of a workbook, in English or Russian; None of any other workbook."""
+    found = {IN_ENGLISH.get(name.strip(), name): name for name in reversed(names)}
+    return (found["session"], found["readings"]) if found.keys() >= set(SHEETS) else None
+
+
+def _sheets(content: bytes, filename: str) -> tuple[Names, list[tuple[str, Cell]], tuple[list[str], list[Column]]]:
+    """The sheets' names; keys and values of the first; header and columns of the second."""
     try:
         book = fastexcel.read_excel(content)
+        names = session_sheets(book.sheet_names)
+        if names is not None:
+            return names, _key_values(book, names[0]), _table(book, names[1])
         missing = [name for name in SHEETS if name not in book.sheet_names]
-        found = None if missing else (_key_values(book), _table(book))
     except fastexcel.FastExcelError as error:
         raise refusal(filename, "is damaged or not a readable XLSX file; save it again") from error
-    if found is None:
-        text = f"has no sheet {' and no sheet '.join(missing)}; a session needs both, a table of your own a mapping"
-        raise refusal(filename, text)
-    return found
+    text = f"has no sheet {' and no sheet '.join(missing)}; a session needs both, a table of your own a mapping"
+    raise refusal(filename, text)
 
 
-def _key_values(book: fastexcel.ExcelReader) -> list[tuple[str, Cell]]:
-    texts = _load(book, "session", "string").get_columns()
+def _key_values(book: fastexcel.ExcelReader, sheet: str) -> list[tuple[str, Cell]]:
+    """Keys in English."""
+    texts = _load(book, sheet, "string").get_columns()
     if len(texts) < 2:
         return []
-    values = _cells(_load(book, "session", "float").get_columns()[1], texts[1])
-    rows = zip(texts[0].to_list(), values, texts[1].to_list(), strict=True)
-    return [(key or "", text if last_step(key or "") in TEXTS else value) for key, value, text in rows]
+    values = _cells(_load(book, sheet, "float").get_columns()[1], texts[1])
+    keys = [key_in_english(key or "") for key in texts[0]]
+    rows = zip(keys, values, texts[1].to_list(), strict=True)
+    return [(key, _value(last_step(key), value, text)) for key, value, text in rows]
 
 
-def _table(book: fastexcel.ExcelReader) -> tuple[list[str], list[Column]]:
-    """Without the empty rows that a spreadsheet keeps at its end."""
-    texts, numbers = _load(book, "readings", "string"), _load(book, "readings", "float")
+def _value(name: str, value: Cell, text: str | None) -> Cell:
+    return value_in_english(name, text if name in TEXTS else value)
+
+
+def _table(book: fastexcel.ExcelReader, sheet: str) -> tuple[list[str], list[Column]]:
+    """Headings in English; without the empty rows that a spreadsheet keeps at its end."""
+    texts, numbers = _load(book, sheet, "string"), _load(book, sheet, "float")
     if texts.is_empty():
         return [], []
-    header = [text or "" for text in texts.row(0)]
+    header = [heading_in_english(text or "") for text in texts.row(0)]
     ends = [np.flatnonzero(series.is_not_null().to_numpy()) for series in texts.slice(1)]
     count = max((int(rows[-1]) + 1 for rows in ends if len(rows)), default=0)
-    pairs = zip(numbers.slice(1, count), texts.slice(1, count), strict=True)
-    return header, [_cells(*pair) for pair in pairs]
+    pairs = zip(header, numbers.slice(1, count), texts.slice(1, count), strict=True)
+    return header, [_column(name, *cells) for name, *cells in pairs]
+
+
+def _column(name: str, numbers: pl.Series, texts: pl.Series) -> Column:
+    cells = _cells(numbers, texts)
+    return [value_in_english(name, cell) for cell in cells] if name in CHOSEN else cells
 
 
 def _load(book: fastexcel.ExcelReader, sheet: str, dtype: DType) -> pl.DataFrame:

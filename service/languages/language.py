@@ -1,6 +1,6 @@
 """The languages that the service speaks, and which one somebody wants."""
 
-from collections.abc import Iterator, MutableMapping
+from collections.abc import Iterator, Mapping, MutableMapping
 from enum import Enum
 from http.cookies import CookieError, SimpleCookie
 from typing import Any
@@ -52,6 +52,13 @@ def asked(scope: MutableMapping[str, Any]) -> Language:
         or chosen_before(headers.get(b"cookie", ""))
         or preferred(headers.get(b"accept-language", ""))
     )
+
+
+def of_environment(variables: Mapping[str, str]) -> Language:
+    """The language of a process, by the variables that gettext programs go by, in their order."""
+    names = ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG")
+    stated = next((variables[name] for name in names if variables.get(name)), "")
+    return next((known for tag in stated.split(":") if (known := named(tag.split("_")[0]))), Language.ENGLISH)
 
 
 def preferred(header: str) -> Language:

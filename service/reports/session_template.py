@@ -8,6 +8,7 @@ password: nobody changes one by mistake.
 import io
 import json
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
@@ -24,7 +25,9 @@ from estimator.session import (
     CalibrationSession,
 )
 from estimator.writing import session_document
+from service.languages.language import Language
 from service.reports.sheets import OPTIONS, naive
+from service.reports.template_wording import Wording, wording
 from service.words.session_keys import COLUMN_HINTS, KEY_HINTS, NEEDED_HERE, reading_hint, standard_error_hint
 
 DOCUMENT = dict[str, Any]
@@ -54,18 +57,27 @@ AXIS_DIGITS = 10
 """After the point, of axes: 2e-5 arcsec."""
 
 
-def session_template(pattern: CalibrationSession, made: datetime) -> bytes:
+def session_template(pattern: CalibrationSession, made: datetime, language: Language = Language.ENGLISH) -> bytes:
     """The workbook for the next session that is like this one."""
     document = session_document(pattern)
     target = io.BytesIO()
     book = xlsxwriter.Workbook(target, {**OPTIONS, "constant_memory": False})
     book.set_properties({"title": "imu-session/1", "author": "imu-health", "created": naive(made)})
-    looks = _looks(book)
-    _session_sheet(book.add_worksheet("session"), looks, document)
-    _readings_sheet(book.add_worksheet("readings"), looks, document)
-    _example_sheet(book.add_worksheet("example"), looks, document)
+    words = wording(language, [sensor["name"] for sensor in document["sensors"]])
+    style = Style(_looks(book), words)
+    _session_sheet(book.add_worksheet(words.sheet("session")), style, document)
+    _readings_sheet(book.add_worksheet(words.sheet("readings")), style, document)
+    _example_sheet(book.add_worksheet(words.sheet("example")), style, document)
     book.close()
     return target.getvalue()
+
+
+@dataclass(frozen=True)
+class Style:
+    """How cells look, and in which words they speak."""
+
+    looks: dict[str, Format]
+    words: Wording
 
 
 def _looks(book: xlsxwriter.Workbook) -> dict[str, Format]:
@@ -79,20 +91,21 @@ def _looks(book: xlsxwriter.Workbook) -> dict[str, Format]:
     }
 
 
-def _session_sheet(sheet: Worksheet, looks: dict[str, Format], document: DOCUMENT) -> None:
+def _session_sheet(sheet: Worksheet, style: Style, document: DOCUMENT) -> None:
     """Keys, values, and what they mean; yellow ones are to be filled in."""
     sheet.set_column(0, 0, 30)
     sheet.set_column(1, 1, 34)
     sheet.set_column(2, 2, 80)
+    words = style.words
     for row, (key, value) in enumerate(_rows(document)):
         step = key.rpartition(".")[2]
         is_asked = value in ("", None)
-        sheet.write_string(row, 0, key, looks["head"])
-        _write(sheet, (row, 1), value, looks["asked" if is_asked else "given"])
-        hint = KEY_HINTS.get(key) or KEY_HINTS.get(step, "")
-        needed = f" {NEEDED_HERE}" if is_asked and key in ("unit", "stand.id") else ""
-        sheet.write_string(row, 2, hint + needed, looks["hint"])
-        _check(sheet, (row, 1, row, 1), step, hint)
+        sheet.write_string(row, 0, words.key(key), style.looks["head"])
+        _write(sheet, (row, 1), words.value(step, value), style.looks["asked" if is_asked else "given"])
+        hint = words.say(KEY_HINTS.get(key) or KEY_HINTS.get(step, ""))
+        needed = f" {words.say(NEEDED_HERE)}" if is_asked and key in ("unit", "stand.id") else ""
+        sheet.write_string(row, 2, hint + needed, style.looks["hint"])
+        _check(sheet, (row, 1, row, 1), step, hint, words)
     sheet.protect("", {"format_columns": True, "format_rows": True})
 
 
@@ -126,20 +139,20 @@ def _short(value: Any) -> Any:
     return round(value, AXIS_DIGITS) + 0.0 if isinstance(value, float) else value
 
 
-def _readings_sheet(sheet: Worksheet, looks: dict[str, Format], document: DOCUMENT) -> None:
+def _readings_sheet(sheet: Worksheet, style: Style, document: DOCUMENT) -> None:
     """The schedule, and empty columns for what is measured."""
     columns = _columns(document)
     planned = len(next(iter(columns.values()))) <= MOST_PLANNED and "sample_rate_hz" not in document
-    _headings(sheet, looks, document, list(columns))
-    sheet.set_column(0, len(columns) - 1, 14, looks["given"])
+    _headings(sheet, style, document, list(columns))
+    sheet.set_column(0, len(columns) - 1, 14, style.looks["given"])
     sensors = {sensor["name"] for sensor in document["sensors"]}
     for place, (name, cells) in enumerate(columns.items()):
         is_measured = name in MEASURED or name in sensors or name.removesuffix("_se") in sensors
         rows = len(cells) if planned else 0
         for row in range(rows):
-            cell = "" if is_measured else cells[row]
-            _write(sheet, (row + 1, place), cell, looks["reading" if name in sensors else "given"])
-        _check(sheet, (1, place, max(ROOM, rows), place), name, _hint(name, document))
+            cell = "" if is_measured else style.words.value(name, cells[row])
+            _write(sheet, (row + 1, place), cell, style.looks["reading" if name in sensors else "given"])
+        _check(sheet, (1, place, max(ROOM, rows), place), name, style.words.say(_hint(name, document)), style.words)
     sheet.protect("", {"format_columns": True, "insert_rows": True, "delete_rows": True, "sort": True})
 
 
@@ -156,10 +169,10 @@ def _columns(document: DOCUMENT) -> DOCUMENT:
     return settings | readings | {f"{name}_se": table.get(f"{name}_se", [None] * rows) for name in sensors}
 
 
-def _headings(sheet: Worksheet, looks: dict[str, Format], document: DOCUMENT, names: list[str]) -> None:
+def _headings(sheet: Worksheet, style: Style, document: DOCUMENT, names: list[str]) -> None:
     for place, name in enumerate(names):
-        sheet.write_string(0, place, name, looks["head"])
-        sheet.write_comment(0, place, _hint(name, document), {"author": "imu-health"})
+        sheet.write_string(0, place, style.words.heading(name), style.looks["head"])
+        sheet.write_comment(0, place, style.words.say(_hint(name, document)), {"author": "imu-health"})
     sheet.freeze_panes(1, 0)
 
 
@@ -173,20 +186,20 @@ def _hint(name: str, document: DOCUMENT) -> str:
     return COLUMN_HINTS.get(name, "")
 
 
-def _example_sheet(sheet: Worksheet, looks: dict[str, Format], document: DOCUMENT) -> None:
+def _example_sheet(sheet: Worksheet, style: Style, document: DOCUMENT) -> None:
     """The first rows filled in, and what is asked beside them; an upload does not read this sheet."""
     columns = _columns(document)
-    _headings(sheet, looks, document, list(columns))
+    _headings(sheet, style, document, list(columns))
     sheet.set_column(0, len(columns) + 2, 14)
-    for place, cells in enumerate(columns.values()):
+    for place, (name, cells) in enumerate(columns.items()):
         for row, cell in enumerate(cells[:MOST_SHOWN]):
-            _write(sheet, (row + 1, place), cell, looks["given"])
+            _write(sheet, (row + 1, place), style.words.value(name, cell), style.looks["given"])
     beside = len(columns) + 1
     sheet.set_column(beside, beside, 26)
     sheet.set_column(beside + 1, beside + 1, 26)
-    sheet.write_string(0, beside, "on the sheet session", looks["head"])
+    sheet.write_string(0, beside, style.words.say("on the sheet session"), style.looks["head"])
     for row, (key, value) in enumerate(EXAMPLE.items(), start=1):
-        sheet.write_string(row, beside, key, looks["hint"])
+        sheet.write_string(row, beside, style.words.key(key), style.looks["hint"])
         sheet.write_string(row, beside + 1, value)
     sheet.protect()
 
@@ -201,20 +214,17 @@ def _write(sheet: Worksheet, place: tuple[int, int], value: Any, look: Format) -
         sheet.write_string(*place, str(value), look)
 
 
-def _check(sheet: Worksheet, cells: tuple[int, int, int, int], name: str, hint: str) -> None:
+def _check(sheet: Worksheet, cells: tuple[int, int, int, int], name: str, hint: str, words: Wording) -> None:
     """A drop-down, bounds, or the hint alone while the cell is being filled in."""
     rule: dict[str, Any] = {"validate": "any"}
+    called = words.heading(words.key(name))
     if name in CHOICES:
-        rule = {
-            "validate": "list",
-            "source": list(CHOICES[name]),
-            "error_message": f"Choose one of the list for {name}.",
-        }
+        rule = {"validate": "list", "source": [words.value(name, choice) for choice in CHOICES[name]]}
+        rule["error_message"] = words.say(f"Choose one of the list for {called}.")
     elif name in LIMITS:
         low, high = LIMITS[name]
         rule = {"validate": "decimal", "criteria": "between", "minimum": low, "maximum": high}
-        rule["error_message"] = f"{name} is a number from {low:g} to {high:g}."
+        rule["error_message"] = words.say(f"{called} is a number from {low:g} to {high:g}.")
     if hint or name in CHOICES:
-        sheet.data_validation(
-            *cells, {**rule, "input_title": name[:32], "input_message": hint[:255], "ignore_blank": True}
-        )
+        shown = {"input_title": called[:32], "input_message": hint[:255], "ignore_blank": True}
+        sheet.data_validation(*cells, {**rule, **shown})

@@ -22,15 +22,16 @@ def cells(content: bytes, name: str) -> list[list[Cell]]:
 
 
 def filled(template: bytes, asked: Mapping[str, Cell]) -> bytes:
-    """The sheets `session` and `readings` with every empty cell filled in."""
-    session = [[row[0], asked.get(str(row[0]), row[1])] for row in cells(template, "session")]
-    readings, example = cells(template, "readings"), cells(template, "example")
+    """The two sheets of a session with every empty cell filled in, under the names that they have."""
+    keys, table, shown = fastexcel.read_excel(template).sheet_names
+    session = [[row[0], asked.get(str(row[0]), row[1])] for row in cells(template, keys)]
+    readings, example = cells(template, table), cells(template, shown)
     for k in range(len(readings[0])):
         for row, like in zip(readings[1:], example[1:], strict=True):
             row[k] = like[k] if row[k] is None else row[k]
     buffer = BytesIO()
     with xlsxwriter.Workbook(buffer) as book:
-        for name, rows in (("session", session), ("readings", readings)):
+        for name, rows in ((keys, session), (table, readings)):
             sheet = book.add_worksheet(name)
             for j, row in enumerate(rows):
                 sheet.write_row(j, 0, row)

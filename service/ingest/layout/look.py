@@ -9,7 +9,7 @@ from service.ingest.layout.grids import Cell, Grid, grid_of, is_nothing, number_
 from service.ingest.layout.mapping import layout_of
 from service.ingest.layout.reading import word_text
 from service.ingest.limits import refusal
-from service.ingest.xlsx import sheet_names
+from service.ingest.xlsx import session_sheets, sheet_names
 
 SHOWN = 5
 """First cells of a column."""
@@ -28,7 +28,7 @@ def is_session(content: bytes, filename: str) -> bool:
     if is_wrapped(content):
         return True
     if content.startswith(XLSX):
-        return {"session", "readings"} <= set(sheet_names(content, filename))
+        return session_sheets(sheet_names(content, filename)) is not None
     if content.startswith(LOGS):
         return False
     if content.startswith(PARQUET):

@@ -7,6 +7,9 @@ import pytest
 from tests.service.filled import filled
 
 TEMPLATE = "/api/v1/session-template"
+SQLITE = pytest.mark.parametrize("databases", ["sqlite"], indirect=True)
+"""Where no database decides."""
+RUSSIAN = ["сеанс", "показания", "пример"]
 
 
 def sheet(content: bytes, name: str) -> list[tuple[str, ...]]:
@@ -37,6 +40,35 @@ def test_a_filled_template_is_a_session(client: httpx.Client, query: dict[str, s
     answer = client.post("/api/v1/sessions", content=content)
     assert answer.status_code == 201, answer.text
     assert answer.json()["unit"] == "MY-1"
+
+
+@SQLITE
+@pytest.mark.parametrize("query", [{}, {"kind": "gyroscope"}])
+def test_a_template_in_russian_comes_back_as_the_same_session(client: httpx.Client, query: dict[str, str]) -> None:
+    english = client.get(TEMPLATE, params=query)
+    russian = client.get(TEMPLATE, params=query, headers={"Accept-Language": "ru"})
+    assert (russian.headers["content-language"], fastexcel.read_excel(russian.content).sheet_names) == ("ru", RUSSIAN)
+    stored = client.post("/api/v1/sessions", content=filled(english.content, {"unit": "MY-1", "stand.id": "S1"}))
+    asked = {"прибор": "MY-1", "стенд.номер": "S1"}
+    again = client.post("/api/v1/sessions", content=filled(russian.content, asked))
+    assert (stored.status_code, again.status_code, again.json()["id"]) == (201, 200, stored.json()["id"])
+
+
+@SQLITE
+def test_a_template_in_russian_says_nothing_in_english(client: httpx.Client) -> None:
+    content = client.get(TEMPLATE, params={"lang": "ru"}).content
+    names = {"accelerometer", "gyroscope", "as-found", "as-left"}
+    said = " ".join(text for name in RUSSIAN for row in sheet(content, name) for text in row)
+    assert not names & set(said.replace("(", " ").split())
+    assert {"акселерометр", "двухосный", "прямая", "обратная"} <= set(said.split())
+
+
+@SQLITE
+def test_a_fault_in_a_russian_template_is_told_by_its_cell(client: httpx.Client) -> None:
+    asked = {"прибор": "MY-1", "стенд.номер": "S1", "программа": "весы"}
+    content = filled(client.get(TEMPLATE, params={"lang": "ru"}).content, asked)
+    problems = client.post("/api/v1/sessions", content=content).json()["problems"]
+    assert [(p["field"], "of the sheet сеанс" in p["message"]) for p in problems] == [("programme", True)]
 
 
 def test_an_empty_template_says_what_is_missing_in_few_sentences(client: httpx.Client) -> None:

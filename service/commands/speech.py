@@ -1,0 +1,37 @@
+"""The language in which commands say verdicts, findings and refusals: the system's, or the one of `--lang`.
+
+Helps, headings and what a command says of itself stay English. JSON never depends on the language.
+"""
+
+import os
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from estimator.errors import Problem
+from estimator.on_demand import function_on_demand
+from service.languages.language import Language, of_environment
+
+if TYPE_CHECKING:
+    from service.languages.catalogue import catalogue_of
+else:
+    catalogue_of = function_on_demand("service.languages.catalogue", "catalogue_of")
+
+CHOSEN = "LANGUAGE"
+"""The variable in which gettext programs look first; `--lang` sets it for what the command says."""
+
+
+def choose(language: Language) -> None:
+    """What this command says from now on is said in a language."""
+    os.environ[CHOSEN] = language.value
+
+
+def said(text: str) -> str:
+    """A sentence that was made in English, in the language of whoever reads it."""
+    language = of_environment(os.environ)
+    return text if language is Language.ENGLISH else catalogue_of(language).say(text)
+
+
+def problems_said(problems: Iterable[Problem]) -> str:
+    """Problems with their places on one line; fields are named as files name them."""
+    return "; ".join(str(replace(problem, message=said(problem.message))) for problem in problems)
