@@ -27,6 +27,7 @@ from service.api import (
     templates,
     unit_types,
     units,
+    uploads,
     usable,
     views,
     webhooks,
@@ -54,7 +55,7 @@ def _every() -> APIRouter:
     api, every = APIRouter(prefix=PREFIX), APIRouter(dependencies=ADMITTED)
     for resource in (
         groups, attachments, sessions, records, certificates, diagnoses, events, usable, labels, units, unit_types,
-        models, plans, stands, templates, layouts, flags, views, notes, webhooks, feeds, fleet, identity,
+        models, plans, stands, templates, layouts, uploads, flags, views, notes, webhooks, feeds, fleet, identity,
     ):  # fmt: skip
         api.include_router(resource.router)
     every.include_router(api)

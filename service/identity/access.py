@@ -116,6 +116,8 @@ POST /sessions/{{id}}/stage
 POST /sessions/{{id}}/check
 POST {API}/sessions
 POST {API}/layouts/preview
+GET {API}/uploads
+GET {API}/uploads/{{id}}
 POST {API}/plan/missing
 PUT {SESSION}/stage
 PUT {SESSION}/check

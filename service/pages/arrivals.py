@@ -7,7 +7,7 @@ from pydantic import BaseModel
 
 from service.measures import size_in_words
 from service.pages.list_view import Asked, address_of
-from service.records.arrival import Arrival, ArrivalQuery, Refusal
+from service.records.arrival import Arrival, ArrivalQuery, Refusal, refusal_number
 from service.words.conditions import Condition, condition_of, said_with
 
 PAGE_SIZE = 50
@@ -60,13 +60,12 @@ class RefusalPage:
 
 def arrivals_query(asked: ArrivalsAsked) -> ArrivalQuery:
     """What the store is asked: one upload more than fit on the page."""
-    number = asked.after.removeprefix("r")
-    is_refusal = asked.after.startswith("r") and number.isascii() and number.isdigit() and len(number) < 10
+    refusal = refusal_number(asked.after)
     return ArrivalQuery(
         text=asked.q.strip() or None,
         refused=asked.only == REFUSED,
-        after_session=None if is_refusal else asked.after or None,
-        after_refusal=int(number) if is_refusal else None,
+        after_session=asked.after or None if refusal is None else None,
+        after_refusal=refusal,
         limit=PAGE_SIZE + 1,
     )
 
@@ -74,7 +73,7 @@ def arrivals_query(asked: ArrivalsAsked) -> ArrivalQuery:
 def arrivals_page(found: Sequence[Arrival], asked: ArrivalsAsked) -> ArrivalsPage:
     """One page of uploads."""
     shown, text, only = found[:PAGE_SIZE], asked.q.strip(), REFUSED if asked.only == REFUSED else ""
-    after = {"q": text, "only": only, "after": _name(shown[-1])} if len(found) > PAGE_SIZE else {}
+    after = {"q": text, "only": only, "after": shown[-1].name} if len(found) > PAGE_SIZE else {}
     return ArrivalsPage(
         text=text,
         refused=bool(only),
@@ -87,13 +86,6 @@ def arrivals_page(found: Sequence[Arrival], asked: ArrivalsAsked) -> ArrivalsPag
 def refusal_page(refusal: Refusal) -> RefusalPage:
     """The page of one refused upload."""
     return RefusalPage(refusal, size_in_words(refusal.size))
-
-
-def _name(arrival: Arrival) -> str:
-    """As an address names it."""
-    if arrival.refusal is not None:
-        return f"r{arrival.refusal.number}"
-    return "" if arrival.session is None else arrival.session.id
 
 
 def _row(arrival: Arrival) -> ArrivalRow:

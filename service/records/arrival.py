@@ -7,6 +7,17 @@ from estimator.errors import Problem
 from service.records.session import StoredSession
 
 
+REFUSED = "r"
+"""Begins the name of a refusal, where a session's is its id."""
+
+
+def refusal_number(name: str) -> int | None:
+    """The number of the refusal that a name names; None of any other name."""
+    number = name.removeprefix(REFUSED)
+    is_refusal = name.startswith(REFUSED) and number.isascii() and number.isdigit() and len(number) < 10
+    return int(number) if is_refusal else None
+
+
 @dataclass(frozen=True)
 class Refusal:
     """A file that could not be used; its bytes are not kept."""
@@ -27,6 +38,13 @@ class Arrival:
     at: datetime
     session: StoredSession | None
     refusal: Refusal | None
+
+    @property
+    def name(self) -> str:
+        """As an address names it: the session's id, or ``r`` and the number of the refusal."""
+        if self.refusal is not None:
+            return f"{REFUSED}{self.refusal.number}"
+        return "" if self.session is None else self.session.id
 
     @property
     def key(self) -> tuple[datetime, bool, str]:

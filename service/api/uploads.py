@@ -1,0 +1,43 @@
+"""What became of the files that came in: stored, or refused."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Query
+
+from service.api.schemas.fields import Limit, Text
+from service.api.schemas.problem import errors
+from service.api.schemas.uploads import UploadPage, UploadSchema, upload_schema
+from service.dependencies import Reading
+from service.records.arrival import Arrival, ArrivalQuery, refusal_number
+
+router = APIRouter(prefix="/uploads", tags=["sessions"])
+FileName = Annotated[Text | None, Query(alias="q", description="Part of the file's name.")]
+Refused = Annotated[bool, Query(description="Only those that were refused.")]
+UploadId = Annotated[Text, Path(description="A session's id, or `r` and the number of a refusal.")]
+After = Annotated[Text | None, Query(description="The list goes on after this upload: `next_after` of the last answer.")]
+
+
+@router.get("", responses=errors(422))
+def list_uploads(
+    store: Reading, text: FileName = None, refused: Refused = False, after: After = None, limit: Limit = 100
+) -> UploadPage:
+    """Every file that came in, newest first, and what became of it."""
+    refusal = refusal_number(after or "")
+    session = after if refusal is None else None
+    wanted = ArrivalQuery(text, refused, after_session=session, after_refusal=refusal, limit=limit + 1)
+    found = store.arrivals.page(wanted)
+    shown = found[:limit]
+    return UploadPage(
+        uploads=[upload_schema(one) for one in shown], next_after=shown[-1].name if len(found) > limit else None
+    )
+
+
+@router.get("/{id}", responses=errors(404, 422))
+def read_upload(id: UploadId, store: Reading) -> UploadSchema:
+    """What became of one file; of a refused one every fault with its place."""
+    refusal = refusal_number(id)
+    if refusal is not None:
+        refused = store.arrivals.refusal(refusal)
+        return upload_schema(Arrival(refused.at, None, refused))
+    session = store.sessions.get(id)
+    return upload_schema(Arrival(session.uploaded_at, session, None))
