@@ -4,7 +4,7 @@ import os
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 from service.cli import app
 from service.settings import Settings
 from tests.databases import Databases
+from tests.docs.preloaded import preloaded
 from tests.serving import serving
 
 PROJECT = Path(__file__).parents[2]
@@ -20,6 +21,8 @@ README = PROJECT / "README.md"
 PAGES = [README, PROJECT / "CHANGELOG.md", PROJECT / "CONTRIBUTING.md", *sorted((PROJECT / "docs").rglob("*.md"))]
 ADDRESS = "http://127.0.0.1:8000"
 BIN = Path(sys.executable).parent
+Shell = Callable[[Path], str]
+ROLES = ("bench-crew", "engineer", "fleet-manager", "administrator")
 MAKE = re.compile(r"^make \w+.*$", re.MULTILINE)
 
 
@@ -35,22 +38,35 @@ def address(sqlite: Databases, tmp_path: Path) -> Iterator[str]:
         yield address
 
 
-def execute(command: list[str], folder: Path, address: str) -> str:
+@pytest.fixture(scope="module")
+def commands(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """The folder of an `imu-health` that is loaded already."""
+    with preloaded(tmp_path_factory.mktemp("commands")) as folder:
+        yield folder
+
+
+@pytest.fixture
+def shell(commands: Path, address: str, tmp_path: Path) -> Shell:
+    """Runs a page's shell examples one after another, as a reader would; `make` is left to continuous integration."""
+
+    def run(page: Path) -> str:
+        script = "set -e\n" + "\n".join(blocks(page, "sh")).replace(ADDRESS, address).replace(".venv/bin/", "")
+        return execute(["bash", "-o", "pipefail", "-c", MAKE.sub("", script)], tmp_path, address, commands)
+
+    return run
+
+
+def execute(command: list[str], folder: Path, address: str, first: Path = BIN) -> str:
     """What a command prints, run in a folder; it must succeed."""
-    environment = {**os.environ, "PATH": f"{BIN}:{os.environ['PATH']}", "IMU_HEALTH_SERVER": address}
+    path = f"{first}:{BIN}:{os.environ['PATH']}"
+    environment = {**os.environ, "PATH": path, "IMU_HEALTH_SERVER": address, "LANGUAGE": "en"}
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, f"{command[-1]}\n{done.stdout}\n{done.stderr}"
     return done.stdout
 
 
-def shell(page: Path, folder: Path, address: str) -> str:
-    """Runs the page's shell examples one after another, as a reader would; `make` is left to continuous integration."""
-    script = "set -e\n" + "\n".join(blocks(page, "sh")).replace(ADDRESS, address).replace(".venv/bin/", "")
-    return execute(["bash", "-o", "pipefail", "-c", MAKE.sub("", script)], folder, address)
-
-
-def test_the_readme_s_examples_work_as_pasted(address: str, tmp_path: Path) -> None:
-    shown = shell(README, tmp_path, address)
+def test_the_readme_s_examples_work_as_pasted(shell: Shell, address: str, tmp_path: Path) -> None:
+    shown = shell(README)
     assert "BA-900" in shown
     over_http, in_python = blocks(README, "python")
     answer = execute([sys.executable, "-c", over_http.replace(ADDRESS, address)], tmp_path, address)
@@ -63,9 +79,17 @@ def test_the_readme_s_api_example_has_five_lines() -> None:
     assert len([line for line in blocks(README, "python")[0].splitlines() if line]) == 5
 
 
-@pytest.mark.parametrize("page", ["api.md", "quickstart.md", "reports.md"])
-def test_the_examples_of_a_page_work_as_pasted(page: str, address: str, tmp_path: Path) -> None:
-    assert "BA-900" in shell(PROJECT / "docs" / page, tmp_path, address)
+@pytest.mark.parametrize("page", ["api.md", "how-to/command-line.md", "reports.md"])
+def test_the_examples_of_a_page_work_as_pasted(page: str, shell: Shell) -> None:
+    assert "BA-900" in shell(PROJECT / "docs" / page)
+
+
+def test_what_every_role_needs_works_as_pasted(shell: Shell) -> None:
+    crew, engineer, fleet, administrator = (shell(PROJECT / "docs" / "how-to" / f"{role}.md") for role in ROLES)
+    assert "repair 1 recorded" in crew
+    assert "beyond the tolerance" in engineer
+    assert "FM-100  " in fleet
+    assert "follow from one another" in administrator
 
 
 def test_every_call_of_the_api_is_described(address: str, tmp_path: Path) -> None:

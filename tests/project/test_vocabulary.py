@@ -21,7 +21,7 @@ RETIRED = {
     r"\b[Ii]n spec\b|\b[Oo]ut of spec\b": "within tolerance, out of tolerance",
 }
 """Words that were used once, and what is said instead."""
-DOCUMENTS = ("README.md", "docs/glossary.md", "docs/reports.md", "docs/quickstart.md", "docs/diagnosis/index.md")
+DOCUMENTS = ("README.md", "docs/glossary.md", "docs/reports.md", "docs/tutorial.md", "docs/diagnosis/index.md")
 
 
 @cache

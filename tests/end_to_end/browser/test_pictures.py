@@ -9,7 +9,7 @@ from pathlib import Path
 import httpx
 import pytest
 import typst
-from playwright.sync_api import Browser
+from playwright.sync_api import Browser, Page
 
 from service.demo.fill import fill
 from service.flows.diagnose import diagnose
@@ -23,12 +23,14 @@ from service.reports.typeset import TEMPLATES
 from service.settings import Settings
 from service.views.certificate import certified_session
 from tests.databases import Databases
+from tests.docs import bench
 from tests.end_to_end.browser.conftest import draw_all, opened
 from tests.serving import serving
 from tests.stock import stores
 
 ASKED = "IMU_HEALTH_PICTURES"
-FOLDER = Path(__file__).parents[3] / "docs" / "pictures"
+DOCS = Path(__file__).parents[3] / "docs"
+FOLDER, EXAMPLE = DOCS / "pictures", DOCS / "examples" / "bench.xlsx"
 UNIT = "BA-107"
 """A4 wore out and was replaced: its history has a break."""
 STICKING = "BA-110"
@@ -76,6 +78,41 @@ def test_picture_of_the_first_page_of_a_certificate(filled: Settings) -> None:
     )
     assert isinstance(pages, list)
     (FOLDER / "certificate.png").write_bytes(pages[0])
+
+
+def test_pictures_of_the_tutorial(chromium: Browser, demonstration: str) -> None:
+    EXAMPLE.parent.mkdir(exist_ok=True)
+    EXAMPLE.write_bytes(bench.workbook())
+    with opened(chromium, 1280) as (_, page):
+        page.goto(f"{demonstration}/upload")
+        page.set_input_files("#files", EXAMPLE)
+        for label, text in bench.FACTS.items():
+            page.get_by_label(label).fill(text)
+        page.get_by_label("Axes").select_option("cone")
+        taken(page, "own-columns", 1500)
+        page.get_by_role("button", name="Look again").click()
+        preview = page.get_by_text("felt 9.8").locator("xpath=ancestor::section")
+        preview.screenshot(path=FOLDER / "own-preview.png")
+        page.get_by_role("button", name="Store it", exact=True).click()
+        page.get_by_role("heading", name="Reference set").wait_for()
+        session = f"{demonstration}/sessions/{newest(demonstration)}"
+        page.goto(f"{session}/diagnosis")
+        taken(page, "own-diagnosis", 1300)
+        page.goto(session)
+        taken(page, "own-session", 1300)
+
+
+def newest(address: str) -> str:
+    """Id of the session that was uploaded last."""
+    found = httpx.get(f"{address}/api/v1/uploads", params={"limit": 1}).json()["uploads"]
+    return str(found[0]["id"])
+
+
+def taken(page: Page, name: str, height: int) -> None:
+    """A picture of what is seen of a page."""
+    page.set_viewport_size({"width": 1280, "height": height})
+    draw_all(page)
+    page.screenshot(path=FOLDER / f"{name}.png")
 
 
 @pytest.mark.parametrize(
