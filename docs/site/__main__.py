@@ -17,7 +17,9 @@ BUILD = PROJECT / "build"
 SOURCE, SITE = BUILD / "docs-source", BUILD / "docs"
 SHIM = "https://unpkg.com/iframe-worker/shim"
 """What the generator would fetch from elsewhere, for a search without a server; ours is used instead."""
-ELSEWHERE = re.compile(r'<(?:script|img|iframe|source)\b[^>]*\bsrc="https?:|<link\b[^>]*\brel="stylesheet"[^>]*"https?:')
+ELSEWHERE = re.compile(
+    r'<(?:script|img|iframe|source)\b[^>]*\bsrc="https?:|<link\b[^>]*\brel="stylesheet"[^>]*"https?:'
+)
 """What a page would fetch from elsewhere while it is looked at."""
 
 

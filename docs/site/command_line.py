@@ -58,7 +58,11 @@ def _table(what: str, found: list[Command]) -> Iterator[str]:
         return
     yield f"| {what} | meaning | default |\n| --- | --- | --- |"
     for one in found:
-        name = f"`{_argument(one)}`" if what == "argument" else ", ".join(f"`{o}`" for o in [*one.opts, *one.secondary_opts])
+        name = (
+            f"`{_argument(one)}`"
+            if what == "argument"
+            else ", ".join(f"`{o}`" for o in [*one.opts, *one.secondary_opts])
+        )
         yield f"| {name} | {_cell(one.help or '')} | {_cell(_default(one))} |"
     yield ""
 

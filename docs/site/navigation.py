@@ -18,7 +18,7 @@ nav = {nav}
 [project.theme]
 font = false
 language = "en"
-features = ["navigation.tabs", "navigation.top", "navigation.footer", "search.highlight", "content.code.copy", "toc.follow"]
+features = ["navigation.tabs", "navigation.top", "navigation.footer", "search.highlight", "content.code.copy"]
 
 [[project.theme.palette]]
 media = "(prefers-color-scheme)"

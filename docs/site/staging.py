@@ -27,7 +27,9 @@ def stage(project: Path, target: Path, made: Mapping[str, tuple[str, str]]) -> N
     for notebook in target.rglob("*.ipynb"):
         notebook.with_suffix(".md").write_text(notebook_text(json.loads(notebook.read_text("utf-8"))), "utf-8")
     index = target / "index.md"
-    listed = "".join(f"* [{line.partition(':')[0]}]({path}):{line.partition(':')[2]}\n" for path, (line, _) in made.items())
+    listed = "".join(
+        f"* [{line.partition(':')[0]}]({path}):{line.partition(':')[2]}\n" for path, (line, _) in made.items()
+    )
     index.write_text(index.read_text("utf-8").replace(GENERATED, f"{GENERATED}\n{listed}", 1), "utf-8")
     for page in target.rglob("*.md"):
         page.write_text(_relinked(page, target), "utf-8")
@@ -68,4 +70,6 @@ def _output(output: dict[str, Any]) -> list[str]:
     if output["output_type"] == "stream":
         return ["```text\n" + "".join(output["text"]).rstrip() + "\n```"]
     picture = output.get("data", {}).get("image/png")
-    return [f'<img alt="What the cell draws" src="data:image/png;base64,{"".join(picture.split())}">'] if picture else []
+    return (
+        [f'<img alt="What the cell draws" src="data:image/png;base64,{"".join(picture.split())}">'] if picture else []
+    )

@@ -14,7 +14,9 @@ router = APIRouter(prefix="/uploads", tags=["sessions"])
 FileName = Annotated[Text | None, Query(alias="q", description="Part of the file's name.")]
 Refused = Annotated[bool, Query(description="Only those that were refused.")]
 UploadId = Annotated[Text, Path(description="A session's id, or `r` and the number of a refusal.")]
-After = Annotated[Text | None, Query(description="The list goes on after this upload: `next_after` of the last answer.")]
+After = Annotated[
+    Text | None, Query(description="The list goes on after this upload: `next_after` of the last answer.")
+]
 
 
 @router.get("", responses=errors(422))

@@ -49,7 +49,7 @@ certificate 3f9a0c5be1d24786aa10 --out certificate.pdf  # for people
 certificate 3f9a0c5be1d24786aa10 --format dcc --out certificate.xml  # for programs
 sign 3f9a0c5be1d24786aa10 --meaning reviewed  # then --meaning approved, by somebody else
 seal trial --out seal.p12  # a key to try the seal with
-customer BA-017 "Northern Airways" --address "2 Field Road, Oslo"  # whom its certificates name
+customer BA-017 "Northern Airways" --address "2 Field Road, Oslo" --by "K. Ito"  # whom its certificates name
 stand-certificate S1 --number K-2026-114 --issued-by PTB --issued-on 2026-02-01 --valid-until 2028-02-01 --by "K. Ito"
 correction 3f9a0c5be1d24786aa10 --out correction.json  # formula, numbers, a worked example
 export 3f9a0c5be1d24786aa10 --system px4 --out unit.params  # parameters of a flight controller
@@ -95,5 +95,7 @@ def _pairs() -> Iterator[tuple[str, str]]:
 
 def help_of(words: str) -> str:
     """The examples as the end of a help text, in Markdown."""
-    lines = (f"* `{PROGRAM} {command}`" + (f" — {purpose}" if purpose else "") for command, purpose in examples_of(words))
+    lines = (
+        f"* `{PROGRAM} {command}`" + (f" — {purpose}" if purpose else "") for command, purpose in examples_of(words)
+    )
     return "\n\n".join(["Examples:", *lines])

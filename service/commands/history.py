@@ -41,7 +41,13 @@ def history(
 
 def _table(found: list[Point]) -> Table:
     table = table_of(
-        "measured", "sensor", "parameter", "off reference", "tolerance", "condition", right=("off reference", "tolerance")
+        "measured",
+        "sensor",
+        "parameter",
+        "off reference",
+        "tolerance",
+        "condition",
+        right=("off reference", "tolerance"),
     )
     for point in found:
         condition = coloured(point.verdict, point.is_reference)

@@ -110,7 +110,7 @@ def _off_nominal(scale: Estimate, nominal: float) -> Estimate:
 def _notes(calibration: Calibration) -> Iterator[Text]:
     """Sentences: how model and readings agree, and what this session cannot see."""
     fit = fit_in_words(calibration)
-    yield Text(said(f"{fit.headline} {fit.detail}"))
+    yield Text(f"{said(fit.headline)} {said(fit.detail)}")
     sensors: dict[str, list[str]] = {}
     for sensor in calibration.sensors:
         unseen = ", ".join(name for name, seen in sensor.observable.items() if not seen)

@@ -6,7 +6,6 @@ from datetime import datetime
 from estimator.errors import Problem
 from service.records.session import StoredSession
 
-
 REFUSED = "r"
 """Begins the name of a refusal, where a session's is its id."""
 

@@ -43,6 +43,7 @@ def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> 
     """Runs `imu-health` with arguments."""
 
     def run_command(*arguments: object) -> Ran:
+        monkeypatch.setenv("LANGUAGE", "en")
         monkeypatch.setattr("sys.argv", ["imu-health", *map(str, arguments)])
         with pytest.raises(SystemExit) as left:
             main()

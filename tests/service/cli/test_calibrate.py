@@ -123,3 +123,10 @@ def test_too_few_positions_are_said_with_how_many_to_add(run: Run, tmp_path: Pat
 def test_few_degrees_of_freedom_are_said_with_the_factor_to_take(run: Run, tmp_path: Path) -> None:
     ran = run("calibrate", write(tmp_path, "few.json", arbitrary_orientations(3, orientations=11, se=None)))
     assert "k = 4.5" in " ".join(ran.out.split())
+
+
+def test_refusals_are_said_in_russian_and_results_stay_as_they_are(run: Run, good_file: Path, bad_file: Path) -> None:
+    refused = run("--lang", "ru", "calibrate", bad_file)
+    assert (refused.code, refused.err.count("\n")) == (2, 1)
+    assert "stand.alpha_deg: равно 90" in refused.err
+    assert run("--lang", "ru", "calibrate", good_file, "--json").out == run("calibrate", good_file, "--json").out

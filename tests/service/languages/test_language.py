@@ -2,7 +2,7 @@
 
 import pytest
 
-from service.languages.language import Language, asked
+from service.languages.language import Language, asked, of_environment
 
 RUSSIAN, ENGLISH = Language.RUSSIAN, Language.ENGLISH
 
@@ -41,3 +41,17 @@ def test_the_address_comes_before_everything() -> None:
 @pytest.mark.parametrize("cookie", ["language=tlh", "language", '"'])
 def test_what_is_no_language_of_ours_chooses_none(cookie: str) -> None:
     assert language("ru", cookie=cookie, query="lang=de") is RUSSIAN
+
+
+@pytest.mark.parametrize(
+    ("variables", "expected"),
+    [
+        ({"LANG": "ru_RU.UTF-8"}, RUSSIAN),
+        ({"LANG": "ru_RU.UTF-8", "LC_ALL": "C.UTF-8"}, ENGLISH),
+        ({"LANGUAGE": "de:ru", "LANG": "en_GB.UTF-8"}, RUSSIAN),
+        ({"LANGUAGE": "", "LC_MESSAGES": "ru"}, RUSSIAN),
+        ({}, ENGLISH),
+    ],
+)
+def test_a_process_speaks_the_system_s_language(variables: dict[str, str], expected: Language) -> None:
+    assert of_environment(variables) is expected
