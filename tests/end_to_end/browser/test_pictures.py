@@ -73,7 +73,7 @@ def test_picture_of_the_first_page_of_a_certificate(filled: Settings) -> None:
         root=TEMPLATES,
         format="png",
         ppi=110,
-        sys_inputs={"data": json.dumps(record)},
+        sys_inputs={"data": json.dumps(record), "words": json.dumps({"language": "en", "said": {}})},
         ignore_system_fonts=True,
     )
     assert isinstance(pages, list)
