@@ -80,7 +80,32 @@ def test_picture_of_the_first_page_of_a_certificate(filled: Settings) -> None:
     (FOLDER / "certificate.png").write_bytes(pages[0])
 
 
+@pytest.mark.parametrize(
+    ("name", "path", "width", "height"),
+    [
+        ("fleet", "/", 1280, 1080),
+        ("fleet-phone", "/", 390, 844),
+        ("unit", f"/units/{UNIT}", 1280, 1500),
+        ("session", "/sessions/{last}", 1280, 1500),
+        ("diagnosis", "/sessions/{sticking}/diagnosis", 1280, 1500),
+        ("plan", "/plan", 1280, 1500),
+        ("upload", "/upload", 1280, 560),
+    ],
+)
+def test_picture(chromium: Browser, demonstration: str, name: str, path: str, width: int, height: int) -> None:
+    units = httpx.get(f"{demonstration}/api/v1/units").json()["units"]
+    sticking = next(unit["last_session"] for unit in units if unit["serial"] == STICKING)
+    with opened(chromium, width) as (_, page):
+        page.set_viewport_size({"width": width, "height": height})
+        page.goto(demonstration + path.format(last=units[0]["last_session"], sticking=sticking))
+        draw_all(page)
+        FOLDER.mkdir(parents=True, exist_ok=True)
+        page.screenshot(path=FOLDER / f"{name}.png")
+    assert (FOLDER / f"{name}.png").stat().st_size > 10_000
+
+
 def test_pictures_of_the_tutorial(chromium: Browser, demonstration: str) -> None:
+    """The last ones: what they upload is on no other picture."""
     EXAMPLE.parent.mkdir(exist_ok=True)
     EXAMPLE.write_bytes(bench.workbook())
     with opened(chromium, 1280) as (_, page):
@@ -113,27 +138,3 @@ def taken(page: Page, name: str, height: int) -> None:
     page.set_viewport_size({"width": 1280, "height": height})
     draw_all(page)
     page.screenshot(path=FOLDER / f"{name}.png")
-
-
-@pytest.mark.parametrize(
-    ("name", "path", "width", "height"),
-    [
-        ("fleet", "/", 1280, 1080),
-        ("fleet-phone", "/", 390, 844),
-        ("unit", f"/units/{UNIT}", 1280, 1500),
-        ("session", "/sessions/{last}", 1280, 1500),
-        ("diagnosis", "/sessions/{sticking}/diagnosis", 1280, 1500),
-        ("plan", "/plan", 1280, 1500),
-        ("upload", "/upload", 1280, 560),
-    ],
-)
-def test_picture(chromium: Browser, demonstration: str, name: str, path: str, width: int, height: int) -> None:
-    units = httpx.get(f"{demonstration}/api/v1/units").json()["units"]
-    sticking = next(unit["last_session"] for unit in units if unit["serial"] == STICKING)
-    with opened(chromium, width) as (_, page):
-        page.set_viewport_size({"width": width, "height": height})
-        page.goto(demonstration + path.format(last=units[0]["last_session"], sticking=sticking))
-        draw_all(page)
-        FOLDER.mkdir(parents=True, exist_ok=True)
-        page.screenshot(path=FOLDER / f"{name}.png")
-    assert (FOLDER / f"{name}.png").stat().st_size > 10_000
