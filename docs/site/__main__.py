@@ -15,7 +15,7 @@ from docs.site.staging import stage
 PROJECT = Path(__file__).parents[2]
 BUILD = PROJECT / "build"
 SOURCE, SITE = BUILD / "docs-source", BUILD / "docs"
-SHIM = "https://unpkg.com/iframe-worker/shim"
+SHIM = re.compile(r'https://[^"\s]+/iframe-worker/shim')
 """What the generator would fetch from elsewhere, for a search without a server; ours is used instead."""
 ELSEWHERE = re.compile(
     r'<(?:script|img|iframe|source)\b[^>]*\bsrc="https?:|<link\b[^>]*\brel="stylesheet"[^>]*"https?:'
@@ -46,7 +46,7 @@ def _make_self_contained(site: Path) -> None:
     shutil.copy(Path(__file__).with_name("iframe-worker.js"), site / "assets" / "javascripts")
     for page in site.rglob("*.html"):
         up = "../" * (len(page.relative_to(site).parts) - 1)
-        text = page.read_text("utf-8").replace(SHIM, f"{up}assets/javascripts/iframe-worker.js")
+        text = SHIM.sub(f"{up}assets/javascripts/iframe-worker.js", page.read_text("utf-8"))
         if found := ELSEWHERE.search(text):
             raise SystemExit(f"{page.relative_to(site)} would fetch from elsewhere: {found[0]}")
         page.write_text(text, "utf-8")
