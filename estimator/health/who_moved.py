@@ -9,11 +9,13 @@ Weisberg 1982, 2.2), the change beside an x that it has no part in, whatever it 
 
 Which others moved is open where several sets M explain the rest nearly as well. Each has the posterior weight
 
-    w_M ∝ exp(−χ²_M/2)·Π_{i∈M} o·√det(Σ_i)/κʳ
+    w_M ∝ (exp(−χ²_M/2) + c_j·exp(−χ²_{M∪j}/2))·Π_{i∈M} c_i,    c_i = o·√det(Σ_i)/κʳ
 
-χ²_M of what is left inside; o the odds that a sensor moved; the last factor what a sensor that is free costs: its
-change is known to Σ_i where beforehand it could have been anything of the order of κ, in each of its r rows. The
-mixture of the normal laws of s_j under every M has
+χ²_M of all sensors but those of M; o the odds that a sensor moved; the rest of c what a sensor that is free costs: its
+change is known to Σ_i where beforehand it could have been anything of the order of κ, in each of its r rows. The sensor
+itself may have stayed or moved, and pays for it as the others do. With one of four axes free the other three hold x
+together, the judged one among them: there is no second term, and were it for nothing in the other sets, a drift of
+another axis would pass for its own. The mixture of the normal laws of s_j under every M has
 
     mean  Σ w_M·s_M,    covariance  Σ w_M·(Σ_M + (s_M − mean)(s_M − mean)ᵀ)
 
@@ -21,7 +23,7 @@ Looked at are the sets within one addition, one removal or one exchange of the s
 in x itself where the others would be too few. Units as in `changes`.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -77,16 +79,20 @@ def _averaged(sets: Sets, j: int, out: Sensors, fits: dict[Sensors, tuple[Fit, F
     """The mixture for one sensor."""
     chosen = list(dict.fromkeys(_near(sets, j, out - {j})))
     inside = [_inside(sets, j, moved) for moved in chosen]
-    for one in inside:
-        if one not in fits:
-            fits[one] = fit(sets.changes, sorted(one)), fit(sets.weighing, sorted(one))
-    logs = np.array(
-        [-fits[one][0].chi2 / 2 + sum(map(sets.cost, moved)) for one, moved in zip(inside, chosen, strict=True)]
-    )
+    for one in {*inside, *(sets.everyone() - moved for moved in chosen)} - fits.keys():
+        fits[one] = fit(sets.changes, sorted(one)), fit(sets.weighing, sorted(one))
+    logs = np.array([_weight(sets, j, *pair, fits) for pair in zip(chosen, inside, strict=True)])
     weights = np.exp(logs - logs.max())
     weights /= weights.sum()
     told = [(w, _beside(sets, j, fits[one][1].gain)) for w, one in zip(weights, inside, strict=True) if w > LEAST]
     return _mixture(told)
+
+
+def _weight(sets: Sets, j: int, moved: Sensors, inside: Sensors, fits: Mapping[Sensors, tuple[Fit, Fit]]) -> float:
+    """log w_M, up to a constant; x rests on the sensors ``inside``."""
+    rest = sets.everyone() - moved
+    stays, goes = -fits[rest][0].chi2 / 2, sets.cost(j) - fits[inside][0].chi2 / 2
+    return sum(map(sets.cost, moved)) + (stays if inside == rest else float(np.logaddexp(stays, goes)))
 
 
 def _near(sets: Sets, j: int, out: Sensors) -> Iterator[Sensors]:
