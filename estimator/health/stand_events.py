@@ -6,8 +6,8 @@ the restricted χ² by
 
     χ² = bᵀJ⁻¹b,    b = DᵀPz,  J = DᵀPD, both freed of the events that are in the model already
 
-The candidate with the largest χ²/2 − ln N of its class, N how many of it were looked at (of steps, what neighbouring
-dates are worth: `scan`), is fitted with the variances made anew, because an event that is not in the model passes for
+The candidate with the largest χ²/2 − ln N of its class, N how many of it were looked at (of stands: `stand_search`), is
+fitted with the variances made anew, because an event that is not in the model passes for
 scatter. Its variance V = tr J⁻¹ holds parts that were estimated: v_c by the variance θ_c, known to d_c degrees of
 freedom (twice its information), hence V to V²/Σ v_c²/d_c of them (Satterthwaite). χ²/k is Fisher's F of k and so many;
 the log likelihood that decides between hypotheses is Student's, (ν + k)/2·ln(1 + χ²/ν) − ln N, which never underflows.
@@ -20,8 +20,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-from estimator.arrays import eigh
-from estimator.health.scan import looks
 from estimator.health.seating import STAND_PRIOR, Seating, Units, Weighted, freedoms
 from estimator.session import Array
 
@@ -29,8 +27,6 @@ LEVEL = 0.01
 """Chance that any stand of a fleet is flagged although none moved."""
 FEWEST_UNITS = 3
 """Two that differ cannot say which of them changed."""
-MOST_DATES = 120
-"""Of one stand that are looked at, evenly among its sessions: work and the price of looking grow with them."""
 SEEN = 1e-3
 """Least part of its information that an event keeps beside those in the model; with less it is one of them."""
 
@@ -102,98 +98,7 @@ def columns(groups: Sequence[Units], events: Sequence[Event]) -> list[Array]:
             for g, none in zip(groups, nothing, strict=True)]  # fmt: skip
 
 
-def of_stands(found: Seating) -> list[Candidate]:
-    """Each stand's most evident change, steps and excursions; of stands that three units tell of."""
-    searched = {s: _searched(found, s) for s in range(len(found.scatter.stand))}
-    looked = {True: sum(one.steps for one in searched.values()),
-              False: sum(int(one.valid[~one.lasting].sum()) for one in searched.values())}  # fmt: skip
-    best = (_best(one, stand, looked) for stand, one in searched.items())
-    return [candidate for candidate in best if candidate is not None]
-
-
-@dataclass(frozen=True, eq=False)
-class _Searched:
-    """Every pair of dates between which a stand may have been turned."""
-
-    start: Array
-    """(p,) years."""
-    end: Array
-    """(p,) years; infinite where it lasts."""
-    chi2: Array
-    """(p,)"""
-    valid: Array
-    """(p,) bool; whether enough units tell of it."""
-    steps: float
-    """Looks that the dates of a lasting turn are worth."""
-
-    @property
-    def lasting(self) -> Array:
-        """(p,) bool."""
-        return np.isinf(self.end)
-
-
-def _best(one: _Searched, stand: int, looked: dict[bool, float]) -> Candidate | None:
-    """The pair with the largest gain; half of the level belongs to steps and half to excursions."""
-    if not one.valid.any():
-        return None
-    price = np.array([2 * looked[bool(lasting)] for lasting in one.lasting])
-    gain = np.where(one.valid, one.chi2 / 2 - np.log(np.maximum(price, 1)), -np.inf)
-    i = int(np.argmax(gain))
-    return Candidate(Event(stand, -1, float(one.start[i]), float(one.end[i])), float(one.chi2[i]), int(price[i]))
-
-
-def _searched(found: Seating, stand: int) -> _Searched:
-    """χ² of every pair of dates of a stand, the last date being never."""
-    dates = _dates(found, stand)
-    c, (k, e) = len(dates), (found.value.shape[1], found.value.shape[0])
-    whole, pull, shared = np.zeros((c + 1, k, c + 1, k)), np.zeros((c + 1, k)), np.zeros((c + 1, k, e, k))
-    telling = np.zeros((c + 1, c + 1), dtype=int)
-    for part in found.parts:
-        some = (part.units.stand == stand).any(axis=1)
-        if not some.any():
-            continue
-        where, time = part.units.stand[some] == stand, part.units.time[some]
-        d = (where[:, :, None] & (time[:, :, None] >= np.append(dates, np.inf))).astype(float)
-        moved = np.einsum("uiajb,ujd->uiadb", part.precision[some], d, optimize=True)
-        whole += np.einsum("uic,uiadb->cadb", d, moved, optimize=True)
-        pull += np.einsum("uic,uia->ca", d, part.rest[some], optimize=True)
-        shared += np.einsum("uic,uiaeb->caeb", d, part.seen[some], optimize=True)
-        telling += _telling(d.sum(axis=1), part.units.there[some].sum(axis=1))
-    free = whole - np.einsum("caex,exfy,dbfy->cadb", shared, found.covariance, shared, optimize=True)
-    i, j = np.triu_indices(c + 1, 1)
-    chi2, seen = _chi2(pull[i] - pull[j], _between(free, i, j), _between(whole, i, j))
-    valid = seen & (telling[i, j] >= FEWEST_UNITS)
-    lasting = i[valid & (j == c)]
-    steps = looks(_alike(free, lasting), k, LEVEL / 2) if len(lasting) else 0.0
-    return _Searched(dates[i], np.append(dates, np.inf)[j], chi2, valid, steps)
-
-
-def _alike(free: Array, steps: Array) -> Array:
-    """(s − 1,) least correlation between the scores of a step (s,) and the next, from the information (c, k, c, k)."""
-    values, vectors = eigh(free[steps, :, steps])
-    root = (vectors / np.sqrt(values)[:, None, :]) @ vectors.swapaxes(1, 2)
-    shared = root[:-1] @ free[steps[:-1], :, steps[1:]] @ root[1:]
-    return np.asarray(np.linalg.svd(shared, compute_uv=False).min(axis=1, initial=1.0))
-
-
-def _dates(found: Seating, stand: int) -> Array:
-    """(c,) dates of a stand's sessions, years, as many as are worth looking at."""
-    every = np.unique(np.concatenate([p.units.time[p.units.stand == stand] for p in found.parts]))
-    return every[np.unique(np.linspace(0, len(every) - 1, MOST_DATES).round().astype(int))] if len(every) else every
-
-
-def _telling(after: Array, sessions: Array) -> Array:
-    """(c, c) how many units have sessions between two dates, and others; ``after`` (u, c) from each date on."""
-    between = after[:, :, None] - after[:, None, :]
-    return np.asarray(((between > 0) & (between < sessions[:, None, None])).sum(axis=0))
-
-
-def _between(whole: Array, i: Array, j: Array) -> Array:
-    """(p, k, k) information on a change between two dates, from that of all pairs (c, k, c, k)."""
-    return np.asarray(whole[i, :, i] + whole[j, :, j] - whole[i, :, j] - whole[j, :, i])
-
-
-def _chi2(pull: Array, free: Array, whole: Array) -> tuple[Array, Array]:
+def chi_squares(pull: Array, free: Array, whole: Array) -> tuple[Array, Array]:
     """(p,) χ² and (p,) bool whether it shows beside the model; pull (p, k), both informations (p, k, k)."""
     traces = np.einsum("pkk->p", free), np.einsum("pkk->p", whole)
     seen = traces[0] > SEEN * np.maximum(traces[1], 1e-300)
@@ -213,7 +118,7 @@ def of_units(found: Seating) -> Candidate | None:
         valid = part.units.there & (np.arange(part.units.there.shape[1]) > 0)
         u, i = np.nonzero(valid)
         looked += len(u)
-        chi2, _ = _chi2(pull[u, i], whole[u, i], whole[u, i])
+        chi2, _ = chi_squares(pull[u, i], whole[u, i], whole[u, i])
         if len(u) and (best is None or chi2.max() > best[0]):
             at = int(chi2.argmax())
             unit, time = int(part.units.unit[u[at]]), float(part.units.time[u[at], i[at]])

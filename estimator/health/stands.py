@@ -20,7 +20,8 @@ import numpy as np
 from scipy import stats
 
 from estimator.health.seating import Seating, Units, seated
-from estimator.health.stand_events import FEWEST_UNITS, LEVEL, Event, Weighed, columns, of_stands, of_units, weighed
+from estimator.health.stand_events import FEWEST_UNITS, LEVEL, Event, Weighed, columns, of_units, weighed
+from estimator.health.stand_search import of_stands
 from estimator.session import Array
 
 AGREEING = 0.8
