@@ -10,12 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.stands.fleets import ARCSEC, SIGMA, TURNED
+from estimator.health.stand_events import FEWEST_UNITS
 from estimator.health.stands import Motion
 
 LEVEL = 0.01
 """Chance of naming a stand where nothing moved, that of the estimator."""
-DRAWS = 1000
-"""Of fleets in which nothing moved, of the same schedule; so many that the limit is right to three in a thousand."""
+DRAWS, PAIRED = 1000, 300
+"""Of fleets in which nothing moved, of the same schedule; so many that the limit is right to three in a thousand, and
+to six where pairs of dates are looked at."""
 Vectors = NDArray[np.float64]
 Seating = Callable[[int, int], float]
 
@@ -45,6 +47,33 @@ def knows_the_seating(motions: list[Motion], seating: Seating, rng: np.random.Ge
     still = deviations[:, None] * rng.standard_normal((len(motions), 3 * DRAWS))
     null = ((weight @ still).reshape(len(weight), DRAWS, 3) ** 2).sum(axis=2) / information[tells, None]
     return bool(owner[tells][chi2.argmax()] == 0 and chi2.max() > np.quantile(null.max(axis=0), 1 - LEVEL))
+
+
+def knows_the_scatter(motions: list[Motion], seating: Seating, rng: np.random.Generator) -> tuple[float, float] | None:
+    """From when to when the first stand was turned, years, for who knows τ alone: the largest χ² of three over all
+    pairs of dates of all stands that three units tell of, at its own level on this schedule; None where it is another
+    stand's, or no more than that."""
+    stands, times, centred, value = _whole(motions, seating)
+    units = np.array([m.unit for m in motions])
+    still = np.sqrt(_variance(motions, seating))[:, None] * rng.standard_normal((len(motions), 3 * PAIRED))
+    best, null = (0.0, -1.0, 0.0, 0.0), np.zeros(PAIRED)
+    for stand in np.unique(stands):
+        dates = np.append(np.sort(times[stands == stand]), np.inf)
+        columns = ((stands == stand) & (times >= dates[:, None])).astype(float)
+        told = columns @ (units[:, None] == np.unique(units))
+        shared, weight = columns @ centred @ columns.T, columns @ centred
+        pull, chance = weight @ value, (weight @ still).reshape(len(dates), PAIRED, 3)
+        for i in range(len(dates) - 1):
+            information = shared[i, i] + shared.diagonal()[i + 1 :] - 2 * shared[i, i + 1 :]
+            j = i + 1 + np.flatnonzero(((told[i] > told[i + 1 :]).sum(axis=1) >= FEWEST_UNITS) & (information > 0))
+            if not len(j):
+                continue
+            chi2 = ((pull[i] - pull[j]) ** 2).sum(axis=1) / information[j - i - 1]
+            null = np.maximum(
+                null, (((chance[i] - chance[j]) ** 2).sum(axis=2) / information[j - i - 1, None]).max(axis=0)
+            )
+            best = max(best, (float(chi2.max()), float(stand), float(dates[i]), float(dates[j[chi2.argmax()]])))
+    return best[2:] if best[1] == 0 and best[0] > np.quantile(null, 1 - LEVEL) else None
 
 
 def _variance(motions: list[Motion], seating: Seating) -> Vectors:

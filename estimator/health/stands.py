@@ -7,7 +7,7 @@ back, several, or a unit that moved by itself. The most evident is taken into th
 and so on until nothing is evident; what others explain better is then taken out again. The level 1 % is shared by all
 dates and stands that were looked at (Bonferroni).
 
-A shift is the stand's only when at least three units tell of it, when without any one of them it is more than chance
+A shift is the stand's only when at least three units show it, when without any one of them it is more than chance
 makes the largest of all that was looked at, and when four in five of the units that tell for themselves (their own
 sigma at most a fifth of it) show it, one of any number left aside: a single unit that was dropped, or mounted badly, is
 no fault of the stand. Values are in rad (turns) or relative (scales), covariances in rad² or relative².
@@ -20,7 +20,7 @@ import numpy as np
 from scipy import stats
 
 from estimator.health.seating import Seating, Units, seated
-from estimator.health.stand_events import FEWEST_UNITS, LEVEL, Event, Weighed, columns, of_units, weighed
+from estimator.health.stand_events import FEWEST_UNITS, LEVEL, Event, Weighed, chi_squares, columns, of_units, weighed
 from estimator.health.stand_search import of_stands
 from estimator.session import Array
 
@@ -28,6 +28,8 @@ AGREEING = 0.8
 """Share of the units that must show the shift; one in five may differ, and one of any number."""
 TELLS = 5.0
 """Sigmas of its own that a shift must have for a unit to have a vote: half of them is then far from either answer."""
+SAME = 1e-6
+"""Part of the information of events beside one another below which they are one."""
 TRIED = 12
 """Stands, the most evident, whose best candidate is given a fit of its own."""
 MOST_EVENTS = 24
@@ -169,7 +171,11 @@ def _is_evident(found: Seating, e: int, one: _Taken) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class _Witnesses:
-    """What each unit says of one event; of those that say anything."""
+    """What each unit says of one event; of those that say anything.
+
+    Two events on some of the same sessions may differ by one terrible mounting, which then carries one of them: without
+    a unit, those beside are what the other units make of them.
+    """
 
     value: Array
     """(k,) δ, rad or relative."""
@@ -177,6 +183,10 @@ class _Witnesses:
     """(u, k, k) 1/rad² or 1/relative²."""
     pull: Array
     """(u, k) 1/rad or 1/relative."""
+    beside: Array
+    """(u, m, m) information on it, first, and on the events that act on some of the same sessions."""
+    pulled: Array
+    """(u, m) pull of them all, none of them being in the model."""
 
     @property
     def agreeing(self) -> Array:
@@ -190,28 +200,43 @@ class _Witnesses:
 
     def bear(self, own: Weighed) -> bool:
         """Whether they are enough, of one mind, and none is the only one."""
-        if len(self.pull) < FEWEST_UNITS:
+        if self.agreeing.sum() < FEWEST_UNITS:
             return False
         votes = self.agreeing[self._own > TELLS**2]
         by_chance = own.size * float(stats.f.isf(min(LEVEL, 1 / own.looked), own.size, own.freedom))
         return bool(votes.sum() >= AGREEING * (len(votes) - 1)) and self._without_one() > by_chance
 
     def _without_one(self) -> float:
-        """χ² without the unit that it rests on most."""
-        pull, whole = self.pull.sum(axis=0) - self.pull, self.information.sum(axis=0) - self.information
-        return float(np.einsum("uk,ukl,ul->u", pull, np.linalg.pinv(whole, hermitian=True), pull).min())
+        """χ² without the unit that it rests on most, whatever the events beside it are then."""
+        k = len(self.value)
+        pull, whole = self.pulled.sum(axis=0) - self.pulled, self.beside.sum(axis=0) - self.beside
+        shared = whole[:, :k, k:] @ np.linalg.pinv(whole[:, k:, k:], rcond=SAME, hermitian=True)
+        free = whole[:, :k, :k] - shared @ whole[:, k:, :k]
+        chi2, _ = chi_squares(pull[:, :k] - (shared @ pull[:, k:, None])[..., 0], free, whole[:, :k, :k])
+        return float(chi2.min())
 
 
 def _witnesses(found: Seating, e: int) -> _Witnesses:
     """The units that have sessions with the e-th event and without."""
-    information, pull = [], []
+    k, told = found.value.shape[1], list[tuple[Array, ...]]()
+    these = [e, *_overlapping(found, e)]
     for part in found.parts:
         column = part.column[:, :, e]
-        own = np.einsum("ui,uiab->uab", column, part.seen[:, :, :, e])
         some = (column.sum(axis=1) > 0) & (column.sum(axis=1) < part.units.there.sum(axis=1))
-        information.append(own[some])
-        pull.append((np.einsum("ui,uia->ua", column, part.rest) + own @ found.value[e])[some])
-    return _Witnesses(found.value[e], np.concatenate(information), np.concatenate(pull))
+        acting = part.column[some][:, :, these]
+        whole = np.einsum("uid,uiaeb->udaeb", acting, part.seen[some][:, :, :, these], optimize=True)
+        rest = np.einsum("uid,uia->uda", acting, part.rest[some], optimize=True)
+        pulled = rest + np.einsum("udaeb,eb->uda", whole, found.value[these])
+        own = whole[:, 0, :, 0]
+        size = len(these) * k
+        told.append((own, rest[:, 0] + own @ found.value[e], whole.reshape(-1, size, size), pulled.reshape(-1, size)))
+    return _Witnesses(found.value[e], *(np.concatenate(each) for each in zip(*told, strict=True)))
+
+
+def _overlapping(found: Seating, e: int) -> list[int]:
+    """The other events that act on some of the sessions that the e-th acts on."""
+    shared = sum(np.einsum("ui,uif->f", part.column[:, :, e], part.column) for part in found.parts)
+    return [int(f) for f in np.flatnonzero(shared) if f != e]
 
 
 def _state(number: int, name: str, found: _Explained) -> StandState:

@@ -48,12 +48,12 @@ def _direction(rng: np.random.Generator) -> Array:
 
 @pytest.mark.parametrize(("m", "arcsec"), [(4, 0.8), (6, 0.8), (6, 2.0), (8, 1.2)])
 def test_u_holds_an_axis_that_drifted_by_a_part_of_its_tolerance(m: int, arcsec: float) -> None:
-    """With a sensor judged beside an x that it drags itself, 74 to 90 in a hundred were held. Of four axes the others
-    cannot always tell who drifted."""
+    """With a sensor judged beside an x that it drags itself, 74 to 90 in a hundred were held. With one that moves for
+    nothing while the others pay for it, 92 of the others of four axes were."""
     rng = np.random.default_rng([m, round(10 * arcsec)])
     found = [drifted(rng, m, arcsec * ARCSEC) for _ in range(SESSIONS)]
     assert sum(own for own, _ in found) >= stats.binom.ppf(1e-3, SESSIONS, 0.954)
-    assert sum(others for _, others in found) >= (0.9 if m == 4 else 0.94) * SESSIONS * (m - 1)
+    assert sum(others for _, others in found) >= 0.94 * SESSIONS * (m - 1)
 
 
 def test_few_degrees_of_freedom_ask_for_more_before_a_sensor_is_said_to_have_moved() -> None:
