@@ -10,7 +10,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 # Tests wait now and then, for a browser or a process: one worker more than cores keeps these at work.
 WORKERS ?= $(shell n=$$(nproc 2>/dev/null || echo 2); echo $$((n < 7 ? n + 1 : 8)))
 
-.PHONY: setup run test lint format words bench papers study backtest stands pictures docs browser lock clean
+.PHONY: setup run test lint format words bench papers study backtest stands tails pictures docs browser lock clean
 
 setup: $(STAMP)
 
@@ -62,6 +62,9 @@ backtest: setup
 
 stands: setup
 	$(BIN)/python -m benchmarks.stands
+
+tails: setup
+	$(BIN)/python -m benchmarks.tails
 
 pictures: setup browser
 	IMU_HEALTH_PICTURES=1 $(BIN)/pytest tests/end_to_end/browser/test_pictures.py tests/docs

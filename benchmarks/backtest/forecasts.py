@@ -44,8 +44,8 @@ class Reached:
     """One changing parameter and the date before which it passes its tolerance with 10 %."""
 
     kind: str
-    early: tuple[float, float]
-    """By the estimator, and by who knows the generator."""
+    early: tuple[float, ...]
+    """By the estimator, and by its rivals; in the back-test by who knows the generator."""
     passed: float
     is_found: bool
     """Whether a change was found in it."""

@@ -60,6 +60,8 @@ class Plan:
     """T, least and largest of a unit; its sessions differ by a third either way."""
     since: int = 0
     """Sessions, at least, from the onset of a change on; 0 where it may come any time."""
+    freedom: float = np.inf
+    """Of Student's law of an error, with the standard deviation that is stated; infinite of a normal one."""
 
 
 def dates(plan: Plan, rng: np.random.Generator) -> Array:
@@ -79,10 +81,17 @@ def history(kind: str, time: Array, plan: Plan, rng: np.random.Generator) -> His
     truth = _course(kind, days, (onset, warmth), rng)
     unit = np.exp(rng.uniform(*np.log(plan.sigma)))
     sigma = unit * rng.uniform(0.75, 1.33, len(time))
-    error = sigma * rng.standard_normal(len(time))
+    error = sigma * errors(plan.freedom, len(time), rng)
     recorded = truth[0] + error[0]
     temperature = 21 + warmth[at] + 0.5 * rng.standard_normal(len(time))
     return History(kind, truth - recorded, onset, STEP * at, truth[at] + error - recorded, sigma, temperature)
+
+
+def errors(freedom: float, count: int, rng: np.random.Generator) -> Array:
+    """(count,) in standard deviations."""
+    if np.isinf(freedom):
+        return rng.standard_normal(count)
+    return rng.standard_t(freedom, count) * np.sqrt((freedom - 2) / freedom)
 
 
 def _onset(kind: str, time: Array, plan: Plan, rng: np.random.Generator) -> float:

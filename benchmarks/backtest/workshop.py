@@ -7,7 +7,7 @@ decade, aging is hyperbolic, wandering is many small shocks, the laboratory is h
 
 import numpy as np
 
-from benchmarks.backtest.histories import STEP, YEARS, History, Plan
+from benchmarks.backtest.histories import STEP, YEARS, History, Plan, errors
 from estimator.session import Array
 
 TAILS = 4.0
@@ -54,7 +54,7 @@ def history(kind: str, time: Array, plan: Plan, rng: np.random.Generator) -> His
     onset = _onset(kind, time, plan, rng)
     truth = _course(kind, days, (onset, warmth), rng)
     sigma = np.exp(rng.uniform(*np.log(plan.sigma))) * np.exp(0.25 * rng.standard_normal(len(time)))
-    error = sigma * rng.standard_t(TAILS, len(time)) * np.sqrt((TAILS - 2) / TAILS)
+    error = sigma * errors(plan.freedom, len(time), rng)
     recorded = truth[0] + error[0]
     temperature = 20 + warmth[at] + 0.3 * rng.standard_normal(len(time))
     return History(kind, truth - recorded, onset, STEP * at, truth[at] + error - recorded, sigma, temperature)

@@ -71,8 +71,8 @@ FIRST = World(
 SECOND = World(
     workshop.DESCRIBED,
     "late creep",
-    Plan(sessions=(4, 16), sigma=(0.01, 0.25), since=1),
-    Plan(sessions=(17, 60), sigma=(0.01, 0.25), since=1),
+    Plan(sessions=(4, 16), sigma=(0.01, 0.25), since=1, freedom=workshop.TAILS),
+    Plan(sessions=(17, 60), sigma=(0.01, 0.25), since=1, freedom=workshop.TAILS),
     {"3": (3, 3), "4 to 7": (4, 7), "8 to 20": (8, 20), "21 to 60": (21, 60)},
     workshop.dates,
     workshop.history,

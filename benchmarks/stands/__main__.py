@@ -123,7 +123,7 @@ def rows(fleets: int, seed: int) -> list[tuple[str, Rate, str]]:
          "≤ 1 %"),
         ("seated to 30″ beside 5″, nothing moved: a stand is named", share(STILL * fleets, seed + 1, two[1], named),
          "≤ 1 %"),
-        ("forty units seated to 5″, nothing moved: a stand is named", share(2 * fleets, seed + 5, sound, named),
+        ("forty units seated to 5″, nothing moved: a stand is named", share(fleets, seed + 5, sound, named),
          "≤ 1 %"),
         ("a stand turned by 12″, its ten units seated to 30″ on the other stand: it alone is named",
          share(fleets, seed + 2, beside, found), "≥ 95 %"),

@@ -15,9 +15,9 @@ from estimator.health.stands import Motion
 
 LEVEL = 0.01
 """Chance of naming a stand where nothing moved, that of the estimator."""
-DRAWS, PAIRED = 1000, 300
+DRAWS, PAIRED = 1000, 200
 """Of fleets in which nothing moved, of the same schedule; so many that the limit is right to three in a thousand, and
-to six where pairs of dates are looked at."""
+to seven where all pairs of dates are looked at."""
 Vectors = NDArray[np.float64]
 Seating = Callable[[int, int], float]
 

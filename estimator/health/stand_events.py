@@ -7,11 +7,11 @@ the restricted χ² by
     χ² = bᵀJ⁻¹b,    b = DᵀPz,  J = DᵀPD, both freed of the events that are in the model already
 
 The candidate with the largest χ²/2 − ln N of its class, N how many of it were looked at (of stands: `stand_search`), is
-fitted with the variances made anew, because an event that is not in the model passes for
-scatter. Its variance V = tr J⁻¹ holds parts that were estimated: v_c by the variance θ_c, known to d_c degrees of
-freedom (twice its information), hence V to V²/Σ v_c²/d_c of them (Satterthwaite). χ²/k is Fisher's F of k and so many;
-the log likelihood that decides between hypotheses is Student's, (ν + k)/2·ln(1 + χ²/ν) − ln N, which never underflows.
-Units as in `seating`.
+fitted with the variances made anew, because an event that is not in the model passes for scatter. Its variance
+V = tr J⁻¹ holds parts that were estimated: v_c by the variance θ_c, known to d_c degrees of freedom (twice its
+information), hence V to V²/Σ v_c²/d_c of them (Satterthwaite). χ²/k is Fisher's F of k and so many; the log likelihood
+that decides between hypotheses is Student's, (ν + k)/2·ln(1 + χ²/ν) − ln N, which never underflows. Units as in
+`seating`.
 """
 
 from collections.abc import Sequence
@@ -52,7 +52,7 @@ class Event:
 
 @dataclass(frozen=True)
 class Candidate:
-    """An event, and how many of its class were looked at."""
+    """An event, and how many of its class were looked at, or what so many are worth for one of its length."""
 
     event: Event
     chi2: float

@@ -140,7 +140,8 @@ def _life(found: Seating, stand: int) -> _Life:
         rows.append(np.stack([np.full(len(row), number), row, place, part.units.time[row, place]]))
     every = np.concatenate(rows, axis=1)
     every = every[:, np.argsort(every[3], kind="stable")]
-    return _Life(stand, *every[:3].astype(int), every[3], np.unique(every[3]))
+    part, row, place = every[:3].astype(int)
+    return _Life(stand, part, row, place, every[3], np.unique(every[3]))
 
 
 def _best(found: Seating, life: _Life, spread: _Pairs, price: _Price) -> Candidate | None:

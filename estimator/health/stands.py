@@ -2,10 +2,10 @@
 
 A stand that turns, or a fixture that was re-seated, turns every block that is measured on it from then on, and no block
 that is measured elsewhere. How blocks are seated anyway is estimated for every stand and unit (`seating`); what may
-have happened is compared by χ² (`stand_events`): nothing, a shift of a stand at any of its dates, one that was taken
-back, several, or a unit that moved by itself. The most evident is taken into the model, the variances are made anew,
-and so on until nothing is evident; what others explain better is then taken out again. The level 1 % is shared by all
-dates and stands that were looked at (Bonferroni).
+have happened is compared by χ² (`stand_events`, `stand_search`): nothing, a shift of a stand at any of its dates, one
+that was taken back, several, or a unit that moved by itself. The most evident is taken into the model, the variances
+are made anew, and so on until nothing is evident; what others explain better is then taken out again. The level 1 % is
+shared by all dates and stands that were looked at (Bonferroni).
 
 A shift is the stand's only when at least three units show it, when without any one of them it is more than chance
 makes the largest of all that was looked at, and when four in five of the units that tell for themselves (their own
