@@ -6,13 +6,14 @@
 """
 
 from estimator.planning.elevation import conditioning, optimal_elevation
-from estimator.planning.missing import Missing, missing
+from estimator.planning.missing import Expected, Missing, missing
 from estimator.planning.orientations import OrientationRank, proposed_orientations, rank_of_orientations
 from estimator.planning.positions import OptimalPositions, optimal_positions
 from estimator.planning.propose import plan
 from estimator.planning.results import Judged, Plan, Request, Sweep, Wanted
 
 __all__ = [
+    "Expected",
     "Judged",
     "Missing",
     "OptimalPositions",

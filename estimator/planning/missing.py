@@ -12,8 +12,9 @@ import numpy as np
 
 from estimator.calibration.calibrate import averaged
 from estimator.errors import Problem, ScheduleError
-from estimator.planning.expected import expected_sigmas
+from estimator.planning.expected import expected_sigmas, head_kind, input_noise, planned
 from estimator.planning.orientations import rank_of_orientations
+from estimator.planning.results import Request
 from estimator.results import PARAMETERS
 from estimator.session import ACCELEROMETER, TWO_AXIS_STAND, Array, CalibrationSession
 
@@ -22,6 +23,22 @@ SAME = 0.25
 MOST = 360
 """Equal steps a run: whole degrees are finer than anybody turns a head by."""
 RUNS = ("direct", "flipped")
+
+
+@dataclass(frozen=True)
+class Expected:
+    """One parameter of one sensor; sigmas are total, relative for scale, SI; None where it is not observed."""
+
+    sensor: str
+    kind: str
+    parameter: str
+    so_far: float | None
+    complete: float | None
+    """With every position of the programme."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """As part of ``imu-missing/1``."""
+        return {"sensor": self.sensor, "parameter": self.parameter, "sigma": self.so_far, "complete": self.complete}
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +55,8 @@ class Missing:
     """(k, 3) where up should point, unit vectors, block axes; none on a stand."""
     unseen: tuple[str, ...]
     """What the positions so far leave open."""
+    expected: tuple["Expected", ...] = ()
+    """How well parameters are known so far and would be; on a stand only."""
 
     @property
     def is_complete(self) -> bool:
@@ -54,6 +73,7 @@ class Missing:
             "settings": [{"run": run, "beta_deg": round(float(np.degrees(beta)), 9)} for run, beta in self.settings],
             "directions": self.directions.tolist(),
             "unseen": list(self.unseen),
+            "expected": [one.to_dict() for one in self.expected],
         }
 
 
@@ -75,7 +95,19 @@ def missing(session: CalibrationSession, positions: int | None = None, *, both_r
     steps = positions or steps_of(rows.beta, rows.flipped)
     runs = np.array([False, True]) if both_runs else np.unique(rows.flipped)
     settings = tuple(one for run in runs for one in _unset(rows.beta[rows.flipped == run], rows.beta, steps, bool(run)))
-    return Missing(len(rows.readings), steps, settings, np.zeros((0, 3)), _open(rows))
+    so_far = expected_sigmas(rows)[0]
+    expected = _expected(rows, so_far, _complete(rows, steps, tuple(map(bool, runs))) if settings else so_far)
+    return Missing(len(rows.readings), steps, settings, np.zeros((0, 3)), _open(expected), expected)
+
+
+def _complete(rows: CalibrationSession, steps: int, runs: tuple[bool, ...]) -> Array:
+    """(m, 4) sigmas of the whole programme, SI, relative for scale; NaN where the rows so far say no noise."""
+    assert rows.stand is not None
+    angle = rows.stand.alpha if head_kind(rows) == ACCELEROMETER else rows.stand.chi
+    sigma = input_noise(rows)
+    if angle is None or not np.isfinite(sigma).all():
+        return np.full((len(rows.sensors), len(PARAMETERS)), np.nan)
+    return expected_sigmas(planned(rows, angle, steps, Request(runs=runs), sigma))[0]
 
 
 def steps_of(beta: Array, flipped: Array) -> int:
@@ -98,15 +130,22 @@ def _unset(done: Array, every: Array, steps: int, flipped: bool) -> list[tuple[s
     return [(RUNS[flipped], float(beta)) for beta, far in zip(wanted, nearest, strict=True) if far > SAME * step]
 
 
-def _open(rows: CalibrationSession) -> tuple[str, ...]:
-    """``A1 scale``: what is not observed yet."""
-    total, _ = expected_sigmas(rows)
+def _expected(rows: CalibrationSession, so_far: Array, complete: Array) -> tuple[Expected, ...]:
+    """Sensor by sensor; both (m, 4) SI, relative for scale."""
+
+    def known(value: float) -> float | None:
+        return float(value) if np.isfinite(value) else None
+
     return tuple(
-        f"{sensor.name} {parameter}"
-        for sensor, own in zip(rows.sensors, np.isfinite(total), strict=True)
-        for parameter, is_seen in zip(PARAMETERS, own, strict=True)
-        if not is_seen
+        Expected(sensor.name, sensor.kind, parameter, known(now), known(then))
+        for sensor, own, whole in zip(rows.sensors, so_far, complete, strict=True)
+        for parameter, now, then in zip(PARAMETERS, own, whole, strict=True)
     )
+
+
+def _open(expected: tuple[Expected, ...]) -> tuple[str, ...]:
+    """``A1 scale``: what is not observed yet."""
+    return tuple(f"{one.sensor} {one.parameter}" for one in expected if one.so_far is None)
 
 
 def pointing(rows: CalibrationSession) -> Array:

@@ -9,9 +9,12 @@ from service.api.received import REQUEST_BODY, FileOf
 from service.api.schemas.problem import errors
 from service.dependencies import StorageOf
 from service.planning.question import PlanQuestion
+from service.planning.ready import ReadyQuestion
 from service.views.missing import missing_of
 from service.views.plan import plan
+from service.views.readiness import readiness_of
 from service.words.missing import missing_in_words
+from service.words.readiness import headline, reasons
 
 router = APIRouter(prefix="/plan", tags=["planning"])
 
@@ -32,6 +35,15 @@ class Setting(BaseModel):
     beta_deg: float = Field(description="Turn of the head, degrees.")
 
 
+class KnownSoFar(BaseModel):
+    """How well one parameter is known; total, one sigma, SI, relative for scale; null where it is not observed."""
+
+    sensor: str = Field(description="Its name.")
+    parameter: str = Field(description="`scale`, `bias`, `quadratic` or `axis`.")
+    sigma: float | None = Field(description="By the positions so far.")
+    complete: float | None = Field(description="By all positions of the programme.")
+
+
 class MissingDocument(BaseModel):
     """imu-missing/1: what a session that is being measured still lacks."""
 
@@ -42,7 +54,20 @@ class MissingDocument(BaseModel):
     settings: list[Setting] = Field(description="Of a stand, in the order of turning.")
     directions: list[list[float]] = Field(description="Where up should point, unit vectors in block axes.")
     unseen: list[str] = Field(description="What the positions so far leave open.")
+    expected: list[KnownSoFar] = Field(description="How well each parameter is known; empty without a stand.")
     said: list[str] = Field(description="The same for people.")
+
+
+class ReadyDocument(BaseModel):
+    """imu-readiness/1: whether a unit is warm and still enough, SI, times in s."""
+
+    model_config = {"extra": "allow"}
+
+    format: str = Field(description="`imu-readiness/1`.")
+    state: str = Field(description="`ready`, `not-still`, `not-warm`, `too-early` or `cannot-tell`.")
+    ready: bool = Field(description="Whether the measurement may begin.")
+    unit_type: str | None = Field(description="By whose tolerances was judged; null: by the defaults.")
+    said: list[str] = Field(description="The same for people: the answer, then its reasons.")
 
 
 Positions = Annotated[
@@ -56,6 +81,14 @@ def read_missing(file: FileOf, positions: Positions = None, runs: Runs = "both")
     """Which positions a session still lacks while it is measured. Nothing is stored."""
     found = missing_of(file, positions, both_runs=runs == "both")
     return MissingDocument.model_validate({**found.to_dict(), "said": missing_in_words(found)})
+
+
+@router.post("/ready", responses=errors(400, 404, 413, 422), openapi_extra=REQUEST_BODY)
+def read_ready(file: FileOf, asked: Annotated[ReadyQuestion, Query()], storage: StorageOf) -> ReadyDocument:
+    """Whether a unit is warm and still enough, by the first rows or minutes of a record. Nothing is stored."""
+    answer = readiness_of(storage, file, asked)
+    said = [headline(answer.found), *reasons(answer.found, answer.kind)]
+    return ReadyDocument(**answer.found.to_dict(), unit_type=answer.unit_type, said=said)
 
 
 @router.get("", responses=errors(404, 422))

@@ -21,10 +21,13 @@ UPLOADS = frozenset(
         f"{PREFIX}/sessions",
         f"{PREFIX}/layouts/preview",
         f"{PREFIX}/plan/missing",
+        f"{PREFIX}/plan/ready",
         f"{PREFIX}/attachments",
         "/upload",
         "/upload/layout",
         "/attachments",
+        "/ready",
+        "/missing",
     }
 )
 """Where files are received; these routes count what comes themselves."""

@@ -95,6 +95,11 @@ CATALOGUE = {
         "plan.plan_session",
         "Plan a session: elevation, positions, expected uncertainty of every parameter, and what it cannot see.",
     ),
+    "ready": Entry(
+        "ready.ready",
+        "Say whether a unit is warm and still enough to be measured, by the first minutes of a record: exit code 0 for "
+        "ready, 1 for not yet.",
+    ),
     "missing": Entry(
         "missing.missing_positions",
         "Say which positions a session still lacks while it is measured: settings of the stand, or orientations to "

@@ -39,6 +39,8 @@ GET /stands
 GET /stands/{{name:path}}
 GET /models/{{id}}
 GET /plan
+GET /ready
+GET /missing
 GET /help
 GET /api-reference
 GET /account
@@ -119,6 +121,9 @@ POST {API}/layouts/preview
 GET {API}/uploads
 GET {API}/uploads/{{id}}
 POST {API}/plan/missing
+POST {API}/plan/ready
+POST /ready
+POST /missing
 PUT {SESSION}/stage
 PUT {SESSION}/check
 GET {SESSION}/certificate

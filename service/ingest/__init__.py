@@ -37,6 +37,13 @@ def read_upload(content: bytes | Path, filename: str) -> CalibrationSession:
     return read_session(content, name=filename, most=in_force().extent)
 
 
+def read_first_rows(content: bytes | Path, filename: str) -> CalibrationSession:
+    """The first rows of a session, which need not be enough for its programme; samples of a raw log as they are."""
+    if isinstance(content, Path) or _is_apart(content):
+        return apart_session(content, filename, "first-rows")
+    return read_session(content, name=filename, most=in_force().extent, part=True)
+
+
 @contextmanager
 def in_turn(content: bytes | Path) -> Iterator[None]:
     """Around all that is done with an upload: only so many that are read apart are held in memory at once."""
@@ -51,9 +58,9 @@ def _is_apart(content: bytes) -> bool:
     return is_binary(content) or len(content) > LONG
 
 
-def apart_session(content: bytes | Path, filename: str) -> CalibrationSession:
+def apart_session(content: bytes | Path, filename: str, job: str = "session") -> CalibrationSession:
     """The same, by a process of its own."""
-    session = read_apart("session", content, filename)
+    session = read_apart(job, content, filename)
     assert isinstance(session, CalibrationSession)
     return session
 
@@ -81,9 +88,12 @@ def start_of(path: Path, count: int) -> bytes:
         return file.read(count)
 
 
-def read_file(path: Path) -> CalibrationSession:
-    """The same for a file on this machine, where the metadata of a CSV table may stand in a JSON file beside it."""
+def read_file(path: Path, *, part: bool = False) -> CalibrationSession:
+    """The same for a file on this machine, where the metadata of a CSV table may stand in a JSON file beside it;
+    ``part``: its first rows, which need not be enough for its programme."""
     with path.open("rb") as file:
         start = file.read(max(map(len, BINARY)))
     is_long = path.stat().st_size > LARGEST_FILE
-    return apart_session(path, str(path)) if is_binary(start) or is_long else read_session(path)
+    if is_binary(start) or is_long:
+        return apart_session(path, str(path), "first-rows" if part else "session")
+    return read_session(path, part=part)

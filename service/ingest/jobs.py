@@ -37,21 +37,30 @@ def session(content: Content, filename: str) -> object:
     """The checked session of a file of any format; of a long raw log its averaged positions."""
     if isinstance(content, Path):
         averaged = averaged_if_long(content, filename)
-        return session(_whole(content, filename), filename) if averaged is None else averaged
+        return _read(_whole(content, filename), filename) if averaged is None else averaged
+    return _read(content, filename)
+
+
+def first_rows(content: Content, filename: str) -> object:
+    """The first rows of a session, checked but for whether they are enough for its programme."""
+    return _read(_whole(content, filename) if isinstance(content, Path) else content, filename, part=True)
+
+
+def _read(content: bytes, filename: str, *, part: bool = False) -> object:
     if is_wrapped(content):
         mapping, table = unwrapped(content, filename)
         document, where = document_of(table, filename, layout_of(mapping, filename))
-        return read_session(document, name=filename, most=in_force().extent, where=where)
+        return read_session(document, name=filename, most=in_force().extent, part=part, where=where)
     if content.startswith(XLSX):
         document, where = xlsx.read_with_places(content, filename)
-        return read_session(document, name=filename, most=in_force().extent, where=where)
+        return read_session(document, name=filename, most=in_force().extent, part=part, where=where)
     for magic, read in READERS:
         if content.startswith(magic):
-            return read_session(read(content, filename), name=filename, most=in_force().extent)
+            return read_session(read(content, filename), name=filename, most=in_force().extent, part=part)
     if content.startswith(LOGS):
         log_of(content, filename)
         raise refusal(filename, NO_MAPPING)
-    return read_session(content, name=filename, most=in_force().extent)
+    return read_session(content, name=filename, most=in_force().extent, part=part)
 
 
 def _whole(path: Path, filename: str) -> bytes:
@@ -72,7 +81,12 @@ def look_at(content: Content, filename: str) -> object:
     return look(_whole(content, filename) if isinstance(content, Path) else content, filename)
 
 
-JOBS: dict[str, Callable[[Content, str], object]] = {"session": session, "look": look_at, "mat-matrices": mat_matrices}
+JOBS: dict[str, Callable[[Content, str], object]] = {
+    "session": session,
+    "first-rows": first_rows,
+    "look": look_at,
+    "mat-matrices": mat_matrices,
+}
 """Name → what does it."""
 PARTED: dict[str, Callable[[Path, str], Iterator[object]]] = {"recording": recording}
 """The same for answers that come in parts."""

@@ -37,7 +37,7 @@ GYRO_STAND = (1.0, 5.0)
 """arcsec: errors of latitude and meridian."""
 
 
-def _blank(value: object) -> object:
+def blank(value: object) -> object:
     """An empty field of a form says nothing."""
     return None if value == "" else value
 
@@ -52,7 +52,7 @@ def _nothing(value: float) -> float:
 
 
 Positive = Annotated[float, Field(ge=LEAST, le=LARGEST, allow_inf_nan=False)]
-Amount = Annotated[Positive | None, BeforeValidator(_blank)]
+Amount = Annotated[Positive | None, BeforeValidator(blank)]
 Elevation = Annotated[float, Field(ge=1, le=89, allow_inf_nan=False)]
 Positions = Annotated[int, Field(ge=3, le=72)]
 Arcsec = Annotated[float, Field(ge=0, le=3600, allow_inf_nan=False), AfterValidator(_nothing)]
@@ -63,7 +63,7 @@ class PlanQuestion(BaseModel):
 
     model_config = ConfigDict(frozen=True)
 
-    unit_type: Annotated[str | None, Field(max_length=200, pattern=r"^[^\x00]*$"), BeforeValidator(_blank)] = Field(
+    unit_type: Annotated[str | None, Field(max_length=200, pattern=r"^[^\x00]*$"), BeforeValidator(blank)] = Field(
         None, description="A stored unit type whose sensors and tolerances are planned with, instead of a cone."
     )
     kind: Literal["accelerometer", "gyroscope"] = Field(
@@ -82,10 +82,10 @@ class PlanQuestion(BaseModel):
     variation: Amount = Field(
         None, description="Variation of the zero from position to position, one sigma, µg (gyros: °/h)."
     )
-    elevation: Annotated[Elevation | None, BeforeValidator(_blank)] = Field(
+    elevation: Annotated[Elevation | None, BeforeValidator(blank)] = Field(
         None, description="Elevation of the head's axis, degrees; proposed where left out."
     )
-    positions: Annotated[Positions | None, BeforeValidator(_blank)] = Field(
+    positions: Annotated[Positions | None, BeforeValidator(blank)] = Field(
         None, description="Positions a run; proposed where left out."
     )
     runs: Literal["both", "direct"] = Field("both", description="Both runs, or the direct one only.")

@@ -38,6 +38,9 @@ MEASURES = (
 )
 """Measure, and what is read in it."""
 WHEN = (
+    ("A unit is to be measured",
+     "Ask on the page Ready whether it is warm and still enough; while it is measured, the page Missing says which "
+     "positions are still to come."),
     ("A unit is unfit",
      "Do not use it. Adjust or repair it, record the service on its page, and measure it again: the next session is "
      "its new reference."),

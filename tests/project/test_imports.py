@@ -38,7 +38,7 @@ ESTIMATOR_LAYERS = (
     {"forward", "long_logs", "writing"},
     {"causes"},
     {"simulate", "calibration", "alignment", "parity"},
-    {"correction", "diagnosis", "health", "programmes"},
+    {"correction", "diagnosis", "health", "programmes", "readiness"},
     {"groups", "nominal_vector", "planning"},
     {"published"},
 )

@@ -1,0 +1,10 @@
+"""Readiness: whether a unit is warm and still enough for a long measurement, told from the first minutes of it.
+
+`readiness` answers, with what a calibration would lose and what to do; derivation: `docs/methods/readiness.md`.
+"""
+
+from estimator.readiness.assess import readiness
+from estimator.readiness.question import Allowed, Question
+from estimator.readiness.results import Disturbance, Outlook, Readiness, State
+
+__all__ = ["Allowed", "Disturbance", "Outlook", "Question", "Readiness", "State", "readiness"]

@@ -1,0 +1,221 @@
+"""A record of the first minutes → ready, wait, not still, or too early to say."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from estimator.readiness.course import WIDE, Course, courses, first_scatter
+from estimator.readiness.creep import turn
+from estimator.readiness.faults import Fault, content_faults, force_of, is_spatial, readable
+from estimator.readiness.forecast import LIKELY, Drawn, departures, drawn, wait
+from estimator.readiness.needed import needed, wander
+from estimator.readiness.question import Question
+from estimator.readiness.results import Disturbance, Kind, Outlook, Readiness, State
+from estimator.readiness.series import Series
+from estimator.readiness.stillness import clipped, first_and_last, shaking
+from estimator.session import ACCELEROMETER, Array, CalibrationSession
+
+REACH = 20.0
+"""Lengths of the record that it is carried ahead at most: what begins to move only later is no first-order settling,
+and a record of a twentieth of the programme has seen the first of it."""
+CALM = 20
+"""Means after the last disturbance from which the rest of a record is judged without what came before."""
+FELT = 0.5
+"""Of gravity along an axis from which a drift could be the scale factor's: less of it would need a larger change than
+the zero's own."""
+
+
+def readiness(session: CalibrationSession, question: Question, rng: np.random.Generator) -> Readiness:
+    """Whether the unit is warm and still enough for the programme that is planned.
+
+    Parameters
+    ----------
+    session : the first rows, or the first minutes of a raw log, at rest; (R, m) readings in reading units, times in s.
+    question : how long the programme takes, s, and the tolerances in SI.
+    rng : draws the forecasts.
+
+    Returns
+    -------
+    The answer; what is wrong with the record is part of it and raises nothing.
+    """
+    series, faults = readable(session)
+    if series is None:
+        return _unread(session, question, faults)
+    allowed, limits = allowances(session, series, question)
+    faults = content_faults(session, series, allowed)
+    if any(fault.blocks for fault in faults):
+        return _told(_unread(session, question, faults), session, series)
+    return _judged(session, question, (series, allowed, limits), faults, rng)
+
+
+def allowances(session: CalibrationSession, series: Series, question: Question) -> tuple[Array, list[str]]:
+    """(m,) drift allowed, m/s² or rad/s, infinite where nothing is judged; and whose tolerance is the nearer one."""
+    force = np.linalg.norm(force_of(session, series)) if is_spatial(session) else np.inf
+    felt = np.abs(np.median(series.value[series.place == series.place[-1]], axis=0))
+    most, limits = [], []
+    for sensor, f in zip(session.sensors, felt, strict=True):
+        kept = question.tolerances.get(sensor.kind)
+        bias = np.inf if kept is None or kept.bias is None else kept.bias
+        seen = sensor.kind == ACCELEROMETER and f >= FELT * force
+        scale = np.inf if kept is None or kept.scale is None or not seen else kept.scale * f
+        most.append(question.share * min(bias, scale))
+        limits.append("scale" if scale < bias else "bias")
+    return np.array(most), limits
+
+
+def _judged(
+    session: CalibrationSession,
+    question: Question,
+    found: tuple[Series, Array, list[str]],
+    faults: tuple[Fault, ...],
+    rng: np.random.Generator,
+) -> Readiness:
+    series, allowed, limits = found
+    names = tuple(sensor.name for sensor in session.sensors)
+    marks = first_and_last(series, names, allowed)
+    first = max((mark for mark, _ in marks), default=0)
+    calm = len(series.time) - first >= CALM
+    rest = series.since(first) if calm else series
+    lasting = _lasting(session, series, rest, question, allowed)
+    disturbances = (*(replace(one, passed=calm) for _, one in marks), *lasting)
+    held = courses(rest.time, rest.value, rest.place, rest.count, _wide(rest, allowed))
+    drawings = [drawn(course, rng) for course in held]
+    outlooks = tuple(
+        _outlook(i, session, question, (held[i], drawings[i], len(rest.time), float(allowed[i]), limits[i]), rng)
+        for i in range(len(names))
+        if np.isfinite(allowed[i])
+    )
+    outlooks = tuple(_shares(one, session, rest, question) for one in outlooks)
+    thermal = _thermal(session, rest, question, rng)
+    base = Readiness(
+        unit=session.unit,
+        state=State.TOO_EARLY,
+        outlooks=outlooks,
+        disturbances=disturbances,
+        faults=faults,
+        duration=question.duration,
+        recorded=float(series.edges[-1, 1]),
+        judged_from=float(rest.edges[0, 0]),
+        time=rest.time,
+        change=rest.change,
+        names=names,
+        temperature=thermal,
+        warmed=None if rest.temperature is None else float(rest.temperature[-1] - rest.temperature[0]),
+    )
+    return _stated(base, _creep(session, rest, question, drawings, allowed))
+
+
+def _lasting(
+    session: CalibrationSession, series: Series, rest: Series, question: Question, allowed: Array
+) -> list[Disturbance]:
+    """What does not pass by itself."""
+    names = tuple(sensor.name for sensor in session.sensors)
+    kept = [question.tolerances.get(sensor.kind) for sensor in session.sensors]
+    quadratic = np.array([0.0 if own is None or own.quadratic is None else own.quadratic for own in kept])
+    found = shaking(rest, names, quadratic, allowed)
+    return found + (clipped(session.readings, names, float(series.edges[-1, 1])) if session.is_raw else [])
+
+
+def _wide(series: Series, allowed: Array) -> Array:
+    most = np.where(np.isfinite(allowed), allowed, first_scatter(series.value, series.place))
+    return np.asarray(WIDE * np.maximum(most, np.ptp(series.change, axis=0)))
+
+
+def _outlook(
+    i: int,
+    session: CalibrationSession,
+    question: Question,
+    own: tuple[Course, Drawn, int, float, str],
+    rng: np.random.Generator,
+) -> Outlook:
+    course, drawing, means, allowed, limit = own
+    far = departures(drawing, question.duration, rng)
+    chance = float(np.mean(far > allowed))
+    is_warm, short = chance <= 1 - LIKELY, question.duration / REACH - course.span
+    length = None if is_warm else needed(course, means, question.duration, allowed)
+    return Outlook(
+        name=session.sensors[i].name,
+        kind=session.sensors[i].kind,
+        expected=float(np.median(far)),
+        bound=float(np.quantile(far, LIKELY)),
+        chance=chance,
+        allowed=allowed,
+        limit=limit,
+        wait=None if is_warm else wait(drawing, question.duration, allowed),
+        needed=max(length or 0.0, short) if short > 0 else length,
+        wander=wander(course, question.duration),
+    )
+
+
+def _shares(one: Outlook, session: CalibrationSession, series: Series, question: Question) -> Outlook:
+    """With the bound as shares of the tolerances."""
+    i = [sensor.name for sensor in session.sensors].index(one.name)
+    kept = question.tolerances[one.kind]
+    felt = float(np.abs(np.median(series.value[:, i])))
+    return replace(
+        one,
+        bias_share=one.bound / kept.bias if kept.bias else None,
+        scale_share=one.bound / (kept.scale * felt) if kept.scale and felt and one.kind == ACCELEROMETER else None,
+    )
+
+
+def _thermal(
+    session: CalibrationSession, series: Series, question: Question, rng: np.random.Generator
+) -> Outlook | None:
+    """What the thermometer says of the zeros, by the coefficient that is stated."""
+    kind = ACCELEROMETER if any(s.kind == ACCELEROMETER for s in session.sensors) else session.sensors[0].kind
+    coefficient, kept = (question.coefficient or {}).get(kind), question.tolerances.get(kind)
+    warmth = series.temperature
+    if warmth is None or coefficient is None or kept is None or kept.bias is None or np.ptp(warmth) == 0:
+        return None
+    value, allowed = coefficient * warmth[:, None], question.share * kept.bias
+    same = np.zeros_like(series.place)
+    wide = np.array([WIDE * max(allowed, float(np.ptp(value)))])
+    course = courses(series.time, value, same, series.count, wide)[0]
+    own = (course, drawn(course, rng), len(series.time), allowed, "bias")
+    named = replace(session, sensors=(replace(session.sensors[0], name="temperature", kind=kind),))
+    return replace(_outlook(0, named, question, own, rng), needed=None)
+
+
+def _creep(
+    session: CalibrationSession, series: Series, question: Question, drawings: list[Drawn], allowed: Array
+) -> Disturbance | None:
+    """A turn that explains what all accelerometers are going to do."""
+    felt = [i for i, sensor in enumerate(session.sensors) if sensor.kind == ACCELEROMETER]
+    if not felt or not is_spatial(session):
+        return None
+    ends = np.stack([drawings[i].to_come(0.0, question.duration)[:, -1] for i in felt], axis=1)
+    axes = np.stack([session.sensors[i].nominal_axis for i in felt])
+    size = turn(axes, force_of(session, series), np.median(ends, axis=0), ends.std(axis=0))
+    if size is None:
+        return None
+    names = tuple(session.sensors[i].name for i in felt)
+    return Disturbance(Kind.CREEP, names, float(series.edges[0, 0]), float(series.edges[-1, 1]), size)
+
+
+def _stated(base: Readiness, creep: Disturbance | None) -> Readiness:
+    """The answer: what is to be done first comes first."""
+    judged = base.outlooks if base.temperature is None else (*base.outlooks, base.temperature)
+    late = 1 - (1 - LIKELY) / max(len(judged), 1)
+    if any(not one.passed for one in base.disturbances):
+        return replace(base, state=State.NOT_STILL)
+    if any(one.chance >= late for one in judged):
+        if creep is None:
+            return replace(base, state=State.NOT_WARM)
+        return replace(base, state=State.NOT_STILL, disturbances=(*base.disturbances, creep))
+    long_enough = base.recorded - base.judged_from >= base.duration / REACH
+    is_warm = all(one.chance <= 1 - LIKELY for one in judged)
+    return replace(base, state=State.READY if is_warm and long_enough else State.TOO_EARLY)
+
+
+def _unread(session: CalibrationSession, question: Question, faults: tuple[Fault, ...]) -> Readiness:
+    """Nothing can be told."""
+    names = tuple(sensor.name for sensor in session.sensors)
+    none = np.zeros((0, len(names)))
+    own = (session.unit, State.CANNOT_TELL, (), (), faults, question.duration, 0.0, 0.0, np.zeros(0), none, names)
+    return Readiness(*own)
+
+
+def _told(base: Readiness, session: CalibrationSession, series: Series) -> Readiness:
+    """With what was recorded."""
+    return replace(base, recorded=float(series.edges[-1, 1]), time=series.time, change=series.change)

@@ -1,0 +1,174 @@
+"""What a record says of readiness."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+from estimator.readiness.faults import Fault
+from estimator.session import Array
+
+
+class State(StrEnum):
+    """The answer."""
+
+    READY = "ready"
+    NOT_STILL = "not-still"
+    NOT_WARM = "not-warm"
+    TOO_EARLY = "too-early"
+    CANNOT_TELL = "cannot-tell"
+
+
+class Kind(StrEnum):
+    """What disturbs."""
+
+    STEP = "step"
+    """The reading is another one afterwards."""
+    BURST = "burst"
+    """It shook for a while."""
+    SHAKING = "shaking"
+    """It shakes all the time, more than vibration rectification allows."""
+    CLIPPED = "clipped"
+    """It stands at the end of its range."""
+    CREEP = "creep"
+    """All sensors drift as if the block turned."""
+
+
+@dataclass(frozen=True)
+class Disturbance:
+    """One reason why the block is not still."""
+
+    kind: Kind
+    sensors: tuple[str, ...]
+    start: float
+    """s since the record's first row."""
+    stop: float
+    """s since the record's first row."""
+    size: float
+    """Largest, m/s² or rad/s; of a clipped channel the share of its samples; of a creep rad over the programme."""
+    passed: bool = False
+    """Whether what came after it is judged without it."""
+
+
+@dataclass(frozen=True)
+class Outlook:
+    """What one sensor, or the thermometer, is still going to do."""
+
+    name: str
+    kind: str
+    expected: float
+    """Median of the largest departure from its present value during the programme, m/s² or rad/s (K)."""
+    bound: float
+    """That is not passed with 95 % probability, the same unit."""
+    chance: float
+    """That it passes what is allowed."""
+    allowed: float
+    """m/s² or rad/s (K)."""
+    limit: str
+    """``bias`` or ``scale``: whose tolerance is the nearer one."""
+    wait: tuple[float, float, float] | None
+    """s more until the drift to come is allowed, 5 %, 50 % and 95 % quantile; None where it is, or waiting is no
+    help."""
+    needed: float | None
+    """s more of record until it can be told; None where it can, or no length of it would do."""
+    wander: float
+    """One sigma of what its own slow noise does during the programme, m/s² or rad/s (K)."""
+    bias_share: float | None = None
+    """The bound as a share of the tolerance of the bias."""
+    scale_share: float | None = None
+    """The bound as a share of the tolerance of the scale factor, were it all of that."""
+
+
+@dataclass(frozen=True, eq=False)
+class Readiness:
+    """The answer with its reasons."""
+
+    unit: str
+    state: State
+    outlooks: tuple[Outlook, ...]
+    disturbances: tuple[Disturbance, ...]
+    faults: tuple[Fault, ...]
+    """Why nothing can be told, or what is odd about the record."""
+    duration: float
+    """s of the planned programme."""
+    recorded: float
+    """s of record."""
+    judged_from: float
+    """s since the first row from which on it was judged."""
+    time: Array
+    """(n,) s, middles of the means that were judged, since the first row."""
+    change: Array
+    """(n, m) their change since the first of them, m/s² or rad/s, position by position."""
+    names: tuple[str, ...]
+    temperature: Outlook | None = None
+    """Of the zeros, by the thermometer and the coefficient that was stated; None without either."""
+    warmed: float | None = None
+    """K that the thermometer rose over what was judged."""
+
+    @property
+    def wait(self) -> tuple[float, float, float] | None:
+        """s more to wait, 5 %, 50 % and 95 %: of whoever needs longest; None where waiting is not the answer."""
+        waits = [one.wait for one in self._judged if one.wait is not None]
+        return max(waits, key=lambda wait: wait[1]) if waits and self.state is State.NOT_WARM else None
+
+    @property
+    def needed(self) -> float | None:
+        """s more of record until it can be told; None where it can, or no length would do."""
+        lengths = [one.needed for one in self._judged if one.needed is not None]
+        return max(lengths) if lengths and self.state is State.TOO_EARLY else None
+
+    @property
+    def worst(self) -> Outlook | None:
+        """Whose drift takes most of what is allowed."""
+        return max(self._judged, key=lambda one: one.bound / one.allowed, default=None)
+
+    @property
+    def _judged(self) -> tuple[Outlook, ...]:
+        return self.outlooks if self.temperature is None else (*self.outlooks, self.temperature)
+
+    def to_dict(self) -> dict[str, Any]:
+        """``imu-readiness/1``; SI, times in s."""
+        return {
+            "format": "imu-readiness/1",
+            "unit": self.unit,
+            "state": self.state.value,
+            "ready": self.state is State.READY,
+            "duration_s": self.duration,
+            "recorded_s": self.recorded,
+            "judged_from_s": self.judged_from,
+            "wait_s": None if self.wait is None else list(self.wait),
+            "needed_s": self.needed,
+            "sensors": [_outlook(one) for one in self.outlooks],
+            "warmed_k": self.warmed,
+            "temperature": None if self.temperature is None else _outlook(self.temperature),
+            "disturbances": [
+                {
+                    "kind": one.kind.value,
+                    "sensors": list(one.sensors),
+                    "start_s": one.start,
+                    "stop_s": one.stop,
+                    "size": one.size,
+                    "passed": one.passed,
+                }
+                for one in self.disturbances
+            ],
+            "faults": [
+                {"kind": one.kind.value, "sensors": list(one.sensors), "amount": one.amount, "blocks": one.blocks}
+                for one in self.faults
+            ],
+        }
+
+
+def _outlook(one: Outlook) -> dict[str, Any]:
+    return {
+        "name": one.name,
+        "expected": one.expected,
+        "bound": one.bound,
+        "allowed": one.allowed,
+        "limit": one.limit,
+        "chance": one.chance,
+        "bias_share": one.bias_share,
+        "scale_share": one.scale_share,
+        "wander": one.wander,
+        "wait_s": None if one.wait is None else list(one.wait),
+        "needed_s": one.needed,
+    }
