@@ -4,7 +4,7 @@ Model of the means y_k of a sensor at t_k, T s in all:
 
     y_k = c_p + d·t_k/T + Σ_j a_j·(1 − e^{−t_k/τ_j}) + w(t_k) + ε_k,    Var ε_k = σ²/n_k,    Var w(t) = ρ·σ²·t/T
 
-c_p of each position, a steady drift, none, one or two first-order settlings, a random walk and white noise. ρ and the
+c_p of each position, a steady drift or none, up to two first-order settlings, a random walk and white noise. ρ and the
 τ stand on grids; given them, the model is linear with a known shape of covariance, so with Gaussian priors of d and a
 in units of σ its posterior is Student's and its evidence closed (Zellner 1971, An Introduction to Bayesian Inference in
 Econometrics, ch. 3; Gelman et al. 2013, Bayesian Data Analysis, ch. 14). Cells are weighed by their evidence. Two
@@ -19,15 +19,19 @@ from scipy.linalg import cholesky, solve_triangular
 
 from estimator.session import Array
 
-TAUS = 60.0 * 1.7 ** np.arange(11)
-"""s, one minute to three hours: electronics settle within minutes, housings and fixtures within hours."""
-SETTLINGS = np.array([(0, 0), *((j, j) for j in range(len(TAUS))), *combinations(range(len(TAUS)), 2)])
-"""(J, 2) numbers of the τ: none, which uses neither, then one, which uses the first, then two."""
-USED = np.array([0] + [1] * len(TAUS) + [2] * (len(SETTLINGS) - len(TAUS) - 1))
+TAUS = 60.0 * 1.3 ** np.arange(20)
+"""s, one minute to two and a half hours: electronics settle within minutes, housings and fixtures within hours."""
+PAIRS = np.array([(0, 0), *((j, j) for j in range(len(TAUS))), *combinations(range(len(TAUS)), 2)])
+"""Numbers of the τ: none, which uses neither, then one, which uses the first, then two."""
+SETTLINGS = np.tile(PAIRS, (2, 1))
+"""(J, 2) of every shape of the course: first without a steady drift, then with one."""
+STEADY = np.repeat([0, 1], len(PAIRS))
+"""(J,) whether there is a steady drift."""
+USED = np.tile([0] + [1] * len(TAUS) + [2] * (len(PAIRS) - len(TAUS) - 1), 2)
 """(J,) settlings of each."""
 PRIOR = np.log(1 / 3 / np.bincount(USED)[USED])
-"""(J,) of each: none, one and two are as likely beforehand."""
-WALKS = np.concatenate([[0.0], np.logspace(-3, 3, 13)])
+"""(J,) of each: none, one and two settlings are as likely beforehand, and so is a steady drift or none."""
+WALKS = np.concatenate([[0.0], np.logspace(-3, 3, 7)])
 """ρ, the walk's variance over the record in variances of one mean: from far below what a hundred means show to where
 white noise no longer matters."""
 NO_WALK = 0.5
@@ -50,7 +54,7 @@ class Course:
     tau: Array
     """(C, 2) s."""
     mean: Array
-    """(C, 3) of d and both a, m/s² or rad/s; of a settling that is not there zero."""
+    """(C, 3) of d and both a, m/s² or rad/s; of what is not there zero."""
     root: Array
     """(C, 3, 3) lower root of their covariance over σ², dimensionless."""
     scatter: Array
@@ -125,6 +129,7 @@ def _cells(white: _White, shrink: Array) -> _Cells:
     gram, toward = white.X.T @ white.X, white.X.T @ white.y
     used = np.column_stack([np.zeros(len(SETTLINGS), dtype=int), SETTLINGS + 1])
     there = (np.arange(3) <= USED[:, None]).astype(float)
+    there[:, 0] = STEADY
     A = (gram[used[:, :, None], used[:, None, :]] * there[:, :, None] * there[:, None, :])[:, None]
     A = A + shrink[:, None, None] * np.eye(3)
     b = (toward[used] * there[:, :, None]).transpose(0, 2, 1)

@@ -24,7 +24,7 @@ def turn(axes: Array, force: Array, drift: Array, error: Array) -> float | None:
 
     ``axes`` (m, 3) unit vectors; ``force`` (3,) m/s², specific force, block axes.
     """
-    if len(axes) < FEWEST:
+    if len(axes) < FEWEST or not drift.any():
         return None
     pattern = np.cross(axes, force)  # e·(f × ω) = ω·(e × f)
     omega = np.linalg.lstsq(pattern, drift, rcond=1e-6)[0]

@@ -38,8 +38,15 @@ class Series:
 
     def since(self, first: int) -> "Series":
         """From a mean on."""
-        own = {name: None if values is None else values[first:] for name, values in vars(self).items()}
-        return Series(**own)
+        return Series(
+            time=self.time[first:],
+            edges=self.edges[first:],
+            value=self.value[first:],
+            place=self.place[first:],
+            count=self.count[first:],
+            inner=self.inner[first:],
+            temperature=None if self.temperature is None else self.temperature[first:],
+        )
 
     @property
     def change(self) -> Array:

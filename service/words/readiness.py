@@ -100,8 +100,8 @@ def _of_waiting(found: Readiness) -> list[str]:
 def _of_telling(found: Readiness, worst: Outlook) -> list[str]:
     if found.needed is not None:
         return [
-            f"The record is too short to tell: leave the unit as it is and record about {minutes(found.needed)} minutes "
-            "more."
+            "The record is too short to tell: leave the unit as it is and record about "
+            f"{minutes(found.needed)} minutes more."
         ]
     return [
         f"No length of record would tell: {worst.name} wanders by {amount(worst.kind, worst.wander)} in the time of "
