@@ -20,6 +20,11 @@ AROUND = 3
 """Windows on each side whose differences say what is usual there."""
 TWICE = 4.0
 """Times the usual variance from which a burst matters: twice the scatter."""
+SURE = 5.0
+"""Standard errors that a step must have beside a smooth course, and it must exceed what is allowed there as well: the
+curve of a unit that warms up quickly makes no step."""
+SMOOTH = 3
+"""Degree of that course."""
 TO_NORMAL = 1.4826
 """From the median of absolute deviations to a standard deviation."""
 CLIPPED = 0.005
@@ -47,7 +52,21 @@ def _steps(series: Series, names: tuple[str, ...], allowed: Array) -> list[tuple
     least = np.sqrt(2 / WINDOW) * TO_NORMAL * np.median(np.abs(np.diff(series.value, axis=0)), axis=0) / np.sqrt(2)
     bound = student.isf(FALSE_ALARMS / (4 * away.size), max(n / WINDOW - 1, 2)) * np.maximum(spread, least)
     far = (np.abs(away) > bound) & (np.abs(away) > allowed)
-    return [_step(series, names, middles, away, far, run) for run in _runs(far.any(axis=1))]
+    found = [_step(series, names, middles, away, far, run) for run in _runs(far.any(axis=1))]
+    return [one for one in found if _is_sharp(series, names, one, allowed)]
+
+
+def _is_sharp(series: Series, names: tuple[str, ...], found: tuple[int, Disturbance], allowed: Array) -> bool:
+    """Whether some sensor has a step there that no smooth course through the means around it makes."""
+    at = found[0] - 1
+    rows = slice(max(at - AROUND * WINDOW, 0), at + AROUND * WINDOW)
+    t = series.time[rows] - series.time[at]
+    after = np.arange(len(series.time))[rows] >= at
+    X = np.column_stack([after, np.vander(t / np.abs(t).max(), SMOOTH + 1)])
+    own = [i for i, name in enumerate(names) if name in found[1].sensors]
+    fit, left = np.linalg.lstsq(X, series.value[rows][:, own], rcond=None)[:2]
+    error = np.sqrt(left / (len(X) - X.shape[1]) * np.linalg.inv(X.T @ X)[0, 0])
+    return bool(((np.abs(fit[0]) > SURE * error) & (np.abs(fit[0]) > allowed[own])).any())
 
 
 def _usual(jump: Array) -> Array:

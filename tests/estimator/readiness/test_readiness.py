@@ -49,6 +49,11 @@ def test_a_touch_is_named_with_its_time_and_what_follows_is_judged_alone() -> No
     assert (found.state, found.judged_from >= 600) == (State.READY, True)
 
 
+def test_a_unit_that_warms_up_quickly_was_not_touched() -> None:
+    found = judged(record(np.outer(np.exp(-clock(80) / 1200), [0, 350, 0, 0])))
+    assert found.disturbances == ()
+
+
 def test_a_touch_at_the_end_is_not_still() -> None:
     course = np.zeros((300, 4))
     course[270:, 1] = 40.0
