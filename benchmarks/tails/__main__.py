@@ -17,7 +17,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "health" / "tails.md"
 FREEDOM = 4.0
 """Of Student's law: one error in two hundred is beyond four of its standard deviations."""
 NAMES = ("errors taken for normal", "sessions weighed", "weighed, λ missing")
-SHORT = 8
+SHORT = 12
 """Types with stated dates for one with due dates, of every number of sessions."""
 
 
@@ -39,7 +39,7 @@ class Case:
 def main() -> None:
     """The page, from fixed seeds."""
     asked = argparse.ArgumentParser(description=__doc__)
-    asked.add_argument("--types", type=int, default=10)
+    asked.add_argument("--types", type=int, default=24)
     asked.add_argument("--seed", type=int, default=31)
     asked.add_argument("--out", type=Path, default=PAGE)
     given = asked.parse_args()
