@@ -7,8 +7,8 @@ the posterior weights
 
     w_ν ∝ π_ν·Π_j t_ν(r_j/s_ν)/s_ν,        r_j = z_j/√(freedom of the row)
 
-nearly all of π on the normal law; the r_j of each sensor are divided by their root mean square, since that is for others to
-judge. Under ν a name with the traces X explains, beside the others,
+nearly all of π on the normal law; the r_j of each sensor are divided by their root mean square, since that is for
+others to judge. Under ν a name with the traces X explains, beside the others,
 
     T_ν = 2·max_a Σ_j [ln t_ν((z_j − X_j·a)/s_ν) − ln t_ν(z_j/s_ν)],
 
