@@ -9,6 +9,7 @@ from functools import cached_property
 from fastapi import Request
 
 from service.background.bell import Bell
+from service.background.job_desk import JobDesk
 from service.background.read_diagnosis import Reader
 from service.background.read_group import GroupReader
 from service.errors import BusyError
@@ -88,6 +89,12 @@ class Application:
     def groups(self) -> GroupReader:
         """What groups of sessions show, for whoever reads it."""
         return GroupReader(self.storage, self.clock, self.bell, self.metrics, self.settings.diagnosis_workers)
+
+    @cached_property
+    def jobs(self) -> JobDesk:
+        """Where long work is asked for."""
+        own = self.settings
+        return JobDesk(self.clock, self.bell, self.metrics, own.coverage_factor, own.diagnosis_workers)
 
 
 def application_of(request: Request) -> Application:

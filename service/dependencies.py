@@ -10,6 +10,7 @@ from starlette.types import Message
 
 from service.admission import PersonOf
 from service.application import application_of
+from service.background.job_desk import JobDesk
 from service.background.read_diagnosis import Reader
 from service.background.read_group import GroupReader
 from service.errors import TooLargeError
@@ -84,6 +85,10 @@ def _reception(request: Request, storage: StorageOf, person: PersonOf) -> Recept
     return Reception(storage, k, own.metrics, own.bell.ring, person.signs(CREW), is_dated_later=later)
 
 
+def _jobs(request: Request) -> JobDesk:
+    return application_of(request).jobs
+
+
 def _groups(request: Request) -> GroupReader:
     return application_of(request).groups
 
@@ -135,6 +140,8 @@ ReaderOf = Annotated[Reader, Depends(_reader)]
 """What reads diagnoses."""
 GroupReaderOf = Annotated[GroupReader, Depends(_groups)]
 """What reads what groups of sessions show."""
+JobDeskOf = Annotated[JobDesk, Depends(_jobs)]
+"""Where long work is asked for."""
 ReceptionOf = Annotated[Reception, Depends(_reception)]
 """What takes in uploads."""
 DeskOf = Annotated[Desk, Depends(_desk)]

@@ -15,6 +15,7 @@ from service.api import (
     fleet,
     groups,
     identity,
+    jobs,
     labels,
     layouts,
     models,
@@ -55,7 +56,7 @@ def _every() -> APIRouter:
     api, every = APIRouter(prefix=PREFIX), APIRouter(dependencies=ADMITTED)
     for resource in (
         groups, attachments, sessions, records, certificates, diagnoses, events, usable, labels, units, unit_types,
-        models, plans, stands, templates, layouts, uploads, flags, views, notes, webhooks, feeds, fleet, identity,
+        models, plans, stands, templates, layouts, uploads, flags, views, notes, webhooks, feeds, fleet, jobs, identity,
     ):  # fmt: skip
         api.include_router(resource.router)
     every.include_router(api)

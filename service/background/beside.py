@@ -5,6 +5,7 @@ from threading import Event
 from service.background.diagnose_waiting import WORK, Diagnosing, diagnose_next
 from service.background.guard import Guard
 from service.background.helper import Helper
+from service.background.job_waiting import work_on_next
 from service.background.pool_waiting import pool_next
 from service.background.recompute_waiting import recompute_next
 from service.background.refresh_waiting import refresh_next
@@ -32,10 +33,12 @@ def work_beside(own: Diagnosing, stop: Event) -> None:
 
 
 def _work(own: Diagnosing, helper: Helper, stop: Event) -> bool:
-    """A diagnosis, an outlook and a unit under another model, so that none waits for all of the others; whether there
-    was any. Summaries wait for all outlooks, and a group waits for all: every diagnosis changes what it rests on."""
+    """A diagnosis, an outlook, a unit under another model and a piece of long work, so that none waits for all of the
+    others; whether there was any. Summaries wait for all outlooks, and a group waits for all: every diagnosis changes
+    what it rests on."""
     refreshed = refresh_next(own, helper, stop)
     recomputed = recompute_next(own, helper, stop)
-    if diagnose_next(own, helper, stop) or refreshed or recomputed:
+    worked = work_on_next(own, helper, stop)
+    if diagnose_next(own, helper, stop) or refreshed or recomputed or worked:
         return True
     return summarise_next(own, helper, stop) or pool_next(own, helper, stop)

@@ -1,5 +1,5 @@
-"""A process of its own that makes diagnoses, outlooks, summaries, what groups show and what follows from other models:
-numerical work in threads stands in the way of requests.
+"""A process of its own that makes diagnoses, outlooks, summaries, what groups show, what follows from other models and
+pieces of long work: numerical work in threads stands in the way of requests.
 
 It is forked from one that holds nothing but the loaded program (`forkserver`), so that it has no connection to the
 database, no lock and no file of the service's. It ends with the service: it reads the end of its pipe.
@@ -16,6 +16,7 @@ from multiprocessing.process import BaseProcess
 from typing import Any
 
 from service.background.guard import Failure, ending_here
+from service.background.work_job import work_piece
 from service.errors import ServiceError
 from service.flows.diagnose import diagnose
 from service.flows.recompute import recompute
@@ -60,6 +61,8 @@ class Job(StrEnum):
     """A unit's sessions under another model."""
     SUMMARY = "summary"
     """How the units of a type drift, or how stands stand."""
+    PIECE = "piece"
+    """Of long work that somebody asked for."""
 
 
 class Helper:
@@ -102,7 +105,11 @@ class Helper:
         """The same for a unit's sessions under another model."""
         return self._answer(Job.MODEL, task, now, still)
 
-    def _answer(self, job: Job, of: str | Group | Task, now: datetime, still: Still) -> Failure | None:
+    def work_on(self, id: int, now: datetime, still: Still) -> Failure | None:
+        """The same for a piece of long work."""
+        return self._answer(Job.PIECE, id, now, still)
+
+    def _answer(self, job: Job, of: str | int | Group | Task, now: datetime, still: Still) -> Failure | None:
         if not still():
             raise StoppingError(f"The {job} of {of} was not begun.")
         self.start()
@@ -153,6 +160,8 @@ def _made(storage: Storage, job: Job, of: Any, now: datetime, coverage_factor: f
             refresh_beside(storage, of, now)
         elif job is Job.SUMMARY:
             summarise(storage, of, now)
+        elif job is Job.PIECE:
+            work_piece(storage, of, now, coverage_factor)
         elif job is Job.MODEL:
             recompute(storage, of, now, coverage_factor)
         else:

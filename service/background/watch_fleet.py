@@ -10,6 +10,7 @@ from service.background.flag_shifted_stands import flag_shifted_stands
 from service.background.guard import Guard
 from service.background.pool_waiting import ask_for_outdated
 from service.background.relearn import relearn
+from service.flows.ask_job import drop_outlived
 from service.metrics import Metrics
 from service.storage import Storage
 
@@ -55,4 +56,6 @@ def look(storage: Storage, clock: Callable[[], datetime], metrics: Metrics) -> b
         ask_for_outdated(storage, clock, guard.alone)
     with guard.alone("half-written files", ""):
         storage.files.sweep()
+    with guard.alone("files of jobs", ""):
+        drop_outlived(storage, clock())
     return not guard.failed

@@ -41,6 +41,10 @@ GET /models/{{id}}
 GET /plan
 GET /ready
 GET /missing
+GET /jobs
+GET /jobs/{{id}}
+POST /jobs/report
+POST /jobs/{{id}}/cancel
 GET /help
 GET /api-reference
 GET /account
@@ -91,6 +95,11 @@ GET {API}/feeds/flags.atom
 GET {API}/feeds/due.ics
 GET {API}/fleet
 GET {API}/fleet/report
+GET {API}/jobs
+GET {API}/jobs/{{id}}
+GET {API}/jobs/{{id}}/file
+POST {API}/jobs/report
+POST {API}/jobs/{{id}}/cancel
 GET {API}/me
 GET {API}/tokens
 POST {API}/tokens
@@ -140,7 +149,7 @@ POST {API}/attachments/{{id}}/withdraw
 ENGINEER = f"""
 POST /sessions/{{id}}/diagnosis/accept
 POST /sessions/{{id}}/diagnosis/withdraw/{{revision}}
-POST /units/{{serial:path}}/recalibrate
+POST /jobs/recalibration
 POST /groups/accept
 POST /models/{{id}}/withdraw
 POST /flags/acknowledge
@@ -166,6 +175,7 @@ POST {SESSION}/supersede
 POST {SESSION}/diagnosis/accept
 POST {UNIT}/reference
 POST {UNIT}/recalibrate
+POST {API}/jobs/recalibration
 POST {UNIT}/diagnosis/accept
 POST {API}/unit-types/{{name:path}}/diagnosis/accept
 POST {API}/stands/{{name:path}}/diagnosis/accept

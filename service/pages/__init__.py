@@ -20,6 +20,7 @@ from service.pages import (
     event_routes,
     flag_routes,
     help_routes,
+    job_routes,
     layout_routes,
     model_routes,
     oidc_routes,
@@ -59,6 +60,7 @@ PARTS = (
     type_routes,
     arrival_routes,
     help_routes,
+    job_routes,
     assets,
 )
 """Every file of addresses."""

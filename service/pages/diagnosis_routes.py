@@ -1,15 +1,13 @@
 """The addresses of diagnoses: the page, and the forms that accept a cause or compute a unit's sessions again."""
 
 from typing import Annotated
-from urllib.parse import quote, urlencode
 
 from fastapi import APIRouter, Form, Path, Request
 from fastapi.responses import HTMLResponse, RedirectResponse
 
 from service.background.read_diagnosis import GLANCE
-from service.dependencies import Now, ReaderOf, Reading, SettingsOf, StorageOf
+from service.dependencies import Now, ReaderOf, Reading, StorageOf
 from service.flows.accept_model import accept_model
-from service.flows.recalibrate import recalibrate
 from service.flows.withdraw_model import withdraw_model
 from service.pages.diagnosis import diagnosis_page
 from service.pages.forms import NO_NUL, SEE_OTHER, By, Key
@@ -57,11 +55,3 @@ def withdraw(
     """Takes an accepted cause out of the model again, and shows the models that concern the session."""
     withdraw_model(storage, revision, by, why, now)
     return RedirectResponse(f"/sessions/{id}/diagnosis#models", SEE_OTHER)
-
-
-@router.post("/units/{serial:path}/recalibrate")
-def recalibrate_unit(serial: Key, storage: StorageOf, settings: SettingsOf, now: Now) -> RedirectResponse:
-    """Computes a unit's sessions again under the model in force, and shows the unit."""
-    done = recalibrate(storage, serial, now, coverage_factor=settings.coverage_factor)
-    told = {"recomputed": done.recomputed, "unchanged": done.unchanged, "left": done.left}
-    return RedirectResponse(f"/units/{quote(serial)}?{urlencode(told)}", SEE_OTHER)

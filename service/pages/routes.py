@@ -4,7 +4,6 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import HTMLResponse
-from pydantic import BaseModel, Field
 
 from service.admission import PersonOf
 from service.dependencies import Now, Reading, ReadingFleet, ReceptionOf, SettingsOf, StorageOf
@@ -38,7 +37,6 @@ from service.views.pattern import type_names
 from service.views.session_report import session_report
 from service.views.traceability import traceability_of
 from service.views.unit_report import unit_report
-from service.words.recalibrated import recalibrated_in_words
 
 MOST_QUESTIONED = 20
 """Sessions that the fleet page names; the latest."""
@@ -76,15 +74,6 @@ def show_fleet(
     return render(request, "fleet.html", shown)
 
 
-class UnitAsked(BaseModel):
-    """An address of a unit's page as it came; the counts are of sessions that its form just had computed again."""
-
-    raw: bool = False
-    recomputed: Annotated[int, Field(ge=0, le=1_000_000)] = 0
-    unchanged: Annotated[int, Field(ge=0, le=1_000_000)] = 0
-    left: Annotated[int, Field(ge=0, le=1_000_000)] = 0
-
-
 @router.get("/units/{serial:path}")
 def show_unit(
     request: Request,
@@ -92,7 +81,7 @@ def show_unit(
     settings: SettingsOf,
     now: Now,
     serial: Key,
-    asked: Annotated[UnitAsked, Query()],
+    raw: bool = False,
 ) -> HTMLResponse:
     """One unit with the history of its parameters; ``raw``: what the whole block did is left in."""
     report = unit_report(store, serial, now)
@@ -102,15 +91,14 @@ def show_unit(
         "unit.html",
         unit_page(
             report,
-            recent_history(store, serial, HISTORY_LIMIT, raw=asked.raw),
+            recent_history(store, serial, HISTORY_LIMIT, raw=raw),
             now=now,
-            raw=asked.raw,
+            raw=raw,
             flags=store.flags.page(FlagQuery(serial, limit=FLAG_LIMIT)),
             notes=store.notes.of_unit(serial),
             pair=found_and_left(store, report.unit_type, report.sessions, report.services, settings.coverage_factor),
             outlook=dated(report.outlook, now),
             group=group_section(store, Level.UNIT, serial),
-            recalibrated=recalibrated_in_words(asked.recomputed, asked.unchanged, asked.left),
             follow=SOONEST if is_coming and settings.diagnosis_workers else None,
             said=remarks(serial, "", (), store.attachments.of_unit(serial), settings.max_attachment_bytes),
         ),

@@ -91,8 +91,6 @@ class UnitPage:
     """Files that people attached; None where the page is made without a service."""
     follow: int | None
     """Seconds after which the page looks again whether its dates are worked out; None where they are."""
-    recalibrated: str = ""
-    """What became of its sessions, where they were just computed again."""
 
 
 def unit_page(
@@ -107,7 +105,6 @@ def unit_page(
     outlook: UnitOutlook | None = None,
     group: GroupSection | None = None,
     follow: int | None = None,
-    recalibrated: str = "",
     said: Remarks | None = None,
 ) -> UnitPage:
     """The page of a unit with its history, flags and notes, as found and as left, and when it must come back."""
@@ -131,7 +128,6 @@ def unit_page(
         group=group,
         said=said,
         follow=follow,
-        recalibrated=recalibrated,
     )
 
 

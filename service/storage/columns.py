@@ -7,8 +7,9 @@ from sqlalchemy import DateTime, Dialect, text
 from sqlalchemy.types import TypeDecorator
 
 IS_OPEN, IS_WAITING, IS_QUESTIONED = "state <> 'resolved'", "state = 'waiting'", "state = 'questioned'"
-"""Rows of flags, of deliveries and of sessions that are looked for all the time: few of many, so each has an index of
-its own."""
+IS_AT_WORK = "state IN ('waiting', 'running')"
+"""Rows of flags, of deliveries, of sessions and of jobs that are looked for all the time: few of many, so each has an
+index of its own."""
 
 
 def only_where(condition: str) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """The tables. What was measured and computed is written once; only summaries that can be rebuilt are ever updated:
-`conditions`, `outlooks`, `flags`, `fleet_tables`, and of a session the revision in force, its verdict and its stage.
+`conditions`, `outlooks`, `flags`, `fleet_tables`, `jobs`, and of a session the revision in force, its verdict and its
+stage.
 
 unit_types ──< tolerance_revisions          stands ──< stand_certificates, append-only
     └──< units ──< services                   │
@@ -19,6 +20,7 @@ unit_types ──< tolerance_revisions          stands ──< stand_certificate
                    └──< model_revisions ──< recomputations   causes that engineers accepted, and what they moved
 group_diagnoses, pending_groups               what the sessions of a unit, a unit type or a stand show together
 saved_views                                    lists as people asked for them, under a name
+jobs                                           long work that somebody asked for, and how far it has come
 accounts ──< tokens, sign_ins, sign_in_links, identities   who may sign in, and what they show for it; attempts
 """
 

@@ -26,7 +26,7 @@ class Recomputations(Queries):
 
     def ask(self, revision: int, scope: Scope, subject: str, now: datetime) -> int:
         """Asks for every unit that a revision of a model concerns; returns how many those are."""
-        units = select(UnitRow.id).where(_concerned(scope, subject)).order_by(UnitRow.id)
+        units = select(UnitRow.id).where(concerned(scope, subject)).order_by(UnitRow.id)
         keys = tuple(self._session.scalars(units))
         for unit in keys:
             own = {"state": Progress.WAITING, "asked_at": now, "attempts": 0}
@@ -83,7 +83,8 @@ class Recomputations(Queries):
         )
 
 
-def _concerned(scope: Scope, subject: str) -> ColumnElement[bool]:
+def concerned(scope: Scope, subject: str) -> ColumnElement[bool]:
+    """Units that a model, or work of this scope, is of."""
     match scope:
         case Scope.UNIT:
             return UnitRow.serial == subject

@@ -96,11 +96,12 @@ def test_an_accepted_cause_is_listed_and_the_unit_recomputed(holding: Holding) -
     assert "K. Ito" in accepted.text
     assert "calibrated before it" in accepted.text
     unit = client.get(f"/api/v1/sessions/{id}").json()["unit"]
-    assert client.post(f"/units/{unit}/recalibrate", headers=HTML).status_code == 303
+    again = {"scope": "unit", "subject": unit, "by": "K. Ito"}
+    assert client.post("/jobs/recalibration", data=again, headers=HTML).status_code == 303
     assert "calibrated with it" in page(client, id)
 
 
-@pytest.mark.parametrize("path", ["/sessions/{id}/diagnosis/accept", "/units/{unit}/recalibrate"])
+@pytest.mark.parametrize("path", ["/sessions/{id}/diagnosis/accept", "/jobs/recalibration"])
 def test_a_form_of_another_site_changes_nothing(holding: Holding, path: str) -> None:
     client, id = held(holding, TEMPERATURE)
     unit = client.get(f"/api/v1/sessions/{id}").json()["unit"]

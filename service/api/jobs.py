@@ -1,0 +1,88 @@
+"""Long work: asked for, followed, cancelled, and the file that it made."""
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Response
+
+from service.admission import PersonOf
+from service.api.exports import BINARY, as_file
+from service.api.fleet import PDF, XLSX
+from service.api.schemas.fields import Number, Text
+from service.api.schemas.jobs import Cancelling, JobPage, JobSchema, NewRecalibration, NewReport
+from service.api.schemas.problem import errors
+from service.dependencies import CREW, JobDeskOf, LanguageOf, Now, Reading, StorageOf
+from service.flows.ask_job import cancel_job, file_of
+from service.records.job import Job, JobKind, NewJob
+
+router = APIRouter(prefix="/jobs", tags=["jobs"])
+ACCEPTED: dict[int | str, dict[str, Any]] = {
+    202: {"headers": {"Location": {"schema": {"type": "string"}, "description": "Where the job is followed."}}}
+}
+MEDIA_TYPES = {"xlsx": XLSX, "pdf": PDF}
+
+
+@router.get("", responses=errors(422))
+def list_jobs(
+    store: Reading,
+    person: PersonOf,
+    mine: Annotated[bool, Query(description="Only what this account asked for.")] = False,
+    subject: Annotated[Text, Query(description="Only about this unit, unit type or stand.")] = "",
+    before: Annotated[int | None, Query(ge=1, le=2_000_000_000, description="Only jobs before this one.")] = None,
+    limit: Annotated[int, Query(ge=1, le=500, description="How many.")] = 100,
+) -> JobPage:
+    """Long work that was asked for, the newest first."""
+    account = person.login if mine else ""
+    found = store.jobs.page(limit, before=before, account=account, subject=subject)
+    return JobPage(jobs=list(map(_schema, found)), before=found[-1].id if len(found) == limit else None)
+
+
+@router.post("/recalibration", status_code=202, responses={**ACCEPTED, **errors(400, 422, 503)})
+def ask_for_recalibration(
+    new: NewRecalibration, response: Response, desk: JobDeskOf, storage: StorageOf, person: PersonOf
+) -> JobSchema:
+    """Have stored sessions computed again under the models in force, unit by unit. Nothing is overwritten."""
+    own = NewJob(JobKind.RECALIBRATION, person.signs(new.by or CREW), person.login, new.scope, new.subject)
+    return _accepted(response, desk.ask(storage, own))
+
+
+@router.post("/report", status_code=202, responses={**ACCEPTED, **errors(400, 422, 503)})
+def ask_for_report(
+    new: NewReport, response: Response, desk: JobDeskOf, storage: StorageOf, person: PersonOf, language: LanguageOf
+) -> JobSchema:
+    """Have a report of the whole fleet made; it is kept for a week."""
+    own = NewJob(JobKind.REPORT, person.signs(new.by or CREW), person.login, form=new.format, language=language.value)
+    return _accepted(response, desk.ask(storage, own))
+
+
+@router.get("/{id}", responses=errors(404, 422))
+def read_job(id: Number, store: Reading) -> JobSchema:
+    """How far one job has come."""
+    return _schema(store.jobs.get(id))
+
+
+@router.get(
+    "/{id}/file",
+    responses={200: {"content": {XLSX: BINARY, PDF: BINARY}}, **errors(404, 409, 422)},
+    response_class=Response,
+)
+def download_result(id: Number, store: Reading, storage: StorageOf) -> Response:
+    """What a job made, while it is kept."""
+    job = store.jobs.get(id)
+    content = file_of(storage.files, job)
+    assert job.made is not None
+    return as_file(content, MEDIA_TYPES[job.form], job.made.filename)
+
+
+@router.post("/{id}/cancel", responses=errors(400, 403, 404, 409, 422))
+def cancel(id: Number, asked: Cancelling, storage: StorageOf, person: PersonOf, now: Now) -> JobSchema:
+    """Stop a job between two pieces of its work. What was done stays."""
+    return _schema(cancel_job(storage, id, person, person.signs(asked.by or CREW), now))
+
+
+def _accepted(response: Response, job: Job) -> JobSchema:
+    response.headers["Location"] = f"/api/v1/jobs/{job.id}"
+    return _schema(job)
+
+
+def _schema(job: Job) -> JobSchema:
+    return JobSchema.model_validate(job)

@@ -1,0 +1,83 @@
+"""Long work, as programs ask for it and follow it."""
+
+from datetime import datetime
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from service.api.schemas.fields import Text
+from service.records.job import JobKind, JobState
+from service.records.model import Scope
+
+
+class NewRecalibration(BaseModel):
+    """Stored sessions that are to be computed again under the models in force."""
+
+    model_config = ConfigDict(extra="forbid")
+    scope: Scope | None = Field(None, description="One unit, one unit type or one stand; none for the whole fleet.")
+    subject: Text = Field("", description="Its serial number or name; empty for the whole fleet.")
+    by: Text = Field("", description="Who asks, where nobody signs in.")
+
+
+class NewReport(BaseModel):
+    """A report of the whole fleet that is to be made."""
+
+    model_config = ConfigDict(extra="forbid")
+    format: Literal["xlsx", "pdf"] = Field(description="Workbook or paper.")
+    by: Text = Field("", description="Who asks, where nobody signs in.")
+
+
+class Cancelling(BaseModel):
+    """Who cancels."""
+
+    model_config = ConfigDict(extra="forbid")
+    by: Text = Field("", description="Who cancels, where nobody signs in.")
+
+
+class JobFailureSchema(BaseModel):
+    """A piece of the work that could not be done."""
+
+    model_config = ConfigDict(from_attributes=True)
+    subject: str
+    reason: str = Field(description="Why, and what helps.")
+
+
+class MadeSchema(BaseModel):
+    """The file that a job made."""
+
+    model_config = ConfigDict(from_attributes=True)
+    filename: str
+    size: int
+    sha256: str
+    until: datetime = Field(description="It is kept until then.")
+
+
+class JobSchema(BaseModel):
+    """Long work, as it stands."""
+
+    model_config = ConfigDict(from_attributes=True)
+    id: int
+    kind: JobKind
+    scope: Scope | None = Field(description="None for the whole fleet.")
+    subject: str
+    state: JobState
+    who: str
+    asked_at: datetime
+    begun_at: datetime | None
+    ended_at: datetime | None
+    cancelled_by: str
+    done: int = Field(description="Pieces that are whole: of a recalibration, units.")
+    total: int
+    recomputed: int = Field(description="Sessions that have another calibration since.")
+    verdicts: int = Field(description="Sessions that have another verdict since.")
+    failed: int = Field(description="Pieces that could not be done.")
+    failures: list[JobFailureSchema] = Field(description="The first hundred of them.")
+    held_up: str = Field(description="Why it waits although it was begun; empty where it does not.")
+    made: MadeSchema | None = Field(description="What it made, at `/jobs/{id}/file`.")
+
+
+class JobPage(BaseModel):
+    """Jobs, the newest first."""
+
+    jobs: list[JobSchema]
+    before: int | None = Field(description="Ask with it for the jobs before these; none where there are none.")

@@ -1,0 +1,57 @@
+"""Where long work is asked for: done beside the requests, or at once where no process works there."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import datetime
+
+from service.background.bell import Bell
+from service.background.diagnose_waiting import CLAIM
+from service.background.guard import FORESEEN, Guard
+from service.background.work_job import skip_piece, work_piece
+from service.flows.ask_job import ask_job
+from service.metrics import Metrics
+from service.records.job import Job, NewJob
+from service.storage import Storage
+
+
+@dataclass(frozen=True)
+class JobDesk:
+    """Of one service."""
+
+    clock: Callable[[], datetime]
+    bell: Bell
+    metrics: Metrics
+    coverage_factor: float
+    workers: int
+    """Processes of this service that do it; 0 where it is done when it is asked for."""
+
+    def ask(self, storage: Storage, new: NewJob) -> Job:
+        """The job, as it stands now; asked for again, one that was left in the middle goes on."""
+        job = ask_job(storage, new, self.clock())
+        if not self.workers:
+            self._work_through(storage, job.id)
+        self.bell.ring()
+        with storage.database.reading() as store:
+            return store.jobs.get(job.id)
+
+    def _work_through(self, storage: Storage, id: int) -> None:
+        while True:
+            now = self.clock()
+            with storage.database.writing() as store:
+                begun = store.jobs.claim(id, now, now + CLAIM)
+            if begun is None:
+                return
+            self._work(storage, id, now)
+
+    def _work(self, storage: Storage, id: int, now: datetime) -> None:
+        """A piece; whoever asked is told what is foreseen, and what is not costs this piece alone."""
+        guard = Guard(self.metrics)
+        try:
+            with guard.at_request("jobs", str(id)):
+                work_piece(storage, id, now, self.coverage_factor)
+        except FORESEEN:
+            with storage.database.writing() as store:
+                store.jobs.put_off(id, None)
+            raise
+        if guard.failed:
+            skip_piece(storage, id, now)

@@ -1,0 +1,67 @@
+"""One piece of long work: a unit computed again, or a report. What is whole is kept, and counted with it at once."""
+
+from datetime import datetime
+
+from service.errors import ServiceError
+from service.flows.recalibrate import Recalibrated, recalibrate
+from service.languages.language import Language
+from service.records.job import KEPT, Job, JobFailure, JobKind, JobState, Made, Piece
+from service.reports.fleet_file import fleet_file
+from service.storage import Storage
+from service.storage.made import drop_made, put_made
+from service.storage.store import Store
+from service.words.jobs import AT_FAULT, left_in_words
+
+
+def work_piece(storage: Storage, id: int, now: datetime, coverage_factor: float) -> None:
+    """Does the next piece of a job; what is foreseen to hinder it is kept, for whoever waits to read."""
+    with storage.database.reading() as store:
+        job = store.jobs.get(id)
+    if job.state is not JobState.RUNNING:
+        return
+    try:
+        if job.kind is JobKind.REPORT:
+            _report(storage, job, now)
+        else:
+            _recalibrate_next(storage, job, now, coverage_factor)
+    except ServiceError as fault:
+        with storage.database.writing() as store:
+            store.jobs.hold_up(id, str(fault))
+        raise
+
+
+def skip_piece(storage: Storage, id: int, now: datetime) -> None:
+    """The program failed at it, or no process outlived it: it is listed, and the next one follows."""
+    with storage.database.writing() as store:
+        job = store.jobs.get(id)
+        unit = store.jobs.next_unit(job) if job.kind is JobKind.RECALIBRATION else None
+        if unit is None:
+            store.jobs.fail(id, JobFailure(job.subject, AT_FAULT), now)
+        else:
+            store.jobs.advance(job, unit[0], Piece(failure=JobFailure(unit[1], AT_FAULT)))
+
+
+def _report(storage: Storage, job: Job, now: datetime) -> None:
+    with storage.database.reading() as store:
+        content = fleet_file(store, job.form, now, Language(job.language))
+    digest = put_made(storage.files, job.id, content)
+    made = Made(f"fleet-{now:%Y-%m-%d}.{job.form}", len(content), digest, now + KEPT)
+    with storage.database.writing() as store:
+        kept = store.jobs.finish(job.id, made, now)
+    if not kept:
+        drop_made(storage.files, job.id)
+
+
+def _recalibrate_next(storage: Storage, job: Job, now: datetime, coverage_factor: float) -> None:
+    with storage.database.reading() as store:
+        unit = store.jobs.next_unit(job)
+    if unit is None:
+        with storage.database.writing() as store:
+            store.jobs.finish(job.id, None, now)
+        return
+
+    def count(store: Store, done: Recalibrated) -> None:
+        failure = JobFailure(done.unit, left_in_words(done.left)) if done.left else None
+        store.jobs.advance(job, unit[0], Piece(done.recomputed, len(done.verdicts), failure))
+
+    recalibrate(storage, unit[1], now, coverage_factor=coverage_factor, who=job.who, then=count)

@@ -1,0 +1,98 @@
+"""The pages of long work: the list, and how far one job has come."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from urllib.parse import quote, urlencode
+
+from service.flows.ask_job import may_cancel
+from service.measures import number
+from service.pages.follow import follow_seconds
+from service.records.identity import Person
+from service.records.job import Job, JobFailure, JobKind, JobState
+from service.records.model import Scope
+from service.words.jobs import STATES, ending_of, outcome_of, progress_of, title_of
+
+PAGE_SIZE = 50
+"""Jobs on a page: more than a week's."""
+LATEST = 10
+"""Seconds: as long as somebody looks on without wondering."""
+TONES = {JobState.DONE: "pass", JobState.FAILED: "fail", JobState.CANCELLED: "none"}
+"""Colours of what has ended."""
+PLACES = {Scope.UNIT: "units", Scope.UNIT_TYPE: "unit-types", Scope.STAND: "stands"}
+"""First parts of the addresses of what a job is about."""
+KILO = 1000
+"""Bytes in a kilobyte."""
+
+
+@dataclass(frozen=True)
+class JobLine:
+    """One job in the list."""
+
+    job: Job
+    title: str
+    state: str
+    progress: str
+
+
+@dataclass(frozen=True)
+class JobsPage:
+    """Everything the list shows."""
+
+    lines: tuple[JobLine, ...]
+    subject: str
+    mine: bool
+    can_be_mine: bool
+    """Whether somebody signed in, so that there are jobs of one's own."""
+    earlier: str
+    """Address of the next page; empty where there is none."""
+
+
+@dataclass(frozen=True)
+class JobPage:
+    """Everything the page of one job shows."""
+
+    job: Job
+    title: str
+    state: str
+    tone: str
+    progress: str
+    outcome: str
+    ending: str
+    about: str
+    """Address of what it is about; empty where that is the whole fleet."""
+    size: str
+    failures: tuple[JobFailure, ...]
+    more: int
+    """Failures that are not listed."""
+    follow: int | None
+    """Seconds after which the page looks again."""
+    can_cancel: bool
+
+
+def jobs_page(found: Sequence[Job], person: Person, subject: str, *, mine: bool) -> JobsPage:
+    """The newest first."""
+    lines = tuple(JobLine(job, title_of(job), STATES[job.state], progress_of(job)) for job in found)
+    narrowed = ({"subject": subject} if subject else {}) | ({"mine": "yes"} if mine else {})
+    earlier = f"/jobs?{urlencode(narrowed | {'before': found[-1].id})}" if len(found) == PAGE_SIZE else ""
+    return JobsPage(lines, subject, mine, bool(person.login), earlier)
+
+
+def job_page(job: Job, person: Person, now: datetime, workers: int) -> JobPage:
+    """One job as it stands."""
+    follow = follow_seconds(job.asked_at, now, workers) if job.is_open else None
+    return JobPage(
+        job=job,
+        title=title_of(job),
+        state=STATES[job.state],
+        tone=TONES.get(job.state, "none"),
+        progress=progress_of(job),
+        outcome=outcome_of(job) if job.kind is JobKind.RECALIBRATION else "",
+        ending=ending_of(job),
+        about="" if job.scope is None else f"/{PLACES[job.scope]}/{quote(job.subject)}",
+        size="" if job.made is None else f"{number(job.made.size / KILO, 0)} kB",
+        failures=job.failures,
+        more=job.failed - len(job.failures),
+        follow=None if follow is None else min(follow, LATEST),
+        can_cancel=job.is_open and may_cancel(job, person),
+    )

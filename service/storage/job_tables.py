@@ -1,0 +1,48 @@
+"""The table of long work that somebody asked for."""
+
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import Index, String
+from sqlalchemy.orm import Mapped, mapped_column
+
+from service.storage.columns import IS_AT_WORK, only_where
+from service.storage.tables import Base
+
+
+class JobRow(Base):
+    """One job: what it is, how far it has come, who is at it, and what it made."""
+
+    __tablename__ = "jobs"
+    __table_args__ = (Index("ix_jobs_open", "turn_at", "id", **only_where(IS_AT_WORK)),)
+    id: Mapped[int] = mapped_column(primary_key=True)
+    kind: Mapped[str] = mapped_column(String(20))
+    scope: Mapped[str] = mapped_column(String(20))
+    subject: Mapped[str] = mapped_column(String(200), index=True)
+    form: Mapped[str] = mapped_column(String(10))
+    language: Mapped[str] = mapped_column(String(10))
+    who: Mapped[str]
+    account: Mapped[str] = mapped_column(String(200), index=True)
+    state: Mapped[str] = mapped_column(String(20))
+    asked_at: Mapped[datetime]
+    turn_at: Mapped[datetime]
+    """When it was last worked on, so that of several jobs each has its turn."""
+    begun_at: Mapped[datetime | None]
+    ended_at: Mapped[datetime | None]
+    cancelled_by: Mapped[str]
+    claimed_until: Mapped[datetime | None]
+    attempts: Mapped[int]
+    """Claims that ended without a word: the process died."""
+    done: Mapped[int]
+    total: Mapped[int]
+    cursor: Mapped[int]
+    recomputed: Mapped[int]
+    verdicts: Mapped[int]
+    failed: Mapped[int]
+    failures: Mapped[list[Any]]
+    held_up: Mapped[str]
+    filename: Mapped[str]
+    size: Mapped[int]
+    sha256: Mapped[str] = mapped_column(String(64))
+    kept_until: Mapped[datetime | None]
+    """Of the file that it made; None where there is none, or no longer."""

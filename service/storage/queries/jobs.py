@@ -1,0 +1,171 @@
+"""Long work: asked for, claimed by one process piece by piece, cancelled between two, ended once."""
+
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import ColumnElement, func, or_, select, update
+
+from service.errors import NotFoundError
+from service.records.job import OPEN, Job, JobFailure, JobKind, JobState, Made, NewJob, Piece
+from service.records.model import Scope
+from service.storage.job_tables import JobRow
+from service.storage.queries.base import Queries
+from service.storage.queries.recomputations import concerned
+from service.storage.tables import UnitRow
+
+MOST_LISTED = 100
+"""Failures that a job lists by name; it counts all."""
+LONGEST_REASON = 500
+"""Characters of one."""
+
+
+class Jobs(Queries):
+    """Long work that somebody asked for."""
+
+    def add(self, new: NewJob, total: int, now: datetime) -> Job:
+        """Keeps what is asked for."""
+        row = JobRow(
+            kind=new.kind, scope=new.scope or "", subject=new.subject, form=new.form, language=new.language,
+            who=new.who, account=new.account, state=JobState.WAITING, asked_at=now, turn_at=now, cancelled_by="",
+            attempts=0, done=0, total=total, cursor=0, recomputed=0, verdicts=0, failed=0, failures=[], held_up="",
+            filename="", size=0, sha256="",
+        )  # fmt: skip
+        self._session.add(row)
+        self._session.flush()
+        return _record(row)
+
+    def like(self, new: NewJob) -> Job | None:
+        """The job that does the same and is still open."""
+        same = (JobRow.kind == new.kind, JobRow.scope == (new.scope or ""), JobRow.subject == new.subject)
+        of_form = (JobRow.form == new.form, JobRow.language == new.language, JobRow.state.in_(OPEN))
+        row = self._session.scalar(select(JobRow).where(*same, *of_form).order_by(JobRow.id).limit(1))
+        return None if row is None else _record(row)
+
+    def open_count(self) -> int:
+        """How many jobs are still to be worked on."""
+        return self._session.scalar(select(func.count()).select_from(JobRow).where(JobRow.state.in_(OPEN))) or 0
+
+    def get(self, id: int) -> Job:
+        """One job; NotFoundError where there is none of that number."""
+        row = self._session.get(JobRow, id, populate_existing=True)
+        if row is None:
+            raise NotFoundError(f"There is no job {id}.")
+        return _record(row)
+
+    def page(self, most: int, *, before: int | None = None, account: str = "", subject: str = "") -> tuple[Job, ...]:
+        """Jobs, the newest first: from before one, of one account, about one subject."""
+        query = select(JobRow).order_by(JobRow.id.desc()).limit(most)
+        if before is not None:
+            query = query.where(JobRow.id < before)
+        if account:
+            query = query.where(JobRow.account == account)
+        if subject:
+            query = query.where(JobRow.subject == subject)
+        return tuple(map(_record, self._session.scalars(query)))
+
+    def units(self, scope: Scope | None, subject: str) -> int:
+        """How many units are meant."""
+        own = select(func.count()).select_from(UnitRow)
+        return self._session.scalar(own if scope is None else own.where(concerned(scope, subject))) or 0
+
+    def next_unit(self, job: Job) -> tuple[int, str] | None:
+        """Key and serial number of the unit whose turn it is; None where all had theirs."""
+        query = select(UnitRow.id, UnitRow.serial).where(UnitRow.id > job.cursor).order_by(UnitRow.id).limit(1)
+        if job.scope is not None:
+            query = query.where(concerned(job.scope, job.subject))
+        found = self._session.execute(query).first()
+        return None if found is None else (found[0], found[1])
+
+    def waiting(self, now: datetime, limit: int) -> tuple[int, ...]:
+        """Jobs that nobody is at, the one that has waited longest for its turn before all."""
+        return tuple(
+            self._session.scalars(
+                select(JobRow.id).where(*_is_free(now)).order_by(JobRow.turn_at, JobRow.id).limit(limit)
+            )
+        )
+
+    def claim(self, id: int, now: datetime, until: datetime) -> int | None:
+        """How often its next piece was begun since a claim ended with a word; None where another is at it."""
+        own = update(JobRow).where(JobRow.id == id, *_is_free(now))
+        begun = {"state": JobState.RUNNING, "begun_at": func.coalesce(JobRow.begun_at, now), "turn_at": now}
+        claimed = own.values(claimed_until=until, attempts=JobRow.attempts + 1, **begun)
+        return self._session.scalar(claimed.returning(JobRow.attempts))
+
+    def extend(self, id: int, until: datetime) -> None:
+        """Whoever claimed it is still at it."""
+        self._put(id, claimed_until=until)
+
+    def give_back(self, id: int) -> None:
+        """The program failed or its process died: the next one may take it at once."""
+        self._put(id, claimed_until=None)
+
+    def put_off(self, id: int, until: datetime | None) -> None:
+        """Gives it back after a word of why: nobody begins the next piece before a time."""
+        self._put(id, claimed_until=until, attempts=0)
+
+    def hold_up(self, id: int, reason: str) -> None:
+        """Says why it waits."""
+        self._put(id, held_up=reason[:LONGEST_REASON])
+
+    def advance(self, job: Job, cursor: int, piece: Piece) -> None:
+        """One more piece is whole. Counted once, also where two were at it because one was taken for dead."""
+        own: dict[str, Any] = {}
+        if piece.failure is not None:
+            own["failed"] = JobRow.failed + 1
+        if piece.failure is not None and len(job.failures) < MOST_LISTED:
+            told = {"subject": piece.failure.subject, "reason": piece.failure.reason[:LONGEST_REASON]}
+            own["failures"] = [*map(vars, job.failures), told]
+        done = JobRow.done + 1
+        changed = {"recomputed": JobRow.recomputed + piece.recomputed, "verdicts": JobRow.verdicts + piece.verdicts}
+        free = {"claimed_until": None, "attempts": 0, "held_up": ""}
+        counted = update(JobRow).where(JobRow.id == job.id, JobRow.cursor == job.cursor)
+        self._session.execute(counted.values(cursor=cursor, done=done, **changed, **free, **own))
+
+    def end(self, id: int, state: JobState, now: datetime, **own: Any) -> bool:
+        """Ends it, unless somebody did before; whether that was so."""
+        ended = {"state": state, "ended_at": now, "claimed_until": None, "held_up": ""}
+        query = update(JobRow).where(JobRow.id == id, JobRow.state.in_(OPEN)).values(**ended, **own)
+        return self._session.scalar(query.returning(JobRow.id)) is not None
+
+    def finish(self, id: int, made: Made | None, now: datetime) -> bool:
+        """All of it is done; with the file that it made."""
+        if made is None:
+            return self.end(id, JobState.DONE, now, total=JobRow.done)
+        file = {"filename": made.filename, "size": made.size, "sha256": made.sha256, "kept_until": made.until}
+        return self.end(id, JobState.DONE, now, done=1, **file)
+
+    def fail(self, id: int, failure: JobFailure, now: datetime) -> bool:
+        """It cannot be done."""
+        return self.end(id, JobState.FAILED, now, failed=1, failures=[vars(failure)])
+
+    def cancel(self, id: int, who: str, now: datetime) -> bool:
+        """Nobody begins its next piece; whether it was still open."""
+        return self.end(id, JobState.CANCELLED, now, cancelled_by=who)
+
+    def outlived(self, now: datetime) -> tuple[int, ...]:
+        """Jobs whose file has been kept for its time."""
+        return tuple(self._session.scalars(select(JobRow.id).where(JobRow.kept_until <= now)))
+
+    def forget_file(self, id: int) -> None:
+        """Its file is gone."""
+        self._put(id, kept_until=None)
+
+    def _put(self, id: int, **values: Any) -> None:
+        self._session.execute(update(JobRow).where(JobRow.id == id).values(**values))
+
+
+def _is_free(now: datetime) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
+    until = JobRow.claimed_until
+    return JobRow.state.in_(OPEN), or_(until.is_(None), until <= now)
+
+
+def _record(row: JobRow) -> Job:
+    kept = row.kept_until
+    return Job(
+        id=row.id, kind=JobKind(row.kind), scope=Scope(row.scope) if row.scope else None, subject=row.subject,
+        form=row.form, language=row.language, who=row.who, account=row.account, state=JobState(row.state),
+        asked_at=row.asked_at, begun_at=row.begun_at, ended_at=row.ended_at, cancelled_by=row.cancelled_by,
+        done=row.done, total=row.total, cursor=row.cursor, recomputed=row.recomputed, verdicts=row.verdicts,
+        failed=row.failed, failures=tuple(JobFailure(**one) for one in row.failures), held_up=row.held_up,
+        made=None if kept is None else Made(row.filename, row.size, row.sha256, kept),
+    )  # fmt: skip

@@ -1,0 +1,68 @@
+"""Long work in words: what it is, how far it has come, and what it did."""
+
+from estimator.wording import counted
+from service.records.job import Job, JobKind, JobState
+from service.records.model import Scope
+
+AT_FAULT = "The program failed at it, several times: the log says more. It keeps what it had."
+FLEET_REPORTS = {"xlsx": "Fleet report as a workbook", "pdf": "Fleet report on paper (PDF)"}
+WHOLE_FLEET = "All units computed again"
+STATES = {
+    JobState.WAITING: "waiting",
+    JobState.RUNNING: "at work",
+    JobState.DONE: "done",
+    JobState.FAILED: "failed",
+    JobState.CANCELLED: "cancelled",
+}
+
+
+def title_of(job: Job) -> str:
+    """What is done, and to what."""
+    if job.kind is JobKind.REPORT:
+        return FLEET_REPORTS[job.form]
+    match job.scope:
+        case None:
+            return WHOLE_FLEET
+        case Scope.UNIT:
+            return f"Unit {job.subject} computed again"
+        case Scope.UNIT_TYPE:
+            return f"All units of type {job.subject} computed again"
+        case Scope.STAND:
+            return f"All units measured on stand {job.subject} computed again"
+
+
+def left_in_words(left: int) -> str:
+    """Why sessions of a unit keep what they had, and what helps."""
+    which = "1 session keeps" if left == 1 else f"{left} sessions keep"
+    return (
+        f"{which} the calibration of before: the file is lost, or cannot be calibrated under the model in force. "
+        "Upload a lost file again; withdraw a cause that does not fit on the unit's page."
+    )
+
+
+def progress_of(job: Job) -> str:
+    """How far it has come."""
+    if job.kind is JobKind.REPORT:
+        return "" if job.state is not JobState.DONE else "The report is made."
+    return f"{job.done} of {counted(job.total, 'unit')}"
+
+
+def outcome_of(job: Job) -> str:
+    """What it did so far; empty of a report."""
+    if job.kind is JobKind.REPORT:
+        return ""
+    if job.state is JobState.DONE and not job.recomputed and not job.failed:
+        return "No session needed it: all rest on the models in force already."
+    other = f"{counted(job.verdicts, 'session')} with another verdict" if job.verdicts else "no verdict moved"
+    return f"{counted(job.recomputed, 'session')} computed again, {other}."
+
+
+def ending_of(job: Job) -> str:
+    """What its end means; empty while it goes on."""
+    match job.state:
+        case JobState.CANCELLED:
+            return "Cancelled between two pieces: what was done until then stays, the rest keeps what it had."
+        case JobState.FAILED:
+            return "It could not be done. Ask for it again; where it fails again, the log says why."
+        case _:
+            return ""

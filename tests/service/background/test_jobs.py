@@ -1,0 +1,152 @@
+"""Long work is claimed once, goes on where it was left, stops between two pieces, and lists what could not be done."""
+
+from collections.abc import Iterator
+from datetime import UTC, datetime, timedelta
+from threading import Event
+
+import pytest
+
+from service.background.bell import Bell
+from service.background.claimed import Work, work_next
+from service.background.diagnose_waiting import CLAIM, MOST_ATTEMPTS, Diagnosing
+from service.background.guard import AT_FAULT, Failure
+from service.background.helper import Helper, Still
+from service.background.job_waiting import JOBS, work_on_next
+from service.background.work_job import work_piece
+from service.errors import ConflictError
+from service.flows.ask_job import ask_job, cancel_job, drop_outlived, file_of
+from service.flows.receive import upload
+from service.metrics import Metrics
+from service.records.identity import EVERYBODY
+from service.records.job import KEPT, Job, JobKind, JobState, NewJob, Piece
+from service.settings import Settings
+from service.storage import Storage
+from tests.databases import one_engine
+from tests.service.sessions import session_bytes
+
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
+AGAIN = NewJob(JobKind.RECALIBRATION, "K. Ito")
+REPORT = NewJob(JobKind.REPORT, "K. Ito", form="xlsx", language="en")
+
+
+@pytest.fixture
+def three(storage: Storage) -> Storage:
+    """Three units of one session each."""
+    for unit in ("B-1", "B-2", "B-3"):
+        upload(storage, session_bytes(unit=unit), "a.json", NOW)
+    return storage
+
+
+@pytest.fixture
+def helper(settings: Settings) -> Iterator[Helper]:
+    """A process that does what is asked for."""
+    started = Helper(settings)
+    yield started
+    started.end()
+
+
+def claim(storage: Storage, id: int, now: datetime = NOW) -> int | None:
+    with storage.database.writing() as store:
+        return store.jobs.claim(id, now, now + CLAIM)
+
+
+def read(storage: Storage, id: int) -> Job:
+    with storage.database.reading() as store:
+        return store.jobs.get(id)
+
+
+def pieces(storage: Storage, id: int, count: int) -> Job:
+    """So many pieces of a job, one after another."""
+    for _ in range(count):
+        assert claim(storage, id) == 1
+        work_piece(storage, id, NOW, 2.0)
+    return read(storage, id)
+
+
+def test_one_process_claims_it_at_a_time_and_a_dead_one_s_claim_runs_out(three: Storage) -> None:
+    id = ask_job(three, AGAIN, NOW).id
+    assert [claim(three, id), claim(three, id), claim(three, id, NOW + CLAIM)] == [1, None, 2]
+
+
+def test_the_same_asked_for_twice_is_one_job(three: Storage) -> None:
+    assert ask_job(three, AGAIN, NOW) == ask_job(three, AGAIN, NOW)
+    assert ask_job(three, REPORT, NOW).id != ask_job(three, AGAIN, NOW).id
+
+
+def test_it_goes_on_behind_the_last_whole_piece_until_all_are_done(three: Storage) -> None:
+    id = ask_job(three, AGAIN, NOW).id
+    assert [pieces(three, id, 1).done, pieces(three, id, 1).done] == [1, 2]
+    ended = pieces(three, id, 2)
+    assert (ended.state, ended.done, ended.total) == (JobState.DONE, 3, 3)
+    assert claim(three, id) is None
+
+
+def test_a_piece_that_two_were_at_is_counted_once(three: Storage) -> None:
+    id = ask_job(three, AGAIN, NOW).id
+    claim(three, id)
+    before = read(three, id)
+    work_piece(three, id, NOW, 2.0)
+    with three.database.writing() as store:
+        unit = store.jobs.next_unit(before)
+        assert unit is not None
+        store.jobs.advance(before, unit[0], Piece())
+    assert read(three, id).done == 1
+
+
+def test_it_is_cancelled_between_two_pieces_and_keeps_what_is_whole(three: Storage) -> None:
+    id = ask_job(three, AGAIN, NOW).id
+    pieces(three, id, 1)
+    assert claim(three, id) == 1
+    cancel_job(three, id, EVERYBODY, "A. Silva", NOW)
+    work_piece(three, id, NOW, 2.0)
+    ended = read(three, id)
+    assert (ended.state, ended.done, ended.cancelled_by) == (JobState.CANCELLED, 1, "A. Silva")
+    with pytest.raises(ConflictError):
+        cancel_job(three, id, EVERYBODY, "A. Silva", NOW)
+
+
+@one_engine
+def test_several_jobs_take_turns(three: Storage) -> None:
+    ids = [ask_job(three, new, NOW).id for new in (AGAIN, REPORT)]
+    claim(three, ids[0], NOW + timedelta(seconds=1))
+    with three.database.writing() as store:
+        store.jobs.give_back(ids[0])
+        assert store.jobs.waiting(NOW + timedelta(seconds=2), 10) == (ids[1], ids[0])
+
+
+@one_engine
+def test_a_process_of_its_own_does_it(settings: Settings, three: Storage, helper: Helper) -> None:
+    again, report = ask_job(three, AGAIN, NOW).id, ask_job(three, REPORT, NOW).id
+    own = Diagnosing(settings, three, lambda: NOW, Metrics(), Bell())
+    while work_on_next(own, helper, Event()):
+        pass
+    assert [read(three, id).state for id in (again, report)] == [JobState.DONE] * 2
+    assert file_of(three.files, read(three, report)).startswith(b"PK")
+    drop_outlived(three, NOW + KEPT)
+    with pytest.raises(ConflictError):
+        file_of(three.files, read(three, report))
+
+
+@one_engine
+def test_a_unit_at_which_the_program_fails_is_listed_and_the_others_follow(settings: Settings, three: Storage) -> None:
+    def fails(helper: Helper, id: int, now: datetime, still: Still) -> Failure | None:
+        return Failure("KeyError", AT_FAULT, is_foreseen=False)
+
+    id = ask_job(three, AGAIN, NOW).id
+    own = Diagnosing(settings, three, lambda: NOW, Metrics(), Bell())
+    failing = Work(JOBS.name, JOBS.queue, fails, JOBS.give_up)
+    for _ in range(MOST_ATTEMPTS + 1):
+        assert work_next(own, Helper(settings), Event(), failing)
+    listed = read(three, id)
+    assert (listed.done, [one.subject for one in listed.failures]) == (1, ["B-1"])
+    assert pieces(three, id, 3).state is JobState.DONE
+
+
+@one_engine
+def test_a_report_that_was_cancelled_leaves_no_file(three: Storage) -> None:
+    job = ask_job(three, REPORT, NOW)
+    claim(three, job.id)
+    with three.database.writing() as store:
+        store.jobs.cancel(job.id, "A. Silva", NOW)
+    work_piece(three, job.id, NOW, 2.0)
+    assert not list(three.files.folder.glob("made/*"))
