@@ -7,10 +7,18 @@ from fastapi import APIRouter
 from service.admission import PersonOf
 from service.api.schemas.fields import TypeName, WindowOf
 from service.api.schemas.problem import errors
-from service.api.schemas.units import NewTolerances, TolerancesSchema, UnitTypePage, UnitTypeSchema
-from service.dependencies import CREW, Now, Reading, StorageOf
+from service.api.schemas.units import (
+    NewTolerances,
+    TolerancePreviewSchema,
+    TolerancesSchema,
+    UnitTypePage,
+    UnitTypeSchema,
+)
+from service.dependencies import CREW, Now, Reading, SettingsOf, StorageOf
 from service.flows.set_tolerances import set_tolerances
+from service.records.tolerance_preview import WantedTolerances
 from service.records.unit import Tolerances
+from service.views.tolerance_preview import preview_tolerances
 
 router = APIRouter(prefix="/unit-types", tags=["unit types"])
 
@@ -39,6 +47,17 @@ def change_tolerances(
     days, who = new.maximum_interval_days, person.signs(CREW)
     changed = set_tolerances(storage, name, _record(new.tolerances), gyro, now, interval_days=days, who=who)
     return UnitTypeSchema.model_validate(changed)
+
+
+@router.post("/{name:path}/preview", responses=errors(400, 404, 422))
+def preview_change(name: TypeName, new: NewTolerances, store: Reading, settings: SettingsOf) -> TolerancePreviewSchema:
+    """What other tolerances would change: the latest sessions of the type's units, judged by them. Nothing is stored.
+
+    At most 200 units are looked at, the worst first; `beyond` says how many were not.
+    """
+    gyro = None if new.gyro_tolerances is None else _record(new.gyro_tolerances)
+    wanted = WantedTolerances(_record(new.tolerances), gyro)
+    return TolerancePreviewSchema.model_validate(preview_tolerances(store, name, wanted, settings.coverage_factor))
 
 
 def _record(given: TolerancesSchema) -> Tolerances:

@@ -12,7 +12,7 @@ Result = tuple[CalibrationSession, Calibration]
 
 def calibrate_files(files: Files, as_json: AsJson = False) -> None:
     """Calibrate session files: scale factor, bias, quadratic term and axis of every sensor, with uncertainties."""
-    for_each(files, _calibrated, _print_json if as_json else _print_table, "calibrating")
+    for_each(files, _calibrated, _print_json if as_json else _print_table, "calibrating", quiet=as_json)
 
 
 def _calibrated(file: Path) -> Result:

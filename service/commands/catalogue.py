@@ -113,6 +113,7 @@ CATALOGUE = {
         "recalibrate.recalibrate_units",
         "Compute stored sessions again under the model in force; what was computed before stays readable.",
     ),
+    "jobs": Entry("jobs.jobs", "Show work that takes long: ask for it, look how far it has come, cancel it."),
     "user": Entry("accounts.user", "Make and change accounts."),
     "token": Entry("accounts.token", "Make and revoke tokens."),
     "audit": Entry("accounts.audit", "Read and check the audit trail."),

@@ -9,7 +9,7 @@ from typing import Annotated, Any, TypeVar
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from estimator.errors import Problem, SessionError
 from service.commands.exits import UNUSABLE, say
@@ -24,6 +24,8 @@ Server = Annotated[str, typer.Option(help="Address of the service.", envvar="IMU
 Out = Annotated[Path | None, typer.Option(help="File to write.", show_default="standard output")]
 WIDE = 160
 """Columns of a table that goes to a file or another program."""
+LARGE = 8 * 1024 * 1024
+"""Bytes of a file that takes seconds: a log of an hour at 100 Hz."""
 DEFAULT_SERVER = "http://127.0.0.1:8000"
 """Where `imu-health serve` listens unless it is told otherwise."""
 
@@ -51,10 +53,12 @@ def problem_line(file: Path, problems: Iterable[Problem]) -> str:
     return f"{file}: {problems_said(problems)}"
 
 
-def for_each(files: list[Path], work: Callable[[Path], T], show: Callable[[T], None], doing: str) -> None:
+def for_each(
+    files: list[Path], work: Callable[[Path], T], show: Callable[[T], None], doing: str, *, quiet: bool = False
+) -> None:
     """Works on every file in order and shows each result; unusable ones get a line, and exit code 2 at the end."""
     unusable = 0
-    with progress(len(files), doing) as advance:
+    with progress(len(files), doing, quiet=quiet, is_long=are_large(files)) as advance:
         for file in files:
             try:
                 show(work(file))
@@ -69,19 +73,28 @@ def for_each(files: list[Path], work: Callable[[Path], T], show: Callable[[T], N
         raise typer.Exit(UNUSABLE)
 
 
+def are_large(files: Iterable[Path]) -> bool:
+    """Whether one of them is a log that takes more than a moment; one that is not there says so where it is read."""
+    return any(file.is_file() and file.stat().st_size > LARGE for file in files)
+
+
 @contextmanager
-def progress(total: int, doing: str) -> Iterator[Callable[[], None]]:
-    """A bar on standard error, only on a terminal and only for more than one thing; yields what moves it on."""
+def progress(total: int, doing: str, *, quiet: bool = False, is_long: bool = False) -> Iterator[Callable[[], None]]:
+    """A bar on standard error, for more than one thing or one that takes long; yields what moves it on.
+
+    Only on a terminal, and neither in a pipe nor beside JSON. Of one thing nobody knows how far it is: the bar says
+    that it goes on, and since when.
+    """
+    several = total > 1
+    counts = (MofNCompleteColumn(), TimeRemainingColumn()) if several else (TimeElapsedColumn(),)
     bar = Progress(
         TextColumn("{task.description}"),
         BarColumn(),
-        MofNCompleteColumn(),
-        TimeRemainingColumn(),
+        *counts,
         console=Console(stderr=True),
         transient=True,
-        disable=total < 2 or not sys.stderr.isatty(),
-        redirect_stdout=sys.stdout.isatty(),
+        disable=quiet or not (several or is_long) or not (sys.stderr.isatty() and sys.stdout.isatty()),
     )
     with bar:
-        task = bar.add_task(doing, total=total)
+        task = bar.add_task(doing, total=total if several else None)
         yield lambda: bar.advance(task)

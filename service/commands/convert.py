@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from estimator.errors import SessionError
+from service.commands.console import are_large, progress
 from service.commands.exits import UNUSABLE, say
 from service.ingest.convert import FORMATS, convert
 
@@ -23,7 +24,8 @@ def convert_files(
     if format_name not in {f.name for f in FORMATS}:
         raise typer.BadParameter(f"{format_name!r} is not a known format; see imu-health convert --help")
     try:
-        sessions = convert(format_name, files)
+        with progress(1, "converting", is_long=are_large(files)):
+            sessions = convert(format_name, files)
     except SessionError as fault:
         say(str(fault))
         raise typer.Exit(UNUSABLE) from fault

@@ -28,7 +28,7 @@ def diagnose_files(files: Files, as_json: AsJson = False, history: History = Non
     """Say what the simulation gets wrong: the cause with its size, what else it could be, and what cannot be seen."""
     earlier = [_earlier(file) for file in history or ()]
     show: Callable[[Result], None] = _print_json if as_json else _print_view
-    for_each(files, lambda file: _diagnosed(file, earlier), show, "diagnosing")
+    for_each(files, lambda file: _diagnosed(file, earlier), show, "diagnosing", quiet=as_json)
 
 
 def _earlier(file: Path) -> CalibrationSession:

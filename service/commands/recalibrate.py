@@ -26,7 +26,7 @@ def recalibrate_units(
     storage = Storage(Database(settings.database), Files(settings.files))
     storage.database.require_ready()
     wanted = units or _all_units(storage)
-    with progress(len(wanted), "recalibrating") as advance:
+    with progress(len(wanted), "recalibrating", quiet=as_json) as advance:
         for serial in wanted:
             done = recalibrate(storage, serial, datetime.now(UTC), coverage_factor=settings.coverage_factor)
             print_json(_as_json(done)) if as_json else _print_line(done)

@@ -12,7 +12,7 @@ from rich.table import Table
 
 from estimator.wording import counted
 from service.client import connect
-from service.commands.console import DEFAULT_SERVER, Out, Server, deliver
+from service.commands.console import DEFAULT_SERVER, Out, Server, deliver, progress
 from service.commands.listing import AsLines, FormOf, Listing, table_of
 from service.commands.speech import said
 from service.commands.upload import coloured
@@ -79,8 +79,9 @@ def write_report(
     """Write the fleet's condition as a file for other programs."""
     if context.invoked_subcommand is not None:
         return
-    with connect(server) as client:
-        deliver(client.get("/fleet/report", format=format.value).content, out)
+    with connect(server) as client, progress(1, "making the report", is_long=format in (Format.XLSX, Format.PDF)):
+        content = client.get("/fleet/report", format=format.value).content
+    deliver(content, out)
 
 
 @report.command("label")

@@ -59,7 +59,7 @@ def upload_files(
     stated = {name: text for name, text in given.items() if text}
     show: Callable[[dict[str, Any]], None] = print_json if as_json else _print_line
     with connect(server) as client:
-        for_each(files, lambda file: _uploaded(client, file, stated, wait=wait), show, "uploading")
+        for_each(files, lambda file: _uploaded(client, file, stated, wait=wait), show, "uploading", quiet=as_json)
 
 
 def _uploaded(client: Client, file: Path, stated: dict[str, str], *, wait: bool) -> dict[str, Any]:

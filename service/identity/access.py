@@ -167,6 +167,7 @@ POST /sessions/{{id}}/reference
 POST /services/{{id}}/withdraw
 POST /stands/{{name:path}}/certificates
 POST /unit-types/{{name:path}}/tolerances
+POST /unit-types/{{name:path}}/tolerances/preview
 POST {SESSION}/withdraw
 POST {SESSION}/certificate/signatures
 POST {SESSION}/accept
@@ -186,6 +187,7 @@ POST {API}/flags/{{id}}/resolve
 POST {API}/flags/{{id}}/assign
 POST {API}/flags/assign
 PUT {API}/unit-types/{{name:path}}
+POST {API}/unit-types/{{name:path}}/preview
 PUT {API}/stands/{{name:path}}/certificate
 """
 

@@ -6,14 +6,17 @@ from urllib.parse import quote
 from fastapi import APIRouter, Depends, Form, Request
 from fastapi.responses import HTMLResponse, RedirectResponse
 
-from service.dependencies import Now, Reading, StorageOf
+from service.dependencies import Now, Reading, SettingsOf, StorageOf
 from service.flows.set_tolerances import set_tolerances
 from service.pages.forms import SEE_OTHER, By, Key, Why
 from service.pages.group import group_section
 from service.pages.render import render
 from service.pages.tolerance_form import wanted
+from service.pages.tolerance_preview import preview_page
 from service.pages.unit_types import type_page, types_page
 from service.records.group import Level
+from service.records.tolerance_preview import WantedTolerances
+from service.views.tolerance_preview import preview_tolerances
 from service.views.type_report import every_type, type_report
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
@@ -47,6 +50,19 @@ def set_limits(
     limits, days = (asked.tolerances, asked.gyro_tolerances), asked.interval_days
     set_tolerances(storage, name, *limits, now, interval_days=days, who=by, why=why, seen=seen)
     return RedirectResponse(f"/unit-types/{quote(name)}#tolerances", SEE_OTHER)
+
+
+@router.post("/unit-types/{name:path}/tolerances/preview")
+def preview_limits(
+    request: Request, name: Key, form: Annotated[dict[str, str], Depends(_form)], store: Reading, settings: SettingsOf
+) -> HTMLResponse:
+    """What other tolerances would change; nothing is stored."""
+    known = store.unit_types.get(name)
+    asked = wanted(known, form)
+    found = preview_tolerances(
+        store, name, WantedTolerances(asked.tolerances, asked.gyro_tolerances), settings.coverage_factor
+    )
+    return render(request, "tolerance_preview.html", preview_page(known, asked, form, found))
 
 
 @router.get("/unit-types/{name:path}")

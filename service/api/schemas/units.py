@@ -39,6 +39,33 @@ class NewTolerances(BaseModel):
     )
 
 
+class VerdictChangeSchema(BaseModel):
+    """A unit that would have another verdict."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    unit: str = Field(description="Serial number.")
+    session: str = Field(description="Id of its latest session.")
+    before: Verdict = Field(description="As it is stored.")
+    after: Verdict = Field(description="Under the other tolerances.")
+    sensor: str = Field(description="The sensor that it hangs on; empty where nothing would be judged.")
+    parameter: str = Field(description="The parameter that it hangs on.")
+    reason: str = Field(description="Why, in one sentence.")
+
+
+class TolerancePreviewSchema(BaseModel):
+    """What other tolerances would change."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    units: int = Field(description="Units of the type with a session that counts.")
+    judged: int = Field(description="Those whose latest session was judged by the other tolerances.")
+    references: int = Field(description="Those whose latest session is judged against nothing.")
+    recordings: int = Field(description="Those whose latest session is a recording in service, which is left out.")
+    beyond: int = Field(description="Those that were not looked at, because there are so many.")
+    changes: list[VerdictChangeSchema] = Field(description="Units that would have another verdict, the worst first.")
+
+
 class NewLot(BaseModel):
     """The production lot of a unit."""
 

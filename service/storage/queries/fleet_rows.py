@@ -5,9 +5,10 @@ from collections.abc import Iterable, Iterator
 from sqlalchemy import Row, Select, func, select
 from sqlalchemy.orm import aliased
 
-from service.records.decision import Decision
+from service.records.decision import Decision, Verdict
 from service.records.event import Service
 from service.records.history import HistoryPoint
+from service.records.tolerance_preview import LatestSession
 from service.storage.queries.accepted import IS_ACCEPTED, IS_BREAK
 from service.storage.queries.base import Queries
 from service.storage.queries.history import DECIDED, point_record
@@ -42,6 +43,18 @@ class FleetRows(Queries):
         )
         for serial, row in self._session.execute(query):
             yield serial, row.session_id, decision_record(row)
+
+    def latest_sessions(self, serials: tuple[str, ...]) -> dict[str, LatestSession]:
+        """The session that the verdict of each of some units is of, by serial number."""
+        own = (SessionRow.id, SessionRow.started_at, SessionRow.block, SessionRow.programme, SessionRow.is_reference)
+        query = (
+            select(UnitRow.serial, UnitRow.id, *own, SessionRow.verdict)
+            .select_from(ConditionRow)
+            .join(UnitRow, UnitRow.id == ConditionRow.unit_id)
+            .join(SessionRow, SessionRow.id == ConditionRow.last_session)
+            .where(UnitRow.serial.in_(serials))
+        )
+        return {row[0]: LatestSession(*row[:-1], Verdict(row[-1])) for row in self._session.execute(query)}
 
     def points_of_latest(self, serials: tuple[str, ...]) -> int:
         """How many parameters the latest sessions of some units have."""
