@@ -11,7 +11,7 @@ down_revision = "0022"
 branch_labels = None
 depends_on = None
 
-IS_AT_WORK = sa.text("state IN ('waiting', 'running')")
+IS_AT_WORK = sa.text("ended_at IS NULL")
 
 
 def upgrade() -> None:

@@ -7,7 +7,7 @@ from sqlalchemy import DateTime, Dialect, text
 from sqlalchemy.types import TypeDecorator
 
 IS_OPEN, IS_WAITING, IS_QUESTIONED = "state <> 'resolved'", "state = 'waiting'", "state = 'questioned'"
-IS_AT_WORK = "state IN ('waiting', 'running')"
+IS_AT_WORK = "ended_at IS NULL"
 """Rows of flags, of deliveries, of sessions and of jobs that are looked for all the time: few of many, so each has an
 index of its own."""
 

@@ -33,10 +33,9 @@ def title_of(job: Job) -> str:
 
 def left_in_words(left: int) -> str:
     """Why sessions of a unit keep what they had, and what helps."""
-    which = "1 session keeps" if left == 1 else f"{left} sessions keep"
     return (
-        f"{which} the calibration of before: the file is lost, or cannot be calibrated under the model in force. "
-        "Upload a lost file again; withdraw a cause that does not fit on the unit's page."
+        f"{counted(left, 'session')} left as before: the file is lost, or cannot be calibrated under the model in "
+        "force. Upload a lost file again; withdraw an accepted cause that does not fit."
     )
 
 
@@ -44,7 +43,7 @@ def progress_of(job: Job) -> str:
     """How far it has come."""
     if job.kind is JobKind.REPORT:
         return "" if job.state is not JobState.DONE else "The report is made."
-    return f"{job.done} of {counted(job.total, 'unit')}"
+    return f"Units: {job.done} of {job.total}"
 
 
 def outcome_of(job: Job) -> str:

@@ -13,7 +13,7 @@ def headline_of(found: TolerancePreview) -> str:
         return "No unit of this type has a session that tolerances decide"
     if not changed:
         return "With these, no unit changes"
-    return f"With these, {changed} of {counted(found.judged, 'unit')} {'changes' if changed == 1 else 'change'}"
+    return f"With these, {changed} of {found.judged} units {'changes' if changed == 1 else 'change'}"
 
 
 def notes_of(found: TolerancePreview) -> Iterator[str]:

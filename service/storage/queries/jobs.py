@@ -6,7 +6,7 @@ from typing import Any
 from sqlalchemy import ColumnElement, func, or_, select, update
 
 from service.errors import NotFoundError
-from service.records.job import OPEN, Job, JobFailure, JobKind, JobState, Made, NewJob, Piece
+from service.records.job import Job, JobFailure, JobKind, JobState, Made, NewJob, Piece
 from service.records.model import Scope
 from service.storage.job_tables import JobRow
 from service.storage.queries.base import Queries
@@ -37,13 +37,13 @@ class Jobs(Queries):
     def like(self, new: NewJob) -> Job | None:
         """The job that does the same and is still open."""
         same = (JobRow.kind == new.kind, JobRow.scope == (new.scope or ""), JobRow.subject == new.subject)
-        of_form = (JobRow.form == new.form, JobRow.language == new.language, JobRow.state.in_(OPEN))
+        of_form = (JobRow.form == new.form, JobRow.language == new.language, JobRow.ended_at.is_(None))
         row = self._session.scalar(select(JobRow).where(*same, *of_form).order_by(JobRow.id).limit(1))
         return None if row is None else _record(row)
 
     def open_count(self) -> int:
         """How many jobs are still to be worked on."""
-        return self._session.scalar(select(func.count()).select_from(JobRow).where(JobRow.state.in_(OPEN))) or 0
+        return self._session.scalar(select(func.count()).select_from(JobRow).where(JobRow.ended_at.is_(None))) or 0
 
     def get(self, id: int) -> Job:
         """One job; NotFoundError where there is none of that number."""
@@ -124,7 +124,7 @@ class Jobs(Queries):
     def end(self, id: int, state: JobState, now: datetime, **own: Any) -> bool:
         """Ends it, unless somebody did before; whether that was so."""
         ended = {"state": state, "ended_at": now, "claimed_until": None, "held_up": ""}
-        query = update(JobRow).where(JobRow.id == id, JobRow.state.in_(OPEN)).values(**ended, **own)
+        query = update(JobRow).where(JobRow.id == id, JobRow.ended_at.is_(None)).values(**ended, **own)
         return self._session.scalar(query.returning(JobRow.id)) is not None
 
     def finish(self, id: int, made: Made | None, now: datetime) -> bool:
@@ -156,7 +156,7 @@ class Jobs(Queries):
 
 def _is_free(now: datetime) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
     until = JobRow.claimed_until
-    return JobRow.state.in_(OPEN), or_(until.is_(None), until <= now)
+    return JobRow.ended_at.is_(None), or_(until.is_(None), until <= now)
 
 
 def _record(row: JobRow) -> Job:
