@@ -8,11 +8,11 @@ AT_FAULT = "The program failed at it, several times: the log says more. It keeps
 FLEET_REPORTS = {"xlsx": "Fleet report as a workbook", "pdf": "Fleet report on paper (PDF)"}
 WHOLE_FLEET = "All units computed again"
 STATES = {
-    JobState.WAITING: "waiting",
-    JobState.RUNNING: "at work",
-    JobState.DONE: "done",
-    JobState.FAILED: "failed",
-    JobState.CANCELLED: "cancelled",
+    JobState.WAITING: "Waiting",
+    JobState.RUNNING: "At work",
+    JobState.DONE: "Done",
+    JobState.FAILED: "Failed",
+    JobState.CANCELLED: "Cancelled",
 }
 
 
