@@ -24,6 +24,7 @@ def upgrade() -> None:
         sa.Column("subject", sa.String(200), nullable=False),
         sa.Column("form", sa.String(10), nullable=False),
         sa.Column("language", sa.String(10), nullable=False),
+        sa.Column("revision", sa.Integer(), nullable=False),
         sa.Column("who", sa.String(), nullable=False),
         sa.Column("account", sa.String(200), nullable=False),
         sa.Column("state", sa.String(20), nullable=False),

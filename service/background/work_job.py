@@ -17,7 +17,7 @@ def work_piece(storage: Storage, id: int, now: datetime, coverage_factor: float)
     """Does the next piece of a job; what is foreseen to hinder it is kept, for whoever waits to read."""
     with storage.database.reading() as store:
         job = store.jobs.get(id)
-    if job.state is not JobState.RUNNING:
+    if job.state is not JobState.RUNNING or job.kind is JobKind.MODEL:
         return
     try:
         if job.kind is JobKind.REPORT:

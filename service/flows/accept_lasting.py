@@ -11,6 +11,7 @@ from estimator.groups import GroupFinding
 from estimator.groups.fixed import EMPIRICAL
 from estimator.groups.results import EmpiricalTerm
 from service.errors import ConflictError, RefusedError
+from service.flows.ask_job import tell_job
 from service.flows.flagging.lasting import settle_accepted
 from service.flows.own_of_group import tell_own
 from service.flows.refresh_group import current, members_of
@@ -57,6 +58,7 @@ def accept_lasting(storage: Storage, group: Group, new: NewLasting, now: datetim
             settle_accepted(store, revision, taken, now)
         tell_own(store, scope, taken.subject)
         units = store.recomputations.ask(revision.id, scope, taken.subject, now)
+        tell_job(store, revision, units, now)
         details = {"revision": revision.id, "cause": new.cause, "sensors": list(taken.sensors), "units": units}
         shows = {"group": f"{SCOPES[group.level.value]} {group.name}", "sessions": shown.sessions, "note": new.note}
         store.audit.write(now, new.by, "accept model", f"{scope} {taken.subject}", details | shows)

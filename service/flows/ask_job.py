@@ -6,6 +6,7 @@ from estimator.errors import Problem
 from service.errors import BusyError, ConflictError, ForbiddenError, RefusedError
 from service.records.identity import Person, Role
 from service.records.job import Job, JobKind, NewJob
+from service.records.model import ModelRevision
 from service.storage import Storage
 from service.storage.files import Files
 from service.storage.made import drop_made, read_made
@@ -34,6 +35,15 @@ def ask_job(storage: Storage, new: NewJob, now: datetime) -> Job:
         return job
 
 
+def tell_job(store: Store, changed: ModelRevision, units: int, now: datetime) -> None:
+    """Keeps as a job that the units of a changed model are computed again."""
+    if units:
+        own = NewJob(
+            JobKind.MODEL, changed.accepted_by, scope=changed.scope, subject=changed.subject, revision=changed.id
+        )
+        store.jobs.add(own, units, now)
+
+
 def _pieces(store: Store, new: NewJob) -> int:
     """How many pieces it has."""
     if new.kind is JobKind.REPORT:
@@ -57,6 +67,8 @@ def cancel_job(storage: Storage, id: int, person: Person, who: str, now: datetim
             raise ForbiddenError("Only whoever asked for a job, or an engineer, cancels it.")
         if not store.jobs.cancel(id, who, now):
             raise ConflictError(f"Job {id} has ended already: it is {job.state}.")
+        if job.kind is JobKind.MODEL:
+            store.recomputations.cancel(job.revision, now)
         store.audit.write(now, who, "cancel job", job.subject or "fleet", {"job": id, "done": job.done})
         return store.jobs.get(id)
 

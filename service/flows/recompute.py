@@ -4,9 +4,11 @@ from datetime import datetime
 
 from service.flows.recalibrate import Recalibrated, recalibrate
 from service.flows.receive import Reception
+from service.records.job import JobFailure, Piece
 from service.records.recomputation import Recomputed, Task
 from service.storage import Storage
 from service.storage.store import Store
+from service.words.jobs import left_in_words
 
 
 def recompute_beside(reception: Reception, now: datetime) -> None:
@@ -25,7 +27,9 @@ def recompute(storage: Storage, task: Task, now: datetime, coverage_factor: floa
 
     def settle(store: Store, done: Recalibrated) -> None:
         outcome = Recomputed(done.sessions, done.recomputed, done.left, done.verdicts, done.furthest)
-        store.recomputations.settle(task, outcome, now)
+        if store.recomputations.settle(task, outcome, now):
+            left = JobFailure(task.unit, left_in_words(done.left)) if done.left else None
+            store.jobs.count_unit(task.revision, Piece(done.recomputed, len(done.verdicts), left), now)
 
     with storage.database.reading() as store:
         who = store.models.get(task.revision).accepted_by

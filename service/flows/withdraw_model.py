@@ -7,6 +7,7 @@ from dataclasses import replace
 from datetime import datetime
 
 from service.errors import ConflictError
+from service.flows.ask_job import tell_job
 from service.flows.own_of_group import tell_own
 from service.judging.model_in_force import in_force, pooled_of
 from service.records.model import ModelRevision
@@ -24,7 +25,7 @@ def withdraw_model(storage: Storage, revision: int, by: str, why: str, now: date
         )
         tell_own(store, known.scope, known.subject)
         if pooled_of(known) is not None:
-            store.recomputations.ask(made.id, known.scope, known.subject, now)
+            tell_job(store, made, store.recomputations.ask(made.id, known.scope, known.subject, now), now)
         details = {"revision": made.id, "withdraws": known.id, "cause": known.cause, "why": why}
         store.audit.write(now, by, "withdraw model", f"{known.scope} {known.subject}", details)
         return made

@@ -87,12 +87,18 @@ def job_page(job: Job, person: Person, now: datetime, workers: int) -> JobPage:
         state=STATES[job.state],
         tone=TONES.get(job.state, "none"),
         progress=progress_of(job),
-        outcome=outcome_of(job) if job.kind is JobKind.RECALIBRATION else "",
+        outcome=outcome_of(job),
         ending=ending_of(job),
-        about="" if job.scope is None else f"/{PLACES[job.scope]}/{quote(job.subject)}",
+        about=_about(job),
         size="" if job.made is None else f"{number(job.made.size / KILO, 0)} kB",
         failures=job.failures,
         more=job.failed - len(job.failures),
         follow=None if follow is None else min(follow, LATEST),
         can_cancel=job.is_open and may_cancel(job, person),
     )
+
+
+def _about(job: Job) -> str:
+    if job.kind is JobKind.MODEL:
+        return f"/models/{job.revision}"
+    return "" if job.scope is None else f"/{PLACES[job.scope]}/{quote(job.subject)}"

@@ -16,10 +16,13 @@ from service.words.conditions import Condition, condition_of
 from service.words.finding import standard_errors
 from service.words.group import over
 from service.words.group_finding import FORMS, day_in_words
-from service.words.recomputations import GIVEN_UP, moved_in_words, progress_of
+from service.words.recomputations import CANCELLED, GIVEN_UP, moved_in_words, progress_of
 
 HOMES = {Scope.UNIT: "/units/", Scope.UNIT_TYPE: "/unit-types/", Scope.STAND: "/stands/"}
 """Where the page of a subject is."""
+
+WHY_NOT = {Progress.GIVEN_UP: GIVEN_UP, Progress.CANCELLED: CANCELLED}
+"""Why a unit's sessions are as before."""
 
 
 @dataclass(frozen=True)
@@ -112,6 +115,6 @@ def _moved(found: Sequence[Recomputation]) -> Iterator[MovedRow]:
 def _unit(one: Recomputation) -> UnitRow:
     told = one.outcome
     if told is None:
-        return UnitRow(one.unit, one.state.value, GIVEN_UP if one.state is Progress.GIVEN_UP else "")
+        return UnitRow(one.unit, one.state.value, WHY_NOT.get(one.state, ""))
     left = f", {told.left} cannot be" if told.left else ""
     return UnitRow(one.unit, f"{told.recomputed} of {told.sessions}{left}", moved_in_words(told.furthest))

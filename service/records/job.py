@@ -15,6 +15,8 @@ class JobKind(StrEnum):
 
     RECALIBRATION = "recalibration"
     """Stored sessions computed again under the models in force, unit by unit."""
+    MODEL = "model"
+    """The sessions that a change of a model concerns, computed again; several processes are at them."""
     REPORT = "report"
     """The fleet's condition as a workbook or on paper."""
 
@@ -49,6 +51,8 @@ class NewJob:
     """Of a report: xlsx or pdf."""
     language: str = ""
     """Of a report."""
+    revision: int = 0
+    """Of the model that changed."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +93,7 @@ class Job:
     subject: str
     form: str
     language: str
+    revision: int
     who: str
     account: str
     state: JobState

@@ -14,6 +14,8 @@ class Progress(StrEnum):
     DONE = "done"
     GIVEN_UP = "given up"
     """No process outlived it: the sessions keep what they had."""
+    CANCELLED = "cancelled"
+    """Somebody stopped it before its turn: the sessions keep what they had."""
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ class JobRow(Base):
     subject: Mapped[str] = mapped_column(String(200), index=True)
     form: Mapped[str] = mapped_column(String(10))
     language: Mapped[str] = mapped_column(String(10))
+    revision: Mapped[int]
     who: Mapped[str]
     account: Mapped[str] = mapped_column(String(200), index=True)
     state: Mapped[str] = mapped_column(String(20))

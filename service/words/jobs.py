@@ -20,6 +20,8 @@ def title_of(job: Job) -> str:
     """What is done, and to what."""
     if job.kind is JobKind.REPORT:
         return FLEET_REPORTS[job.form]
+    if job.kind is JobKind.MODEL:
+        return f"Accepted cause, revision {job.revision}: sessions computed again"
     match job.scope:
         case None:
             return WHOLE_FLEET

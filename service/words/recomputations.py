@@ -7,6 +7,7 @@ from service.records.recomputation import MovedParameter, Progress, Recomputatio
 from service.words.names import PARAMETER_NAMES
 
 GIVEN_UP = "The program failed at it, several times: its sessions keep what they had."
+CANCELLED = "Cancelled before its turn: its sessions keep what they had."
 UNTOUCHED = "no parameter moved"
 
 

@@ -26,9 +26,9 @@ class Jobs(Queries):
         """Keeps what is asked for."""
         row = JobRow(
             kind=new.kind, scope=new.scope or "", subject=new.subject, form=new.form, language=new.language,
-            who=new.who, account=new.account, state=JobState.WAITING, asked_at=now, turn_at=now, cancelled_by="",
-            attempts=0, done=0, total=total, cursor=0, recomputed=0, verdicts=0, failed=0, failures=[], held_up="",
-            filename="", size=0, sha256="",
+            revision=new.revision, who=new.who, account=new.account, state=JobState.WAITING, asked_at=now, turn_at=now,
+            cancelled_by="", attempts=0, done=0, total=total, cursor=0, recomputed=0, verdicts=0, failed=0, failures=[],
+            held_up="", filename="", size=0, sha256="",
         )  # fmt: skip
         self._session.add(row)
         self._session.flush()
@@ -121,6 +121,19 @@ class Jobs(Queries):
         counted = update(JobRow).where(JobRow.id == job.id, JobRow.cursor == job.cursor)
         self._session.execute(counted.values(cursor=cursor, done=done, **changed, **free, **own))
 
+    def count_unit(self, revision: int, piece: Piece, now: datetime) -> None:
+        """One more unit of a changed model is whole; the last one ends the job."""
+        own = (JobRow.kind == JobKind.MODEL, JobRow.revision == revision)
+        row = self._session.scalar(select(JobRow).where(*own).with_for_update())
+        if row is None:  # asked for before jobs were kept
+            return
+        job = _record(row)
+        self.advance(job, job.cursor, piece)
+        if job.is_open and job.done + 1 >= job.total:
+            self.end(job.id, JobState.DONE, now)
+        elif job.is_open:
+            self._put(job.id, state=JobState.RUNNING, begun_at=job.begun_at or now)
+
     def end(self, id: int, state: JobState, now: datetime, **own: Any) -> bool:
         """Ends it, unless somebody did before; whether that was so."""
         ended = {"state": state, "ended_at": now, "claimed_until": None, "held_up": ""}
@@ -154,16 +167,18 @@ class Jobs(Queries):
         self._session.execute(update(JobRow).where(JobRow.id == id).values(**values))
 
 
-def _is_free(now: datetime) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
+def _is_free(now: datetime) -> tuple[ColumnElement[bool], ...]:
+    """The units of a changed model stand in a queue of their own."""
     until = JobRow.claimed_until
-    return JobRow.ended_at.is_(None), or_(until.is_(None), until <= now)
+    return JobRow.ended_at.is_(None), JobRow.kind != JobKind.MODEL, or_(until.is_(None), until <= now)
 
 
 def _record(row: JobRow) -> Job:
     kept = row.kept_until
     return Job(
         id=row.id, kind=JobKind(row.kind), scope=Scope(row.scope) if row.scope else None, subject=row.subject,
-        form=row.form, language=row.language, who=row.who, account=row.account, state=JobState(row.state),
+        form=row.form, language=row.language, revision=row.revision, who=row.who, account=row.account,
+        state=JobState(row.state),
         asked_at=row.asked_at, begun_at=row.begun_at, ended_at=row.ended_at, cancelled_by=row.cancelled_by,
         done=row.done, total=row.total, cursor=row.cursor, recomputed=row.recomputed, verdicts=row.verdicts,
         failed=row.failed, failures=tuple(JobFailure(**one) for one in row.failures), held_up=row.held_up,

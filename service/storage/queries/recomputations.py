@@ -64,14 +64,20 @@ class Recomputations(Queries):
         own = update(RecomputationRow).where(*_of(task))
         self._session.execute(own.values(state=Progress.GIVEN_UP, claimed_until=None, done_at=now))
 
-    def settle(self, task: Task, outcome: Recomputed, now: datetime) -> None:
-        """Keeps what became of a unit's sessions."""
+    def cancel(self, revision: int, now: datetime) -> None:
+        """Nobody begins the units of a revision that nobody is at."""
+        free = update(RecomputationRow).where(RecomputationRow.revision == revision, *_is_free(now))
+        self._session.execute(free.values(state=Progress.CANCELLED, done_at=now))
+
+    def settle(self, task: Task, outcome: Recomputed, now: datetime) -> bool:
+        """Keeps what became of a unit's sessions, once; whether that was now."""
         told = {
             **asdict(outcome),
             "verdicts": [asdict(one) | {"started_at": one.started_at.isoformat()} for one in outcome.verdicts],
         }
-        own = update(RecomputationRow).where(*_of(task))
-        self._session.execute(own.values(state=Progress.DONE, claimed_until=None, done_at=now, outcome=told))
+        own = update(RecomputationRow).where(*_of(task), RecomputationRow.state == Progress.WAITING)
+        kept = own.values(state=Progress.DONE, claimed_until=None, done_at=now, outcome=told)
+        return self._session.scalar(kept.returning(RecomputationRow.unit_id)) is not None
 
     def of(self, revision: int) -> tuple[Recomputation, ...]:
         """What a revision brought, by serial number."""

@@ -14,14 +14,19 @@ from service.background.helper import Helper, Still
 from service.background.job_waiting import JOBS, work_on_next
 from service.background.work_job import work_piece
 from service.errors import ConflictError
-from service.flows.ask_job import ask_job, cancel_job, drop_outlived, file_of
+from service.flows.ask_job import ask_job, cancel_job, drop_outlived, file_of, tell_job
 from service.flows.receive import upload
+from service.flows.recompute import recompute
 from service.metrics import Metrics
 from service.records.identity import EVERYBODY
 from service.records.job import KEPT, Job, JobKind, JobState, NewJob, Piece
+from service.records.model import ModelRevision
+from service.records.recomputation import Progress, Task
 from service.settings import Settings
 from service.storage import Storage
 from tests.databases import one_engine
+from tests.service.background.test_given_up import accepted
+from tests.service.grouped import GROUP
 from tests.service.sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
@@ -35,6 +40,22 @@ def three(storage: Storage) -> Storage:
     for unit in ("B-1", "B-2", "B-3"):
         upload(storage, session_bytes(unit=unit), "a.json", NOW)
     return storage
+
+
+@pytest.fixture
+def two_sessions(storage: Storage) -> Storage:
+    """A unit with two sessions."""
+    for content in GROUP[:2]:
+        upload(storage, content, "a.json", NOW)
+    return storage
+
+
+def change_model(storage: Storage) -> tuple[ModelRevision, Job]:
+    """A revision of the unit's model, with the job that it brings."""
+    with storage.database.writing() as store:
+        changed = store.models.add(accepted())
+        tell_job(store, changed, store.recomputations.ask(changed.id, changed.scope, changed.subject, NOW), NOW)
+        return changed, store.jobs.page(1)[0]
 
 
 @pytest.fixture
@@ -103,6 +124,24 @@ def test_it_is_cancelled_between_two_pieces_and_keeps_what_is_whole(three: Stora
     assert (ended.state, ended.done, ended.cancelled_by) == (JobState.CANCELLED, 1, "A. Silva")
     with pytest.raises(ConflictError):
         cancel_job(three, id, EVERYBODY, "A. Silva", NOW)
+
+
+def test_the_units_of_a_changed_model_are_one_job(two_sessions: Storage) -> None:
+    changed, job = change_model(two_sessions)
+    with two_sessions.database.reading() as store:
+        assert store.jobs.waiting(NOW, 10) == ()
+    recompute(two_sessions, Task(changed.id, "BA-017"), NOW, 2.0)
+    recompute(two_sessions, Task(changed.id, "BA-017"), NOW, 2.0)
+    ended = read(two_sessions, job.id)
+    assert (ended.state, ended.done, ended.total) == (JobState.DONE, 1, 1)
+
+
+def test_a_changed_model_is_cancelled_for_units_that_nobody_is_at(two_sessions: Storage) -> None:
+    changed, job = change_model(two_sessions)
+    cancel_job(two_sessions, job.id, EVERYBODY, "A. Silva", NOW)
+    with two_sessions.database.reading() as store:
+        assert store.recomputations.waiting(NOW, 10) == ()
+        assert [one.state for one in store.recomputations.of(changed.id)] == [Progress.CANCELLED]
 
 
 @one_engine
