@@ -53,7 +53,7 @@ def change_tolerances(
 def preview_change(name: TypeName, new: NewTolerances, store: Reading, settings: SettingsOf) -> TolerancePreviewSchema:
     """What other tolerances would change: the latest sessions of the type's units, judged by them. Nothing is stored.
 
-    At most 200 units are looked at, the worst first; `beyond` says how many were not.
+    At most 100 units are looked at, the worst first; `beyond` says how many were not.
     """
     gyro = None if new.gyro_tolerances is None else _record(new.gyro_tolerances)
     wanted = WantedTolerances(_record(new.tolerances), gyro)

@@ -12,8 +12,8 @@ from service.records.tolerance_preview import LatestSession, TolerancePreview, V
 from service.records.unit import UnitType
 from service.storage.store import Store
 
-MOST = 200
-"""Units that are looked at, the worst first: some seconds; those far within their tolerances change last."""
+MOST = 100
+"""Units that are looked at, the worst first: about two seconds; those far within their tolerances change last."""
 
 
 def preview_tolerances(
