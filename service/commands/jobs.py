@@ -13,6 +13,7 @@ from rich.table import Table
 from service.client import Client, connect
 from service.commands.console import DEFAULT_SERVER, AsJson, Out, Server, deliver, print_json, screen
 from service.commands.exits import say
+from service.commands.listing import AsLines, FormOf, Listing, table_of
 from service.records.job import OPEN, JobState
 from service.records.model import Scope
 
@@ -45,18 +46,15 @@ def list_jobs(
     limit: Annotated[int, typer.Option(min=1, max=500, help="How many, the newest first.")] = 50,
     server: Server = DEFAULT_SERVER,
     *,
-    as_json: AsJson = False,
+    form: FormOf = None,
+    as_json: AsLines = False,
 ) -> None:
     """Show jobs, the newest first."""
     if context.invoked_subcommand is not None:
         return
     with connect(server) as client:
         found = client.get("/jobs", mine=str(mine).lower(), subject=about, limit=limit).json()["jobs"]
-    if as_json:
-        for job in found:
-            print_json(job)
-    else:
-        screen().print(_table(found) if found else "There is no job.")
+    Listing(form, as_json).show(found, lambda: _table(found) if found else "There is no job.")
 
 
 @jobs.command("show")
@@ -146,9 +144,7 @@ def _state(job: dict[str, Any]) -> str:
 
 
 def _table(found: list[dict[str, Any]]) -> Table:
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    for heading in ("job", "state", "done", "what", "asked for", "by"):
-        table.add_column(heading, justify="right" if heading == "job" else "left")
+    table = table_of("job", "state", "done", "what", "asked for", "by", right=("job",))
     for job in found:
         done, asked = f"{job['done']} of {job['total']}", job["asked_at"][:16].replace("T", " ")
         table.add_row(str(job["id"]), _state(job), done, escape(_what(job)), asked, escape(job["who"]))

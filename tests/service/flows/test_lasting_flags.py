@@ -146,7 +146,7 @@ def test_it_was_the_unit_s_before_flags_said_whose_they_are(flagged: Storage, st
     with flagged.database.reading() as store:
         before = store.flags.page(FlagQuery())
     flagged.database.close()
-    downgrade(store_url, "0022")
+    downgrade(store_url, "0023")
     upgrade(store_url)
     with flagged.database.reading() as store:
         assert store.flags.page(FlagQuery()) == before

@@ -3,14 +3,14 @@
 What the sessions of a type or on a stand show together hung on the unit that was measured last; it says now whose it
 is, and counts as a flag of no unit.
 
-Revision: 0026, after 0022
+Revision: 0024, after 0023
 """
 
 import sqlalchemy as sa
 from alembic import op
 
-revision = "0026"
-down_revision = "0022"
+revision = "0024"
+down_revision = "0023"
 branch_labels = None
 depends_on = None
 
