@@ -57,9 +57,15 @@ simulate --unit BA-900 --sessions 3 --drift A3.bias=30 --out sessions  # a unit 
 simulate --programme in-service --drift A3.bias=200 --out sessions  # a flight of the same block
 plan --sensors 6 --positions 12  # what a session would tell, before it is measured
 plan session.json --minutes 40  # the next one like this, in the time that there is
+ready first-minutes.json --duration 120  # is the unit warm and still enough to begin?
 missing session.json  # positions that the session still lacks
 parity flight.json --reference session.json  # which sensor has drifted since
 recalibrate BA-017  # its sessions under the model in force
+jobs  # long work, the newest first
+jobs recalibrate --scope stand --name S1 --by "K. Ito"  # computed again beside the requests
+jobs report --format xlsx --by "K. Ito"  # the fleet's workbook
+jobs show 12 --wait --out fleet.xlsx  # stay until it is there
+jobs cancel 12 --by "K. Ito"  # what was done stays
 user add k.ito --role admin --name "K. Ito"  # prints the link for a password
 user link k.ito  # another password
 user connect k.ito 8f3a2c  # the same person at the provider
