@@ -1,6 +1,5 @@
 """Flow: a unit's stored sessions, computed again under the model that is in force now; nothing is overwritten."""
 
-from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
@@ -16,14 +15,11 @@ from service.judging.calibrate import Basis, calibrate, rests_on_model
 from service.judging.model_in_force import model_of
 from service.judging.moved import furthest, moved_parameters, moved_verdicts
 from service.records.model import Model
-from service.records.recomputation import MovedParameter, MovedVerdict
+from service.records.recomputation import LeftSession, MovedParameter, MovedVerdict
 from service.records.session import StoredSession
 from service.storage import Storage
 from service.storage.files import LOST
 from service.storage.store import Store
-
-UNCHANGED, LEFT = "unchanged", "left"
-"""What becomes of a session that is not computed again."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +31,7 @@ class Recalibrated:
     recomputed: int
     unchanged: int
     """Computed under this model before."""
-    left: int
+    kept: tuple[LeftSession, ...]
     """Sessions that cannot be calibrated under it, or whose file is lost; they keep what they have."""
     revision: int
     """The latest revision that any of them rests on."""
@@ -43,6 +39,11 @@ class Recalibrated:
     """Sessions of the unit that have another verdict since."""
     furthest: MovedParameter | None = None
     """The parameter that moved most."""
+
+    @property
+    def left(self) -> int:
+        """How many sessions keep what they have."""
+        return len(self.kept)
 
 
 def nothing(store: Store, done: Recalibrated) -> None:
@@ -80,19 +81,19 @@ def recalibrate(
 def _told(
     serial: str,
     stored: Sequence[StoredSession],
-    outcomes: "Sequence[_Made | str]",
+    outcomes: "Sequence[_Made | LeftSession | None]",
     moved: tuple[MovedVerdict, ...],
 ) -> Recalibrated:
     used = [
         one.model.revision if isinstance(one, _Made) else s.revision for one, s in zip(outcomes, stored, strict=True)
     ]
-    counted, made = Counter(o for o in outcomes if isinstance(o, str)), [o for o in outcomes if isinstance(o, _Made)]
+    made = [one for one in outcomes if isinstance(one, _Made)]
     return Recalibrated(
         unit=serial,
         sessions=len(stored),
         recomputed=len(made),
-        unchanged=counted[UNCHANGED],
-        left=counted[LEFT],
+        unchanged=outcomes.count(None),
+        kept=tuple(one for one in outcomes if isinstance(one, LeftSession)),
         revision=max(used, default=0),
         verdicts=moved,
         furthest=furthest([one for each in made for one in each.moved]),
@@ -109,8 +110,8 @@ class _Made:
     moved: tuple[MovedParameter, ...]
 
 
-def _recalibrated(storage: Storage, stored: StoredSession, until: int | None) -> _Made | str:
-    """One session under the model in force, or what became of it instead.
+def _recalibrated(storage: Storage, stored: StoredSession, until: int | None) -> _Made | LeftSession | None:
+    """One session under the model in force, why it cannot be, or None where it is already.
 
     A recording keeps its calibration here: it is compared anew with the reference that was computed again.
     """
@@ -118,14 +119,14 @@ def _recalibrated(storage: Storage, stored: StoredSession, until: int | None) ->
         revisions = [r for r in store.models.of_session(stored.id) if until is None or r.id <= until]
         model, known = model_of(revisions, stored.started_at), store.calibrations.get(stored.id)
     if model.revision <= stored.revision or not rests_on_model(stored.programme):
-        return UNCHANGED
+        return None
     if stored.programme == IN_SERVICE:
         return _Made(stored, model, known, ())
     try:
         session = read_upload(storage.files.content(stored.sha256), stored.filename)
         found = calibrate(as_checked(session, stored.started_at), Basis(model, None)).calibration
-    except (*LOST, SessionError):
-        return LEFT
+    except (*LOST, SessionError) as fault:
+        return LeftSession(stored.id, str(fault))
     return _Made(stored, model, found, tuple(moved_parameters(stored.id, known, found)))
 
 

@@ -37,6 +37,14 @@ class MovedVerdict:
 
 
 @dataclass(frozen=True)
+class LeftSession:
+    """A session that cannot be computed under its model; it keeps what it has."""
+
+    session: str
+    why: str
+
+
+@dataclass(frozen=True)
 class MovedParameter:
     """The parameter of a unit that moved furthest, in its own standard uncertainty."""
 

@@ -169,6 +169,7 @@ def test_no_import_stands_inside_a_function() -> None:
 
 BY_NAME = {
     "estimator.on_demand": "what a single use does not touch",
+    "service.background.recalibrating": "a library that is not always installed",
     "service.cli": "the command that was asked for",
     "service.identity.elsewhere": "a library that is not always installed",
     "service.ingest.logs.readers": "a library that is not always installed",

@@ -46,11 +46,11 @@ class Audit(Queries):
         self._session.flush()
         if self._session.get_bind().dialect.name == "postgresql":  # SQLite has one writer anyway
             self._session.execute(text("SELECT pg_advisory_xact_lock(:number)"), {"number": LOCK})
-        last = self._last()
+        last = self.last()
         for row in written:
             row.hash = last = _hash(last, row)
-            self._session.add(row)
-            self._session.flush()
+        self._session.add_all(written)
+        self._session.flush()
 
     def page(self, most: int, before: int | None = None, subject: str | None = None) -> tuple[AuditLine, ...]:
         """Lines, the newest first: of one subject, and before a line where one is given."""
@@ -82,7 +82,8 @@ class Audit(Queries):
         """Whether a line of this hash is in the trail."""
         return self._session.scalar(select(AuditRow.id).where(AuditRow.hash == hash).limit(1)) is not None
 
-    def _last(self) -> str:
+    def last(self) -> str:
+        """The hash of the last line."""
         return self._session.scalar(select(AuditRow.hash).order_by(AuditRow.id.desc()).limit(1)) or FIRST
 
 

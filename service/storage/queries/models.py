@@ -2,13 +2,21 @@
 
 from dataclasses import dataclass
 
-from sqlalchemy import and_, func, or_, select
+from sqlalchemy import ColumnElement, and_, func, or_, select
 
+from estimator.session import CALIBRATIONS, IN_SERVICE
 from service.errors import NotFoundError
 from service.records.model import ModelRevision, Scope
 from service.storage.diagnosis_document import evidence_from_dict, evidence_to_dict
 from service.storage.queries.base import Queries
 from service.storage.tables import ModelRow, SessionRow, StandRow, UnitRow, UnitTypeRow
+
+OWNER = or_(
+    and_(ModelRow.scope == Scope.UNIT, ModelRow.subject == UnitRow.serial),
+    and_(ModelRow.scope == Scope.UNIT_TYPE, ModelRow.subject == UnitTypeRow.name),
+    and_(ModelRow.scope == Scope.STAND, ModelRow.subject == StandRow.name),
+)
+"""Whether a revision is of the model of a session's unit, its type or its stand."""
 
 
 @dataclass(frozen=True)
@@ -80,22 +88,38 @@ class Models(Queries):
 
     def of_session(self, id: str) -> tuple[ModelRevision, ...]:
         """All revisions that concern a stored session, oldest first, in one query."""
-        owner = or_(
-            and_(ModelRow.scope == Scope.UNIT, ModelRow.subject == UnitRow.serial),
-            and_(ModelRow.scope == Scope.UNIT_TYPE, ModelRow.subject == UnitTypeRow.name),
-            and_(ModelRow.scope == Scope.STAND, ModelRow.subject == StandRow.name),
-        )
         query = (
             select(ModelRow)
             .select_from(SessionRow)
             .join(UnitRow, UnitRow.id == SessionRow.unit_id)
             .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
             .outerjoin(StandRow, StandRow.id == SessionRow.stand_id)
-            .join(ModelRow, owner)
+            .join(ModelRow, OWNER)
             .where(SessionRow.id == id)
             .order_by(ModelRow.id)
         )
         return tuple(map(_revision, self._session.scalars(query)))
+
+    def units_behind(self, after: str, limit: int) -> tuple[str, ...]:
+        """Serial numbers, in order and after one, of units with sessions that a later revision than theirs concerns."""
+        query = select(UnitRow.serial).join(UnitTypeRow).where(_is_behind(), UnitRow.serial > after)
+        return tuple(self._session.scalars(query.order_by(UnitRow.serial).limit(limit)))
+
+    def count_behind(self) -> int:
+        """How many those are."""
+        return self._session.scalar(select(func.count(UnitRow.id)).join(UnitTypeRow).where(_is_behind())) or 0
+
+
+def _is_behind() -> ColumnElement[bool]:
+    """Whether a unit, beside its type, has a session that rests on an earlier revision than concerns it now."""
+    later = (
+        select(SessionRow.id)
+        .outerjoin(StandRow, StandRow.id == SessionRow.stand_id)
+        .join(ModelRow, OWNER)
+        .where(SessionRow.unit_id == UnitRow.id, SessionRow.programme.in_((*CALIBRATIONS, IN_SERVICE)))
+        .where(ModelRow.id > SessionRow.revision)
+    )
+    return later.correlate(UnitRow, UnitTypeRow).exists()
 
 
 def _revision(row: ModelRow) -> ModelRevision:

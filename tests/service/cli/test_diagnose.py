@@ -21,6 +21,9 @@ def warm_file(tmp_path: Path) -> Path:
     return write(tmp_path, "warm.json", drawn(TEMPERATURE).session)
 
 
+WARM = drawn(TEMPERATURE).session
+
+
 def test_one_file_with_json_gives_the_object(run: Run, warm_file: Path) -> None:
     ran = run("diagnose", warm_file, "--json")
     (document,) = ran.documents
@@ -78,9 +81,18 @@ def test_a_history_that_cannot_be_read_is_unusable_input(run: Run, warm_file: Pa
 def test_recalibrate_works_on_the_database(run: Run, sqlite: Databases, tmp_path: Path) -> None:
     settings = Settings(database_url=sqlite.migrated(), data_folder=tmp_path)
     with stores(settings) as storage:
-        upload(storage, json.dumps(drawn(TEMPERATURE).session).encode(), "a.json", NOW)
-    ran = run("recalibrate", "--database-url", settings.database, "--data-folder", tmp_path, "--json")
+        upload(storage, json.dumps(WARM).encode(), "a.json", NOW)
+    unit, where = WARM["unit"], ("--database-url", settings.database, "--data-folder", tmp_path)
+    ran = run("recalibrate", unit, *where, "--json")
     assert [(d["sessions"], d["recomputed"], d["unchanged"]) for d in ran.documents] == [(1, 0, 1)]
+    assert run("recalibrate", "--all", *where).out.startswith("Nothing to do")
+    assert run("recalibrate", "none", *where).code == 1
+
+
+@pytest.mark.parametrize("units", [(), ("BA-017", "--all")])
+def test_what_is_recalibrated_is_said_in_one_way(run: Run, units: tuple[str, ...]) -> None:
+    ran = run("recalibrate", *units)
+    assert (ran.code, ran.err) == (1, "Invalid value: give serial numbers of units, or --all\n")
 
 
 def test_people_read_how_the_size_fits_the_session_before(run: Run, tmp_path: Path) -> None:
