@@ -46,9 +46,14 @@ def digest(members: Members) -> str:
 def current(store: Store, group: Group) -> GroupAnswer | None:
     """The stored answer of a group, if it rests on what is known now; one that this version failed at holds too."""
     known = store.groups.get(group)
-    if known is None or (known.document is None and known.estimator_version != VERSION):
+    if known is None or known.is_of_another(VERSION):
         return None
-    return known if known.rests_on == digest(members_of(store, group)) else None
+    return known if rests_on_now(store, group, known) else None
+
+
+def rests_on_now(store: Store, group: Group, answer: GroupAnswer) -> bool:
+    """Whether an answer rests on the records of now: what was asked for again may."""
+    return answer.rests_on == digest(members_of(store, group))
 
 
 def refresh_group(storage: Storage, group: Group, now: datetime) -> GroupAnswer:

@@ -9,8 +9,9 @@ from estimator.groups.pictures import ANGLES
 from estimator.session import ACCELEROMETER, GYROSCOPE
 from service.charts import ChartSet
 from service.charts.groups import forest_chart, picture_chart, picture_table
-from service.flows.refresh_group import current
+from service.flows.refresh_group import rests_on_now
 from service.judging.model_in_force import in_force
+from service.records.announced import Announced
 from service.records.group import Group, Level
 from service.records.model import SCOPES
 from service.settings import VERSION
@@ -63,11 +64,10 @@ class FoundLine:
     """Others."""
 
 
-def found_line(store: Store) -> FoundLine | None:
+def found_line(announced: Announced) -> FoundLine | None:
     """Of the fleet page; None where no sessions together show anything."""
-    count, found = store.groups.found(MOST_FOUND)
-    lines = tuple((home_of(one.group), whose(one.group), one.own) for one in found)
-    return FoundLine(lines, count - len(lines)) if lines else None
+    lines = tuple((home_of(one.group), whose(one.group), one.own) for one in announced.found)
+    return FoundLine(lines, announced.groups - len(lines)) if lines else None
 
 
 def home_of(group: Group) -> str:
@@ -84,10 +84,10 @@ def group_section(store: Store, level: Level, name: str) -> GroupSection:
     """What the sessions of a unit, a unit type or a stand show together, where it is made of its records of now."""
     key = store.units.key(name) if level is Level.UNIT else store.groups.find(level, name).key
     group = Group(level, key, name)
-    answer = store.groups.standing(group, VERSION)
-    if answer is None and level is Level.UNIT:  # what was asked for again may rest on the same records as before
-        answer = current(store, group)
-    if answer is None:
+    answer, is_asked = store.groups.known(group)
+    if answer is None or answer.is_of_another(VERSION):
+        return GroupSection(group, None, "")
+    if is_asked and (level is not Level.UNIT or not rests_on_now(store, group, answer)):
         return GroupSection(group, None, "")
     if answer.document is None:
         return GroupSection(group, None, answer.summary)

@@ -16,7 +16,7 @@ from service.pages.fleet import MOST_STANDOUTS, fleet_page
 from service.pages.fleet_view import FleetAsked, FleetView
 from service.pages.follow import SOONEST, follow_seconds
 from service.pages.forms import Key
-from service.pages.group import found_line, group_section
+from service.pages.group import MOST_FOUND, found_line, group_section
 from service.pages.received import FormFiles
 from service.pages.remarks import remarks
 from service.pages.render import render
@@ -57,17 +57,18 @@ def show_fleet(
     asked: Annotated[FleetAsked, Query()],
 ) -> HTMLResponse:
     """The fleet, worst unit first unless another order is asked for."""
-    view = FleetView.of(asked)
+    view, announced = FleetView.of(asked), store.announced.all(MOST_QUESTIONED, MOST_FOUND)
+    condition = store.fleet.condition_at(now)
     shown = fleet_page(
-        store.fleet.condition(),
+        condition,
         store.fleet.units(view.query(now)),
         view,
         now,
-        overdue=store.outlooks.overdue(now),
-        together=found_line(store),
+        overdue=condition.overdue,
+        together=found_line(announced),
         unlike=fleet_standouts(store, MOST_STANDOUTS),
-        stands=store.stands.shifts(),
-        questioned=store.states.questioned(MOST_QUESTIONED),
+        stands=announced.stands,
+        questioned=announced.questioned,
         choices=store.fleet.choices(),
         kept=saved(store.saved_views.of(person.login, ListPage.FLEET), view, ListPage.FLEET, person),
     )
@@ -95,12 +96,12 @@ def show_unit(
             now=now,
             raw=raw,
             flags=store.flags.page(FlagQuery(serial, limit=FLAG_LIMIT)),
-            notes=store.notes.of_unit(serial),
+            notes=report.said.notes,
             pair=found_and_left(store, report.unit_type, report.sessions, report.services, settings.coverage_factor),
             outlook=dated(report.outlook, now),
             group=group_section(store, Level.UNIT, serial),
             follow=SOONEST if is_coming and settings.diagnosis_workers else None,
-            said=remarks(serial, "", (), store.attachments.of_unit(serial), settings.max_attachment_bytes),
+            said=remarks(serial, "", (), report.said.files, settings.max_attachment_bytes),
         ),
     )
 
@@ -110,7 +111,8 @@ def show_session(
     request: Request, store: Reading, storage: StorageOf, settings: SettingsOf, now: Now, id: Key
 ) -> HTMLResponse:
     """One session with its parameters and residuals."""
-    report, made = session_report(store, id), store.diagnoses.summary(id)
+    report = session_report(store, id)
+    made, said = report.diagnosis, store.said_of.session(report.session.unit, id)
     questioned = report.session.state is RecordState.QUESTIONED
     page = session_page(
         report,
@@ -123,8 +125,8 @@ def show_session(
         said=remarks(
             report.session.unit,
             id,
-            store.notes.of_session(id),
-            store.attachments.of_session(id),
+            said.notes,
+            said.files,
             settings.max_attachment_bytes,
         ),
     )

@@ -33,7 +33,8 @@ from service.records.doubt import Remedies
 from service.records.model import ModelRevision
 from service.records.paper import Traceability
 from service.records.reservation import Reservations
-from service.records.session import ALL_PARAMETERS, SessionReport, StoredSession
+from service.records.session import ALL_PARAMETERS, StoredSession
+from service.records.session_report import SessionReport
 from service.records.state import RecordState
 from service.storage.parity_document import parity_from_dict
 from service.words.causes import cause_on

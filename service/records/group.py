@@ -75,6 +75,10 @@ class GroupAnswer:
     estimator_version: str
     created_at: datetime
 
+    def is_of_another(self, version: str) -> bool:
+        """Whether a version of the program failed at it that is not this one."""
+        return self.document is None and self.estimator_version != version
+
 
 @dataclass(frozen=True)
 class FoundTogether:

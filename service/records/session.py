@@ -3,11 +3,9 @@
 from dataclasses import dataclass
 from datetime import datetime
 
-from estimator.health.common_motion import CommonMotion
-from estimator.results import Calibration
-from service.records.decision import Decision, Verdict
+from service.records.decision import Verdict
 from service.records.reservation import Reservations
-from service.records.state import RecordState, StateChange
+from service.records.state import RecordState
 
 PARAMETERS = ("scale", "bias", "quadratic", "axis")
 """What a calibration gives of every sensor."""
@@ -85,17 +83,3 @@ class Receipt:
     """What the verdict is said with."""
     state: RecordState = RecordState.ACCEPTED
     is_check: bool = False
-
-
-@dataclass(frozen=True)
-class SessionReport:
-    """Everything a session's page or answer shows."""
-
-    session: StoredSession
-    calibration: Calibration
-    """As computed at upload; `storage` rebuilds it from what it kept."""
-    decisions: tuple[Decision, ...]
-    motions: tuple[CommonMotion, ...] = ()
-    """What all sensors did together since the reference."""
-    states: tuple[StateChange, ...] = ()
-    """What became of it since it was received, oldest first; empty where it was accepted and remained so."""

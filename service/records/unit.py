@@ -11,6 +11,7 @@ from service.records.instants import epoch_ms
 from service.records.outlook import UnitOutlook
 from service.records.paper import NOBODY, Customer
 from service.records.reservation import Reservations
+from service.records.said import NOTHING_SAID, Said
 from service.records.session import StoredSession
 from service.records.state import StateChange
 
@@ -127,6 +128,8 @@ class FleetCondition:
     """How many are open: of units, types and stands."""
     reserved: dict[Verdict, int] = field(default_factory=dict)
     """Of how many units with a verdict it is said with a reservation."""
+    overdue: int = 0
+    """How many should have been calibrated by now; 0 where that was not asked."""
 
     @classmethod
     def of(cls, tallies: Sequence[Tally], of_groups: int = 0) -> "FleetCondition":
@@ -174,3 +177,4 @@ class UnitReport:
     """Sessions that are still to be judged again after a change of the records."""
     outlook: UnitOutlook | None = None
     """None before a session was judged."""
+    said: Said = NOTHING_SAID

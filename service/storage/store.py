@@ -5,6 +5,7 @@ from functools import cached_property
 from sqlalchemy.orm import Session
 
 from service.storage.queries.accounts import Accounts
+from service.storage.queries.announced import Announcements
 from service.storage.queries.arrivals import Arrivals
 from service.storage.queries.attachments import Attachments
 from service.storage.queries.attempts import Attempts
@@ -31,6 +32,7 @@ from service.storage.queries.pending_groups import PendingGroups, PendingSummari
 from service.storage.queries.pending_outlooks import PendingOutlooks
 from service.storage.queries.populations import Populations
 from service.storage.queries.recomputations import Recomputations
+from service.storage.queries.said import SaidOf
 from service.storage.queries.saved_views import SavedViews
 from service.storage.queries.services import Services
 from service.storage.queries.sessions import Sessions
@@ -169,6 +171,11 @@ class Store:
         return Attachments(self._session)
 
     @cached_property
+    def said_of(self) -> SaidOf:
+        """What people said of units and sessions."""
+        return SaidOf(self._session)
+
+    @cached_property
     def flags(self) -> Flags:
         """Matters that somebody must look after."""
         return Flags(self._session)
@@ -217,6 +224,11 @@ class Store:
     def fleet(self) -> Fleet:
         """All units at a glance."""
         return Fleet(self._session)
+
+    @cached_property
+    def announced(self) -> Announcements:
+        """What the fleet page says before its list."""
+        return Announcements(self._session)
 
     @cached_property
     def fleet_rows(self) -> FleetRows:

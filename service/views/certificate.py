@@ -15,7 +15,8 @@ from service.records.event import Service
 from service.records.history import HistoryPoint
 from service.records.model import ModelRevision
 from service.records.paper import Customer, Laboratory, Traceability
-from service.records.session import SessionReport, StoredSession
+from service.records.session import StoredSession
+from service.records.session_report import SessionReport
 from service.records.state import RecordState
 from service.records.unit import UnitType
 from service.settings import VERSION, Settings

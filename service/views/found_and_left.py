@@ -12,6 +12,7 @@ from service.records.session import StoredSession
 from service.records.state import RecordState
 from service.records.unit import UnitType
 from service.storage.queries.services import epoch
+from service.storage.queries.sessions import reference_query
 from service.storage.store import Store
 
 
@@ -43,8 +44,8 @@ def found_and_left(
     left = min(later, key=_when, default=None)
     since, until = epoch(tuple(service.at for service in services), found.started_at)
     unit = store.units.key(found.unit)
-    reference = store.sessions.reference(unit, unit_type.block, since, until)
-    known = store.calibrations.in_force(s for s in (reference, found.id, None if left is None else left.id) if s)
+    pair = (found.id,) if left is None else (found.id, left.id)
+    reference, known = store.calibrations.beside_reference(pair, reference_query(unit, unit_type.block, since, until))
 
     def judged(session: StoredSession | None) -> tuple[Decision, ...]:
         """By the tolerances that hold now."""

@@ -3,7 +3,7 @@
 from datetime import datetime
 
 from service.errors import NotFoundError
-from service.records.state import RecordKind, RecordState
+from service.records.state import RecordState
 from service.records.unit import UnitReport
 from service.storage.store import Store
 
@@ -16,16 +16,16 @@ def unit_report(store: Store, serial: str, now: datetime) -> UnitReport:
     known = store.fleet.unit_known(serial, now)
     if known is None:
         raise NotFoundError(f"There is no unit {serial!r}.")
-    recorded = store.services.recorded(serial)
-    withdrawn = tuple(s for s in recorded if s.state is RecordState.WITHDRAWN)
+    said = store.said_of.unit(serial)
     return UnitReport(
         summary=known.summary,
         unit_type=known.unit_type,
         reference_session=known.reference_session,
         sessions=store.sessions.page(serial, 0, LATEST),
-        services=tuple(s for s in recorded if s.state is RecordState.ACCEPTED),
-        withdrawn_services=withdrawn,
-        withdrawals=tuple(store.states.last_of(RecordKind.SERVICE, tuple(str(s.id) for s in withdrawn)).values()),
+        services=tuple(s for s in said.services if s.state is RecordState.ACCEPTED),
+        withdrawn_services=tuple(s for s in said.services if s.state is RecordState.WITHDRAWN),
+        withdrawals=said.withdrawals,
         waiting=known.waiting,
         outlook=known.outlook,
+        said=said,
     )

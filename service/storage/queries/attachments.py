@@ -30,7 +30,7 @@ class Attachments(Queries):
         found = self._session.execute(_attachments().where(AttachmentRow.id == id)).one_or_none()
         if found is None:
             raise NotFoundError(f"There is no attachment {id}.")
-        return _attachment(*found)
+        return attachment_record(*found)
 
     def of_unit(self, serial: str) -> tuple[Attachment, ...]:
         """All of a unit and of its sessions, withdrawn ones too, oldest first."""
@@ -41,7 +41,7 @@ class Attachments(Queries):
         return self._found(_attachments().where(AttachmentRow.session_id == id))
 
     def _found(self, query: Select[AttachmentRow, str, AttachmentWithdrawalRow]) -> tuple[Attachment, ...]:
-        return tuple(_attachment(*row) for row in self._session.execute(query.order_by(AttachmentRow.id)))
+        return tuple(attachment_record(*row) for row in self._session.execute(query.order_by(AttachmentRow.id)))
 
 
 def _attachments() -> Select[AttachmentRow, str, AttachmentWithdrawalRow]:
@@ -52,7 +52,8 @@ def _attachments() -> Select[AttachmentRow, str, AttachmentWithdrawalRow]:
     )
 
 
-def _attachment(row: AttachmentRow, serial: str, gone: AttachmentWithdrawalRow | None) -> Attachment:
+def attachment_record(row: AttachmentRow, serial: str, gone: AttachmentWithdrawalRow | None) -> Attachment:
+    """A stored attachment."""
     return Attachment(
         id=row.id,
         unit=serial,

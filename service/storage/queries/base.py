@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from sqlalchemy import Integer, Table, insert, literal_column
+from sqlalchemy import Integer, Subquery, Table, insert, literal, literal_column, select, union_all
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
@@ -11,6 +11,12 @@ from service.storage.tables import Base
 
 TOUCHED = "tallied"
 """Units whose counts are to be brought in line, in the session's own notes."""
+
+
+def lists(*names: str) -> Subquery:
+    """A row for each of some lists, so that short ones are read in one statement: each is joined to its row, and a
+    result row holds one entry of one list."""
+    return union_all(*(select(literal(name).label("list")) for name in names)).subquery("lists")
 
 
 class Queries:

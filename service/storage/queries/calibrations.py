@@ -6,15 +6,17 @@ from collections.abc import Iterable
 from datetime import datetime
 from functools import lru_cache
 
-from sqlalchemy import select
+from sqlalchemy import Select, select
 
 from estimator.results import Calibration
 from service.errors import NotFoundError
 from service.records.decision import Judged
+from service.records.diagnosis import DiagnosisState, DiagnosisSummary
+from service.records.session import StoredSession
 from service.storage.calibration_document import calibration_from_dict
 from service.storage.queries.base import Queries
-from service.storage.queries.sessions import worst_columns
-from service.storage.tables import CalibrationRow, SessionRow
+from service.storage.queries.sessions import session_record, session_rows, worst_columns
+from service.storage.tables import CalibrationRow, DiagnosisRow, SessionRow
 
 AT_HAND = 32
 """Calibrations that are kept as they were read: an upload reads its own two or three times, and its reference."""
@@ -55,6 +57,17 @@ class Calibrations(Queries):
             raise NotFoundError(f"There is no calibration of session {session!r}{under}.")
         return zlib.decompress(deflated)
 
+    def with_session(self, id: str) -> tuple[StoredSession, DiagnosisSummary | None, Calibration]:
+        """A session, its diagnosis in one line where it is made, and its calibration in force; in one query."""
+        own = (CalibrationRow.session_id == SessionRow.id) & (CalibrationRow.revision == SessionRow.revision)
+        query = session_rows().add_columns(DiagnosisRow.state, DiagnosisRow.summary, CalibrationRow.document)
+        row = self._session.execute(query.join(CalibrationRow, own).where(SessionRow.id == id)).one_or_none()
+        if row is None:
+            raise NotFoundError(f"There is no session {id!r}.")
+        *session, state, summary, document = row
+        made = None if state is None else DiagnosisSummary(DiagnosisState(state), summary)
+        return session_record(*session), made, _read(zlib.decompress(document))
+
     def in_force(self, sessions: Iterable[str]) -> dict[str, Calibration]:
         """The calibrations in force of some sessions, in one query."""
         rows = self._session.execute(
@@ -63,6 +76,19 @@ class Calibrations(Queries):
             .where(CalibrationRow.revision == SessionRow.revision, SessionRow.id.in_(sessions))
         )
         return {id: _read(zlib.decompress(document)) for id, document in rows}
+
+    def beside_reference(
+        self, sessions: Iterable[str], reference: Select[str]
+    ) -> tuple[str | None, dict[str, Calibration]]:
+        """The reference that a query names, and the calibrations in force of it and of some sessions; in one query."""
+        against = reference.scalar_subquery()
+        rows = self._session.execute(
+            select(against, CalibrationRow.session_id, CalibrationRow.document)
+            .join(SessionRow, SessionRow.id == CalibrationRow.session_id)
+            .where(CalibrationRow.revision == SessionRow.revision)
+            .where(SessionRow.id.in_(tuple(sessions)) | (SessionRow.id == against))
+        ).all()
+        return rows[0][0] if rows else None, {id: _read(zlib.decompress(document)) for _, id, document in rows}
 
     def get(self, session: str, revision: int | None = None) -> Calibration:
         """The calibration of a session, as it was computed."""

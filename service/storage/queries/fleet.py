@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import ScalarSelect, delete, func, literal, or_, select, union_all, update
+from sqlalchemy import ScalarSelect, Select, delete, func, literal, or_, select, union_all, update
 from sqlalchemy.orm import aliased, defer
 
 from estimator.session import PROGRAMMES
@@ -160,23 +160,33 @@ class Fleet(Queries):
 
     def condition(self) -> FleetCondition:
         """How many units are in which condition."""
-        found = self._tallied()
-        return FleetCondition.of([tally for tally, _ in found], max((flags for _, flags in found), default=0))
+        return _condition(self._session.execute(_tallies().add_columns(OPEN_OF_GROUPS)).all())
+
+    def condition_at(self, now: datetime) -> FleetCondition:
+        """The same, and how many should have been calibrated by now, in one query."""
+        due = select(func.count()).select_from(OutlookRow).where(OutlookRow.due < now).scalar_subquery()
+        rows = self._session.execute(_tallies().add_columns(OPEN_OF_GROUPS, due)).all()
+        return replace(_condition([row[:-1] for row in rows]), overdue=rows[0][-1] if rows else 0)
 
     def tallies(self) -> tuple[Tally, ...]:
         """Units with an accepted session, by their verdict and by how much of their tolerance they use."""
-        return tuple(tally for tally, _ in self._tallied())
+        return tuple(map(_tally, self._session.execute(_tallies())))
 
-    def _tallied(self) -> list[tuple[Tally, int]]:
-        """The same, with the open flags of types and stands beside each."""
-        row = FleetTallyRow
-        key = (row.severity, row.is_reference, row.is_simulated, row.bar)
-        counts = (func.sum(row.units), func.sum(row.flags), func.sum(row.reserved))
-        query = select(*key, *counts, OPEN_OF_GROUPS).where(row.units > 0, row.severity != NOT_KNOWN)
-        return [
-            (Tally(list(Verdict)[row[0]], row[1], row[2], row[3], *row[4:-1]), row[-1])
-            for row in self._session.execute(query.group_by(*key).order_by(*key))
-        ]
+
+def _tallies() -> Select[int, bool, bool, int, int, int, int]:
+    row = FleetTallyRow
+    key = (row.severity, row.is_reference, row.is_simulated, row.bar)
+    counts = (func.sum(row.units), func.sum(row.flags), func.sum(row.reserved))
+    return select(*key, *counts).where(row.units > 0, row.severity != NOT_KNOWN).group_by(*key).order_by(*key)
+
+
+def _tally(row: Sequence[Any]) -> Tally:
+    return Tally(list(Verdict)[row[0]], *row[1:])
+
+
+def _condition(rows: Sequence[Sequence[Any]]) -> FleetCondition:
+    """Of tallies, each with the open flags of types and stands at its end."""
+    return FleetCondition.of([_tally(row[:-1]) for row in rows], rows[0][-1] if rows else 0)
 
 
 def _summaries(*, measured: bool = True) -> Summaries:

@@ -3,12 +3,12 @@
 import zlib
 from datetime import datetime
 
-from sqlalchemy import ColumnElement, Select, and_, case, delete, func, or_, select, update
+from sqlalchemy import ColumnElement, Select, and_, delete, func, or_, select, update
 
 from estimator.groups.statistics import FORMAT
 from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
-from service.records.group import FoundTogether, Group, GroupAnswer, Level, Member, Members
+from service.records.group import Group, GroupAnswer, Level, Member, Members
 from service.storage.group_tables import GroupDiagnosisRow, PendingGroupRow, SessionStatisticsRow
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
@@ -17,8 +17,6 @@ from service.storage.tables import SessionRow, StandRow, UnitRow, UnitTypeRow
 MOST = 60
 """Sessions of a group that are pooled, the newest. An effect of one standard error in each reaches 8, at which it is
 named, at the 64th: fewer would miss what is worth a name. More would cost minutes, and tell of years ago."""
-WIDEST = (Level.STAND, Level.TYPE, Level.UNIT)
-"""What concerns most units first."""
 KEYS = {Level.UNIT: UnitRow.id, Level.TYPE: UnitTypeRow.id, Level.STAND: StandRow.id}
 CALLED = {Level.UNIT: UnitRow.serial, Level.TYPE: UnitTypeRow.name, Level.STAND: StandRow.name}
 WORDS = {Level.UNIT: "unit", Level.TYPE: "unit type", Level.STAND: "stand"}
@@ -88,34 +86,13 @@ class Groups(Queries):
         row = self._session.get(GroupDiagnosisRow, (group.level.value, group.key))
         return None if row is None else _answer(row)
 
-    def standing(self, group: Group, version: str) -> GroupAnswer | None:
-        """What is stored of a group, unless a session of it has changed since, in one query.
-
-        None too where another version of the program failed at it.
-        """
+    def known(self, group: Group) -> tuple[GroupAnswer | None, bool]:
+        """What is stored of a group, and whether it is asked for again since; in one query."""
         row, asked = GroupDiagnosisRow, PendingGroupRow
         again = select(asked.id).where(asked.level == row.level, asked.group_id == row.group_id).exists()
-        own = (row.level == group.level.value, row.group_id == group.key, ~again)
-        found = self._session.scalar(select(row).where(*own))
-        if found is None or (found.document is None and found.estimator_version != version):
-            return None
-        return _answer(found)
-
-    def found(self, limit: int) -> tuple[int, tuple[FoundTogether, ...]]:
-        """How many groups show something of their own, and the first of them: stands before types before units.
-
-        Those whose answer is being made again are left out.
-        """
-        row, asked = GroupDiagnosisRow, PendingGroupRow
-        again = select(asked.id).where(asked.level == row.level, asked.group_id == row.group_id).exists()
-        own = (row.own != "", ~again)
-        count = self._session.scalar(select(func.count()).select_from(row).where(*own)) or 0
-        if not count:
-            return 0, ()
-        order = case({level.value: place for place, level in enumerate(WIDEST)}, value=row.level)
-        query = select(row.level, row.group_id, row.own).where(*own).order_by(order, row.group_id).limit(limit)
-        found = self._session.execute(query).all()
-        return count, tuple(FoundTogether(self.by_key(Level(level), key), text) for level, key, text in found)
+        own = (row.level == group.level.value, row.group_id == group.key)
+        found = self._session.execute(select(row, again).where(*own)).one_or_none()
+        return (None, False) if found is None else (_answer(found[0]), found[1])
 
     def put(self, group: Group, answer: GroupAnswer) -> None:
         """Stores what was found of a group in place of what was."""

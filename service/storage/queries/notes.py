@@ -30,17 +30,17 @@ class Notes(Queries):
         found = self._session.execute(_notes().where(NoteRow.id == id)).one_or_none()
         if found is None:
             raise NotFoundError(f"There is no note {id}.")
-        return _note(*found)
+        return note_record(*found)
 
     def of_unit(self, serial: str) -> tuple[Note, ...]:
         """All notes of a unit, withdrawn ones too, oldest first."""
         found = self._session.execute(_notes().where(UnitRow.serial == serial).order_by(NoteRow.at, NoteRow.id))
-        return tuple(_note(*row) for row in found)
+        return tuple(note_record(*row) for row in found)
 
     def of_session(self, id: str) -> tuple[Note, ...]:
         """All notes on a session, withdrawn ones too, in the order in which they were written."""
         found = self._session.execute(_notes().where(NoteRow.session_id == id).order_by(NoteRow.id))
-        return tuple(_note(*row) for row in found)
+        return tuple(note_record(*row) for row in found)
 
 
 def _notes() -> Select[NoteRow, str, WithdrawalRow]:
@@ -51,7 +51,8 @@ def _notes() -> Select[NoteRow, str, WithdrawalRow]:
     )
 
 
-def _note(row: NoteRow, serial: str, withdrawn: WithdrawalRow | None) -> Note:
+def note_record(row: NoteRow, serial: str, withdrawn: WithdrawalRow | None) -> Note:
+    """A stored note."""
     return Note(
         id=row.id,
         unit=serial,

@@ -16,7 +16,7 @@ from service.records.session import StoredSession
 from service.records.session_list import SessionQuery
 from service.records.state import RecordState
 from service.storage.queries.accepted import IS_ACCEPTED
-from service.storage.queries.base import Queries
+from service.storage.queries.base import Queries, lists
 from service.storage.queries.wanted_sessions import KEYS, beyond, conditions, ordered
 from service.storage.reservation_document import reservations_from_list
 from service.storage.tables import (
@@ -99,18 +99,7 @@ class Sessions(Queries):
         programmes: tuple[str, ...] = CALIBRATIONS,
     ) -> str | None:
         """The session that others of the block, epoch and programmes are judged against."""
-        query = select(SessionRow.id).where(
-            SessionRow.unit_id == unit,
-            SessionRow.block == block,
-            SessionRow.programme.in_(programmes),
-            SessionRow.is_reference,
-            IS_ACCEPTED,
-        )
-        if since is not None:
-            query = query.where(SessionRow.started_at >= since)
-        if until is not None:
-            query = query.where(SessionRow.started_at < until)
-        return self._session.scalar(query.order_by(SessionRow.started_at, SessionRow.id).limit(1))
+        return self._session.scalar(reference_query(unit, block, since, until, programmes))
 
     def add(self, record: StoredSession, unit: int, stand: int | None, block: str, digest: str) -> None:
         """Stores a session that is still to be judged; its hash is unique."""
@@ -237,6 +226,41 @@ class Sessions(Queries):
             .order_by(DecisionRow.position)
         )
         return tuple(decision_record(row) for row in rows)
+
+    def judged(self, id: str) -> tuple[tuple[Decision, ...], tuple[CommonMotion, ...]]:
+        """Both, in one query."""
+        of, revision = lists("decisions", "motions"), SessionRow.revision
+        decided = (DecisionRow.session_id == SessionRow.id) & (DecisionRow.revision == revision)
+        moved = (CommonMotionRow.session_id == SessionRow.id) & (CommonMotionRow.revision == revision)
+        query = (
+            select(DecisionRow, CommonMotionRow)
+            .select_from(of)
+            .join(SessionRow, SessionRow.id == id)
+            .outerjoin(DecisionRow, (of.c.list == "decisions") & decided)
+            .outerjoin(CommonMotionRow, (of.c.list == "motions") & moved)
+            .order_by(DecisionRow.position, CommonMotionRow.kind, CommonMotionRow.quantity)
+        )
+        rows = self._session.execute(query).all()
+        decisions = tuple(decision_record(row) for row, _ in rows if row is not None)
+        return decisions, tuple(motion_record(row) for _, row in rows if row is not None)
+
+
+def reference_query(
+    unit: int,
+    block: str,
+    since: datetime | None,
+    until: datetime | None,
+    programmes: tuple[str, ...] = CALIBRATIONS,
+) -> Select[str]:
+    """The id of the session that others of the block, epoch and programmes are judged against."""
+    row = SessionRow
+    own = (row.unit_id == unit, row.block == block, row.programme.in_(programmes), row.is_reference, IS_ACCEPTED)
+    query = select(row.id).where(*own)
+    if since is not None:
+        query = query.where(row.started_at >= since)
+    if until is not None:
+        query = query.where(row.started_at < until)
+    return query.order_by(row.started_at, row.id).limit(1)
 
 
 def worst_columns(worst: Decision | None) -> dict[str, str | float | None]:

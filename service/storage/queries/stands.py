@@ -48,11 +48,6 @@ class Stands(Queries):
         rows = self._session.scalars(_conditions().order_by(StandRow.name))
         return tuple(map(condition_from_dict, rows))
 
-    def shifts(self) -> tuple[StandCondition, ...]:
-        """Of the stands that have shifted, or had."""
-        rows = self._session.scalars(_conditions().where(StandConditionRow.shifts > 0).order_by(StandRow.name))
-        return tuple(map(condition_from_dict, rows))
-
     def condition(self, stand: str) -> StandCondition | None:
         """Of one stand; None where no session tells of it."""
         document = self._session.scalar(_conditions().where(StandRow.name == stand))

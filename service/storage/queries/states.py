@@ -2,10 +2,10 @@
 
 from sqlalchemy import select, update
 
-from service.records.state import Questioned, RecordKind, RecordState, ReferenceChoice, StateChange, Step
+from service.records.state import RecordKind, RecordState, ReferenceChoice, StateChange, Step
 from service.storage.queries.base import Queries
 from service.storage.state_tables import RecordStateRow, ReferenceChoiceRow
-from service.storage.tables import SessionRow, UnitRow
+from service.storage.tables import SessionRow
 
 
 class States(Queries):
@@ -31,21 +31,14 @@ class States(Queries):
     def of(self, kind: RecordKind, record: str) -> tuple[StateChange, ...]:
         """The life of a record, oldest first; empty where it was accepted and remained so."""
         query = select(RecordStateRow).where(RecordStateRow.kind == kind, RecordStateRow.record == record)
-        return tuple(map(_change, self._session.scalars(query.order_by(RecordStateRow.id))))
+        return tuple(map(state_change, self._session.scalars(query.order_by(RecordStateRow.id))))
 
     def last_of(self, kind: RecordKind, records: tuple[str, ...]) -> dict[str, StateChange]:
         """The last line of the lives of some records."""
         if not records:
             return {}
         query = select(RecordStateRow).where(RecordStateRow.kind == kind, RecordStateRow.record.in_(records))
-        return {row.record: _change(row) for row in self._session.scalars(query.order_by(RecordStateRow.id))}
-
-    def questioned(self, limit: int) -> tuple[Questioned, ...]:
-        """Sessions that wait for an engineer, the latest first."""
-        query = select(SessionRow.id, UnitRow.serial, SessionRow.started_at).join(UnitRow)
-        query = query.where(SessionRow.state == RecordState.QUESTIONED)
-        rows = self._session.execute(query.order_by(SessionRow.uploaded_at.desc(), SessionRow.id).limit(limit))
-        return tuple(Questioned(*row) for row in rows)
+        return {row.record: state_change(row) for row in self._session.scalars(query.order_by(RecordStateRow.id))}
 
     def put_session(self, id: str, state: RecordState, superseded_by: str | None = None) -> None:
         """Whether a session counts, and which one stands for it."""
@@ -64,7 +57,8 @@ class States(Queries):
         return tuple(ReferenceChoice(r.session_id, r.who, r.at, r.why) for r in self._session.scalars(query))
 
 
-def _change(row: RecordStateRow) -> StateChange:
+def state_change(row: RecordStateRow) -> StateChange:
+    """A stored line of a record's life."""
     return StateChange(
         kind=RecordKind(row.kind),
         record=row.record,

@@ -184,5 +184,5 @@ def test_an_answer_that_is_made_again_knows_what_is_in_a_model(storage: Storage)
 def told_of_fleet(storage: Storage) -> list[str]:
     """Units whose sessions together show something new."""
     with storage.database.reading() as store:
-        _, found = store.groups.found(10)
+        found = store.announced.all(0, 10).found
     return [one.group.name for one in found if one.group.level is Level.UNIT]

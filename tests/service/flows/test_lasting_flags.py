@@ -93,14 +93,14 @@ def test_what_the_sessions_no_longer_show_is_proposed_to_be_resolved(flagged: St
 @one_engine
 def test_the_fleet_says_what_was_found_while_it_is_of_the_sessions_of_now(flagged: Storage) -> None:
     with flagged.database.reading() as store:
-        line = found_line(store)
+        line = found_line(store.announced.all(9, 4))
     assert line is not None
     ((home, whose, what),) = line.found
     assert (home, whose, line.more) == ("/units/BA-017#together", "unit BA-017", 0)
     assert what.startswith("A2 bends with the cube")
     upload(flagged, GROUP[4], "a.json", NOW)
     with flagged.database.reading() as store:
-        assert found_line(store) is None
+        assert found_line(store.announced.all(9, 4)) is None
 
 
 def counted(store: Store) -> tuple[int, int]:
@@ -110,7 +110,7 @@ def counted(store: Store) -> tuple[int, int]:
     return store.fleet.condition().flags, unit.flags
 
 
-def of_stand(storage: Storage, unit: str = "BA-017") -> None:
+def of_stand(storage: Storage) -> None:
     """What the unit shows is told of the stand."""
     with storage.database.writing() as store:
         answer = current(store, group(storage))

@@ -26,7 +26,7 @@ def refreshed(storage: Storage) -> None:
 def news(storage: Storage) -> list[str]:
     """What the unit's sessions together show that is in no model."""
     with storage.database.reading() as store:
-        return [one.own for one in store.groups.found(10)[1] if one.group.level is Level.UNIT]
+        return [one.own for one in store.announced.all(0, 10).found if one.group.level is Level.UNIT]
 
 
 def taught(storage: Storage) -> ModelRevision:

@@ -11,7 +11,8 @@ from service.judging.judge import judge
 from service.judging.tolerances import type_of
 from service.records.decision import Verdict
 from service.records.history import HistoryPoint
-from service.records.session import SessionReport, StoredSession
+from service.records.session import StoredSession
+from service.records.session_report import SessionReport
 from service.records.unit import UnitSummary
 from tests.builders import Document, accelerometer_block
 

@@ -86,6 +86,6 @@ def test_queries_of_a_page_do_not_grow_with_the_fleet(filled: Filled, name: str)
     assert queries(filled(three_more), page) == queries(filled(one_session), page) <= most
 
 
-def test_a_session_report_is_five_queries(storage: Storage) -> None:
+def test_a_session_report_is_three_queries(storage: Storage) -> None:
     id = upload(storage, session_bytes(), "a.json", NOW).id
-    assert queries(storage, lambda store: session_report(store, id)) == 5
+    assert queries(storage, lambda store: session_report(store, id)) == 3
