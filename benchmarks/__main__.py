@@ -14,6 +14,7 @@ from benchmarks import (
     p4_diagnose,
     p5_uploads,
     p7_fleet,
+    p8_recompute,
     p10_startup,
     p11_history,
 )
@@ -26,6 +27,7 @@ BENCHMARKS = (
     p4_diagnose,
     p5_uploads,
     p7_fleet,
+    p8_recompute,
     p10_startup,
     p11_history,
 )

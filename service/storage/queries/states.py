@@ -33,13 +33,6 @@ class States(Queries):
         query = select(RecordStateRow).where(RecordStateRow.kind == kind, RecordStateRow.record == record)
         return tuple(map(state_change, self._session.scalars(query.order_by(RecordStateRow.id))))
 
-    def last_of(self, kind: RecordKind, records: tuple[str, ...]) -> dict[str, StateChange]:
-        """The last line of the lives of some records."""
-        if not records:
-            return {}
-        query = select(RecordStateRow).where(RecordStateRow.kind == kind, RecordStateRow.record.in_(records))
-        return {row.record: state_change(row) for row in self._session.scalars(query.order_by(RecordStateRow.id))}
-
     def put_session(self, id: str, state: RecordState, superseded_by: str | None = None) -> None:
         """Whether a session counts, and which one stands for it."""
         values = {"state": state, "superseded_by": superseded_by}
