@@ -24,7 +24,7 @@ def test_a_report_is_asked_for_followed_and_fetched(run: Run, address: str, tmp_
     target = tmp_path / "fleet.xlsx"
     ran = run("jobs", "show", asked["id"], "--wait", "--out", target, "--server", address)
     assert (ran.code, target.read_bytes()[:2]) == (0, b"PK")
-    assert "done" in run("jobs", "--server", address).out.splitlines()[1]
+    assert "done" in run("jobs", "--format", "table", "--server", address).out.splitlines()[1]
 
 
 def test_what_has_ended_is_not_cancelled(run: Run, address: str) -> None:
