@@ -45,6 +45,9 @@ PATHS = (
     "/accounts",
     "/account",
     "/audit",
+    "/ready",
+    "/missing",
+    "/jobs",
     "/plan?kind=gyroscope&runs=direct&bias=0.05",
     "/units/nobody",
 )
