@@ -13,6 +13,7 @@ from pathlib import Path
 from sqlalchemy import event, text
 
 from benchmarks.fleet.fill import NOW, Size, fill
+from benchmarks.sections import write_section
 from service.flows.summarise import summarise_all
 from service.records.fleet import FleetQuery, Order
 from service.records.session_list import SessionQuery
@@ -52,8 +53,7 @@ def main() -> None:
             storage = Storage(Database(databases.migrated()), Files(Path(folder)))
             fill(storage, SIZE)
             lines = _written(storage)
-    head = PAGE.read_text(encoding="utf-8").split(MARK)[0]
-    PAGE.write_text(f"{head}{MARK}\n\n{lines}\n", encoding="utf-8")
+    write_section(PAGE, MARK, lines)
 
 
 def _written(storage: Storage) -> str:

@@ -23,6 +23,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
+from benchmarks.sections import write_section
 from estimator import read_session
 from estimator.arrays import tangents
 from estimator.calibration.calibrate import averaged
@@ -127,10 +128,7 @@ def main() -> None:
     options = parser.parse_args()
     command = f"`python -m benchmarks.study.between_sessions --units {options.units} --seed {options.seed}`"
     text = "\n".join(table(options.units, options.seed))
-    head = PAGE.read_text(encoding="utf-8").split(MARK)[0]
-    PAGE.write_text(
-        f"{head}{MARK}\n\nMade by {command}. Median, and in brackets nine in ten.\n\n{text}\n", encoding="utf-8"
-    )
+    write_section(PAGE, MARK, f"Made by {command}. Median, and in brackets nine in ten.\n\n{text}")
     print(text)
 
 

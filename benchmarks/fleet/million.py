@@ -1,0 +1,72 @@
+"""``python -m benchmarks.fleet.million`` writes what a million units cost into docs/how-to/large-fleets.md.
+
+Nothing is measured here: the figures come from the tables that `benchmarks.fleet.bytes` and `make bench` wrote, and the
+rest is arithmetic, of which every assumption stands in the head of this file.
+"""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from benchmarks.sections import write_section
+
+PROJECT = Path(__file__).parents[2]
+PAGE, RESULTS = PROJECT / "docs/how-to/large-fleets.md", PROJECT / "benchmarks/RESULTS.md"
+MARK = "<!-- written by python -m benchmarks.fleet.million -->"
+FLEETS = (1_000, 10_000, 100_000, 1_000_000)
+SESSIONS_A_YEAR = 2.0
+"""Calibrations of a unit: every half a year."""
+WORKING = 250 * 8 * 3600.0
+"""s of a year in which workshops upload."""
+PEAK = 5.0
+"""Times the mean of working hours: a Monday morning."""
+BUSY = 0.5
+"""Share of a core that work may take before waiting grows."""
+KEPT_YEARS = 10.0
+GIGA = 1e9
+
+
+def milliseconds(row: str) -> float:
+    """The time of a row of the benchmarks' table."""
+    found = re.search(rf"^\| {re.escape(row)} \|[^|]*\| ([\d.e+]+) ms \|", RESULTS.read_text(encoding="utf-8"), re.M)
+    assert found is not None, f"{RESULTS} has no row {row}"
+    return float(found[1])
+
+
+def bytes_a_session(row: str) -> float:
+    """Of the page's own table of storage."""
+    found = re.search(rf"^\| {row} \|[^|]*\| ([\d,]+) \|", PAGE.read_text(encoding="utf-8"), re.M)
+    assert found is not None, f"{PAGE} has no row {row}"
+    return float(found[1].replace(",", ""))
+
+
+def lines() -> Iterator[str]:
+    """The table, a fleet a column."""
+    upload, diagnosis = milliseconds("P5, 1 client") / 1e3, milliseconds("P4h") / 1e3
+    stored, file = bytes_a_session("all tables"), bytes_a_session("the uploaded file")
+    rates = [units * SESSIONS_A_YEAR * PEAK / WORKING for units in FLEETS]
+    sessions = [units * SESSIONS_A_YEAR * KEPT_YEARS for units in FLEETS]
+    yield f"| units | {' | '.join(f'{units:,}' for units in FLEETS)} |"
+    yield f"| --- | {' | '.join('---' for _ in FLEETS)} |"
+    yield from (
+        f"| {what} | {' | '.join(form.format(value) for value in values)} |"
+        for what, form, values in (
+            ("uploads a second at the peak", "{:.2g}", rates),
+            ("cores that answer them", "{:.2g}", [rate * upload / BUSY for rate in rates]),
+            ("cores that diagnose beside", "{:.2g}", [rate * diagnosis / BUSY for rate in rates]),
+            ("database after ten years, GB", "{:,.3g}", [n * stored / GIGA for n in sessions]),
+            ("files after ten years, GB", "{:,.3g}", [n * file / GIGA for n in sessions]),
+            ("all sessions diagnosed anew, core hours", "{:,.3g}", [n * diagnosis / 3600 for n in sessions]),
+        )
+    )
+
+
+def main() -> None:
+    """Writes the section."""
+    text = "\n".join(lines())
+    write_section(PAGE, MARK, text)
+    print(text)
+
+
+if __name__ == "__main__":
+    main()
