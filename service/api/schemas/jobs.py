@@ -38,7 +38,7 @@ class JobFailureSchema(BaseModel):
     """A piece of the work that could not be done."""
 
     model_config = ConfigDict(from_attributes=True)
-    subject: str
+    subject: str = Field(description="Serial number of the unit; empty for the whole.")
     reason: str = Field(description="Why, and what helps.")
 
 
@@ -46,9 +46,9 @@ class MadeSchema(BaseModel):
     """The file that a job made."""
 
     model_config = ConfigDict(from_attributes=True)
-    filename: str
-    size: int
-    sha256: str
+    filename: str = Field(description="Name for whoever keeps it.")
+    size: int = Field(description="Bytes.")
+    sha256: str = Field(description="SHA-256 of its content, hexadecimal.")
     until: datetime = Field(description="It is kept until then.")
 
 
@@ -56,18 +56,18 @@ class JobSchema(BaseModel):
     """Long work, as it stands."""
 
     model_config = ConfigDict(from_attributes=True)
-    id: int
-    kind: JobKind
+    id: int = Field(description="Number of the job.")
+    kind: JobKind = Field(description="What kind of work.")
     scope: Scope | None = Field(description="None for the whole fleet.")
-    subject: str
-    state: JobState
-    who: str
-    asked_at: datetime
-    begun_at: datetime | None
-    ended_at: datetime | None
-    cancelled_by: str
+    subject: str = Field(description="Serial number or name; empty for the whole fleet.")
+    state: JobState = Field(description="How far it is.")
+    who: str = Field(description="Who asked for it.")
+    asked_at: datetime = Field(description="When it was asked for, UTC.")
+    begun_at: datetime | None = Field(description="When it was begun, UTC; none while it waits.")
+    ended_at: datetime | None = Field(description="When its last piece was begun, UTC; none while it is not ended.")
+    cancelled_by: str = Field(description="Who cancelled it; empty where nobody did.")
     done: int = Field(description="Pieces that are whole: of a recalibration, units.")
-    total: int
+    total: int = Field(description="Pieces in all.")
     recomputed: int = Field(description="Sessions that have another calibration since.")
     verdicts: int = Field(description="Sessions that have another verdict since.")
     failed: int = Field(description="Pieces that could not be done.")
@@ -79,5 +79,5 @@ class JobSchema(BaseModel):
 class JobPage(BaseModel):
     """Jobs, the newest first."""
 
-    jobs: list[JobSchema]
+    jobs: list[JobSchema] = Field(description="The jobs of this page.")
     before: int | None = Field(description="Ask with it for the jobs before these; none where there are none.")
