@@ -55,6 +55,8 @@ correction 3f9a0c5be1d24786aa10 --out correction.json  # formula, numbers, a wor
 export 3f9a0c5be1d24786aa10 --system px4 --out unit.params  # parameters of a flight controller
 simulate --unit BA-900 --sessions 3 --drift A3.bias=30 --out sessions  # a unit whose truth is known
 simulate --programme in-service --drift A3.bias=200 --out sessions  # a flight of the same block
+simulate --hide hysteresis --sensor A2 --out sessions  # a cause for `diagnose` to find
+simulate --hide random --seed 7 --answer answer.json --out sessions  # one to guess, and the answer beside it
 plan --sensors 6 --positions 12  # what a session would tell, before it is measured
 plan session.json --minutes 40  # the next one like this, in the time that there is
 ready first-minutes.json --duration 120  # is the unit warm and still enough to begin?

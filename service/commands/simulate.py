@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
+from math import ceil
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -26,12 +27,24 @@ from estimator.session import (
 from estimator.simulate import StandDraw, draw_stand, scattered, simulate
 from estimator.writing import session_document
 from service.commands.console import AsJson, print_json
+from service.commands.hiding import (
+    Answer,
+    NamedCause,
+    OnSensor,
+    Strength,
+    Warming,
+    Wish,
+    hidden_in,
+    read_wish,
+    warmed,
+    write_answer,
+)
 from service.demo.blocks import ACCELEROMETER_SCALE, MICRO_G, norms, schedule_of
 from service.demo.changes import ELEMENT, MICRO, Change, step_of
 from service.demo.other_programmes import alignment, rate_table, recording, turntable_truth
 
 FIRST_SESSION = datetime(2026, 1, 12, 9, 0, tzinfo=UTC)
-"""Fixed, so that the same seed gives the same files."""
+"""Fixed, so that the same seed gives the same files wherever the clock is past them."""
 INTERVAL = timedelta(days=60)
 """From one session to the next: two months, as the help says."""
 MOST_AFTER = 4
@@ -114,6 +127,11 @@ def simulate_files(
     ] = None,
     lever_arm: Levers = None,
     programme: Annotated[str, typer.Option(help=f"One of {', '.join(SIMULATED)}.")] = TWO_AXIS_STAND,
+    warming: Warming = 0.0,
+    hide: NamedCause = None,
+    strength: Strength = None,
+    sensor: OnSensor = None,
+    answer: Answer = None,
     as_json: AsJson = False,
 ) -> None:
     """Write session files of a simulated block: six accelerometers on a two-axis stand unless told otherwise.
@@ -121,6 +139,10 @@ def simulate_files(
     `in-service` is a flight of the block that the same seed puts on the stand, a month after each of its sessions;
     its drift shows from the first on. `rotation-alignment` and `rate-table` are of three accelerometers and three
     gyros on a turntable; there only the bias drifts, of A1 and A2, the axes x and y. --json prints the truth.
+
+    --hide puts a cause of the catalogue into the last session, for `imu-health diagnose` to find. Neither the file nor
+    --json tells it; --answer does, and with the same options and seed it can be had later. Every file says in its
+    notes that it is simulated, and none is dated in the future.
     """
     changes = tuple(read_drift(text) for text in drift or ())
     if programme not in SIMULATED:
@@ -132,22 +154,51 @@ def simulate_files(
     levers = read_levers(lever_arm or [])
     if levers is not None and programme != ROTATION_ALIGNMENT:
         raise typer.BadParameter(f"--lever-arm: {programme} does not show it; {ROTATION_ALIGNMENT} does")
-    schedule = replace(schedule_of(ACCELEROMETER, sensors, "SIM", alpha, positions), unit=unit)
-    out.mkdir(parents=True, exist_ok=True)
+    if warming and programme != TWO_AXIS_STAND:
+        raise typer.BadParameter(f"--warming: {programme} records no temperature; {TWO_AXIS_STAND} does")
+    wish = read_wish(hide, strength, sensor, answer, programme)
+    schedule = warmed(replace(schedule_of(ACCELEROMETER, sensors, "SIM", alpha, positions), unit=unit), warming)
     rng = np.random.default_rng(seed)
     made = (
         _turned(unit, programme, changes, sessions, rng, levers=levers)
         if programme in ON_TURNTABLE
         else _simulated(schedule, changes, sessions, noise, rng, in_service=programme == IN_SERVICE)
     )
-    what = "" if programme == TWO_AXIS_STAND else f"{programme}-"
+    back = back_from_future(sessions, programme, datetime.now(UTC))
+    _write((_earlier(one, back) for one in made), wish, seed, f"{out}/{safe_name(unit)}", as_json=as_json)
+
+
+def _write(made: Iterator[Simulated], wish: Wish | None, seed: int, start: str, *, as_json: bool) -> None:
+    """The sessions as files that begin with ``start``; nothing is written of what cannot be hidden."""
+    if wish is not None:
+        *before, last = made
+        session, hidden = hidden_in([one.session for one in (*before, last)], wish, seed)
+        made = iter((*before, replace(last, session=session)))
     for number, simulated in enumerate(made, 1):
-        file = out / f"{safe_name(unit)}-{what}{number:03d}.json"
+        programme = simulated.session.programme
+        what = "" if programme == TWO_AXIS_STAND else f"{programme}-"
+        file = Path(f"{start}-{what}{number:03d}.json")
+        file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(json.dumps(session_document(simulated.session)), encoding="utf-8")
         if as_json:
             print_json(_truth(file, simulated))
         else:
             typer.echo(str(file))
+    if wish is not None and wish.answer is not None:
+        write_answer(hidden, file, session, wish.answer)
+
+
+def back_from_future(sessions: int, programme: str, now: datetime) -> timedelta:
+    """By how much sessions must be dated earlier for none to lie after ``now``: as a rule not at all."""
+    last = _measured(sessions - 1, sessions) + (FLIGHT_AFTER if programme == IN_SERVICE else timedelta())
+    return INTERVAL * max(0, ceil((last - now) / INTERVAL))
+
+
+def _earlier(simulated: Simulated, back: timedelta) -> Simulated:
+    """The same, measured earlier."""
+    assert simulated.session.started_at is not None
+    at = datetime.fromisoformat(simulated.session.started_at) - back
+    return replace(simulated, session=_dated(simulated.session, at))
 
 
 def _simulated(

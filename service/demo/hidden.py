@@ -1,11 +1,12 @@
 """Effects that the baseline simulation lacks, hidden in demonstration sessions for the diagnosis to find."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from estimator.causes import Signature, cause
 from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.hiding import with_input
 from estimator.session import CalibrationSession
 
 
@@ -27,4 +28,4 @@ def with_effect(session: CalibrationSession, hidden: Hidden) -> CalibrationSessi
     place = () if hidden.sensor is None else (hidden.sensor,)
     shape = next(shape for shape in known.shapes(setting) if shape.sensors == place)
     added = shape.columns @ np.array(hidden.amplitude)
-    return replace(session, readings=session.readings + setting.parameters.scale * added)
+    return with_input(session, setting, added)

@@ -40,7 +40,7 @@ ESTIMATOR_LAYERS = (
     {"causes"},
     {"simulate", "calibration", "alignment", "parity"},
     {"correction", "diagnosis", "health", "programmes", "readiness"},
-    {"groups", "nominal_vector", "planning"},
+    {"groups", "hiding", "nominal_vector", "planning"},
     {"published"},
 )
 HOMES = {
