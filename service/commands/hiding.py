@@ -132,7 +132,7 @@ def _answer(hidden: Hidden, file: Path, session: CalibrationSession) -> dict[str
         "rows": [row + 1 for row in hidden.rows],
         "amplitude": list(hidden.amplitude),
         "units": list(known.units),
-        "shape": list(hidden.nonlinear),
+        "shape": [v + (unit == "row") for v, unit in zip(hidden.nonlinear, known.nonlinear_units, strict=False)],
         "shape_units": list(known.nonlinear_units),
         "strength": hidden.strength,
     }

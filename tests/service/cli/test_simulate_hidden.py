@@ -48,6 +48,16 @@ def test_the_size_that_the_answer_tells_is_the_size_found(run: Run, tmp_path: Pa
     assert abs(told["amplitude"][0]) > 20 * found["sigma"][0]
 
 
+def test_the_answer_counts_rows_as_the_diagnosis_does(run: Run, tmp_path: Path) -> None:
+    answer = tmp_path / "answer.json"
+    ran = run("simulate", "--out", tmp_path, "--hide", "reading-outlier", "--answer", answer)
+    told = json.loads(answer.read_text())
+    changed = read_session(ran.out.strip())
+    run("simulate", "--out", tmp_path, "--unit", "PLAIN")
+    [row] = np.flatnonzero(np.abs(changed.readings - read_session(tmp_path / "PLAIN-001.json").readings).max(axis=1))
+    assert (told["shape"], told["shape_units"]) == ([row + 1], ["row"])
+
+
 def test_only_the_effect_tells_it_from_the_session_without_it(run: Run, tmp_path: Path) -> None:
     for folder, hidden in (("plain", []), ("hidden", ["--hide", "reading-outlier", "--sensor", "A3"])):
         run("simulate", "--out", tmp_path / folder, *hidden)
