@@ -63,6 +63,7 @@ ready first-minutes.json --duration 120  # is the unit warm and still enough to 
 missing session.json  # positions that the session still lacks
 parity flight.json --reference session.json  # which sensor has drifted since
 recalibrate BA-017  # its sessions under the model in force
+recalibrate --all --workers 4  # every session that another model concerns since
 jobs  # long work, the newest first
 jobs recalibrate --scope stand --name S1 --by "K. Ito"  # computed again beside the requests
 jobs report --format xlsx --by "K. Ito"  # the fleet's workbook
