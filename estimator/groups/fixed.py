@@ -25,7 +25,7 @@ from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.groups.candidates import candidates_of
 from estimator.groups.layout import EVERY
 from estimator.groups.library import library
-from estimator.groups.results import EmpiricalTerm, GroupFinding
+from estimator.groups.results import GroupFinding
 from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
@@ -66,11 +66,6 @@ def fixed(finding: GroupFinding) -> FixedEffect:
         shape=finding.shape,
         varies=finding.form == "varying",
     )
-
-
-def fixed_term(term: EmpiricalTerm) -> FixedEffect:
-    """A learned term as the effect that its sessions have: the same in all of them."""
-    return FixedEffect(EMPIRICAL, term.sensors, "", term.amplitude, term.sigma, None, varies=False, words=term.words)
 
 
 def in_one_session(sigma: Sequence[float], spread: Sequence[float]) -> tuple[float, ...]:

@@ -2,7 +2,7 @@
 
 from datetime import datetime
 
-from service.records.signature import Meaning, Signature
+from service.records.signature import Meaning
 
 STATES = {
     Meaning.REVIEWED: "I have checked record, results, uncertainties and statements of this certificate, and have "
@@ -27,9 +27,3 @@ def done_by(meaning: Meaning) -> str:
 def moment_of(at: datetime) -> str:
     """``7 Mar 2026, 09:30 UTC``."""
     return f"{at.day} {at:%b %Y, %H:%M} UTC"
-
-
-def signature_in_words(signature: Signature) -> str:
-    """``Reviewed by K. Ito (k.ito), 7 Mar 2026, 09:30 UTC``."""
-    who = f"{signature.name} ({signature.login})"
-    return f"{done_by(signature.meaning)} {who}, {moment_of(signature.signed_at)}"
