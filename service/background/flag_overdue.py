@@ -7,7 +7,7 @@ from service.flows.flagging.settle import Occasion, raise_flag, resolve_as_done
 from service.records.flag import Concern, Matter
 from service.storage import Storage
 from service.views.outlook import dated
-from service.words.names import day_of
+from service.words.due import NOTHING_DUE, was_due
 
 
 def flag_overdue(storage: Storage, now: datetime, alone: Alone = plainly) -> None:
@@ -27,7 +27,6 @@ def _settle(storage: Storage, serial: str, now: datetime) -> None:
         opened = tuple(flag for flag in store.flags.open_of(occasion.unit) if flag.matter is Matter.OVERDUE)
         if outlook is None or not outlook.overdue:
             for flag in opened:
-                resolve_as_done(store, occasion, flag, "Nothing is due any more.")
+                resolve_as_done(store, occasion, flag, NOTHING_DUE)
         elif not opened and outlook.due is not None:
-            summary = f"Calibration was due on {day_of(outlook.due)}. {outlook.reason}"
-            raise_flag(store, occasion, Concern(Matter.OVERDUE, "", 1, summary))
+            raise_flag(store, occasion, Concern(Matter.OVERDUE, "", 1, was_due(outlook.due, outlook.reason)))

@@ -7,7 +7,7 @@ from itertools import chain
 from typing import Protocol
 
 from service.languages.message import PLACE
-from service.languages.pattern import HEAD, LEAD, LEADS, TAIL, Pattern
+from service.languages.pattern import HEAD, LEAD, LEADS, TAIL, Pattern, is_closed
 
 ENGLISH = re.compile(r"(?<![\w.'/’-])(?!(?:ppm|arcsec|rad|min|acc|imu-health)\b)[A-Z]?[a-z]{2,}(?![\w/]|\.\w|-\d)")
 """A word, and no unit, identifier or name of a file."""
@@ -179,11 +179,6 @@ class Reader:
 def _sum(parts: Iterable[Reading], said: str, messages: int) -> Reading:
     counted = list(parts)
     return Reading(sum(p.untold for p in counted), messages + sum(p.messages for p in counted), said)
-
-
-def is_closed(text: str) -> bool:
-    """Whether every bracket that it opens is closed in it."""
-    return text.count("(") == text.count(")")
 
 
 def outside_brackets(text: str, joint: str) -> list[str]:

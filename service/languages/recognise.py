@@ -12,8 +12,8 @@ from functools import lru_cache
 
 from service.languages.grammar import Grammar
 from service.languages.message import COUNT, PLACE
-from service.languages.pattern import WORD, Pattern
-from service.languages.reading import ENGLISH, SENTENCES, Reader, Reading, cased, is_closed
+from service.languages.pattern import WORD, Pattern, is_closed
+from service.languages.reading import ENGLISH, SENTENCES, Reader, Reading, cased
 
 LONGEST = 800
 """Characters of a sentence that is looked at: longer is what somebody wrote."""

@@ -66,6 +66,11 @@ def _person(context: Context) -> Person:
     return person
 
 
+def as_sentence(text: str) -> str:
+    """With a capital letter, before it is said in a language."""
+    return text[:1].upper() + text[1:]
+
+
 @lru_cache
 def _environment(language: Language) -> Environment:
     """The templates in a language; English ones are what is written in the files."""
@@ -81,9 +86,12 @@ def _environment(language: Language) -> Environment:
         asset=asset_url, conditions=CONDITIONS, explained=(*CONDITIONS, REFERENCE, RESERVED), reserved=RESERVED
     )
     environment.globals.update(may=_may, your_name=_your_name, csrf_field=_csrf_field, csrf_query=_csrf_query)
-    environment.filters.update(but=but, day=day_of, heading=heading, spaced=spaced, as_written=escape)
+    environment.filters.update(but=but, day=day_of, heading=heading, spaced=spaced, as_sentence=as_sentence)
     environment.filters.update(
-        translated=spoken.say, plural_form=spoken.plural, embed=lambda data: embed(spoken.chart(data))
+        as_written=escape,
+        translated=spoken.say,
+        plural_form=spoken.plural,
+        embed=lambda data: embed(spoken.chart(data)),
     )
     return environment
 

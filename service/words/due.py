@@ -11,11 +11,17 @@ from service.words.names import PARAMETER_NAMES, day_of, month_of
 
 UNFIT = (Verdict.FAIL, Verdict.CONDITIONAL_FAIL)
 """Verdicts after which no date helps."""
+NOTHING_DUE = "Nothing is due any more."
 
 
 def why_measure(since: datetime | None) -> str:
     """Of a unit that no session has shown: ever, or since its service."""
     return "No calibration yet." if since is None else f"Serviced on {day_of(since)}: measure it again."
+
+
+def was_due(due: datetime, reason: str) -> str:
+    """Of a unit whose date has passed; ``reason`` is that of its date."""
+    return f"Calibration was due on {day_of(due)}. {reason}"
 
 
 def why_now(action: Action, last: StoredSession, reason: str) -> str:

@@ -61,5 +61,8 @@ def lasting_place(scope: Scope, subject: str, finding: GroupFinding | None = Non
 
 def lasting_summary(scope: Scope, finding: GroupFinding) -> str:
     """``The sessions on stand ODG-1 show together: The angle scale of the head is off centre.``"""
-    at = "on" if scope is Scope.STAND else "of"
-    return f"The sessions {at} {scope} {finding.subject} show together: {statement(finding)}"
+    if scope is Scope.STAND:
+        return f"The sessions on stand {finding.subject} show together: {statement(finding)}"
+    if scope is Scope.UNIT_TYPE:
+        return f"The sessions of unit type {finding.subject} show together: {statement(finding)}"
+    return f"The sessions of unit {finding.subject} show together: {statement(finding)}"

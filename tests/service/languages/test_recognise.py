@@ -25,6 +25,13 @@ SAID = {
     "Likely bias jump (G2), 91.9 %; less likely sensor drift, 3.5 %; 1 more.": (
         "Вероятно, скачок нуля (G2), 91.9 %; менее вероятно: уход датчика, 3.5 %; ещё 1."
     ),
+    "Likely sensor drift (A3, A2), 87.5 %; less likely bias jump, 12.4 %.": (
+        "Вероятно, уход датчика (A3, A2), 87.5 %; менее вероятно: скачок нуля, 12.4 %."
+    ),
+    "The sessions of unit type RA-6 show together: Every gyro of type RA-6 bends with the cube of the input.": (
+        "Сеансы приборов типа RA-6 вместе показывают: Каждый гироскоп типа RA-6 нелинеен: отклонение растёт как куб "
+        "входа."
+    ),
 }
 
 
