@@ -22,6 +22,7 @@ from service.api import (
     notes,
     operations,
     plans,
+    printing,
     records,
     sessions,
     stands,
@@ -55,8 +56,9 @@ def _every() -> APIRouter:
     """The routes of all applications: what a route does depends on its request alone, and building them is slow."""
     api, every = APIRouter(prefix=PREFIX), APIRouter(dependencies=ADMITTED)
     for resource in (
-        groups, attachments, sessions, records, certificates, diagnoses, events, usable, labels, units, unit_types,
-        models, plans, stands, templates, layouts, uploads, flags, views, notes, webhooks, feeds, fleet, jobs, identity,
+        groups, attachments, sessions, records, certificates, printing, diagnoses, events, usable, labels, units,
+        unit_types, models, plans, stands, templates, layouts, uploads, flags, views, notes, webhooks, feeds, fleet,
+        jobs, identity,
     ):  # fmt: skip
         api.include_router(resource.router)
     every.include_router(api)

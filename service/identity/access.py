@@ -136,6 +136,7 @@ POST /missing
 PUT {SESSION}/stage
 PUT {SESSION}/check
 GET {SESSION}/certificate
+GET {API}/certificates
 POST {UNIT}/services
 POST {UNIT}/notes
 PUT {UNIT}/lot

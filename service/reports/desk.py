@@ -62,7 +62,14 @@ def certified(desk: Desk, id: str) -> tuple[CertifiedSession, Statement]:
 
 def hand_out(desk: Desk, id: str, format: str, now: datetime, *, who: str) -> HandedOut:
     """The certificate that holds, under a new number where it states something new."""
-    found, statement = certified(desk, id)
+    return issued(desk, certified(desk, id), format, now, who=who)
+
+
+def issued(
+    desk: Desk, stated: tuple[CertifiedSession, Statement], format: str, now: datetime, *, who: str
+) -> HandedOut:
+    """The same of what a certificate would state."""
+    found, statement = stated
     issue = issue_certificate(desk.storage, statement, now, who=who)
     with desk.storage.database.reading() as store:
         kept = store.signatures.kept(issue.number, format)
