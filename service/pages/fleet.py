@@ -8,6 +8,7 @@ from service.judging.standouts import Standout
 from service.pages.fleet_view import DUE, FIRST, ORDERS, PAGE_SIZE, FleetView
 from service.pages.group import FoundLine
 from service.pages.saved import Saved
+from service.records.decision import Verdict
 from service.records.fleet import FleetChoices
 from service.records.reservation import Reservations
 from service.records.saved_view import ListPage
@@ -66,6 +67,8 @@ class Tile:
     count: int
     reserved: int
     """Of how many of them the verdict is said with a reservation."""
+    references: int
+    """Of how many of them the latest session is a reference."""
     chosen: bool
     url: str
 
@@ -134,10 +137,7 @@ def fleet_page(
     shown = units[-PAGE_SIZE:] if backwards else units[:PAGE_SIZE]
     return FleetPage(
         view=view,
-        tiles=tuple(
-            _tile(condition_of(v), n, condition.reserved.get(v, 0), view)
-            for v, n in reversed(condition.verdicts.items())
-        ),
+        tiles=tuple(_tile(v, condition, view) for v in reversed(condition.verdicts)),
         rows=tuple(fleet_row(unit, now) for unit in shown),
         total=condition.units,
         earlier=_earlier(view, shown),
@@ -169,9 +169,17 @@ def _later(view: FleetView, shown: Sequence[UnitSummary]) -> str:
     return view.url(page=view.page + 1, after=shown[-1].serial, before="") if shown else ""
 
 
-def _tile(condition: Condition, count: int, reserved: int, view: FleetView) -> Tile:
+def _tile(verdict: Verdict, fleet: FleetCondition, view: FleetView) -> Tile:
+    condition = condition_of(verdict)
     chosen = view.condition == condition.key
-    return Tile(condition, count, reserved, chosen, view.url(condition="" if chosen else condition.key, **FIRST))
+    return Tile(
+        condition=condition,
+        count=fleet.verdicts[verdict],
+        reserved=fleet.reserved.get(verdict, 0),
+        references=fleet.references if verdict is Verdict.UNDECIDABLE else 0,
+        chosen=chosen,
+        url=view.url(condition="" if chosen else condition.key, **FIRST),
+    )
 
 
 def flags_in_words(count: int) -> str:

@@ -130,6 +130,8 @@ class FleetCondition:
     """Of how many units with a verdict it is said with a reservation."""
     overdue: int = 0
     """How many should have been calibrated by now; 0 where that was not asked."""
+    references: int = 0
+    """Of how many the latest session is a reference, which nothing was held against."""
 
     @classmethod
     def of(cls, tallies: Sequence[Tally], of_groups: int = 0) -> "FleetCondition":
@@ -141,6 +143,7 @@ class FleetCondition:
             simulated=sum(tally.units for tally in tallies if tally.is_simulated),
             flags=sum(tally.flags for tally in tallies) + of_groups,
             reserved={verdict: sum(tally.reserved for tally in own) for verdict, own in counts.items()},
+            references=sum(tally.units for tally in tallies if tally.is_reference),
         )
 
 

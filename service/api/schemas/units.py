@@ -145,6 +145,9 @@ class FleetSchema(BaseModel):
     simulated: int = Field(description="How many of them belong to the demonstration fleet.")
     flags: int = Field(description="How many flags are open.")
     reserved: dict[Verdict, int] = Field(description="Of how many with each verdict it is said with a reservation.")
+    references: int = Field(
+        description="Of how many the latest session is a reference, which nothing was held against."
+    )
 
 
 class UnitReportSchema(BaseModel):

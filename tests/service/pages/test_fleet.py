@@ -1,5 +1,7 @@
 """The fleet page's context."""
 
+from dataclasses import replace
+
 from service.pages.fleet import fleet_page, margin_of
 from service.pages.fleet_view import PAGE_SIZE, FleetView
 from service.records.decision import Verdict
@@ -14,6 +16,11 @@ def test_tiles_count_every_condition_worst_first() -> None:
     assert [(t.condition.word, t.count) for t in tiles] == [
         ("Unfit", 28), ("Probably unfit", 26), ("Undecided", 24), ("Probably fit", 22), ("Fit", 20),
     ]  # fmt: skip
+
+
+def test_undecided_units_tell_how_many_hold_a_reference_only() -> None:
+    page = fleet_page(replace(CONDITION, references=7), [], FleetView(), NOON)
+    assert {tile.condition.word: tile.references for tile in page.tiles if tile.references} == {"Undecided": 7}
 
 
 def test_units_are_numbered_through_the_pages() -> None:
