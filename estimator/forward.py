@@ -8,7 +8,6 @@ Arrays are indexed (..., R, m); in memory the rows of one sensor lie together, w
 
 import numpy as np
 
-from estimator.arrays import tangents
 from estimator.parameters import SensorParameters
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
@@ -44,7 +43,7 @@ def jacobian(p: SensorParameters, n: Array, norm: Array) -> Array:
 
     n (R, m, 3) of lengths ``norm`` (m,), m/s² (rad/s); the result is (..., R, m, 5) in the same unit.
     """
-    along = _by_sensor(np.concatenate([p.axis[..., None], tangents(p.axis)], axis=-1), n)
+    along = _by_sensor(np.concatenate([p.axis[..., None], p.axis_tangents], axis=-1), n)
     a, c, size = along[..., 0], p.quadratic[..., None], norm[:, None]
     columns = np.empty((*a.shape, 5))
     columns[..., 0] = a + p.bias[..., None] + c * a * a

@@ -5,6 +5,7 @@ number says for each of them what is small: `PLAUSIBLE`.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -38,6 +39,11 @@ class SensorParameters:
     axis: Array
     """(..., m, 3) unit vectors, block axes."""
 
+    @cached_property
+    def axis_tangents(self) -> Array:
+        """(..., m, 3, 2) along which the axes turn, dimensionless."""
+        return tangents(self.axis)
+
     def at(self, sessions: Array | int) -> "SensorParameters":
         """Those of one session, or of several, by their place (number, or (k,) of them) on the first axis."""
         return SensorParameters(
@@ -46,7 +52,7 @@ class SensorParameters:
 
     def stepped(self, step: Array, norm: Array) -> "SensorParameters":
         """Moved by a dimensionless step (..., m, 5); ``norm`` (m,) is the applied vector's length, m/s² (rad/s)."""
-        turned = self.axis + (tangents(self.axis) @ step[..., 3:, None])[..., 0]
+        turned = self.axis + (self.axis_tangents @ step[..., 3:, None])[..., 0]
         return SensorParameters(
             scale=self.scale * np.exp(step[..., 0]),
             bias=self.bias + step[..., 1] * norm,

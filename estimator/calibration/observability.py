@@ -1,6 +1,7 @@
 """What a session determines of each sensor, and what it determines only in combination."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -30,7 +31,7 @@ class Spectrum:
     vectors: Array
     """(..., m, 5, 5), columns, dimensionless."""
 
-    @property
+    @cached_property
     def observed(self) -> Array:
         """(m, 5) bool, leading axes free; the axis needs both elements, and the scale needs the axis.
 
@@ -43,7 +44,7 @@ class Spectrum:
         seen[..., 0] &= seen[..., 3]
         return seen
 
-    @property
+    @cached_property
     def rank(self) -> Array:
         """The number of parameter directions that the readings determine: (S,), or whatever the leading axes are."""
         return (self.values > LIMIT**-2).sum(axis=(-1, -2))

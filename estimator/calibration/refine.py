@@ -16,6 +16,7 @@ Source: analytic alignment paper (14), (15), with the noise and stand errors of 
 """
 
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -69,7 +70,7 @@ class Fitted:
     converged: Array
     """(S,) bool"""
 
-    @property
+    @cached_property
     def readings(self) -> Array:
         """(S,) number of readings that take part; those of infinite variance do not."""
         return np.isfinite(self.variance).sum(axis=(1, 2))

@@ -13,14 +13,13 @@ from estimator.calibration import noise
 from estimator.calibration.analytic import answers, closed_form, linear_start
 from estimator.calibration.observability import Spectrum, spectrum
 from estimator.calibration.refine import Fitted, fit, input_variance
-from estimator.calibration.stand_report import Solved, reports
+from estimator.calibration.stand_report import Reports, Solved
 from estimator.forward import measured
 from estimator.parameters import SensorParameters, nominal
-from estimator.results import Calibration
 from estimator.session import Array, CalibrationSession
 
 
-def calibrate_stand(sessions: Sequence[CalibrationSession]) -> list[Calibration]:
+def calibrate_stand(sessions: Sequence[CalibrationSession]) -> Reports:
     """Calibrations of averaged two-axis-stand sessions that share one schedule.
 
     Parameters
@@ -29,9 +28,9 @@ def calibrate_stand(sessions: Sequence[CalibrationSession]) -> list[Calibration]
 
     Returns
     -------
-    One `Calibration` a session, in order.
+    One `Calibration` a session, in order, each built when it is read.
     """
-    return reports(sessions, solved(sessions))
+    return Reports(tuple(sessions), solved(sessions))
 
 
 def solved(sessions: Sequence[CalibrationSession], start: SensorParameters | None = None) -> Solved:

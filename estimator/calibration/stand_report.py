@@ -1,15 +1,17 @@
 """From the solution of sessions on a two-axis stand to one `Calibration` a session.
 
-What can be done for all sessions at once is done on arrays; what is left builds the result of one session.
+What can be done for all sessions at once is done on arrays; what is left builds the result of one session, when it is
+read.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
+from math import isnan
+from typing import Any
 
 import numpy as np
 
 from estimator.applied_vector import Geometry
-from estimator.arrays import tangents
 from estimator.calibration.observability import Spectrum, known_bias_quadratic, known_linear
 from estimator.calibration.refine import Fitted
 from estimator.coverage import finite, positions_to_add
@@ -59,6 +61,8 @@ class Tables:
     """(S, R, m) m/s² (rad/s)."""
     seen: Array
     """(S, m, 5) bool."""
+    axis_dof: Array
+    """(S, m) degrees of freedom of the axes, without unit: infinite where the noise is known."""
 
 
 def tables(solved: Solved) -> Tables:
@@ -77,20 +81,36 @@ def tables(solved: Solved) -> Tables:
         repeatability=steady,
         sigma=np.sqrt(np.diagonal(total, axis1=1, axis2=2)).reshape(S, m, 5),
         steady=np.sqrt(np.diagonal(steady, axis1=1, axis2=2)).reshape(S, m, 5),
-        tangents=tangents(p.axis),
+        tangents=p.axis_tangents,
         residual_sigma=np.where(
             np.isnan(solved.freedom[:, None, ::5]), np.nan, np.sqrt(grown * (fitted.variance + swing * swing))
         ),
         seen=seen,
+        axis_dof=solved.freedom.reshape(S, m, 5)[..., 3:].min(axis=-1),
     )
 
 
-def reports(sessions: Sequence[CalibrationSession], solved: Solved) -> list[Calibration]:
-    """One `Calibration` a session, in order."""
-    table = tables(solved)
-    fits = qualities(sessions, solved)
-    return [
-        Calibration(
+@dataclass(frozen=True, eq=False)
+class Reports:
+    """What is reported of sessions of one schedule, worked out when the first of them is read."""
+
+    sessions: tuple[CalibrationSession, ...]
+    solved: Solved
+
+    @cached_property
+    def table(self) -> Tables:
+        """The numbers of all results."""
+        return tables(self.solved)
+
+    @cached_property
+    def fits(self) -> list[tuple[Any, ...]]:
+        """What `quality` says of every session."""
+        return qualities(self.solved)
+
+    def __getitem__(self, k: int) -> Calibration:
+        """The result of session k."""
+        session, solved, table = self.sessions[k], self.solved, self.table
+        return Calibration(
             unit=session.unit,
             method=METHOD,
             sensors=sensor_results(k, session, solved, table),
@@ -98,7 +118,7 @@ def reports(sessions: Sequence[CalibrationSession], solved: Solved) -> list[Cali
             units=units(session.sensors),
             covariance=table.covariance[k],
             repeatability=table.repeatability[k],
-            fit=fits[k],
+            fit=quality(k, session, solved, self.fits[k]),
             residuals=Residuals(
                 value=solved.fitted.residual[k],
                 sigma=table.residual_sigma[k],
@@ -110,8 +130,6 @@ def reports(sessions: Sequence[CalibrationSession], solved: Solved) -> list[Cali
             ),
             gauge="stand",
         )
-        for k, session in enumerate(sessions)
-    ]
 
 
 def more_rows(k: int, solved: Solved) -> int:
@@ -126,12 +144,12 @@ def sensor_results(k: int, session: CalibrationSession, solved: Solved, table: T
     p = solved.fitted.parameters
     values = zip(p.scale[k].tolist(), p.bias[k].tolist(), p.quadratic[k].tolist(), strict=True)
     seen, sigma, steady = table.seen[k].tolist(), table.sigma[k].tolist(), table.steady[k].tolist()
-    dofs = solved.freedom[k].reshape(-1, 5)
+    dofs, axis_dof = solved.freedom[k].reshape(-1, 5).tolist(), table.axis_dof[k].tolist()
     found = []
     for i, (sensor, own) in enumerate(zip(session.sensors, values, strict=True)):
         angles = slice(5 * i + 3, 5 * i + 5)
         scale, bias, quadratic = (
-            estimate(value, sigma[i][e], steady[i][e], dofs[i, e]) if seen[i][e] else Estimate(None, None)
+            estimate(value, sigma[i][e], steady[i][e], dofs[i][e]) if seen[i][e] else Estimate(None, None)
             for e, value in enumerate(own)
         )
         found.append(
@@ -146,7 +164,7 @@ def sensor_results(k: int, session: CalibrationSession, solved: Solved, table: T
                 axis_covariance=table.covariance[k, angles, angles],
                 observable=dict(zip(PARAMETERS, seen[i][:4], strict=True)),
                 known=() if all(seen[i]) else known(k, i, solved, seen[i]),
-                axis_dof=finite(float(dofs[i, 3:].min())),
+                axis_dof=finite(axis_dof[i]),
             )
         )
     return tuple(found)
@@ -154,7 +172,7 @@ def sensor_results(k: int, session: CalibrationSession, solved: Solved, table: T
 
 def estimate(value: float, sigma: float, repeatability: float, dof: float) -> Estimate:
     """A value with its one sigmas, of one unit, and their degrees of freedom, NaN where nothing tells the noise."""
-    return Estimate(value, None) if np.isnan(dof) else Estimate(value, sigma, repeatability, finite(dof))
+    return Estimate(value, None) if isnan(dof) else Estimate(value, sigma, repeatability, finite(dof))
 
 
 def known(k: int, i: int, solved: Solved, seen: list[bool]) -> tuple[KnownCombination, ...]:
@@ -179,27 +197,31 @@ def combinations(k: int, i: int, solved: Solved, seen: list[bool]) -> tuple[Know
     return known_linear(solved.y[k, :, i], factor * solved.fitted.variance[k, :, i], p.at(k), solved.geometry, i)
 
 
-def qualities(sessions: Sequence[CalibrationSession], solved: Solved) -> list[Fit]:
-    """Quality of fit of every session."""
+def qualities(solved: Solved) -> list[tuple[Any, ...]]:
+    """For every session χ², rank, degrees of freedom, p-value, residual, whether all noise was stated, the factor, and
+    the weakest direction: its sensor, its element and its sigma."""
     fitted, seen = solved.fitted, solved.spectrum
-    taking_part = np.isfinite(fitted.variance)
-    rms = np.sqrt((fitted.residual**2).sum(axis=(1, 2), where=taking_part) / np.maximum(fitted.readings, 1))
-    columns = (fitted.chi2, seen.rank, solved.p_value, rms, solved.stated, solved.factor, *seen.weakest)
-    chi2, rank, p_value, residual_rms, stated, factor, sensor, lead, sigma = (c.tolist() for c in columns)
-    return [
-        Fit(
-            chi2=chi2[k],
-            dof=int(fitted.readings[k]) - rank[k],
-            p_value=p_value[k] if stated[k] else None,
-            residual_rms=residual_rms[k],
-            noise="stated" if stated[k] else "estimated",
-            covariance_factor=factor[k],
-            rank=rank[k],
-            parameters=5 * len(session.sensors),
-            weakest=(f"{session.sensors[sensor[k]].name}.{ELEMENTS[lead[k]]}", sigma[k]),
-            iterations=int(fitted.iterations[k]),
-            converged=bool(fitted.converged[k]),
-            positions_to_add=more_rows(k, solved) if np.isnan(solved.freedom[k]).any() else 0,
-        )
-        for k, session in enumerate(sessions)
-    ]
+    used = fitted.readings
+    squares = np.where(np.isfinite(fitted.variance), fitted.residual**2, 0.0).sum(axis=(1, 2))
+    rms = np.sqrt(squares / np.maximum(used, 1))
+    columns = (fitted.chi2, seen.rank, used - seen.rank, solved.p_value, rms, solved.stated, solved.factor)
+    return list(zip(*(c.tolist() for c in (*columns, *seen.weakest)), strict=True))
+
+
+def quality(k: int, session: CalibrationSession, solved: Solved, found: tuple[Any, ...]) -> Fit:
+    """Quality of fit of session k, from its line of `qualities`."""
+    chi2, rank, dof, p_value, residual_rms, stated, factor, sensor, lead, sigma = found
+    return Fit(
+        chi2=chi2,
+        dof=dof,
+        p_value=p_value if stated else None,
+        residual_rms=residual_rms,
+        noise="stated" if stated else "estimated",
+        covariance_factor=factor,
+        rank=rank,
+        parameters=5 * len(session.sensors),
+        weakest=(f"{session.sensors[sensor].name}.{ELEMENTS[lead]}", sigma),
+        iterations=int(solved.fitted.iterations[k]),
+        converged=bool(solved.fitted.converged[k]),
+        positions_to_add=more_rows(k, solved) if np.isnan(solved.freedom[k]).any() else 0,
+    )
