@@ -39,13 +39,25 @@ def tangents(axis: Array) -> Array:
 
 
 def nearest_turn(vectors: Array, others: Array) -> Array:
-    """(3, 3) rotation R, dimensionless, for which R·v come nearest to the others; both (n, 3), any one unit.
+    """(3, 3) rotation R, dimensionless, for which R·v come nearest to the others; both (n, 3), leading axes free, any
+    one unit.
 
     Kabsch (1976). `scipy.spatial.transform.Rotation.align_vectors` solves the same, but its way through a quaternion
     changes the last digits (2e-15), and with them stored calibrations.
     """
-    left, _, right = np.linalg.svd(others.T @ vectors)
-    return np.asarray(left * [1.0, 1.0, np.linalg.det(left @ right)] @ right)
+    left, _, right = np.linalg.svd(np.swapaxes(others, -1, -2) @ vectors)
+    left[..., 2] *= np.linalg.det(left @ right)[..., None]
+    return np.asarray(left @ right)
+
+
+def crossed(vectors: Array) -> Array:
+    """(n, 3, 3) base vector × v of vectors v (n, 3), leading axes free, in their unit: a column for x, y and z."""
+    x, y, z = (vectors[..., k] for k in range(3))
+    columns = np.zeros((*vectors.shape, 3))
+    columns[..., 1, 0], columns[..., 2, 0] = -z, y
+    columns[..., 0, 1], columns[..., 2, 1] = z, -x
+    columns[..., 0, 2], columns[..., 1, 2] = -y, x
+    return columns
 
 
 def eigh(matrix: Array) -> tuple[Array, Array]:

@@ -23,7 +23,7 @@ SETTLED = 1e-12
 
 
 def turn_of(vector: Array) -> Array:
-    """(3, 3) R(θ), dimensionless, of a rotation vector (3,), rad."""
+    """(3, 3) R(θ), dimensionless, of a rotation vector (3,), rad; a leading axis is free."""
     return np.asarray(Rotation.from_rotvec(vector).as_matrix())
 
 
@@ -50,17 +50,24 @@ def left_jacobian(vector: Array) -> Array:
 
 
 def common_turn(vectors: Array, others: Array, settled: float = SETTLED) -> Array:
-    """(3, 3) rotation R, dimensionless, with the least sum of |R·v − w| of n vectors v and others w, (n, 3) each.
+    """(3, 3) rotation R, dimensionless, with the least sum of |R·v − w| of n vectors v and others w, (n, 3) each;
+    leading axes are free.
 
     Distances, not their squares: the few vectors that moved otherwise hardly drag it (Weiszfeld's reweighting of
     Kabsch). About a line that all vectors share there is no turn. A place to linearise about, not an estimate.
     ``settled``: change of a direction cosine below which a round has moved nothing.
     """
-    both, faint = np.concatenate([others, np.eye(3)]), FAINT * np.eye(3)
-    turn = nearest_turn(np.concatenate([vectors, faint]), both)
+    base = np.broadcast_to(np.eye(3), (*vectors.shape[:-2], 3, 3))
+    both, faint = np.concatenate([others, base], axis=-2), FAINT * base
+    turn = nearest_turn(np.concatenate([vectors, faint], axis=-2), both)
+    moving = np.ones(turn.shape[:-2], dtype=bool)
     for _ in range(ROUNDS):
-        near = np.maximum(np.linalg.norm(vectors @ turn.T - others, axis=1), CLOSEST)
-        before, turn = turn, nearest_turn(np.concatenate([vectors * (near.min() / near)[:, None], faint]), both)
-        if np.abs(turn - before).max() < settled:
+        apart = vectors @ np.swapaxes(turn, -1, -2) - others
+        near = np.maximum(np.linalg.norm(apart, axis=-1, keepdims=True), CLOSEST)
+        weighted = vectors * (near.min(axis=-2, keepdims=True) / near)
+        new = nearest_turn(np.concatenate([weighted, faint], axis=-2), both)
+        moved = np.abs(new - turn).max(axis=(-1, -2)) >= settled
+        turn, moving = np.where(moving[..., None, None], new, turn), moving & moved
+        if not moving.any():
             break
     return turn

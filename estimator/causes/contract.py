@@ -6,7 +6,7 @@ The simulation, the diagnosis, the extended fit, the detection limits and the do
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import groupby
@@ -17,6 +17,9 @@ import numpy as np
 from estimator.forward import input_of, projected, slope
 from estimator.parameters import SensorParameters
 from estimator.session import Array, CalibrationSession
+
+Grid = list[tuple[float, ...]]
+"""Values of the nonlinear parameters, in the order of `Cause.nonlinear_units`: one tuple a shape."""
 
 NEEDS = frozenset(
     {
@@ -102,6 +105,11 @@ class Setting:
         if self.flipped is not None:
             first[1:] = self.flipped[1:] != self.flipped[:-1]
         return first
+
+    @cached_property
+    def across(self) -> Array:
+        """(R, m, 2) p·n and o·n, the components across each input axis, m/s² (rad/s)."""
+        return (self.n.swapaxes(0, 1) @ self.parameters.axis_tangents).swapaxes(0, 1)
 
     def through(self, change: Array) -> Array:
         """Input change (R, m, q) of changes of the applied vector (R, m, 3, q), m/s² (rad/s) per unit amplitude."""
@@ -266,6 +274,9 @@ class Correction(Cause):
 class SensorCause(Signature):
     """A cause that acts on one sensor: `term` gives its columns, placed on every sensor in turn."""
 
+    alike: ClassVar[bool] = False
+    """Whether its term is the same on every sensor: a course of time, temperature or β alone."""
+
     def grid(self, setting: Setting) -> Iterator[tuple[float, ...]]:
         """Values of the nonlinear parameters to try; one empty tuple for a linear cause."""
         yield ()
@@ -282,12 +293,25 @@ class SensorCause(Signature):
         """(S, R, q) the same at every one of S points of the grid, m/s² (rad/s)."""
         return np.stack([self.term(setting, i, nonlinear) for nonlinear in grid])
 
+    def each(self, setting: Setting, grids: Iterable[tuple[int, Grid]]) -> Iterator[tuple[int, Grid, Array]]:
+        """Sensors with their grids, and the terms (S, R, q) of each, m/s² (rad/s); alike ones are worked out once."""
+        grid, terms = None, np.empty(0)
+        for i, own in grids:
+            if not self.alike or own != grid:
+                grid, terms = own, self.terms(setting, i, own)
+            yield i, own, terms
+
+    def terms_of(self, setting: Setting, shapes: Sequence[Shape]) -> Iterator[tuple[int, Array]]:
+        """Sensors one after another, each with the terms (S, R, q) of its shapes, m/s² (rad/s) per unit amplitude."""
+        by_sensor = groupby(shapes, key=lambda shape: shape.sensors[0])
+        grids = ((i, [s.nonlinear for s in own]) for i, own in by_sensor)
+        yield from ((i, terms) for i, _, terms in self.each(setting, grids))
+
     def shapes(self, setting: Setting) -> Iterator[Shape]:
-        for i, kind in enumerate(setting.kinds):
-            grid = list(self.grid_of(setting, i)) if self.kind in (None, kind) else []
-            if grid:
-                placed = on_sensor(setting, i, self.terms(setting, i, grid))
-                yield from (Shape((i,), own, nonlinear) for own, nonlinear in zip(placed, grid, strict=True))
+        grids = ((i, list(self.grid_of(setting, i))) for i, k in enumerate(setting.kinds) if self.kind in (None, k))
+        for i, grid, terms in self.each(setting, ((i, grid) for i, grid in grids if grid)):
+            placed = on_sensor(setting, i, terms)
+            yield from (Shape((i,), own, nonlinear) for own, nonlinear in zip(placed, grid, strict=True))
 
     def placed(self, setting: Setting, i: int, nonlinear: tuple[float, ...]) -> Array:
         """(R, m, q) the term on sensor i, m/s² (rad/s) per unit amplitude."""
@@ -299,8 +323,7 @@ class SensorCause(Signature):
 
     def all_columns(self, setting: Setting, shapes: Sequence[Shape]) -> Array:
         """(R, m, S·q) of S shapes, sensor by sensor, m/s² (rad/s) per unit amplitude."""
-        by_sensor = groupby(shapes, key=lambda shape: shape.sensors[0])
-        each = [on_sensor(setting, i, self.terms(setting, i, [s.nonlinear for s in own])) for i, own in by_sensor]
+        each = [on_sensor(setting, i, terms) for i, terms in self.terms_of(setting, shapes)]
         return np.moveaxis(np.concatenate(each), 0, 2).reshape(setting.rows, len(setting.kinds), -1)
 
 

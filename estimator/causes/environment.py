@@ -27,6 +27,7 @@ class BiasTemperature(SensorCause):
     equation = "k·(T − T̄)"
     units = ("m/s²/K",)
     needs = frozenset({"temperature"})
+    alike = True
     sentence = "The zero of {sensors} follows the temperature."
     advice = "Model the temperature coefficient of the bias, or hold the temperature during the session."
 
@@ -55,6 +56,7 @@ class TemperatureRate(SensorCause):
     equation = "k·dT/dt"
     units = ("m/s²/(K/s)",)
     needs = frozenset({"temperature", "time"})
+    alike = True
     sentence = "The zero of {sensors} follows how fast the temperature changes."
     advice = "Let the unit soak until the temperature stands still before measuring; shield it from draughts."
 
@@ -74,6 +76,7 @@ class BiasRamp(SensorCause):
     equation = "k·(t − t̄)"
     units = ("m/s²/s",)
     needs = frozenset({"time"})
+    alike = True
     sentence = "The zero of {sensors} drifts steadily through the session."
     advice = "Repeat the first position at the end; let the unit warm up longer; watch this sensor."
 
@@ -122,6 +125,7 @@ class WarmUp(GridCause):
     needs = frozenset({"time"})
     nonlinear_units = ("s",)
     shape_words = "time constant"
+    alike = True
     sentence = "The zero of {sensors} settles after switching on."
     advice = "Switch the unit on earlier and wait for several time constants before the first position."
     steps = 10

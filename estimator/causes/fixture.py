@@ -1,7 +1,6 @@
 """Causes in how the block sits in its fixture."""
 
-import numpy as np
-
+from estimator.arrays import crossed
 from estimator.causes.contract import CommonCause, Setting
 from estimator.rotations import left_jacobian
 from estimator.session import Array
@@ -9,8 +8,7 @@ from estimator.session import Array
 
 def turned(n: Array) -> Array:
     """(R, m, 3, 3) change −k×n of applied vectors n (R, m, 3), m/s² (rad/s) per rad of each component of a turn k."""
-    basis = np.eye(3)
-    return np.stack([-np.cross(basis[q], n) for q in range(3)], axis=-1)
+    return -crossed(n)
 
 
 class FlipMisalignment(CommonCause):

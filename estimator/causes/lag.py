@@ -46,6 +46,7 @@ class ThermalLag(SensorCause):
     needs = frozenset({"temperature", "time"})
     nonlinear_units = ("s",)
     shape_words = "time constant"
+    alike = True
     sentence = "The zero of {sensors} follows the temperature late: it differs between warming and cooling."
     advice = (
         "Change the temperature more slowly than the time constant, or let the unit soak; model the coefficient with "

@@ -5,16 +5,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from estimator.arrays import tangents
 from estimator.causes.contract import GridCause, SensorCause, Setting, Shape, column
 from estimator.session import Array
 
 
 def across(setting: Setting, i: int) -> tuple[Array, Array]:
     """p·n and o·n (R,) of sensor i, m/s² (rad/s): the components across its input axis."""
-    frame = tangents(setting.parameters.axis[i])
-    both = setting.n[:, i, :] @ frame
-    return both[:, 0], both[:, 1]
+    return setting.across[:, i, 0], setting.across[:, i, 1]
 
 
 class CubicNonlinearity(SensorCause):
@@ -123,6 +120,7 @@ class BiasPerPosition(SensorCause):
     equation = "k1·sin β + k2·cos β"
     units = ("m/s²", "m/s²")
     needs = frozenset({"stand", "both runs"})
+    alike = True
     sentence = "{sensors} shifts with the head's angle, not with gravity: cable, supply or a magnetic field."
     advice = "Secure the cables, look for magnets and ferrous parts near the head, check the slip rings' supply."
 

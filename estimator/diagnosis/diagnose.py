@@ -21,6 +21,7 @@ from estimator.diagnosis.explanation.record_findings import (
     wrong_record,
 )
 from estimator.diagnosis.record.clipping import Clip, unclipped
+from estimator.diagnosis.record.earlier import earlier_baseline
 from estimator.diagnosis.record.implausible import ImplausibleAxes, implausible_axes
 from estimator.diagnosis.record.nominal import wrong_entry
 from estimator.diagnosis.record.record_error import RecordError
@@ -82,7 +83,7 @@ def put_right(
     """The session and its history fitted, the session's record put right first."""
     rows = averaged(session)
     clips, whole = unclipped(rows, catalogue)
-    earlier = tuple(baseline_of(unclipped(averaged(h), catalogue)[1]) for h in history)
+    earlier = tuple(earlier_baseline(h, tuple(catalogue)) for h in history)
     errors, right = undo_record_errors(baseline_of(whole), earlier, catalogue)
     return PutRight(rows, tuple(clips), tuple(errors), right, earlier)
 

@@ -26,10 +26,6 @@ TANGENTIAL = frozenset({"cross-coupling", "axis-creep", "cross-axis-quadratic"})
 """Causes with one amplitude along each of two tangents of the axis. The tangents are those of the nominal axis: those
 of the fitted one may change places where two of its components are equal."""
 
-ALIKE = frozenset({"bias-ramp", "bias-temperature", "temperature-rate", "thermal-lag", "warm-up"})
-"""Causes whose term is the same on every sensor: courses of time and temperature alone. Worked out once, they cost a
-session's record a tenth less."""
-
 HARMONICS = range(2, 6)
 """Of β, nameless structure that is kept with every session: the first is absorbed or in the catalogue, and what an
 input polynomial up to the fifth order makes ends with the fifth."""
@@ -58,24 +54,26 @@ def candidates_of(baseline: Baseline, cause: Cause) -> Iterator[tuple[Block, Arr
     if not cause.available(setting):
         return
     if isinstance(cause, SensorCause):
-        nominal = np.stack([s.nominal_axis for s in baseline.session.sensors])
-        framed = replace(setting, parameters=replace(setting.parameters, axis=nominal))
         names = tuple(s.name for s in baseline.session.sensors)
-        yield from _of_sensors(cause, framed if cause.identifier in TANGENTIAL else setting, names)
+        yield from _of_sensors(cause, framed(baseline) if cause.identifier in TANGENTIAL else setting, names)
     elif isinstance(cause, CommonCause):
         yield Block(cause.identifier, "", "", None, len(cause.units)), setting.through(cause.change(setting))
+
+
+def framed(baseline: Baseline) -> Setting:
+    """The setting at the nominal axes."""
+    nominal, setting = np.stack([s.nominal_axis for s in baseline.session.sensors]), baseline.setting
+    return replace(setting, parameters=replace(setting.parameters, axis=nominal))
 
 
 def _of_sensors(cause: SensorCause, setting: Setting, names: tuple[str, ...]) -> Iterator[tuple[Block, Array]]:
     """One cause on every sensor that it may act on, in every shape."""
     shapes = TIME_CONSTANTS if cause.nonlinear_units == ("s",) else (None,)
     grid: list[tuple[float, ...]] = [() if shape is None else (shape,) for shape in shapes]
-    alike = cause.terms(setting, 0, grid) if cause.identifier in ALIKE else None
-    for i, (name, kind) in enumerate(zip(names, setting.kinds, strict=True)):
-        if cause.kind in (None, kind):
-            terms = cause.terms(setting, i, grid) if alike is None else alike
-            for shape, columns in zip(shapes, on_sensor(setting, i, terms), strict=True):
-                yield Block(cause.identifier, name, kind, shape, len(cause.units)), columns
+    own = ((i, grid) for i, kind in enumerate(setting.kinds) if cause.kind in (None, kind))
+    for i, _, terms in cause.each(setting, own):
+        for shape, columns in zip(shapes, on_sensor(setting, i, terms), strict=True):
+            yield Block(cause.identifier, names[i], setting.kinds[i], shape, len(cause.units)), columns
 
 
 def _harmonics(setting: Setting, names: tuple[str, ...]) -> Iterator[tuple[Block, Array]]:

@@ -13,10 +13,12 @@ import numpy as np
 
 from estimator.causes.catalogue import CATALOGUE, cause
 from estimator.causes.contract import Cause
+from estimator.content import remembered
 from estimator.diagnosis.diagnose import PutRight, diagnosed, put_right
 from estimator.diagnosis.diagnose import diagnose as by_itself
 from estimator.diagnosis.explanation.extended_model import enlarged
 from estimator.diagnosis.explanation.naming import merged, named_cause
+from estimator.diagnosis.record.earlier import earlier_baseline
 from estimator.diagnosis.record.undo import undo_record_errors
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
@@ -60,16 +62,17 @@ def diagnose(
     begun = put_right(session, history, catalogue)
     own = diagnosed(begun, catalogue)
     if records is None:
-        records = () if len(session.sensors) > MANY else [record_of(b, catalogue) for b in begun.earlier]
+        records = () if len(session.sensors) > MANY else [record_of(h, tuple(catalogue)) for h in history]
     if not records or any(s.of_record for s in own.structures):
         return own
     now = kept(begun.right.session, about_its_flip(begun.right), ())
     return with_lasting(begun, own, lasting([*records, now], catalogue), catalogue)
 
 
-def record_of(earlier: Baseline, catalogue: Sequence[Cause]) -> SessionStatistics:
-    """What is kept of a fitted session of the history, its record put right."""
-    _, right = undo_record_errors(earlier, (), catalogue)
+@remembered
+def record_of(earlier: CalibrationSession, catalogue: tuple[Cause, ...]) -> SessionStatistics:
+    """What is kept of a session of the history, its record put right."""
+    _, right = undo_record_errors(earlier_baseline(earlier, catalogue), (), catalogue)
     return kept(right.session, about_its_flip(right), ())
 
 

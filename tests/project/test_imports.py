@@ -32,7 +32,7 @@ SERVICE_LAYERS = (
 ESTIMATOR_LAYERS = (
     {"errors", "on_demand", "wording"},
     {"session"},
-    {"arrays"},
+    {"arrays", "content"},
     {"rotations"},
     {"applied_vector", "coverage", "parameters", "reading", "rest_noise"},
     {"results", "static"},

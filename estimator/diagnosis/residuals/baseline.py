@@ -12,10 +12,30 @@ import numpy as np
 
 from estimator.causes.contract import Setting
 from estimator.diagnosis.residuals.gauge import observable_directions
-from estimator.diagnosis.residuals.whitener import Whitener
+from estimator.diagnosis.residuals.whitener import RANK, Whitener
 from estimator.forward import jacobian
 from estimator.parameters import PLAUSIBLE, SensorParameters
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
+
+
+@dataclass(frozen=True, eq=False)
+class Absorption:
+    """What the baseline takes of whitened readings. N = R·m + k rows, P = 5 m parameters."""
+
+    basis: Array
+    """(N, p) orthonormal: what the baseline absorbs."""
+    response: Array
+    """(P, N) dimensionless: change of the parameters with a whitened change of the readings (pseudo-inverse)."""
+
+    @classmethod
+    def of(cls, design: Array, P: int) -> "Absorption":
+        """Of a whitened design (N, P + k), standard errors per unit."""
+        size = np.linalg.norm(design, axis=0)
+        scale = np.where(size > 0, size, 1.0)
+        left, size, right = np.linalg.svd(design / scale, full_matrices=False)
+        kept = size > RANK * size[0]
+        response = (right[kept].T / size[kept]) @ left[:, kept].T / scale[:, None]
+        return cls(left[:, kept], response[:P])
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +93,11 @@ class Baseline:
         design = self.whiten(np.concatenate([block_columns(self.design), self.constant], axis=-1))
         prior = np.concatenate([np.zeros((k, P)), np.diag(1 / self.constant_sigma)], axis=1)
         return np.concatenate([design, prior])
+
+    @cached_property
+    def absorption(self) -> Absorption:
+        """What the fit takes of the readings."""
+        return Absorption.of(self.whitened_design, 5 * self.residual.shape[1])
 
     @cached_property
     def covariance(self) -> Array:

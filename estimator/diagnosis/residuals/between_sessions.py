@@ -7,10 +7,11 @@ vectors are estimated, so a common turn of all axes cannot be observed: only wha
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from estimator.arrays import eigh, tangents
+from estimator.arrays import eigh
 from estimator.causes.fixture import turned
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.flipped_run import flip_effect
@@ -29,12 +30,13 @@ correlation matrix of some hundred parameters."""
 
 
 def deviation(now: SensorParameters, then: SensorParameters, norm: Array) -> Array:
-    """(m, 5) dimensionless: parameters ``then`` from those of ``now``; ``norm`` (m,) of the applied vector, m/s²."""
-    step = np.empty((len(norm), 5))
-    step[:, 0] = np.log(then.scale / now.scale)
-    step[:, 1] = (then.bias - now.bias) / norm
-    step[:, 2] = (then.quadratic - now.quadratic) * norm
-    step[:, 3:] = (np.swapaxes(tangents(now.axis), -1, -2) @ (then.axis - now.axis)[..., None])[..., 0]
+    """(m, 5) dimensionless, leading axes free: parameters ``then`` from those of ``now``; ``norm`` (m,) of the applied
+    vector, m/s²."""
+    step = np.empty((*then.scale.shape, 5))
+    step[..., 0] = np.log(then.scale / now.scale)
+    step[..., 1] = (then.bias - now.bias) / norm
+    step[..., 2] = (then.quadratic - now.quadratic) * norm
+    step[..., 3:] = (np.swapaxes(now.axis_tangents, -1, -2) @ (then.axis - now.axis)[..., None])[..., 0]
     return step
 
 
@@ -47,9 +49,9 @@ def carried(now: SensorParameters, frames: Array) -> Array:
 
 
 def carried_each(now: SensorParameters, frames: Array) -> Array:
-    """(m, 5, 5) dimensionless: the same of every sensor, whose parameters stay its own."""
-    each = np.broadcast_to(np.eye(5), (len(frames), 5, 5)).copy()
-    each[:, 3:, 3:] = np.swapaxes(tangents(now.axis), -1, -2) @ frames
+    """(m, 5, 5) dimensionless, leading axes free: the same of every sensor, whose parameters stay its own."""
+    each = np.broadcast_to(np.eye(5), (*frames.shape[:-2], 5, 5)).copy()
+    each[..., 3:, 3:] = np.swapaxes(now.axis_tangents, -1, -2) @ frames
     return each
 
 
@@ -73,7 +75,7 @@ def parameter_change(now: Baseline, history: Sequence[Baseline]) -> ParameterCha
     if not alike:
         return None
     steps = [deviation(p, h.parameters, now.setting.norm).reshape(-1) for h in alike]
-    maps = [carried(p, tangents(h.parameters.axis)) for h in alike]
+    maps = [carried(p, h.parameters.axis_tangents) for h in alike]
     known = [keep.T @ map @ h.covariance @ map.T @ keep for h, map in zip(alike, maps, strict=True)]
     information = [(root := inverse_root(covariance)).T @ root for covariance in known]
     turn = keep.T @ turn_response(p)
@@ -83,8 +85,11 @@ def parameter_change(now: Baseline, history: Sequence[Baseline]) -> ParameterCha
     whiten = keep @ inverse_root(covariance + keep.T @ now.covariance @ keep) @ keep.T
     steps = [step + map @ taken_off(h) for h, step, map in zip(alike, steps, maps, strict=True)]
     step = np.sum([share @ step for share, step in zip(shares, steps, strict=True)], axis=0)
-    earlier = [EarlierSession(WhitenedResiduals.of(h), w @ map) for h, w, map in zip(alike, shares, maps, strict=True)]
-    return ParameterChange(whiten @ (taken_off(now) - step), whiten, tuple(earlier))
+    earlier = tuple(
+        EarlierSession(WhitenedResiduals.of(h), share @ map, replace(h.setting, parameters=p))
+        for h, share, map in zip(alike, shares, maps, strict=True)
+    )
+    return ParameterChange(whiten @ (taken_off(now) - step), whiten, earlier)
 
 
 def taken_off(baseline: Baseline) -> Array:

@@ -7,7 +7,7 @@ import numpy as np
 
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.flipped_run import about_its_flip, with_its_flip
-from estimator.diagnosis.residuals.turns import NEGLIGIBLE, in_the_frame_of, turn_between
+from estimator.diagnosis.residuals.turns import NEGLIGIBLE, in_the_frame_of, turns_between
 from estimator.session import TWO_AXIS_STAND
 
 ROUNDS = 3
@@ -26,18 +26,22 @@ def baselines(now: Baseline, history: Sequence[Baseline]) -> tuple[Baseline, lis
     earlier = [about_its_flip(h) for h in history]
     if now.session.programme == TWO_AXIS_STAND and earlier:
         best = min([baseline, *earlier], key=lambda b: float(np.trace(b.covariance)))
-        baseline, *earlier = [fitted_near(one, best) for one in (baseline, *earlier)]
+        baseline, *earlier = fitted_near([baseline, *earlier], best)
     return baseline, in_the_frame_of(baseline, earlier)
 
 
-def fitted_near(one: Baseline, best: Baseline) -> Baseline:
-    """The baseline fitted anew from the parameters of the ``best``, turned as the block was turned between them."""
-    if one is best or one.setting.kinds != best.setting.kinds:
-        return one
-    p, found, before = best.parameters, one, np.zeros((3, 3))
+def fitted_near(sessions: Sequence[Baseline], best: Baseline) -> list[Baseline]:
+    """Baselines fitted anew from the parameters of the ``best``, turned as the block was turned between them."""
+    p, found = best.parameters, list(sessions)
+    moving = [k for k, one in enumerate(found) if one is not best and one.setting.kinds == best.setting.kinds]
+    before = np.zeros((len(found), 3, 3))
     for _ in range(ROUNDS):
-        turn = turn_between(found, best)
-        if np.abs(turn - before).max() < NEGLIGIBLE:
+        if not moving:
             break
-        found, before = with_its_flip(one.session, replace(p, axis=p.axis @ turn.T)), turn
+        turns = turns_between([found[k] for k in moving], [best] * len(moving))
+        moved = np.abs(turns - before[moving]).max(axis=(1, 2)) >= NEGLIGIBLE
+        before[moving] = turns
+        moving = [k for k, still in zip(moving, moved, strict=True) if still]
+        for k in moving:
+            found[k] = with_its_flip(sessions[k].session, replace(p, axis=p.axis @ before[k].T))
     return found

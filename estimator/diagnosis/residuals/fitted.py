@@ -1,10 +1,21 @@
 """From a session to its fitted baseline simulation, on a stand or in arbitrary orientations."""
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
-from estimator.applied_vector import EARTH_RATE, Geometry, elevation, gravity, stand_geometry, stand_vector, to_block
+from estimator.applied_vector import (
+    EARTH_RATE,
+    SCHEDULES,
+    Geometry,
+    Schedule,
+    elevation,
+    gravity,
+    stand_geometry,
+    stand_vector,
+    to_block,
+)
 from estimator.arrays import tangents
 from estimator.calibration.noise import typical
 from estimator.calibration.stand import solved
@@ -58,7 +69,7 @@ def stand_baseline(
     ``residual`` (R, m) at the input, m/s² (rad/s), and its ``variance`` (R, m), (m/s²)² ((rad/s)²).
     """
     steep = slope(own, g.n)
-    rows = len(residual)
+    rows, schedule = len(residual), Schedule.of(session)
     constant = [steep * projected(own.axis, d) for d in g.constant]
     setting = Setting(
         kinds=tuple(s.kind for s in session.sensors),
@@ -67,12 +78,12 @@ def stand_baseline(
         norm=g.norm,
         beta=session.beta,
         flipped=session.flipped,
-        d_alpha=elevation_derivative(session),
+        d_alpha=elevation_derivative(schedule),
         d_beta=g.beta,
         time=session.time,
         temperature=session.temperature,
         vibration=session.vibration,
-        force=force_on_stand(session),
+        force=force_on_stand(schedule),
         latitude=session.site.latitude or 0.0,
         flip_turn=session.flip_turn,
     )
@@ -98,26 +109,28 @@ def planned_on_stand(session: CalibrationSession, like: Baseline) -> Baseline:
     return stand_baseline(session, like.parameters, geometry, nothing, variance)
 
 
-def elevation_derivative(session: CalibrationSession) -> Array:
-    """(R, m, 3) change of the applied vector, m/s² (rad/s) per rad of elevation, by central differences."""
-    assert session.stand is not None
-    assert session.beta is not None
+@lru_cache(maxsize=SCHEDULES)
+def elevation_derivative(session: Schedule) -> Array:
+    """(R, m, 3) change of the applied vector, m/s² (rad/s) per rad of elevation, by central differences; read only."""
     step, change = 1e-4, {}
-    for kind in {s.kind for s in session.sensors}:
+    for kind in set(session.kinds):
         angle = elevation(session.stand, kind)
         size = gravity(session.site) if kind == ACCELEROMETER else EARTH_RATE
         up, down = (stand_vector(angle + sign * step, session.beta) for sign in (1, -1))
         change[kind] = size * to_block((up - down) / (2 * step), session)
-    return np.stack([change[s.kind] for s in session.sensors], axis=1)
+    found = np.stack([change[kind] for kind in session.kinds], axis=1)
+    found.setflags(write=False)
+    return found
 
 
-def force_on_stand(session: CalibrationSession) -> Array | None:
-    """(R, 3) specific force on the block, m/s²; None where the elevation above the horizon is not stated."""
-    assert session.stand is not None
-    assert session.beta is not None
+@lru_cache(maxsize=SCHEDULES)
+def force_on_stand(session: Schedule) -> Array | None:
+    """(R, 3) specific force on the block, m/s², read only; None where the elevation above the horizon is not stated."""
     if session.stand.alpha is None:
         return None
-    return gravity(session.site) * to_block(stand_vector(session.stand.alpha, session.beta), session)
+    found = gravity(session.site) * to_block(stand_vector(session.stand.alpha, session.beta), session)
+    found.setflags(write=False)
+    return found
 
 
 def in_orientations(session: CalibrationSession) -> Baseline:

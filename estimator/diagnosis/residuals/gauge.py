@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from estimator.arrays import tangents
+from estimator.arrays import crossed
 from estimator.parameters import SensorParameters
 from estimator.session import Array
 
@@ -20,13 +20,12 @@ def observable_directions(free: Array, parameters: SensorParameters) -> Array:
 
 
 def turn_response(parameters: SensorParameters) -> Array:
-    """(P, 3) per rad: change of all P = 5 m parameters with a small rotation of the block."""
-    response = np.zeros((len(parameters.scale), 5, 3))
-    response[:, 3:] = axis_response(parameters)
-    return response.reshape(-1, 3)
+    """(P, 3) per rad: change of all P = 5 m parameters with a small rotation of the block; leading axes are free."""
+    response = np.zeros((*parameters.scale.shape, 5, 3))
+    response[..., 3:, :] = axis_response(parameters)
+    return response.reshape(*parameters.scale.shape[:-1], -1, 3)
 
 
 def axis_response(parameters: SensorParameters) -> Array:
     """(m, 2, 3) rad per rad: tangent components of every axis' response k×e to a small rotation vector k."""
-    cross = np.stack([np.cross(k, parameters.axis) for k in np.eye(3)], axis=-1)
-    return np.asarray(np.swapaxes(tangents(parameters.axis), -1, -2) @ cross)
+    return np.asarray(np.swapaxes(parameters.axis_tangents, -1, -2) @ crossed(parameters.axis))

@@ -12,15 +12,15 @@ which it sat otherwise is turned by its own and has no say on the common turn, o
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 from scipy.special import chdtrc
 
-from estimator.arrays import tangents
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.between_sessions import carried, carried_each, deviation, inverse_root
 from estimator.diagnosis.residuals.gauge import turn_response
+from estimator.parameters import SensorParameters
 from estimator.rotations import common_turn, turn_of, vector_of
 from estimator.session import Array, CalibrationSession
 
@@ -72,22 +72,36 @@ def of_each(covariance: Array) -> Array:
     return np.asarray(covariance.reshape(m, 5, m, 5)[np.arange(m), :, np.arange(m)])
 
 
+def together(each: Sequence[SensorParameters]) -> SensorParameters:
+    """Parameters (m,) of H sessions as (H, m)."""
+    return SensorParameters(*(np.stack([getattr(p, f.name) for p in each]) for f in fields(SensorParameters)))
+
+
 def turn_between(now: Baseline, earlier: Baseline) -> Array:
     """(3, 3) rotation, dimensionless, that takes the axes of an earlier session onto those of ``now``."""
-    p, q = now.parameters, earlier.parameters
-    own, origin, response = of_each(now.covariance), of_each(earlier.covariance), turn_response(p).reshape(-1, 5, 3)
+    return np.asarray(turns_between([now], [earlier])[0])
+
+
+def turns_between(nows: Sequence[Baseline], earlier: Sequence[Baseline]) -> Array:
+    """(H, 3, 3) the same of H pairs of sessions of the same sensors; each iterates until it has settled itself."""
+    p, q = together([b.parameters for b in nows]), together([b.parameters for b in earlier])
+    own, origin = (np.stack([of_each(b.covariance) for b in each]) for each in (nows, earlier))
+    norm, frames = np.stack([b.setting.norm for b in nows]), q.axis_tangents
+    response = turn_response(p).reshape(*p.scale.shape, 5, 3)
     turn = common_turn(q.axis, p.axis, NEAR)
+    moving = np.ones(len(turn), dtype=bool)
     for _ in range(ROUNDS):
-        mapping = carried_each(p, turn @ tangents(q.axis))
+        mapping = carried_each(p, turn[:, None] @ frames)
         roots = inverse_root(own + mapping @ origin @ np.swapaxes(mapping, -1, -2))
-        step = roots @ deviation(p, replace(q, axis=q.axis @ turn.T), now.setting.norm)[..., None]
-        length = np.linalg.norm(step, axis=1, keepdims=True) / np.sqrt(5)
+        turned = replace(q, axis=q.axis @ np.swapaxes(turn, -1, -2))
+        step = roots @ deviation(p, turned, norm)[..., None]
+        length = np.linalg.norm(step, axis=-2, keepdims=True) / np.sqrt(5)
         weight = np.sqrt(np.minimum(1.0, HUBER / np.maximum(length, HUBER)))
-        missing, *_ = np.linalg.lstsq(
-            (weight * (roots @ response)).reshape(-1, 3), -(weight * step).ravel(), rcond=SEEN
-        )
-        turn = turn_of(missing) @ turn
-        if np.linalg.norm(missing) < NEGLIGIBLE:
+        design = (weight * (roots @ response)).reshape(len(turn), -1, 3)
+        missing = -(np.linalg.pinv(design, rcond=SEEN) @ (weight * step).reshape(len(turn), -1, 1))[..., 0]
+        turn = np.where(moving[:, None, None], turn_of(missing) @ turn, turn)
+        moving &= np.linalg.norm(missing, axis=-1) >= NEGLIGIBLE
+        if not moving.any():
             break
     return turn
 
@@ -97,24 +111,30 @@ def in_the_frame_of(now: Baseline, history: Sequence[Baseline]) -> list[Baseline
     alike = [h for h in history if h.setting.kinds == now.setting.kinds]
     if not alike:
         return list(history)
-    latest, shared = alike[-1], turn_between(now, alike[-1])
+    turns = dict(zip(map(id, alike), turns_between([now] * len(alike), alike), strict=True))
+    latest, shared = alike[-1], turns[id(alike[-1])]
+    reference = seen_from(now, latest, shared)
 
     def framed(one: Baseline) -> Baseline:
         if one.setting.kinds != now.setting.kinds:
             return one
-        own = turned_baseline(one, shared if one is latest else turn_between(now, one))
-        as_latest = turned_baseline(one, shared)
-        otherwise = one is not latest and sits_otherwise(now, own, turned_baseline(latest, shared))
-        return replace(own, sits_otherwise=otherwise) if otherwise or now.gauge_free.any() else as_latest
+        own = turns[id(one)]
+        otherwise = one is not latest and sits_otherwise(now, own @ shared.T, seen_from(now, one, own) + reference)
+        if otherwise or now.gauge_free.any():
+            return replace(turned_baseline(one, own), sits_otherwise=otherwise)
+        return turned_baseline(one, shared)
 
     return [framed(h) for h in history]
 
 
-def sits_otherwise(now: Baseline, one: Baseline, latest: Baseline) -> bool:
-    """Whether the block sat otherwise in ``one`` than in the ``latest``, both turned into the frame of ``now``."""
-    p = now.parameters
-    maps = [carried(p, tangents(h.parameters.axis)) for h in (one, latest)]
-    both = [m @ h.covariance @ m.T for h, m in zip((one, latest), maps, strict=True)]
-    apart = vector_of(turn_of(one.turn) @ turn_of(latest.turn).T)
-    seen = inverse_root(both[0] + both[1]) @ turn_response(p) @ apart
+def seen_from(now: Baseline, one: Baseline, turn: Array) -> Array:
+    """(P, P) dimensionless: covariance of the parameters of a session that is turned by (3, 3), in those of ``now``."""
+    carry = carried(now.parameters, turn @ one.parameters.axis_tangents)
+    return np.asarray(carry @ one.covariance @ carry.T)
+
+
+def sits_otherwise(now: Baseline, apart: Array, covariance: Array) -> bool:
+    """Whether the block sat otherwise in one session than in the latest: turned by ``apart`` (3, 3) against it, with
+    the ``covariance`` (P, P) of both, dimensionless, as `seen_from` ``now``."""
+    seen = inverse_root(covariance) @ turn_response(now.parameters) @ vector_of(apart)
     return bool(chdtrc(3, float(seen @ seen)) < OTHERWISE)

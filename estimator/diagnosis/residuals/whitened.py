@@ -15,8 +15,9 @@ from functools import cached_property
 
 import numpy as np
 
+from estimator.causes.contract import Setting
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.whitener import RANK, Whitener
+from estimator.diagnosis.residuals.whitener import Whitener
 from estimator.session import Array
 
 
@@ -39,6 +40,15 @@ class EarlierSession:
     residuals: "WhitenedResiduals"
     share: Array
     """(P, P) dimensionless: change of the reference, seen from now, with the parameters found in that session."""
+    setting: Setting
+    """Of that session, at the parameters of now."""
+
+    @cached_property
+    def absorbs(self) -> Array:
+        """(P, R, m) per m/s² (rad/s): change of the reference with the input of every reading of that session."""
+        R, m = self.residuals.baseline.residual.shape
+        moved = self.share @ self.residuals.response[:, : R * m]
+        return self.residuals.whiten.transposed(moved.reshape(-1, R, m))
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,21 +73,14 @@ class WhitenedResiduals:
     @classmethod
     def of(cls, baseline: Baseline, change: ParameterChange | None = None) -> "WhitenedResiduals":
         """Of a fitted session, and of its change since the history."""
-        whiten = baseline.whiten
-        P, k = 5 * baseline.residual.shape[1], len(baseline.constant_sigma)
-        full = baseline.whitened_design
-        size = np.linalg.norm(full, axis=0)
-        scale = np.where(size > 0, size, 1.0)
-        left, size, right = np.linalg.svd(full / scale, full_matrices=False)
-        kept = size > RANK * size[0]
-        response = (right[kept].T / size[kept]) @ left[:, kept].T / scale[:, None]
+        whiten, k = baseline.whiten, len(baseline.constant_sigma)
+        basis, response = baseline.absorption.basis, baseline.absorption.response
         data = np.concatenate([whiten(baseline.residual[..., None])[:, 0], np.zeros(k)])
-        basis = left[:, kept]
         z = data - basis @ (basis.T @ data)
         if change is not None:
             z = np.concatenate([z, change.deviation])
-        freedom = baseline.residual.size - int(whiten.projected_out.sum()) - (int(kept.sum()) - k)
-        return cls(baseline, whiten, basis, response[:P], z, change, freedom)
+        freedom = baseline.residual.size - int(whiten.projected_out.sum()) - (basis.shape[1] - k)
+        return cls(baseline, whiten, basis, response, z, change, freedom)
 
     @cached_property
     def row_freedom(self) -> Array:

@@ -45,6 +45,11 @@ class Whitener:
         x = x - self.direction @ (along * self.removed[..., None])
         return x.reshape(-1, columns.shape[-1])
 
+    def transposed(self, rows: Array) -> Array:
+        """(P, R, m) per m/s² (rad/s): rows (P, R, m) that act on what is whitened, acting on what is not."""
+        along = rows[:, :, None, :] @ self.direction * self.removed[:, None, :]
+        return (rows - (along @ np.swapaxes(self.direction, -1, -2))[:, :, 0]) * self.weight
+
     @property
     def projected_out(self) -> Array:
         """(R, r) bool, dimensionless: nuisance directions of which nothing is known beforehand."""

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from estimator.causes.contract import Setting, Shape, Signature
+from estimator.causes.contract import SensorCause, Setting, Shape, Signature
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.products import Products
 from estimator.diagnosis.signatures.traces import INVISIBLE, Traces
@@ -33,30 +33,52 @@ def _hypotheses(residuals: WhitenedResiduals, cause: Signature, shapes: tuple[Sh
 
     In a block of many sensors an effect is taken as lasting, and what it moved if it is new shows as drift.
     """
-    if cause.between or cause.nameless or residuals.change is None:
-        return [_traces(residuals, cause, shapes, lasting=not cause.between)]
-    lasting = _traces(residuals, cause, shapes, lasting=True)
-    if len(residuals.baseline.unstated) > MANY:
-        return [lasting]
-    new = _traces(residuals, cause, shapes, lasting=False)
-    return [lasting, new] if lasting.common else [lasting, new, with_open_change(residuals, lasting)]
+    lasts = not cause.between
+    white = residuals.whitened(np.concatenate([s.columns for s in shapes], axis=-1))
+    first = _traces(residuals, cause, shapes, white, lasting=lasts)
+    if not lasts or cause.nameless or residuals.change is None or len(residuals.baseline.unstated) > MANY:
+        return [first]
+    new = as_new(residuals, first, white)
+    return [first, new] if first.common else [first, new, with_open_change(residuals, first)]
 
 
-def _traces(residuals: WhitenedResiduals, cause: Signature, shapes: tuple[Shape, ...], *, lasting: bool) -> Traces:
-    """Traces of all shapes of a cause that either lasts since the history or is new.
+def _traces(
+    residuals: WhitenedResiduals, cause: Signature, shapes: tuple[Shape, ...], white: Array, *, lasting: bool
+) -> Traces:
+    """Traces of all shapes of a cause, `whitened` to (N, S·q), that either lasts since the history or is new.
 
     What lasts and this session does not show is not told from how differently the sessions absorbed it.
     """
-    q = shapes[0].columns.shape[-1]
-    white = residuals.whitened(np.concatenate([s.columns for s in shapes], axis=-1))
     trace = residuals.left_of(white, absorbed_before(residuals, cause, shapes) if lasting else 0.0)
     raw = lengths(white)
     if lasting and residuals.change is not None:
         trace[residuals.rows :, lengths(trace[: residuals.rows]) <= INVISIBLE * raw] = 0.0
-    columns, raw = np.moveaxis(trace.reshape(len(trace), len(shapes), q), 1, 0), raw.reshape(len(shapes), q)
+    columns, raw = np.moveaxis(trace.reshape(len(trace), len(shapes), -1), 1, 0), raw.reshape(len(shapes), -1)
+    products = Products.of(residuals, columns)
+    return Traces(cause, shapes, (lasting,) * len(shapes), columns, raw, visible(trace, raw), products)
+
+
+def visible(trace: Array, raw: Array) -> int:
+    """Number of shapes that show, from their traces (n, S·q) and their length before, raw (S, q), standard errors."""
     shown = (lengths(trace).reshape(raw.shape) > INVISIBLE * raw) & (raw > 0)
-    places, products = int(shown.any(axis=-1).sum()), Products.of(residuals, columns)
-    return Traces(cause, shapes, (lasting,) * len(shapes), columns, raw, places, products)
+    return int(shown.any(axis=-1).sum())
+
+
+def as_new(residuals: WhitenedResiduals, lasting: Traces, white: Array) -> Traces:
+    """The traces of a cause that lasts, `whitened` to (N, S·q), as of one that is new: all that it moves changed."""
+    assert residuals.change is not None
+    N, z = residuals.rows, residuals.z
+    S, n, q = lasting.columns.shape
+    rows = np.moveaxis(lasting.columns, 1, 0).copy()
+    rows[N:] = (residuals.change.inverse_root @ (residuals.response @ white)).reshape(n - N, S, q)
+    columns = np.moveaxis(rows, 1, 0)
+    return replace(
+        lasting,
+        lasting=(False,) * S,
+        columns=columns,
+        places=visible(rows.reshape(n, S * q), lasting.raw),
+        products=lasting.products.continued(columns[:, N:], z[N:]),
+    )
 
 
 def lengths(rows: Array) -> Array:
@@ -80,12 +102,22 @@ def absorbed_before(
         return None
     absorbed = np.zeros((len(change.deviation), 1))
     for earlier in change.earlier:
-        setting = replace(earlier.residuals.baseline.setting, parameters=residuals.baseline.parameters)
+        setting = earlier.setting
         if setting.beta is None or not cause.available(setting):
             return None
-        columns = (columns_of or cause.all_columns)(setting, shapes)
-        absorbed = absorbed + earlier.share @ (earlier.residuals.response @ earlier.residuals.whitened(columns))
+        if columns_of is None and isinstance(cause, SensorCause):
+            each = [of_one_sensor(earlier.absorbs[:, :, i], terms) for i, terms in cause.terms_of(setting, shapes)]
+            absorbed = absorbed + np.concatenate(each, axis=1)
+        else:
+            columns = (columns_of or cause.all_columns)(setting, shapes)
+            rows = columns.shape[0] * columns.shape[1]
+            absorbed = absorbed + earlier.absorbs.reshape(-1, rows) @ columns.reshape(rows, -1)
     return absorbed
+
+
+def of_one_sensor(absorbs: Array, terms: Array) -> Array:
+    """(P, S·q) dimensionless: what a session absorbs, (P, R) of one sensor, per m/s², of terms (S, R, q), m/s²."""
+    return np.asarray(absorbs @ np.moveaxis(terms, 0, 1).reshape(terms.shape[1], -1))
 
 
 def with_open_change(residuals: WhitenedResiduals, traces: Traces) -> Traces:
@@ -100,8 +132,9 @@ def with_open_change(residuals: WhitenedResiduals, traces: Traces) -> Traces:
     rows[..., :q] = np.moveaxis(traces.columns, 1, 0)
     rows[n - P :, :, q:] = residuals.change.inverse_root.reshape(P, -1, 5)[:, traces.sensor]
     columns = np.moveaxis(rows, 0, 1)
-    blank = np.zeros((*traces.shapes[0].columns.shape[:2], 5))
-    shapes = tuple(Shape(s.sensors, np.concatenate([s.columns, blank], axis=-1), s.nonlinear) for s in traces.shapes)
+    wide = np.zeros((S, *traces.shapes[0].columns.shape[:2], q + 5))
+    wide[..., :q] = [s.columns for s in traces.shapes]
+    shapes = tuple(Shape(s.sensors, own, s.nonlinear) for s, own in zip(traces.shapes, wide, strict=True))
     raw = np.concatenate([traces.raw, np.zeros((S, 5))], axis=-1)
     products = traces.products.continued(columns[:, n - P :], residuals.z[n - P :])
     return replace(traces, shapes=shapes, columns=columns, raw=raw, products=products)

@@ -196,10 +196,10 @@ class CommonHarmonic(Pattern):
     def shapes(self, setting: Setting) -> Iterator[Shape]:
         assert setting.d_beta is not None
         assert setting.d_alpha is not None
+        turned = [setting.through(turn[..., None]) for turn in (setting.d_beta, setting.d_alpha)]
         for order in range(1, highest(setting) + 1):
-            for turn in (setting.d_beta, setting.d_alpha):
-                change = turn[..., None] * harmonic(setting, order)[:, None, None, :]
-                yield Shape((), setting.through(change), (float(order),))
+            both = harmonic(setting, order)[:, None, :]
+            yield from (Shape((), columns * both, (float(order),)) for columns in turned)
 
 
 class CommonPeriodic(Pattern):
@@ -212,11 +212,11 @@ class CommonPeriodic(Pattern):
         assert setting.d_beta is not None
         assert setting.d_alpha is not None
         place = np.arange(setting.rows) / setting.rows
+        turned = [setting.through(turn[..., None]) for turn in (setting.d_beta, setting.d_alpha)]
         for periods in range(1, setting.rows // 2):
             wave = 2 * np.pi * periods * place
-            both = np.stack([np.sin(wave), np.cos(wave)], axis=-1)
-            for turn in (setting.d_beta, setting.d_alpha):
-                yield Shape((), setting.through(turn[..., None] * both[:, None, None, :]), (float(periods),))
+            both = np.stack([np.sin(wave), np.cos(wave)], axis=-1)[:, None, :]
+            yield from (Shape((), columns * both, (float(periods),)) for columns in turned)
 
 
 class OwnChange(Pattern):
