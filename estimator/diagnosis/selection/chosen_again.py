@@ -119,19 +119,28 @@ def alike(residuals: WhitenedResiduals, shapes: Sequence[Shape]) -> list[Alike]:
     for q in np.unique(width):
         number = np.flatnonzero(width == q)
         white = residuals.whitened(np.concatenate([shapes[k].columns for k in number.tolist()], axis=-1))
-        groups.append(Alike(number, np.moveaxis(white.reshape(len(white), -1, q), 1, 0)))
+        groups.append(Alike(number, white.reshape(len(white), -1, q).swapaxes(0, 1)))
     return groups
+
+
+def spans(columns: Array) -> tuple[Array, Array]:
+    """(S, n, q) orthonormal directions of columns (S, n, q), and (S, q) their singular values, dimensionless."""
+    if columns.shape[-1] > 1:
+        directions, size, _ = np.linalg.svd(columns, full_matrices=False)
+        return directions, size
+    size = np.linalg.norm(columns, axis=1)
+    return columns / np.where(size > 0, size, 1.0)[:, None], size
 
 
 def weights(basis: Array, z: Array, columns: Array) -> Array:
     """(S,) ln evidence of columns (S, n, q) on what ``basis`` (n, p) leaves of residuals z (n,), standard errors."""
     S, n, q = columns.shape
-    rows = np.moveaxis(columns, 1, 0).reshape(n, S * q)
+    rows = columns.swapaxes(0, 1).reshape(n, S * q)
     norms = np.linalg.norm(rows, axis=0)
     new = rows / np.where(norms > 0, norms, 1.0)
     for _ in range(2):  # once leaves rounding of what lies almost within the span
         new = new - basis @ (basis.T @ new)
-    directions, size, _ = np.linalg.svd(np.moveaxis(new.reshape(n, S, q), 0, 1), full_matrices=False)
+    directions, size = spans(new.reshape(n, S, q).swapaxes(0, 1))
     live = size > NEW_DIRECTION
     power, freedom = (np.where(live, z @ directions, 0.0) ** 2).sum(axis=1), live.sum(axis=1)
     rest = (float(z @ z) - power) / np.maximum(len(z) - basis.shape[1] - freedom, 1)

@@ -53,7 +53,7 @@ def _traces(
     raw = lengths(white)
     if lasting and residuals.change is not None:
         trace[residuals.rows :, lengths(trace[: residuals.rows]) <= INVISIBLE * raw] = 0.0
-    columns, raw = np.moveaxis(trace.reshape(len(trace), len(shapes), -1), 1, 0), raw.reshape(len(shapes), -1)
+    columns, raw = trace.reshape(len(trace), len(shapes), -1).swapaxes(0, 1), raw.reshape(len(shapes), -1)
     products = Products.of(residuals, columns)
     return Traces(cause, shapes, (lasting,) * len(shapes), columns, raw, visible(trace, raw), products)
 
@@ -69,9 +69,9 @@ def as_new(residuals: WhitenedResiduals, lasting: Traces, white: Array) -> Trace
     assert residuals.change is not None
     N, z = residuals.rows, residuals.z
     S, n, q = lasting.columns.shape
-    rows = np.moveaxis(lasting.columns, 1, 0).copy()
+    rows = lasting.columns.swapaxes(0, 1).copy()
     rows[N:] = (residuals.change.inverse_root @ (residuals.response @ white)).reshape(n - N, S, q)
-    columns = np.moveaxis(rows, 1, 0)
+    columns = rows.swapaxes(0, 1)
     return replace(
         lasting,
         lasting=(False,) * S,
@@ -117,7 +117,7 @@ def absorbed_before(
 
 def of_one_sensor(absorbs: Array, terms: Array) -> Array:
     """(P, S·q) dimensionless: what a session absorbs, (P, R) of one sensor, per m/s², of terms (S, R, q), m/s²."""
-    return np.asarray(absorbs @ np.moveaxis(terms, 0, 1).reshape(terms.shape[1], -1))
+    return np.asarray(absorbs @ terms.swapaxes(0, 1).reshape(terms.shape[1], -1))
 
 
 def with_open_change(residuals: WhitenedResiduals, traces: Traces) -> Traces:
@@ -129,9 +129,9 @@ def with_open_change(residuals: WhitenedResiduals, traces: Traces) -> Traces:
     assert residuals.change is not None
     (S, n, q), P = traces.columns.shape, len(residuals.change.deviation)
     rows = np.zeros((n, S, q + 5))
-    rows[..., :q] = np.moveaxis(traces.columns, 1, 0)
+    rows[..., :q] = traces.columns.swapaxes(0, 1)
     rows[n - P :, :, q:] = residuals.change.inverse_root.reshape(P, -1, 5)[:, traces.sensor]
-    columns = np.moveaxis(rows, 0, 1)
+    columns = rows.swapaxes(0, 1)
     wide = np.zeros((S, *traces.shapes[0].columns.shape[:2], q + 5))
     wide[..., :q] = [s.columns for s in traces.shapes]
     shapes = tuple(Shape(s.sensors, own, s.nonlinear) for s, own in zip(traces.shapes, wide, strict=True))

@@ -46,7 +46,7 @@ class Products:
         own = columns[:, : R * m].reshape(S, R, m, q)
         rest = [columns[:, rows] for rows in (slice(R * m, residuals.rows), slice(residuals.rows, None))]
         square = [np.einsum("srmp,srmq->mspq", own, own), *(np.einsum("snp,snq->spq", x, x)[None] for x in rest)]
-        rows = np.moveaxis(columns, 1, 0).reshape(n, S * q)
+        rows = columns.swapaxes(0, 1).reshape(n, S * q)
         along = inner(residuals, residuals.z[:, None], rows).reshape(m + 2, S, q)
         return cls(np.concatenate(square), along)
 
@@ -107,7 +107,7 @@ class Projected:
         A, (K, S, q) = self.attributed, products.along.shape
         if not A.shape[1]:
             return products
-        each = [inner(self.residuals, A, np.moveaxis(x, 1, 0).reshape(len(A), -1)) for x in columns]
+        each = [inner(self.residuals, A, x.swapaxes(0, 1).reshape(len(A), -1)) for x in columns]
         C = np.concatenate(each, axis=-1).reshape(K, A.shape[1], S, q)
         c, a = C.sum(axis=0), A.T @ self.residuals.z
         left = inner(self.residuals, A, self.z[:, None])[..., 0]

@@ -77,7 +77,8 @@ class Fit:
         whole, along = products.square.sum(axis=0), products.along.sum(axis=0)
         norms = np.sqrt(np.maximum(np.diagonal(whole, axis1=1, axis2=2), 0.0))
         unit = np.where(shown, 1 / np.where(shown & (norms > 0), norms, 1.0), 0.0)
-        size, turn = eigh(whole * unit[:, :, None] * unit[:, None, :])
+        alike = whole * unit[:, :, None] * unit[:, None, :]
+        size, turn = (alike[:, 0], np.ones_like(alike)) if alike.shape[-1] == 1 else eigh(alike)
         live = (size > faint**2 * size[:, -1:]) & shown.any(axis=1, keepdims=True)
         inverse = np.where(live, 1 / np.sqrt(np.where(live, size, 1.0)), 0.0)
         directions = unit[:, :, None] * turn * inverse[:, None, :]
@@ -196,7 +197,9 @@ def _scored(projected: Projected, traces: Sequence[Traces], chosen: Sequence[int
     statistic, p_value = fit.tested(projected, sensor)
     kept = (shown & (raw > 0)).any(axis=1)
     asked = np.flatnonzero(kept & (p_value < WORTH))
-    kept[asked] = [within_reason(projected, traces[cause[k]], int(shape[k]), fit.value[k]) for k in asked]
+    for k in np.unique(cause[asked]):
+        of_cause = asked[cause[asked] == k]
+        kept[of_cause] = within_reason(projected, traces[k], shape[of_cause], fit.value[of_cause])
     asked = asked[kept[asked]]
     kept[asked] = shows_itself(projected, [traces[k] for k in cause[asked]], fit.at(asked), raw[asked], sensor[asked])
     places = np.array([max(t.places, 1) for t in own])[np.searchsorted(chosen, cause)]
@@ -244,19 +247,23 @@ def tail(projected: Projected, sensor: int, basis: Array) -> float:
     return float(fit.tested(projected, np.array([sensor]))[1][0])
 
 
-def within_reason(projected: Projected, traces: Traces, s: int, amplitude: Array) -> bool:
-    """Whether the amplitude (q,), in the cause's SI units, that fits shape s best is one that the cause can have.
+def within_reason(projected: Projected, traces: Traces, chosen: Array, amplitude: Array) -> Array:
+    """(k,) bool: whether amplitudes (k, q), in the cause's SI units, that fit the shapes ``chosen`` (k,) int best are
+    such as the cause can have.
 
     On a stand no effect may be a large part of the applied vector: what the baseline absorbs almost wholly would else
     explain a small residual by an enormous effect.
     """
-    setting, cause, shape = projected.residuals.baseline.setting, traces.cause, traces.shapes[s]
-    if cause.bounded and not cause.plausible(shape, float(amplitude[0])):
-        return False
+    setting, cause = projected.residuals.baseline.setting, traces.cause
+    shapes, kept = [traces.shapes[s] for s in chosen], np.ones(len(chosen), dtype=bool)
+    if cause.bounded:
+        kept[:] = [cause.plausible(s, float(a[0])) for s, a in zip(shapes, amplitude, strict=True)]
     if setting.beta is None:
-        return True
-    size = np.abs(shape.columns @ amplitude).max(axis=0)
-    return bool(np.all(size < LARGEST * setting.norm))
+        return kept
+    norm = setting.norm if traces.common else setting.norm[traces.sensor[chosen], None]
+    columns = np.stack([s.columns[:, list(s.sensors) or slice(None)] for s in shapes])
+    size = np.abs((columns @ amplitude[:, None, :, None])[..., 0]).max(axis=1)
+    return np.asarray(kept & (size < LARGEST * norm).all(axis=1))
 
 
 def bayes_factor(statistic: Array | float, q: Array | int) -> Array:

@@ -53,7 +53,7 @@ class Traces:
     def chosen(self, own: Sequence[int]) -> "Traces":
         """Some of the shapes, by number; the prior is still shared among all."""
         shapes, lasting = tuple(self.shapes[k] for k in own), tuple(self.lasting[k] for k in own)
-        columns, products = np.moveaxis(np.moveaxis(self.columns, 1, 0)[:, own], 0, 1), self.products.at(own)
+        columns, products = self.columns.swapaxes(0, 1)[:, own].swapaxes(0, 1), self.products.at(own)
         return replace(self, shapes=shapes, lasting=lasting, columns=columns, raw=self.raw[own], products=products)
 
     @cached_property
