@@ -17,7 +17,7 @@ from dataclasses import fields, replace
 import numpy as np
 from scipy.special import chdtrc
 
-from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.baseline import Absorption, Baseline
 from estimator.diagnosis.residuals.between_sessions import carried, carried_each, deviation, inverse_root
 from estimator.diagnosis.residuals.gauge import turn_response
 from estimator.parameters import SensorParameters
@@ -48,7 +48,11 @@ def turned_session(session: CalibrationSession, turn: Array) -> CalibrationSessi
 
 
 def turned_baseline(baseline: Baseline, turn: Array) -> Baseline:
-    """The same baseline in block axes turned by (3, 3), dimensionless: its residuals and noise stay as they are."""
+    """The same baseline in block axes turned by (3, 3), dimensionless: its residuals and noise stay as they are.
+
+    So does what the fit takes of the readings. Along the tangents of the turned axes the parameters are others, by an
+    orthogonal C: what is worked out of the baseline is carried over instead of worked out anew.
+    """
 
     def to(vectors: Array | None) -> Array | None:
         return None if vectors is None else vectors @ turn.T
@@ -63,7 +67,17 @@ def turned_baseline(baseline: Baseline, turn: Array) -> Baseline:
         force=to(old.force),
         flip_turn=turn @ old.flip_turn,
     )
-    return replace(baseline, session=turned_session(baseline.session, turn), setting=setting, turn=vector_of(turn))
+    found = replace(baseline, session=turned_session(baseline.session, turn), setting=setting, turn=vector_of(turn))
+    C, absorbed = carried(found.parameters, turn @ p.axis_tangents), baseline.absorption
+    design = baseline.whitened_design.copy()
+    design[:, : len(C)] = design[:, : len(C)] @ C.T
+    vars(found).update(
+        whiten=baseline.whiten,
+        whitened_design=design,
+        absorption=Absorption(absorbed.basis, C @ absorbed.response),
+        covariance=C @ baseline.covariance @ C.T,
+    )
+    return found
 
 
 def of_each(covariance: Array) -> Array:
