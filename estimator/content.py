@@ -1,12 +1,13 @@
-"""What depends on nothing but the content of a session, worked out once: whoever reads it again has the same session.
+"""What depends on nothing but its subject, worked out once: of a session's content, or of an object while it lives.
 
-The next diagnosis of a unit asks for the same earlier sessions again.
+Whoever reads a session again has the same one: the next diagnosis of a unit asks for its earlier sessions anew.
 """
 
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field, fields
 from functools import lru_cache, wraps
 from typing import Any, Concatenate, ParamSpec, TypeVar
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from estimator.session import CalibrationSession, Sensor
 
 Rest = ParamSpec("Rest")
 Result = TypeVar("Result")
+Owner = TypeVar("Owner")
 
 REMEMBERED = 32
 """Sessions, those asked for last: the histories of some units."""
@@ -47,6 +49,22 @@ def remembered(
         if session.readings.size > LARGEST:
             return function(session, *rest, **named)
         return known(Content(held(session), session), *rest, **named)
+
+    return asked
+
+
+def once(function: Callable[[Owner], Result]) -> Callable[[Owner], Result]:
+    """The same function of an object that never changes, worked out once while the object lives.
+
+    Its result is shared, so that nobody may change it, and it may not hold the object.
+    """
+    known: WeakKeyDictionary[Owner, Result] = WeakKeyDictionary()
+
+    @wraps(function)
+    def asked(owner: Owner) -> Result:
+        if owner not in known:
+            known[owner] = function(owner)
+        return known[owner]
 
     return asked
 

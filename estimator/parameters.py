@@ -4,7 +4,8 @@ Five elements a sensor: ln K, b/|n|, c·|n|, and the axis' turns along its two t
 number says for each of them what is small: `PLAUSIBLE`.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
@@ -65,6 +66,11 @@ class SensorParameters:
         one = np.ones_like(self.scale)
         factors = np.stack([self.scale, one * norm, one / norm, one, one], axis=-1)
         return factors.reshape(*self.scale.shape[:-1], -1)
+
+
+def together(each: Sequence[SensorParameters]) -> SensorParameters:
+    """Parameters (m,) of S sessions as (S, m)."""
+    return SensorParameters(*(np.stack([getattr(p, own.name) for p in each]) for own in fields(SensorParameters)))
 
 
 def names(sensors: tuple[Sensor, ...]) -> tuple[str, ...]:

@@ -15,11 +15,10 @@ import numpy as np
 from estimator.diagnosis.explanation.earlier_sessions import transfer
 from estimator.diagnosis.explanation.extended_model import Amplitudes
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.prediction import FOLDS, counted, predicted, root_mean_square
+from estimator.diagnosis.residuals.prediction import Prediction, counted, predicted, root_mean_square, unaided
 from estimator.diagnosis.results import Gain, Score
 from estimator.diagnosis.selection.chosen_again import chosen_in_folds
 from estimator.diagnosis.selection.search_state import SearchState
-from estimator.session import Array
 
 
 def gain(state: SearchState, given: Baseline | None, fitted: Amplitudes, new: Sequence[bool | None]) -> Gain:
@@ -30,7 +29,8 @@ def gain(state: SearchState, given: Baseline | None, fitted: Amplitudes, new: Se
     """
     named = [f for f in state.found if not f.best.cause.between]
     given = as_stated(state) if given is None or state.courses else given
-    before, after = score(given, [()] * FOLDS), score(state.baseline, chosen_in_folds(state, named))
+    chosen = chosen_in_folds(state, named)
+    before, after = score(given, unaided(given)), score(state.baseline, predicted(state.baseline, chosen))
     dearer = volume(state.baseline) - volume(given)
     after = replace(after, log_score=after.log_score + dearer / float(counted(given).sum()))
     return Gain(before, after, "positions", transfer(state, fitted, new))
@@ -38,6 +38,8 @@ def gain(state: SearchState, given: Baseline | None, fitted: Amplitudes, new: Se
 
 def as_stated(state: SearchState) -> Baseline:
     """The baseline with the noise that the file states."""
+    if state.stated is state.baseline.variance:
+        return state.baseline
     return replace(state.baseline, variance=state.stated)
 
 
@@ -51,9 +53,8 @@ def volume(baseline: Baseline) -> float:
     return float(np.log(weight).sum() - np.log(share).sum())
 
 
-def score(baseline: Baseline, effects: Sequence[Sequence[Array]]) -> Score:
-    """Predict every row; ``effects``: for every fold the columns (R, m, q), m/s² (rad/s), in the model there."""
-    rows = predicted(baseline, effects)
+def score(baseline: Baseline, rows: Prediction) -> Score:
+    """How well the rows of a session are predicted."""
     return Score(
         rms=root_mean_square(rows.error, baseline)[baseline.session.block],
         chi2_per_dof=rows.square / rows.count,

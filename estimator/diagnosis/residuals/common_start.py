@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.flipped_run import about_its_flip, with_its_flip
+from estimator.diagnosis.residuals.fitted import near
+from estimator.diagnosis.residuals.flipped_run import about_its_flip
 from estimator.diagnosis.residuals.turns import NEGLIGIBLE, in_the_frame_of, turns_between
 from estimator.session import TWO_AXIS_STAND
 
@@ -42,6 +43,8 @@ def fitted_near(sessions: Sequence[Baseline], best: Baseline) -> list[Baseline]:
         moved = np.abs(turns - before[moving]).max(axis=(1, 2)) >= NEGLIGIBLE
         before[moving] = turns
         moving = [k for k, still in zip(moving, moved, strict=True) if still]
-        for k in moving:
-            found[k] = with_its_flip(sessions[k].session, replace(p, axis=p.axis @ before[k].T))
+        starts = [replace(p, axis=p.axis @ before[k].T) for k in moving]
+        fits = near([replace(sessions[k].session, flip_turn=np.zeros(3)) for k in moving], starts)
+        for k, fit, start in zip(moving, fits, starts, strict=True):
+            found[k] = about_its_flip(fit, start)
     return found

@@ -1,5 +1,7 @@
 """From a session to its fitted baseline simulation, on a stand or in arbitrary orientations."""
 
+from collections import defaultdict
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 
@@ -17,13 +19,15 @@ from estimator.applied_vector import (
     to_block,
 )
 from estimator.arrays import tangents
+from estimator.calibration.batch import schedule
 from estimator.calibration.noise import typical
 from estimator.calibration.stand import solved
+from estimator.calibration.stand_report import Solved
 from estimator.causes.contract import Setting
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.orientations import fitted_state
 from estimator.forward import input_of, measured, projected, slope
-from estimator.parameters import SensorParameters
+from estimator.parameters import SensorParameters, together
 from estimator.session import ACCELEROMETER, GYROSCOPE, TWO_AXIS_STAND, Array, CalibrationSession
 
 
@@ -42,14 +46,25 @@ def unstated_noise(session: CalibrationSession) -> Array:
 
 def on_stand(session: CalibrationSession, start: SensorParameters | None) -> Baseline:
     """Two-axis stand: the applied vector is known up to the stand's errors."""
-    begin = None
-    if start is not None:
-        begin = SensorParameters(*(v[np.newaxis] for v in (start.scale, start.bias, start.quadratic, start.axis)))
-    solution = solved([session], begin)
-    fitted, p = solution.fitted, solution.fitted.parameters
-    own = SensorParameters(p.scale[0], p.bias[0], p.quadratic[0], p.axis[0])
-    variance = fitted.variance[0]
-    found = stand_baseline(session, own, solution.geometry, fitted.residual[0], variance)
+    return seen_on_stand(session, solved([session], None if start is None else together([start])), 0)
+
+
+def near(sessions: Sequence[CalibrationSession], starts: Sequence[SensorParameters]) -> list[Baseline]:
+    """Baselines of sessions on a stand, each fitted from its own start; those of one schedule in one call."""
+    groups, found = defaultdict(list), {}
+    for k, session in enumerate(sessions):
+        groups[schedule(session)].append(k)
+    for members in groups.values():
+        own = [sessions[k] for k in members]
+        solution = solved(own, together([starts[k] for k in members]))
+        found.update((k, seen_on_stand(sessions[k], solution, at)) for at, k in enumerate(members))
+    return [found[k] for k in range(len(sessions))]
+
+
+def seen_on_stand(session: CalibrationSession, solution: Solved, k: int) -> Baseline:
+    """The baseline of the k-th of sessions that were solved together."""
+    fitted, variance = solution.fitted, solution.fitted.variance[k]
+    found = stand_baseline(session, fitted.parameters.at(k), solution.geometry, fitted.residual[k], variance)
     asked = found.unstated & np.isfinite(variance[0])
     if not asked.any():
         return found

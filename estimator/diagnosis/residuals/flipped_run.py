@@ -33,9 +33,9 @@ def flip_effect(setting: Setting) -> Array:
     return setting.through(FlipMisalignment().change(setting)) @ setting.flip_turn
 
 
-def with_its_flip(session: CalibrationSession, start: SensorParameters | None = None) -> Baseline:
+def with_its_flip(session: CalibrationSession) -> Baseline:
     """The baseline of a session, fitted about the turn of its flipped run where that is not small."""
-    return about_its_flip(baseline_of(replace(session, flip_turn=np.zeros(3)), start), start)
+    return about_its_flip(baseline_of(replace(session, flip_turn=np.zeros(3))))
 
 
 def about_its_flip(found: Baseline, start: SensorParameters | None = None) -> Baseline:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from estimator.content import once
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.session import Array
 
@@ -54,6 +55,12 @@ def counted(baseline: Baseline) -> Array:
 def fold_of(rows: int) -> Array:
     """(R,) the fold that holds each of so many rows."""
     return np.arange(rows) % FOLDS
+
+
+@once
+def unaided(baseline: Baseline) -> Prediction:
+    """Every row predicted with no effect in the model."""
+    return predicted(baseline, [()] * FOLDS)
 
 
 def predicted(baseline: Baseline, effects: Sequence[Sequence[Array]]) -> Prediction:

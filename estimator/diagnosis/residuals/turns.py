@@ -12,7 +12,7 @@ which it sat otherwise is turned by its own and has no say on the common turn, o
 """
 
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 from scipy.special import chdtrc
@@ -20,7 +20,7 @@ from scipy.special import chdtrc
 from estimator.diagnosis.residuals.baseline import Absorption, Baseline
 from estimator.diagnosis.residuals.between_sessions import carried, carried_each, deviation, inverse_root
 from estimator.diagnosis.residuals.gauge import turn_response
-from estimator.parameters import SensorParameters
+from estimator.parameters import together
 from estimator.rotations import common_turn, turn_of, vector_of
 from estimator.session import Array, CalibrationSession
 
@@ -84,11 +84,6 @@ def of_each(covariance: Array) -> Array:
     """(m, 5, 5) of every sensor's own parameters, from the covariance (P, P) of all."""
     m = len(covariance) // 5
     return np.asarray(covariance.reshape(m, 5, m, 5)[np.arange(m), :, np.arange(m)])
-
-
-def together(each: Sequence[SensorParameters]) -> SensorParameters:
-    """Parameters (m,) of H sessions as (H, m)."""
-    return SensorParameters(*(np.stack([getattr(p, f.name) for p in each]) for f in fields(SensorParameters)))
 
 
 def turn_between(now: Baseline, earlier: Baseline) -> Array:

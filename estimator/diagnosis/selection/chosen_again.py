@@ -10,7 +10,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from estimator.causes.contract import Shape
-from estimator.diagnosis.residuals.prediction import FOLDS, fold_of, predicted
+from estimator.content import once
+from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.prediction import FOLDS, fold_of, predicted, unaided
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.forward import with_structures
 from estimator.diagnosis.selection.ranking import extended_basis
@@ -37,7 +39,7 @@ def without_unpredictive(state: SearchState) -> SearchState:
     judged = [f for f in state.found if predicts(state, f)]
     if not judged:
         return state
-    nothing = predicted(state.baseline, [()] * FOLDS)
+    nothing = unaided(state.baseline)
     named = predicted(state.baseline, chosen_in_folds(state, judged))
     known = not state.baseline.unstated.any()
     gained = named.log_score - nothing.log_score if known else named.scale_free - nothing.scale_free
@@ -65,18 +67,12 @@ def predicts(state: SearchState, found: Found) -> bool:
 
 def chosen_in_folds(state: SearchState, judged: list[Found]) -> list[list[Array]]:
     """For every fold the columns (R, m, q), m/s² (rad/s), of the causes chosen without its rows."""
-    residuals, rows = state.residuals, state.baseline.setting.rows
+    residuals = state.residuals
     candidates = [list(shapes_of(state, f)) for f in judged]
     whitened = [alike(residuals, [shape for shape, _ in own]) for own in candidates]
-    data = residuals.whitened(state.baseline.residual[..., None])[:, 0]
-    design = state.baseline.whitened_design
-    fold = np.full(len(design), -1)
-    fold[: rows * state.sensor_count] = np.repeat(fold_of(rows), state.sensor_count)
     chosen = []
-    for held in range(FOLDS):
-        kept = fold != held
-        basis = extended_basis(np.zeros((int(kept.sum()), 0)), design[kept])
-        z = data[kept] - basis @ (basis.T @ data[kept])
+    for rest in without_folds(state.baseline):
+        kept, basis, z = rest.kept, rest.basis, rest.z
         columns = []
         for own, groups in zip(candidates, whitened, strict=True):
             weight = np.empty(len(own))
@@ -89,6 +85,33 @@ def chosen_in_folds(state: SearchState, judged: list[Found]) -> list[list[Array]
             z = z - basis @ (basis.T @ z)
         chosen.append(columns)
     return chosen
+
+
+@dataclass(frozen=True, eq=False)
+class Rest:
+    """The rows that one fold leaves. N rows in all, n of them left."""
+
+    kept: Array
+    """(N,) bool."""
+    basis: Array
+    """(n, p) orthonormal, dimensionless: what the baseline absorbs of them."""
+    z: Array
+    """(n,) standard errors: what it leaves."""
+
+
+@once
+def without_folds(baseline: Baseline) -> tuple[Rest, ...]:
+    """The rows of a session that every fold leaves, with the baseline projected out of them."""
+    design, (rows, m) = baseline.whitened_design, baseline.residual.shape
+    data, fold = np.zeros(len(design)), np.full(len(design), -1)
+    data[: rows * m] = baseline.whiten(baseline.residual[..., None])[:, 0]
+    fold[: rows * m] = np.repeat(fold_of(rows), m)
+    found = []
+    for held in range(FOLDS):
+        kept = fold != held
+        basis = extended_basis(np.zeros((int(kept.sum()), 0)), design[kept])
+        found.append(Rest(kept, basis, data[kept] - basis @ (basis.T @ data[kept])))
+    return tuple(found)
 
 
 def shapes_of(state: SearchState, found: Found) -> Iterator[tuple[Shape, float]]:
