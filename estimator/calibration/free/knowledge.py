@@ -164,6 +164,8 @@ def of_nothing(readings: Array, scale: Array, axes: Array) -> Knowledge:
 
 def merged(parts: list[tuple[Indices, Knowledge]]) -> Knowledge:
     """Independent parts, each with the places (k,) of its sensors, as one in the session's order."""
+    if len(parts) == 1:
+        return parts[0][1]
     places = np.concatenate([at for at, _ in parts])
     order = np.argsort(places)
     elements = (5 * order[:, None] + np.arange(5)).ravel()

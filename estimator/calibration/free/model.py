@@ -153,8 +153,8 @@ def jacobian(unknowns: Unknowns) -> tuple[Array, Array]:
     own[..., 0] = gain * (s + unknowns.quadratic * s * s)
     own[..., 1] = 1.0
     own[..., 2] = gain * s * s
-    own[..., 3:] = slope[..., None] * np.einsum("rk,mka->rma", unknowns.directions, unknowns.axis_tangents)
-    shared = slope[..., None] * np.einsum("mk,rka->rma", unknowns.axes, unknowns.direction_tangents)
+    own[..., 3:] = slope[..., None] * (unknowns.directions @ unknowns.axis_tangents).swapaxes(0, 1)
+    shared = slope[..., None] * (unknowns.axes @ unknowns.direction_tangents)
     return own, shared
 
 
@@ -164,12 +164,16 @@ def linearise(rows: Rows, unknowns: Unknowns) -> Linear:
     own, shared = jacobian(unknowns)
     own, shared = own / rows.sigma[..., None], shared / rows.sigma[..., None]
     residual = (rows.y - predicted(unknowns)) / rows.sigma
-    missed = np.einsum("rk,rka->ra", rows.directions - unknowns.directions, unknowns.direction_tangents)
     D = np.swapaxes(shared, 1, 2) @ shared + rows.prior[:, None, None] * np.eye(2)
     D += (LEAST_TURN * np.trace(D, axis1=1, axis2=2) + np.finfo(float).tiny ** 0.5)[:, None, None] * np.eye(2)
     inverse = np.linalg.inv(D)
+    turn_gradient = (residual[:, None] @ shared)[:, 0]
+    if rows.held:
+        off = rows.prior[:, None, None] * (rows.directions - unknowns.directions)[:, None]
+        turn_gradient = turn_gradient + (off @ unknowns.direction_tangents)[:, 0]
     coupling = (own[..., :, None] * shared[..., None, :]).reshape(R, 5 * m, 2)
-    blocks = np.einsum("rmi,rmj->mij", own, own)
+    by_sensor = own.swapaxes(0, 1)
+    blocks = np.swapaxes(by_sensor, 1, 2) @ by_sensor
     spread = np.zeros((m, 5, m, 5))
     spread[np.arange(m), :, np.arange(m), :] = blocks
     N = spread.reshape(5 * m, 5 * m)
@@ -181,8 +185,8 @@ def linearise(rows: Rows, unknowns: Unknowns) -> Linear:
         shared=shared,
         inverse=inverse,
         coupling=coupling,
-        gradient=np.einsum("rmi,rm->mi", own, residual).ravel(),
-        turn_gradient=np.einsum("rma,rm->ra", shared, residual) + rows.prior[:, None] * missed,
+        gradient=(residual.T[:, None] @ by_sensor).ravel(),
+        turn_gradient=turn_gradient,
         full=np.diagonal(N).copy(),
         schur=(schur + schur.T) / 2,
     )

@@ -81,8 +81,11 @@ def lowest(run: Run, found: Solution, others: list[Unknowns]) -> Solution:
 
 def around(found: Solution) -> list[Unknowns]:
     """Points `FAR` standard errors up and down the least known directions, each orientation turned to suit."""
-    linear, order = linearise(found.rows, found.unknowns), np.argsort(found.knowledge.variances)
+    order = np.argsort(found.knowledge.variances)
     steps = [s for s in FAR * scaled(found.knowledge)[:, order[-VALLEYS:]].T if np.linalg.norm(s) > STRAIGHT]
+    if not steps:
+        return []
+    linear = linearise(found.rows, found.unknowns)
     return [found.unknowns.stepped(s, linear.turns(s)) for step in steps for s in (step, -step)]
 
 

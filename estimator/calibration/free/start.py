@@ -37,7 +37,7 @@ def start(rows: Rows) -> Unknowns:
 
 
 def starts(rows: Rows) -> list[Unknowns]:
-    """Parameters and orientations from linear estimates, the one that fits best first."""
+    """Parameters and orientations from different linear estimates, the one that fits best first."""
     found = [with_directions(rows)] if rows.held else from_shape(rows)
     return sorted((oriented(rows, *linear) for linear in found), key=lambda unknowns: cost(rows, unknowns))
 
@@ -61,7 +61,8 @@ def with_directions(rows: Rows) -> tuple[Array, Array]:
 
 
 def from_shape(rows: Rows) -> list[tuple[Array, Array]]:
-    """Sensitivity (m, 3) and offset (m,), relative, from the ellipsoids the readings may lie on, one a `SLIGHT`."""
+    """Sensitivity (m, 3) and offset (m,), relative, from the ellipsoids the readings may lie on: one a `SLIGHT`, those
+    once that tell the same of the shape."""
     centre = rows.y.mean(axis=0)
     basis = subspace(rows.y - centre, rows.nominal_axes)
     inward = np.linalg.pinv(rows.nominal_axes) @ basis
@@ -98,10 +99,9 @@ def ellipsoids(points: Array) -> list[tuple[Array, Array]]:
     quadric = np.column_stack([x * x, y * y, z * z, 2 * x * y, 2 * x * z, 2 * y * z, v])
     U, spread, Vt = np.linalg.svd(quadric, full_matrices=False)
     along = U.T @ (1.0 - (v**2).sum(axis=1))
-    return [
-        ellipsoid(middle, radius, Vt.T @ np.where(spread > slight * spread[0], along / np.maximum(spread, TINY), 0.0))
-        for slight in SLIGHT
-    ]
+    shown = dict.fromkeys(tuple((spread > slight * spread[0]).tolist()) for slight in SLIGHT)
+    told = along / np.maximum(spread, TINY)
+    return [ellipsoid(middle, radius, Vt.T @ np.where(kept, told, 0.0)) for kept in shown]
 
 
 def ellipsoid(middle: Array, radius: float, found: Array) -> tuple[Array, Array]:
