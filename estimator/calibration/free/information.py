@@ -69,15 +69,17 @@ def movable(nominal_axes: Array, axes: Array, held: bool, quadratic: bool) -> Ar
     m = len(axes)
     free = np.ones((m, 5), dtype=bool)
     free[:, QUADRATIC] = quadratic
-    basis = np.eye(5 * m)[:, free.ravel()]
+    free = free.ravel()
     if held:
-        return basis
+        return np.eye(5 * m)[:, free]
     constraint = np.zeros((3, m, 5))
     turns, n = tangents(axes), nominal_axes[:, :, None]
     crossed = n[:, NEXT] * turns[:, LAST] - n[:, LAST] * turns[:, NEXT]
     constraint[:, :, 3:] = np.swapaxes(crossed, 0, 1)
-    reduced = constraint.reshape(3, 5 * m) @ basis
-    return basis @ np.linalg.svd(reduced)[2][3:].T
+    left = np.linalg.svd(constraint.reshape(3, 5 * m)[:, free])[2][3:].T
+    basis = np.zeros((5 * m, left.shape[1]))
+    basis[free] = left
+    return basis
 
 
 def unseen_below(values: Array) -> float:

@@ -132,16 +132,19 @@ class Linear:
     schur: Array
     """(5 m, 5 m) S"""
 
+    @cached_property
+    def alone(self) -> Array:
+        """(R, 2) turns of the orientations, rad, were the parameters to stay."""
+        return np.asarray((self.inverse @ self.turn_gradient[..., None])[..., 0])
+
     @property
     def reduced(self) -> Array:
         """(5 m,) right-hand side with the orientations eliminated."""
-        moved = (self.inverse @ self.turn_gradient[..., None])[..., 0]
-        return self.gradient - np.tensordot(self.coupling, moved, axes=([0, 2], [0, 1]))
+        return self.gradient - (self.coupling @ self.alone[..., None]).sum(axis=0)[:, 0]
 
     def turns(self, step: Array) -> Array:
         """(R, 2) the orientations' best turns for a step (5 m,) of the parameters."""
-        left = self.turn_gradient - np.tensordot(self.coupling, step, axes=(1, 0))
-        return (self.inverse @ left[..., None])[..., 0]
+        return self.alone - (self.inverse @ (step @ self.coupling)[..., None])[..., 0]
 
 
 def jacobian(unknowns: Unknowns) -> tuple[Array, Array]:

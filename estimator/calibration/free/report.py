@@ -1,5 +1,7 @@
 """The `Calibration` of a block in unknown orientations, from what is known of its sensors."""
 
+from math import isfinite
+
 import numpy as np
 
 from estimator.arrays import tangents
@@ -85,11 +87,11 @@ def sensor_result(
     """What the session says of sensor i; ``sigma`` (m, 5), SI; ``turns`` (m, 3, 2), the axes' tangents, no unit."""
     p, sensor, own = known.parameters, session.sensors[i], slice(5 * i + 3, 5 * i + 5)
     seen = [bool(s) for s in known.observable[i]]
-    values = (p.scale[i], p.bias[i], p.quadratic[i])
-    freedom = known.freedom[5 * i : 5 * i + 5]
+    values = (float(p.scale[i]), float(p.bias[i]), float(p.quadratic[i]))
+    freedom = known.freedom[5 * i : 5 * i + 5].tolist()
     scale, bias, quadratic = (
         estimate(v, s, f) if ok else Estimate(None, None)
-        for v, s, f, ok in zip(values, sigma[i, :3], freedom[:3], seen[:3], strict=True)
+        for v, s, f, ok in zip(values, sigma[i, :3].tolist(), freedom[:3], seen[:3], strict=True)
     )
     return SensorCalibration(
         name=sensor.name,
@@ -102,15 +104,13 @@ def sensor_result(
         axis_covariance=known.covariance[own, own],
         observable=dict(zip(PARAMETERS, seen, strict=False)),
         known=known.known[i],
-        axis_dof=finite(float(freedom[3:].min())),
+        axis_dof=finite(float(known.freedom[5 * i + 3 : 5 * i + 5].min())),
     )
 
 
 def estimate(value: float, sigma: float, freedom: float) -> Estimate:
     """A value with its one sigma, of one unit, NaN where nothing tells the noise; its degrees of freedom."""
-    if not np.isfinite(sigma):
-        return Estimate(float(value), None)
-    return Estimate(float(value), float(sigma), float(sigma), finite(freedom))
+    return Estimate(value, sigma, sigma, finite(freedom)) if isfinite(sigma) else Estimate(value, None)
 
 
 def report(session: CalibrationSession, known: Knowledge, fit: Fit, gauge: str) -> Calibration:

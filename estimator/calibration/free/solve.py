@@ -111,5 +111,4 @@ def proposal(linear: Linear, basis: Array, damping: float) -> tuple[Array, Array
     step = basis @ (vectors @ inside)
     turns = linear.turns(step)
     turns = turns * min(1.0, LONGEST / max(float(np.abs(turns).max()), LONGEST))
-    direct = np.einsum("ra,rab,rb->", linear.turn_gradient, linear.inverse, linear.turn_gradient)
-    return step, turns, float(right @ inside + direct)
+    return step, turns, float(right @ inside + (linear.turn_gradient * linear.alone).sum())
