@@ -93,7 +93,7 @@ def completion(
     known = asked(axes)
     rows, unknowns = planned_rows(known, directions, noise, direction_sigma)
     candidates = grid()
-    basis = movable(rows.nominal_axes, unknowns.axes, rows.held, quadratic)
+    basis = movable(rows, unknowns, quadratic)
     own = basis.T @ shares(rows, unknowns).sum(axis=0) @ basis
     offered = basis.T @ shares(*planned_rows(known, candidates, noise, direction_sigma)) @ basis
     ridge = PLAUSIBLE**-2 * np.eye(basis.shape[1])

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from estimator.arrays import eigh, tangents
+from estimator.arrays import eigh
 from estimator.calibration.free.model import Linear, Rows, Unknowns, linearise
 from estimator.parameters import PLAUSIBLE
 from estimator.session import Array
@@ -61,19 +61,17 @@ class Information:
         return (self.seen * self.variances) @ self.seen.T
 
 
-def movable(nominal_axes: Array, axes: Array, held: bool, quadratic: bool) -> Array:
-    """(5 m, F) orthonormal basis, dimensionless, of what may move: no fixed elements, no net turn of the axes.
-
-    nominal_axes, axes : (m, 3) unit vectors; held : whether stated directions hold the frame.
-    """
-    m = len(axes)
+def movable(rows: Rows, unknowns: Unknowns, quadratic: bool) -> Array:
+    """(5 m, F) orthonormal basis, dimensionless, of what may move: no fixed elements, and no net turn of the axes where
+    no stated directions hold the frame."""
+    m = len(unknowns.axes)
     free = np.ones((m, 5), dtype=bool)
     free[:, QUADRATIC] = quadratic
     free = free.ravel()
-    if held:
+    if rows.held:
         return np.eye(5 * m)[:, free]
     constraint = np.zeros((3, m, 5))
-    turns, n = tangents(axes), nominal_axes[:, :, None]
+    turns, n = unknowns.axis_tangents, rows.nominal_axes[:, :, None]
     crossed = n[:, NEXT] * turns[:, LAST] - n[:, LAST] * turns[:, NEXT]
     constraint[:, :, 3:] = np.swapaxes(crossed, 0, 1)
     left = np.linalg.svd(constraint.reshape(3, 5 * m)[:, free])[2][3:].T
@@ -93,7 +91,7 @@ def information(rows: Rows, unknowns: Unknowns, quadratic: bool, linear: Linear 
     Only `rows.sigma`, `rows.prior` and `rows.nominal_axes` are used: the readings play no part. ``linear`` is the
     linearisation there, where it is at hand.
     """
-    basis = movable(rows.nominal_axes, unknowns.axes, rows.held, quadratic)
+    basis = movable(rows, unknowns, quadratic)
     schur = (linear or linearise(rows, unknowns)).schur
     values, vectors = eigh(basis.T @ schur @ basis)
     vectors = basis @ vectors

@@ -79,7 +79,7 @@ def search(rows: Rows, unknowns: Unknowns, quadratic: bool) -> Solution:
     unknowns = held_frame(rows, unknowns)
     damping, chi2 = FIRST_DAMPING, cost(rows, unknowns)
     linear, iterations, converged = linearise(rows, unknowns), 0, False
-    basis = movable(rows.nominal_axes, unknowns.axes, rows.held, quadratic)
+    basis = movable(rows, unknowns, quadratic)
     while not converged and iterations < MAX_ITERATIONS:
         iterations += 1
         step, turns, fall = proposal(linear, basis, damping)
@@ -90,7 +90,7 @@ def search(rows: Rows, unknowns: Unknowns, quadratic: bool) -> Solution:
         if found < chi2:
             unknowns, chi2, damping = trial, found, max(damping / 10, LEAST_DAMPING)
             linear = linearise(rows, unknowns)
-            basis = movable(rows.nominal_axes, unknowns.axes, rows.held, quadratic)
+            basis = movable(rows, unknowns, quadratic)
         else:
             damping *= 10
     knowledge = information(rows, unknowns, quadratic, linear)
