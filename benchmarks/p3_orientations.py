@@ -1,9 +1,10 @@
 """P3: arbitrary orientations, 4 and 6 sensors, 12 to 100 orientations: `calibrate` with its full covariance.
 
 Peers: the published adaptive coordinate descent, from the nominal values to 0.001 % of its own optimum (which is told
-it, so that it goes on no further than it must; where `QUICK` passes do, no target is set); `scipy.optimize.least_squares` with its numeric Jacobian on our
-likelihood, orientations included, which ends at our optimum; and, with an optimum of its own, the same on the triples
-functional, which knows no noise and gives no covariance.
+it, so that it goes on no further than it must; where `QUICK` passes do, no target is set);
+`scipy.optimize.least_squares` with its numeric Jacobian on our likelihood, orientations included, which ends at our
+optimum; and, with an optimum of its own, the same on the triples functional, which knows no noise and gives no
+covariance.
 """
 
 from collections.abc import Callable

@@ -5,15 +5,15 @@ Whoever reads a session again has the same one: the next diagnosis of a unit ask
 
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field, fields
-from functools import lru_cache, wraps
-from typing import Any, Concatenate, ParamSpec, TypeVar
+from functools import lru_cache
+from typing import Any, TypeVar, TypeVarTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from estimator.session import CalibrationSession, Sensor
 
-Rest = ParamSpec("Rest")
+Rest = TypeVarTuple("Rest")
 Result = TypeVar("Result")
 Owner = TypeVar("Owner")
 
@@ -33,38 +33,37 @@ class Content:
 
 
 def remembered(
-    function: Callable[Concatenate[CalibrationSession, Rest], Result],
-) -> Callable[Concatenate[CalibrationSession, Rest], Result]:
+    function: Callable[[CalibrationSession, *Rest], Result],
+) -> Callable[[CalibrationSession, *Rest], Result]:
     """The same function of a session (and of what can be hashed), worked out once for each content that is not large.
 
     Its result is shared, so that nobody may change it.
     """
 
     @lru_cache(maxsize=REMEMBERED)
-    def known(content: Content, *rest: Rest.args, **named: Rest.kwargs) -> Result:
-        return function(content.session, *rest, **named)
+    def known(content: Content, *rest: *Rest) -> Result:
+        return function(content.session, *rest)
 
-    @wraps(function)
-    def asked(session: CalibrationSession, *rest: Rest.args, **named: Rest.kwargs) -> Result:
+    def asked(session: CalibrationSession, *rest: *Rest) -> Result:
         if session.readings.size > LARGEST:
-            return function(session, *rest, **named)
-        return known(Content(held(session), session), *rest, **named)
+            return function(session, *rest)
+        return known(Content(held(session), session), *rest)
 
     return asked
 
 
-def once(function: Callable[[Owner], Result]) -> Callable[[Owner], Result]:
-    """The same function of an object that never changes, worked out once while the object lives.
+def once(function: Callable[[Owner, *Rest], Result]) -> Callable[[Owner, *Rest], Result]:
+    """The same function of an object that never changes (and of what can be hashed), worked out once while it lives.
 
-    Its result is shared, so that nobody may change it, and it may not hold the object.
+    Its result is shared, so that nobody may change it, and neither it nor the rest may hold the object.
     """
-    known: WeakKeyDictionary[Owner, Result] = WeakKeyDictionary()
+    known: WeakKeyDictionary[Owner, dict[Hashable, Result]] = WeakKeyDictionary()
 
-    @wraps(function)
-    def asked(owner: Owner) -> Result:
-        if owner not in known:
-            known[owner] = function(owner)
-        return known[owner]
+    def asked(owner: Owner, *rest: *Rest) -> Result:
+        own = known.setdefault(owner, {})
+        if rest not in own:
+            own[rest] = function(owner, *rest)
+        return own[rest]
 
     return asked
 

@@ -65,9 +65,8 @@ def movable(rows: Rows, unknowns: Unknowns, quadratic: bool) -> Array:
     """(5 m, F) orthonormal basis, dimensionless, of what may move: no fixed elements, and no net turn of the axes where
     no stated directions hold the frame."""
     m = len(unknowns.axes)
-    free = np.ones((m, 5), dtype=bool)
-    free[:, QUADRATIC] = quadratic
-    free = free.ravel()
+    free = np.ones(5 * m, dtype=bool)
+    free[QUADRATIC::5] = quadratic
     if rows.held:
         return np.eye(5 * m)[:, free]
     constraint = np.zeros((3, m, 5))

@@ -15,9 +15,9 @@ import numpy as np
 from estimator.diagnosis.explanation.earlier_sessions import transfer
 from estimator.diagnosis.explanation.extended_model import Amplitudes
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.prediction import Prediction, counted, predicted, root_mean_square, unaided
+from estimator.diagnosis.residuals.prediction import Prediction, counted, root_mean_square, unaided
 from estimator.diagnosis.results import Gain, Score
-from estimator.diagnosis.selection.chosen_again import chosen_in_folds
+from estimator.diagnosis.selection.chosen_again import predicted_anew
 from estimator.diagnosis.selection.search_state import SearchState
 
 
@@ -29,8 +29,7 @@ def gain(state: SearchState, given: Baseline | None, fitted: Amplitudes, new: Se
     """
     named = [f for f in state.found if not f.best.cause.between]
     given = as_stated(state) if given is None or state.courses else given
-    chosen = chosen_in_folds(state, named)
-    before, after = score(given, unaided(given)), score(state.baseline, predicted(state.baseline, chosen))
+    before, after = score(given, unaided(given)), score(state.baseline, predicted_anew(state, named))
     dearer = volume(state.baseline) - volume(given)
     after = replace(after, log_score=after.log_score + dearer / float(counted(given).sum()))
     return Gain(before, after, "positions", transfer(state, fitted, new))

@@ -12,12 +12,13 @@ import numpy as np
 from estimator.causes.contract import Shape
 from estimator.content import once
 from estimator.diagnosis.residuals.baseline import Baseline
-from estimator.diagnosis.residuals.prediction import FOLDS, fold_of, predicted, unaided
+from estimator.diagnosis.residuals.prediction import FOLDS, Prediction, fold_of, predicted, unaided
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.forward import with_structures
 from estimator.diagnosis.selection.ranking import extended_basis
 from estimator.diagnosis.selection.search_state import NEW_DIRECTION, Found, SearchState
 from estimator.diagnosis.signatures.scores import bayes_factor
+from estimator.diagnosis.signatures.traces import Traces
 from estimator.session import Array
 
 LEADERS = 6
@@ -40,7 +41,7 @@ def without_unpredictive(state: SearchState) -> SearchState:
     if not judged:
         return state
     nothing = unaided(state.baseline)
-    named = predicted(state.baseline, chosen_in_folds(state, judged))
+    named = predicted_anew(state, judged)
     known = not state.baseline.unstated.any()
     gained = named.log_score - nothing.log_score if known else named.scale_free - nothing.scale_free
     if gained > -WORSE:
@@ -65,13 +66,24 @@ def predicts(state: SearchState, found: Found) -> bool:
     return bool(each.sum() > WITHIN * fitted.sum() and by_fold.max() < WITHIN * each.sum())
 
 
-def chosen_in_folds(state: SearchState, judged: list[Found]) -> list[list[Array]]:
+def predicted_anew(state: SearchState, judged: Sequence[Found]) -> Prediction:
+    """Every row predicted by the causes of some findings, chosen again in the folds that do not hold it."""
+    return _predicted(state.residuals, state.traces, tuple(judged))
+
+
+@once
+def _predicted(residuals: WhitenedResiduals, traces: tuple[Traces, ...], judged: tuple[Found, ...]) -> Prediction:
+    return predicted(residuals.baseline, chosen_in_folds(residuals, traces, judged))
+
+
+def chosen_in_folds(
+    residuals: WhitenedResiduals, traces: Sequence[Traces], judged: Sequence[Found]
+) -> list[list[Array]]:
     """For every fold the columns (R, m, q), m/s² (rad/s), of the causes chosen without its rows."""
-    residuals = state.residuals
-    candidates = [list(shapes_of(state, f)) for f in judged]
+    candidates = [list(shapes_of(traces, f)) for f in judged]
     whitened = [alike(residuals, [shape for shape, _ in own]) for own in candidates]
     chosen = []
-    for rest in without_folds(state.baseline):
+    for rest in without_folds(residuals.baseline):
         kept, basis, z = rest.kept, rest.basis, rest.z
         columns = []
         for own, groups in zip(candidates, whitened, strict=True):
@@ -114,11 +126,11 @@ def without_folds(baseline: Baseline) -> tuple[Rest, ...]:
     return tuple(found)
 
 
-def shapes_of(state: SearchState, found: Found) -> Iterator[tuple[Shape, float]]:
+def shapes_of(every: Sequence[Traces], found: Found) -> Iterator[tuple[Shape, float]]:
     """The shapes among which a finding is chosen again, each with the ln of the number that share its cause's prior."""
     yield found.best.shape, float(np.log(max(found.best.places, 1)))
     leaders = {s.group for s, _ in found.ranking[:LEADERS]}
-    for traces in state.traces:
+    for traces in every:
         q = len(traces.cause.units)
         for shape in traces.shapes:
             if (traces.cause.identifier, shape.sensors) in leaders and not traces.cause.between:

@@ -30,7 +30,7 @@ def test_shapes_are_chosen_again_without_the_rows_held_out() -> None:
     far = on_sensor(np.where(np.arange(ROWS) == 7, 30.0, 0.0))
     state = start(("reading-outlier",), far)
     found = candidate(state, "reading-outlier")
-    chosen = chosen_in_folds(state, [found])
+    chosen = chosen_in_folds(state.residuals, state.traces, [found])
     rows = [int(np.abs(columns[0][:, 1, 0]).argmax()) for columns in chosen]
     held = int(fold_of(ROWS)[7])
     assert [row == 7 for row in rows] == [fold != held for fold in range(FOLDS)]
