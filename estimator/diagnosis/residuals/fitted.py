@@ -1,7 +1,7 @@
 """From a session to its fitted baseline simulation, on a stand or in arbitrary orientations."""
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import replace
 from functools import lru_cache
 
@@ -51,7 +51,8 @@ def on_stand(session: CalibrationSession, start: SensorParameters | None) -> Bas
 
 def near(sessions: Sequence[CalibrationSession], starts: Sequence[SensorParameters]) -> list[Baseline]:
     """Baselines of sessions on a stand, each fitted from its own start; those of one schedule in one call."""
-    groups, found = defaultdict(list), {}
+    groups: defaultdict[Hashable, list[int]] = defaultdict(list)
+    found: dict[int, Baseline] = {}
     for k, session in enumerate(sessions):
         groups[schedule(session)].append(k)
     for members in groups.values():
