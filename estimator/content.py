@@ -24,6 +24,10 @@ LARGEST = 600
 """Readings of a session that is remembered: what is worked out of it is then a megabyte at most."""
 
 
+FIELDS = {kind: tuple(own.name for own in fields(kind)) for kind in (CalibrationSession, Sensor)}
+"""Of what holds arrays and cannot be compared itself."""
+
+
 @dataclass(frozen=True)
 class Content:
     """A session, equal to any other of the same content."""
@@ -74,7 +78,8 @@ def held(part: Any) -> Hashable:
         return part.dtype.str, part.shape, part.tobytes()
     if isinstance(part, tuple):
         return tuple(map(held, part))
-    if isinstance(part, CalibrationSession | Sensor):
-        return tuple(held(getattr(part, own.name)) for own in fields(part))
+    names = FIELDS.get(type(part))
+    if names is not None:
+        return tuple([held(getattr(part, name)) for name in names])
     value: Hashable = part
     return value

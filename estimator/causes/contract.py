@@ -291,7 +291,8 @@ class SensorCause(Signature):
 
     def terms(self, setting: Setting, i: int, grid: Sequence[tuple[float, ...]]) -> Array:
         """(S, R, q) the same at every one of S points of the grid, m/s² (rad/s)."""
-        return np.stack([self.term(setting, i, nonlinear) for nonlinear in grid])
+        each = [self.term(setting, i, nonlinear) for nonlinear in grid]
+        return each[0][None] if len(each) == 1 else np.stack(each)
 
     def each(self, setting: Setting, grids: Iterable[tuple[int, Grid]]) -> Iterator[tuple[int, Grid, Array]]:
         """Sensors with their grids, and the terms (S, R, q) of each, m/s² (rad/s); alike ones are worked out once."""
@@ -371,4 +372,4 @@ def on_sensor(setting: Setting, i: int, terms: Array) -> Array:
 
 def column(*terms: Array) -> Array:
     """Stack terms (R,) as columns (R, q), in the terms' own unit, such as m/s²."""
-    return np.stack(terms, axis=-1)
+    return terms[0][..., None] if len(terms) == 1 else np.stack(terms, axis=-1)

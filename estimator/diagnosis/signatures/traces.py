@@ -1,5 +1,6 @@
 """What a signature leaves in the residuals: the traces of a cause's shapes, and one shape with its score."""
 
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -48,7 +49,15 @@ class Traces:
 
     def at(self, sensors: tuple[int, ...]) -> "Traces":
         """The shapes on some sensors, and those of no sensor; the prior is still shared among all."""
-        return self.chosen([k for k, s in enumerate(self.shapes) if s.sensors in ((), sensors)])
+        return self.chosen([*self._numbers.get((), ()), *(self._numbers.get(sensors, ()) if sensors else ())])
+
+    @cached_property
+    def _numbers(self) -> dict[tuple[int, ...], list[int]]:
+        """Which shapes are blamed on which sensors."""
+        numbers = defaultdict(list)
+        for k, shape in enumerate(self.shapes):
+            numbers[shape.sensors].append(k)
+        return dict(numbers)
 
     def chosen(self, own: Sequence[int]) -> "Traces":
         """Some of the shapes, by number; the prior is still shared among all."""
