@@ -185,8 +185,16 @@ def typical(value: Array, sensors: Array, norm: Array) -> Array:
     for own in np.unique(norm):
         alike = norm == own
         known = sensors[:, alike].any(axis=1)
-        found[np.ix_(known, alike)] = np.exp(np.nanmedian(asked[np.ix_(known, alike)], axis=1))[:, None]
+        found[np.ix_(known, alike)] = np.exp(median(asked[np.ix_(known, alike)]))[:, None]
     return np.where(sensors, found, np.nan)
+
+
+def median(values: Array) -> Array:
+    """(S,) of the values (S, k), in their unit, that are not NaN, one of each row at least; `numpy.nanmedian` takes a
+    millisecond for it."""
+    rising, known = np.sort(values, axis=1), (~np.isnan(values)).sum(axis=1, keepdims=True)
+    middle = (np.take_along_axis(rising, place, axis=1) for place in ((known - 1) // 2, known // 2))
+    return np.asarray(sum(middle)[:, 0] / 2)
 
 
 def with_the_others(energy: Array, freedom: Array, expected: Array) -> tuple[Array, Array]:

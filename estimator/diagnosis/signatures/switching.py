@@ -54,12 +54,9 @@ def likeliest_states(root: Array, y: Array, absorbed: Array, least: float = 0.0)
     """
     left = unit(root @ y)
     starts = [left, *(left + share * unit(column) for column in absorbed.T for share in PUT_BACK)]
-    found = [climbed(root, y, np.where(start < 0, 0, 2), least) for start in starts]
-    return max(found, key=_evidence)
-
-
-def _evidence(found: tuple[float, Array]) -> float:
-    return found[0]
+    value, states = climbed(root, y, np.unique(np.where(np.array(starts) < 0, 0, 2), axis=0), least)
+    best = int(np.argmax(value))
+    return float(value[best]), states[best]
 
 
 def unit(column: Array) -> Array:
@@ -67,19 +64,26 @@ def unit(column: Array) -> Array:
     return np.asarray(column / max(float(np.linalg.norm(column)), 1e-300))
 
 
-def climbed(root: Array, y: Array, state: Array, least: float) -> tuple[float, Array]:
-    """ln B and states (R,) from those numbered ``state`` (R,) int, one changed at a time while that raises B."""
-    gram, along, best = root @ root.T, root @ y, -np.inf
-    while True:
-        s = STATES[state]
-        step, moved = STATES - s[:, None], gram @ s
-        square = s @ moved + 2 * step * moved[:, None] + step**2 * np.diagonal(gram)[:, None]
-        prior = USUAL[state].sum() + USUAL - USUAL[state][:, None]
-        value = prior + gained(y, s @ along + step * along[:, None], square, least)
-        row, to = np.unravel_index(int(np.argmax(value)), value.shape)
-        if value[row, to] <= best:
-            return best, s
-        best, state[row] = float(value[row, to]), to
+def climbed(root: Array, y: Array, state: Array, least: float) -> tuple[Array, Array]:
+    """ln B (K,) and states (K, R) from K starts numbered ``state`` (K, R) int, of each one state changed at a time while
+    that raises its B."""
+    gram, along = root @ root.T, root @ y
+    state, best, moving = state.copy(), np.full(len(state), -np.inf), np.arange(len(state))
+    while len(moving):
+        now = state[moving]
+        s, own = STATES[now], USUAL[now]
+        step, moved = STATES - s[..., None], s @ gram
+        square = (s * moved).sum(axis=1)[:, None, None] + 2 * step * moved[..., None]
+        square += step**2 * np.diagonal(gram)[:, None]
+        prior = own.sum(axis=1)[:, None, None] + USUAL - own[..., None]
+        value = prior + gained(y, (s @ along)[:, None, None] + step * along[:, None], square, least)
+        place = value.reshape(len(moving), -1).argmax(axis=1)
+        highest = value.reshape(len(moving), -1)[np.arange(len(moving)), place]
+        higher = highest > best[moving]
+        moving, place = moving[higher], place[higher]
+        best[moving] = highest[higher]
+        state[moving, place // len(STATES)] = place % len(STATES)
+    return best, STATES[state]
 
 
 def gained(y: Array, along: Array, square: Array, least: float) -> Array:
