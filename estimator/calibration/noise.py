@@ -193,8 +193,8 @@ def median(values: Array) -> Array:
     """(S,) of the values (S, k), in their unit, that are not NaN, one of each row at least; `numpy.nanmedian` takes a
     millisecond for it."""
     rising, known = np.sort(values, axis=1), (~np.isnan(values)).sum(axis=1, keepdims=True)
-    middle = (np.take_along_axis(rising, place, axis=1) for place in ((known - 1) // 2, known // 2))
-    return np.asarray(sum(middle)[:, 0] / 2)
+    lower, upper = (np.take_along_axis(rising, place, axis=1)[:, 0] for place in ((known - 1) // 2, known // 2))
+    return np.asarray((lower + upper) / 2)
 
 
 def with_the_others(energy: Array, freedom: Array, expected: Array) -> tuple[Array, Array]:

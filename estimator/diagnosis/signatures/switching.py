@@ -65,8 +65,8 @@ def unit(column: Array) -> Array:
 
 
 def climbed(root: Array, y: Array, state: Array, least: float) -> tuple[Array, Array]:
-    """ln B (K,) and states (K, R) from K starts numbered ``state`` (K, R) int, of each one state changed at a time while
-    that raises its B."""
+    """ln B (K,) and states (K, R) from K starts numbered ``state`` (K, R) int: of each one state is changed at a time
+    while that raises its B."""
     gram, along = root @ root.T, root @ y
     state, best, moving = state.copy(), np.full(len(state), -np.inf), np.arange(len(state))
     while len(moving):

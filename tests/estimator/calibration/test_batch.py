@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from estimator import ScheduleError, calibrate, calibrate_many
+from estimator import Calibration, ScheduleError, calibrate, calibrate_many
 from estimator.calibration import batch
+from estimator.calibration.stand_report import Reports
 from estimator.session import RATE_TABLE
 from tests.estimator.calibration.cases import CASES
 
@@ -22,6 +23,21 @@ def test_results_come_in_the_order_of_the_sessions() -> None:
     assert [len(r.sensors) for r in results] == [len(s.sensors) for s in named]
 
 
+def test_a_result_is_built_when_it_is_first_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    built: list[int] = []
+    whole = Reports.__getitem__
+
+    def noted(reports: Reports, k: int) -> Calibration:
+        built.append(k)
+        return whole(reports, k)
+
+    monkeypatch.setattr(Reports, "__getitem__", noted)
+    results = calibrate_many(STAND.simulated(3))
+    assert built == []
+    assert results[-1] is results[2]
+    assert built == [2]
+
+
 def test_no_sessions_no_results() -> None:
     assert not calibrate_many([])
 
@@ -30,7 +46,7 @@ def test_sessions_of_one_schedule_are_solved_in_few_calls(monkeypatch: pytest.Mo
     calls: list[int] = []
     whole = batch.calibrate_stand
 
-    def counted(sessions: list) -> list:
+    def counted(sessions: list) -> Reports:
         calls.append(len(sessions))
         return whole(sessions)
 
