@@ -24,6 +24,13 @@ NEEDED = "import numpy, scipy.special, typer, rich.progress, rich.table; from py
 LIBRARIES = (sys.executable, "-c", NEEDED)
 """What a command that calibrates and prints a table cannot do without; Typer reads arguments by pydantic."""
 COMPILING = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+NOTE = """
+P10 misses its second target by its libraries. The peer imports numpy and of scipy only the name. A calibration needs
+scipy's special functions, for probabilities and coverage factors, a third of the time: their import loads all of numpy
+too, its Fortran wrapper among it. Arguments are read by Typer, which reads them by pydantic, another quarter, and rich
+draws the table. These alone, imported and left, take more than three times as long as the peer. Own modules are a
+fifteenth, reading and calibrating a hundredth.
+"""
 
 
 def start(*command: str) -> None:

@@ -38,6 +38,10 @@ CHANGED = {
     "at": "{0} + n * interval '1 hour'", "is_reference": "false",
 }  # fmt: skip
 """What a column of a copy holds instead of its original's."""
+NOTE = """
+P11 reaches its target: what grows with a history is reading the unit's own sessions in short, one row each, and
+counting them by stand.
+"""
 
 
 def run() -> Iterator[Figure]:
