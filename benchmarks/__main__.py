@@ -1,89 +1,81 @@
-"""Run every benchmark and write the table: ``python -m benchmarks``."""
+"""Run the benchmarks and write the table: ``python -m benchmarks``, or some of them: ``--only P6 P9``.
 
+Each runs in a process of its own, and every row is written as soon as it is measured: what fails, hangs or is ended
+loses none of the rows before it.
+"""
+
+import argparse
 import os
-import platform
-from importlib.metadata import version
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
 from pathlib import Path
+from typing import IO
 
 from rich.console import Console
 
-from benchmarks import (
-    p1_calibrate,
-    p2_fleet,
-    p3_orientations,
-    p4_diagnose,
-    p5_uploads,
-    p7_fleet,
-    p8_recompute,
-    p10_startup,
-    p11_history,
-)
-from benchmarks.figures import Figure
+from benchmarks.results import BENCHMARKS, Results
 
-BENCHMARKS = (
-    p1_calibrate,
-    p2_fleet,
-    p3_orientations,
-    p4_diagnose,
-    p5_uploads,
-    p7_fleet,
-    p8_recompute,
-    p10_startup,
-    p11_history,
-)
 RESULTS = Path(__file__).with_name("RESULTS.md")
-
-HEAD = """# Benchmarks
-
-Written by `make bench`. Each ratio is taken in one run on one machine: the peer's median time over ours, taken in turn.
-Times are the processor's, so that other programs on the machine do not count.
-
-Machine: {machine}
-
-| id | figure | time | peer | peer's time | ratio | target |
-| --- | --- | --- | --- | --- | --- | --- |
-"""
+LONGEST = 1200.0
+"""Seconds after which a benchmark is ended: twice what the longest takes on two cores that do nothing else."""
+PATIENCE = 30.0
+"""Seconds in which one that is ended stops what it has started."""
+BETWEEN = 0.5
+"""Seconds between two looks at what was measured."""
 
 
-def machine() -> str:
-    """The facts that a time depends on."""
-    packages = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy"))
-    threads = os.environ.get("OPENBLAS_NUM_THREADS", "default")
-    return (
-        f"{platform.system()} {platform.machine()}, {processor()}, {os.cpu_count()} cores, "
-        f"Python {platform.python_version()}, {packages}, BLAS threads: {threads}."
-    )
+def main() -> int:
+    """Exit code 1 where a benchmark failed."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    parser.add_argument("--only", nargs="+", choices=list(BENCHMARKS), default=list(BENCHMARKS), metavar="P1")
+    parser.add_argument("--out", type=Path, default=RESULTS, help="the table's file")
+    options = parser.parse_args()
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    results, console = Results.read(options.out), Console()
+    ends = [measured(key, results, console) for key in options.only]
+    return int(any(end != "whole" for end in ends))
 
 
-def processor() -> str:
-    """The processor's name where the system tells it."""
-    facts = Path("/proc/cpuinfo")
-    lines = facts.read_text().splitlines() if facts.exists() else []
-    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-    return names[0] if names else platform.processor() or "unknown processor"
+def measured(key: str, results: Results, console: Console) -> str:
+    """How one benchmark ended."""
+    console.rule(f"{key}: benchmarks/{BENCHMARKS[key]}.py")
+    began, end, seen = time.monotonic(), "interrupted", set[str]()
+    with tempfile.NamedTemporaryFile("r", prefix="imu-bench-", encoding="utf-8") as rows:
+        process = subprocess.Popen([sys.executable, "-m", "benchmarks.one", BENCHMARKS[key], rows.name])
+        try:
+            for row in until_it_ends(process, rows):
+                seen.add(results.put(row))
+                console.print(row, markup=False, highlight=False, soft_wrap=True)
+            end = {None: "ended as too long", 0: "whole"}.get(process.poll(), "failed")
+        finally:
+            stop(process)
+            results.ended(key, seen, time.monotonic() - began, end)
+    console.print(f"{key}: {end}, {time.monotonic() - began:.0f} s")
+    return end
 
 
-def row(f: Figure) -> str:
-    """One line of the table."""
-    times = f"{1e3 * f.ours:.3g} ms | {f.peer} | {1e3 * f.theirs:.3g} ms"
-    return f"| {f.id} | {f.work} | {times} | {f.ratio:.3g} | {f.target} |\n"
+def until_it_ends(process: subprocess.Popen[bytes], rows: IO[str]) -> Iterator[str]:
+    """Rows as they are measured, until the process ends or has taken too long."""
+    end, going = time.monotonic() + LONGEST, True
+    while going:
+        going = process.poll() is None and time.monotonic() < end
+        yield from (line.rstrip("\n") for line in rows.readlines())
+        time.sleep(BETWEEN * going)
 
 
-def notes() -> str:
-    """What explains the rows, benchmark by benchmark."""
-    return "".join(getattr(benchmark, "NOTE", "") for benchmark in BENCHMARKS)
-
-
-def main() -> None:
-    """Run, show, write."""
-    console = Console()
-    rows = []
-    for benchmark in BENCHMARKS:
-        for figure in benchmark.run():
-            rows.append(row(figure))
-            console.print(f"{figure.id}: {figure.ratio:.3g} × {figure.peer} (target {figure.target})")
-    RESULTS.write_text(HEAD.format(machine=machine()) + "".join(rows) + notes())
+def stop(process: subprocess.Popen[bytes]) -> None:
+    """Lets it stop what it has started; nothing where it has ended."""
+    if process.poll() is None:
+        process.send_signal(signal.SIGINT)
+    try:
+        process.wait(PATIENCE)
+    except subprocess.TimeoutExpired:
+        process.kill()
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -4,25 +4,49 @@ import statistics
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
 
 
 @dataclass(frozen=True)
 class Figure:
-    """One row of the table: our time, the peer's, and the ratio that is aimed at."""
+    """One row of the table: ours, the peer's or the limit, and the ratio that is aimed at."""
 
     id: str
     work: str
     peer: str
     ours: float
-    """s"""
+    """s, or in ``unit``."""
     theirs: float
-    """s"""
+    """The same of the peer, or what ours may be at most."""
     target: str
+    """The least ratio: a number or a fraction, words before it; — where nothing is aimed at."""
+    unit: str = "s"
 
     @property
     def ratio(self) -> float:
-        """How many times faster than the peer."""
+        """How many times faster, or smaller, than the peer."""
         return self.theirs / self.ours
+
+    @property
+    def reached(self) -> str:
+        """Whether the ratio is what was aimed at."""
+        if self.target == "—":
+            return "—"
+        return "yes" if self.ratio >= Fraction(self.target.split()[-1]) else "no"
+
+    def shown(self, value: float) -> str:
+        """With its unit; seconds below one as milliseconds."""
+        if self.unit == "s" and value < 1:
+            return f"{1e3 * value:.3g} ms"
+        return f"{value:.3g} {self.unit}".rstrip()
+
+    def row(self) -> str:
+        """One line of the table."""
+        ours, theirs = self.shown(self.ours), self.shown(self.theirs)
+        return (
+            f"| {self.id} | {self.work} | {ours} | {self.peer} | {theirs} "
+            f"| {self.ratio:.3g} | {self.target} | {self.reached} |"
+        )
 
 
 def side_by_side(

@@ -6,10 +6,11 @@ with ten times the units stands beside it.
 """
 
 import asyncio
+import gc
 import sys
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -102,14 +103,13 @@ def costs(fleet: Fleet) -> Iterator[tuple[str, float, float, int]]:
         database_url=fleet.url, data_folder=Path(tempfile.gettempdir()), diagnosis_workers=1, sign_in="off"
     )
     asking = Asking(create_app(settings, clock=lambda: NOW))
-    with psycopg.connect(fleet.url) as bare:
+    with psycopg.connect(fleet.url) as bare, closing(asking):
         for name, path in PAGES.items():
             rounds = 1 if name in SLOW else ROUNDS
             asked = asking.statements(path)
             ours = cost(partial(asking.size_of, path), asking.engine, fleet.server, rounds)
             theirs = cost(partial(read_bare, bare, asked), asking.engine, fleet.server, rounds)
             yield name, ours.seconds, theirs.seconds, len(asked)
-    asking.engine.dispose()
 
 
 class Asking:
@@ -119,6 +119,13 @@ class Asking:
         self.engine: Engine = app.state.application.storage.database.engine
         self._client = httpx.AsyncClient(transport=httpx.ASGITransport(app), base_url="http://127.0.0.1")
         self._runner = asyncio.Runner()
+        gc.freeze()  # as the service does when it has started
+
+    def close(self) -> None:
+        """Lets the database go."""
+        self._runner.run(self._client.aclose())
+        self._runner.close()
+        self.engine.dispose()
 
     def size_of(self, path: str) -> int:
         """Bytes of an answer."""

@@ -1,14 +1,16 @@
 """Uploads sessions one after another and looks at the service's memory and descriptors on the way; a table, and exit
-code 1 where descriptors grow."""
+code 1 where descriptors grow. As a row of the benchmarks: the last look against the first."""
 
 import argparse
 import os
 import sys
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
 
+from benchmarks.figures import Figure
 from benchmarks.kills.server import Service, free_port
 from service.settings import Settings
 from tests.databases import sqlite_databases
@@ -19,6 +21,13 @@ LOOKS = 6
 SPARE = 20
 """Descriptors that may come and go: connections of the pool, files that are read at the moment."""
 
+ORDINARY = 300
+"""Uploads of a run."""
+
+NOTE = """
+The soak is short here; [a longer one](../docs/security/durability.md#long-runs) shows the same.
+"""
+
 Look = tuple[int, float, int]
 """Uploads so far, resident memory in MB, open descriptors."""
 
@@ -26,13 +35,27 @@ Look = tuple[int, float, int]
 def main() -> int:
     """The table."""
     asked = argparse.ArgumentParser(description=__doc__)
-    asked.add_argument("--uploads", type=int, default=300)
+    asked.add_argument("--uploads", type=int, default=ORDINARY)
     given = asked.parse_args()
-    with sqlite_databases() as databases, tempfile.TemporaryDirectory(prefix="imu-soak-") as folder:
-        seen = soaked(Settings(database_url=databases.migrated(), data_folder=Path(folder)), given.uploads)
+    seen = soaked_anew(given.uploads)
     print("| uploads | memory, MB | descriptors |\n| --- | --- | --- |")
     print("\n".join(f"| {number} | {memory:.0f} | {handles} |" for number, memory, handles in seen))
     return seen[-1][2] > seen[0][2] + SPARE
+
+
+def run() -> Iterator[Figure]:
+    """Memory and descriptors after all uploads, against those after the first sixth."""
+    seen = soaked_anew(ORDINARY)
+    (first, memory, handles), (last, memory_last, handles_last) = seen[0], seen[-1]
+    work, peer = f"after {last} uploads", f"after {first}"
+    yield Figure("soak, memory", f"memory of the service {work}", peer, memory_last, memory, "≥ 0.95", "MB")
+    yield Figure("soak, descriptors", f"open descriptors {work}", peer, handles_last, handles, "≥ 0.5", "")
+
+
+def soaked_anew(uploads: int) -> list[Look]:
+    """What a service with an empty database takes on the way."""
+    with sqlite_databases() as databases, tempfile.TemporaryDirectory(prefix="imu-soak-") as folder:
+        return soaked(Settings(database_url=databases.migrated(), data_folder=Path(folder)), uploads)
 
 
 def soaked(settings: Settings, uploads: int) -> list[Look]:

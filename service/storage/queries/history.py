@@ -3,24 +3,15 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
-from math import hypot
 
 from sqlalchemy import ColumnElement, delete, func, select
 
-from service.records.decision import Verdict
 from service.records.history import HistoryPoint
 from service.records.session import ParameterValue, StoredSession
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
+from service.storage.queries.history_points import DECIDED, POINT, StoredPoint, point_record
 from service.storage.tables import CalibrationRow, DecisionRow, ParameterRow, SessionRow, UnitRow, UnitTypeRow
-
-DECIDED = (
-    (DecisionRow.session_id == ParameterRow.session_id)
-    & (DecisionRow.revision == ParameterRow.revision)
-    & (DecisionRow.sensor == ParameterRow.sensor)
-    & (DecisionRow.parameter == ParameterRow.parameter)
-)
-"""The decision on a parameter, under the same model revision."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +61,7 @@ class History(Queries):
     def points(self, unit: int, wanted: HistoryQuery) -> tuple[HistoryPoint, ...]:
         """The wanted part of a unit's history, oldest first, in one query."""
         query = (
-            select(ParameterRow, DecisionRow, SessionRow.is_reference)
+            select(*POINT)
             .join(SessionRow, SessionRow.id == ParameterRow.session_id)
             .outerjoin(DecisionRow, DECIDED)
             .where(ParameterRow.unit_id == unit, ParameterRow.revision == _revision(wanted.revision), IS_ACCEPTED)
@@ -86,7 +77,7 @@ class History(Queries):
         order = (ParameterRow.at, ParameterRow.session_id, ParameterRow.sensor_index, ParameterRow.parameter)
         query = query.order_by(*(column.desc() if wanted.newest else column for column in order))
         found = [
-            point_record(*row, raw=wanted.raw)
+            point_record(StoredPoint._make(row), raw=wanted.raw)
             for row in self._session.execute(query.offset(wanted.offset).limit(wanted.limit))
         ]
         return tuple(reversed(found)) if wanted.newest else tuple(found)
@@ -123,91 +114,3 @@ def _revision(wanted: int | None) -> ColumnElement[int]:
         .where(CalibrationRow.session_id == ParameterRow.session_id, CalibrationRow.revision <= wanted)
         .scalar_subquery()
     )
-
-
-def point_record(
-    parameter: ParameterRow, decision: DecisionRow | None, is_reference: bool, *, raw: bool = False
-) -> HistoryPoint:
-    """A stored parameter with what was decided of it, or, ``raw``, with what the whole block did left in."""
-    seen = _Seen(parameter, decision, raw)
-    value, u = seen.value, seen.u
-    expanded = None if u is None or decision is None else decision.coverage_factor * u
-    return HistoryPoint(
-        session=parameter.session_id,
-        at=parameter.at,
-        sensor=parameter.sensor,
-        kind=parameter.kind,
-        parameter=parameter.parameter,
-        value=value,
-        u=u,
-        lower=None if value is None or expanded is None else value - expanded,
-        upper=None if value is None or expanded is None else value + expanded,
-        reference=None if decision is None else decision.reference,
-        deviation=seen.deviation,
-        expanded=seen.expanded,
-        tolerance=None if decision is None else _tolerance(decision),
-        verdict=Verdict.UNDECIDABLE if decision is None else Verdict(decision.verdict),
-        is_reference=is_reference,
-        axis=_axis(parameter),
-        revision=parameter.revision,
-    )
-
-
-@dataclass(frozen=True)
-class _Seen:
-    """A parameter as it was judged, or as it was measured."""
-
-    parameter: ParameterRow
-    decision: DecisionRow | None
-    raw: bool
-
-    @property
-    def value(self) -> float | None:
-        """For the axis the angle from the reference, without the turn of the whole block unless it is to stay."""
-        if self.parameter.parameter != "axis" or self.decision is None:
-            return self.parameter.value
-        judged = self.decision.deviation
-        return self.decision.value if self.raw or judged is None else judged
-
-    @property
-    def u(self) -> float | None:
-        """One sigma of the value."""
-        if self.parameter.parameter != "axis" or self.decision is None or self.decision.uncertainty is None:
-            return self.parameter.u
-        return hypot(self.decision.uncertainty, self._together)
-
-    @property
-    def deviation(self) -> float | None:
-        """From the reference."""
-        own = self.decision
-        if own is None or own.common is None or not self.raw:
-            return None if own is None else own.deviation
-        if self.parameter.parameter == "axis":
-            return own.value
-        return None if not own.reference or own.value is None else own.value / own.reference - 1
-
-    @property
-    def expanded(self) -> float | None:
-        """U of the deviation."""
-        own = self.decision
-        if own is None or own.expanded is None:
-            return None
-        return hypot(own.expanded, own.coverage_factor * self._together)
-
-    @property
-    def _together(self) -> float:
-        """One sigma of what the whole block did, where that is left in."""
-        return (self.decision.common_sigma or 0.0) if self.raw and self.decision is not None else 0.0
-
-
-def _tolerance(decision: DecisionRow) -> float | None:
-    """In the unit of the value: a scale's tolerance is relative to its reference."""
-    if decision.parameter != "scale":
-        return decision.tolerance
-    return None if decision.reference is None else decision.tolerance * abs(decision.reference)
-
-
-def _axis(row: ParameterRow) -> tuple[float, float, float] | None:
-    if row.axis_x is None or row.axis_y is None or row.axis_z is None:
-        return None
-    return row.axis_x, row.axis_y, row.axis_z

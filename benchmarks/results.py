@@ -1,0 +1,120 @@
+"""The table of all benchmarks as it stands in its file: what is measured anew takes the place of what stood there."""
+
+import ast
+import os
+import platform
+import re
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+
+BENCHMARKS = {
+    "P1": "p1_calibrate", "P2": "p2_fleet", "P3": "p3_orientations", "P4": "p4_diagnose", "P5": "p5_uploads",
+    "P6": "p6_logs", "P7": "p7_fleet", "P8": "p8_recompute", "P9": "p9_pages", "P10": "p10_startup",
+    "P11": "p11_history", "P12": "p12_files", "serving": "serving", "soak": "soak", "rivals": "rivals",
+}  # fmt: skip
+"""What a row's id begins with → the file that measures it; P4h is measured with P4."""
+HEAD = """# Benchmarks
+
+Written by `make bench`; `make bench ONLY="P6 P9"` measures these anew and leaves the others.
+
+A ratio is the peer's figure over ours, or a limit's: both in one run on one machine, medians taken in turn. Times are
+the processor's, so that other programs on the machine do not count, but where a row says that they are by the clock.
+
+| id | figure | ours | peer or limit | its figure | ratio | target | reached |
+| --- | --- | --- | --- | --- | --- | --- | --- |
+"""
+RUNS = """
+## When it was measured
+
+| rows | on | seconds | end | machine |
+| --- | --- | --- | --- | --- |
+"""
+RUN = re.compile(r"^\| (\w+) \| \d{4}-.*\|$")
+"""A line of the second table."""
+
+
+@dataclass
+class Results:
+    """Rows by their id, and by benchmark the line that says when it was measured."""
+
+    file: Path
+    rows: dict[str, str] = field(default_factory=dict)
+    runs: dict[str, str] = field(default_factory=dict)
+
+    @classmethod
+    def read(cls, file: Path) -> "Results":
+        """What stands in the file; nothing where there is none."""
+        found = cls(file)
+        for line in file.read_text("utf-8").splitlines() if file.exists() else []:
+            if run := RUN.match(line):
+                found.runs[run[1]] = line
+            elif line.startswith("| ") and benchmark_of(line):
+                found.rows[id_of(line)] = line
+        return found
+
+    def put(self, row: str) -> str:
+        """A row that was measured now, in the place of the one of the same id; returns this."""
+        id = id_of(row)
+        self.rows[id] = row
+        self.write()
+        return id
+
+    def ended(self, key: str, measured: set[str], seconds: float, end: str) -> None:
+        """A benchmark is over; where it came to its end, what it did not measure any more is no row of it."""
+        if end == "whole":
+            old = [id for id, line in self.rows.items() if benchmark_of(line) == key and id not in measured]
+            for id in old:
+                del self.rows[id]
+        today = datetime.now(UTC).date().isoformat()
+        self.runs[key] = f"| {key} | {today} | {seconds:.0f} | {end} | {machine()} |"
+        self.write()
+
+    def write(self) -> None:
+        """The whole file, benchmarks in their order."""
+        by_key = {key: [line for line in self.rows.values() if benchmark_of(line) == key] for key in BENCHMARKS}
+        table = "".join(f"{line}\n" for lines in by_key.values() for line in lines)
+        notes = "".join(note_of(key) for key, lines in by_key.items() if lines)
+        runs = "".join(f"{self.runs[key]}\n" for key in BENCHMARKS if key in self.runs)
+        unfinished = self.file.with_suffix(".part")
+        unfinished.write_text(f"{HEAD}{table}{notes}{RUNS}{runs}", "utf-8")
+        unfinished.replace(self.file)
+
+
+def id_of(line: str) -> str:
+    """What a row begins with."""
+    return line.split(" | ", 1)[0].removeprefix("| ")
+
+
+def benchmark_of(line: str) -> str:
+    """Its key; nothing of a line that is no row."""
+    key = re.split(r"[, ]", id_of(line))[0]
+    return next((known for known in (key, key.removesuffix("h")) if known in BENCHMARKS), "")
+
+
+def note_of(key: str) -> str:
+    """What explains the rows of a benchmark: its file's NOTE, read without running the file."""
+    source = Path(__file__).with_name(f"{BENCHMARKS[key]}.py").read_text("utf-8")
+    for node in ast.parse(source).body:
+        if isinstance(node, ast.Assign) and [ast.unparse(target) for target in node.targets] == ["NOTE"]:
+            return str(ast.literal_eval(node.value))
+    return ""
+
+
+def machine() -> str:
+    """The facts that a time depends on."""
+    packages = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy"))
+    threads = os.environ.get("OPENBLAS_NUM_THREADS", "default")
+    return (
+        f"{platform.system()} {platform.machine()}, {processor()}, {os.cpu_count()} cores, "
+        f"Python {platform.python_version()}, {packages}, BLAS threads: {threads}"
+    )
+
+
+def processor() -> str:
+    """The processor's name where the system tells it."""
+    facts = Path("/proc/cpuinfo")
+    lines = facts.read_text().splitlines() if facts.exists() else []
+    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.processor() or "unknown processor"
