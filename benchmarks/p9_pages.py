@@ -27,7 +27,7 @@ from tests.end_to_end.browser.conftest import FLAGS, NAMES, draw_all
 
 UNITS, FEW, MANY = 9, 3, 200
 """Units of the fleet with few sessions each, and the sessions of one more."""
-LOOKS = 5
+LOOKS = 3
 MEGABYTES, QUERIES, USABLE = 1.5, 8, 1.8
 """The most of each: MB, questions, and seconds to the first words, below which Web Vitals call it good."""
 FAR = {"offline": False, "latency": 150, "downloadThroughput": 1.6e6 / 8, "uploadThroughput": 0.75e6 / 8}

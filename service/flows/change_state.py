@@ -1,5 +1,6 @@
 """Step: another line of a session's life, its state and the audit, within one transaction."""
 
+from service.records.doubt import Remedies
 from service.records.session import StoredSession
 from service.records.state import RecordKind, RecordState, Step
 from service.storage.store import Store
@@ -14,10 +15,16 @@ DONE = {
 
 
 def change(
-    store: Store, session: StoredSession, state: RecordState, step: Step, superseded_by: str | None = None
+    store: Store,
+    session: StoredSession,
+    state: RecordState,
+    step: Step,
+    *,
+    superseded_by: str | None = None,
+    remedies: Remedies | None = None,
 ) -> None:
     """Writes down what becomes of a session, by whom and why; what follows from it is derived afterwards."""
     store.states.put_session(session.id, state, superseded_by)
-    store.states.add(RecordKind.SESSION, session.id, state, step, superseded_by)
+    store.states.add(RecordKind.SESSION, session.id, state, step, superseded_by=superseded_by, remedies=remedies)
     details = {"unit": session.unit, "before": session.state.value, "why": step.why, "superseded_by": superseded_by}
     store.audit.write(step.at, step.who, DONE[state], session.id, details)

@@ -4,7 +4,7 @@ Only the slip is corrected: names, dates and everything else of the file stay, a
 """
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from datetime import datetime
 
@@ -17,10 +17,10 @@ from service.flows.receive import Reception, receive
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
 from service.judging.plausible import doubts
-from service.records.doubt import Correction, Doubt, Remedies, Remedy
+from service.records.doubt import Correction, Doubt, Remedies, Remedy, remedies_among
 from service.records.received import Replaced, SentFile
 from service.records.session import Receipt
-from service.records.state import RecordState
+from service.records.state import RecordState, StateChange
 from service.storage import Storage
 from service.storage.files import LOST
 
@@ -40,14 +40,18 @@ def correct_session(reception: Reception, id: str, by: str, now: datetime) -> Re
     return receive(reception, SentFile(f"{id}-corrected.json", content, replaced, is_check=is_check), now)
 
 
-def remedies_of(storage: Storage, id: str) -> Remedies:
-    """What would put a questioned session right; nothing where nothing is known, or where its file is lost."""
+def remedies_of(storage: Storage, id: str, states: Sequence[StateChange]) -> Remedies:
+    """What would put a questioned session right; nothing where nothing is known, or where its file is lost.
+
+    Its life tells what was known when it was questioned. Where it does not, its file is asked.
+    """
+    if states and states[-1].remedies is not None:
+        return states[-1].remedies
     try:
         _, found = _doubted(storage, id)
     except LOST:
         return Remedies()
-    correction = ", ".join(doubt.correction.text for doubt in found if doubt.correction is not None)
-    return Remedies(correction, next((doubt.stands_for for doubt in found if doubt.stands_for is not None), None))
+    return remedies_among(found)
 
 
 def _corrections(storage: Storage, id: str) -> tuple[CalibrationSession, tuple[Correction, ...]]:

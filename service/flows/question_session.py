@@ -5,6 +5,7 @@ from service.flows.derive_again import Deriving, derive_again
 from service.flows.flagging.settle import SERVICE
 from service.records.decision import Judged
 from service.records.diagnosis import Diagnosed
+from service.records.doubt import Remedies
 from service.records.session import StoredSession
 from service.records.state import RecordKind, RecordState, Step
 from service.storage.queries.sessions import NOT_JUDGED
@@ -14,11 +15,13 @@ OTHERWISE_WRITTEN = ("channels-swapped", "sign-reversed", "runs-swapped", "beta-
 """Causes that say of a file that it tells something else than what was done."""
 QUESTIONED = "Questioned, not judged: "
 """Heads the reason."""
+NOTHING_KNOWN = Remedies()
+"""Nothing that would put it right."""
 
 
-def question(store: Store, way: Deriving, session: StoredSession, why: str) -> None:
-    """Takes a stored session out of what counts, and says why before everything else."""
-    change(store, session, RecordState.QUESTIONED, Step(SERVICE, way.at, why))
+def question(store: Store, way: Deriving, session: StoredSession, why: str, remedies: Remedies = NOTHING_KNOWN) -> None:
+    """Takes a stored session out of what counts, and says why before everything else, and what would put it right."""
+    change(store, session, RecordState.QUESTIONED, Step(SERVICE, way.at, why), remedies=remedies)
     unjudged = Judged(store.calibrations.get(session.id), (), QUESTIONED + why, is_reference=False)
     store.derivations.put_judged(session.id, session.revision, unjudged, NOT_JUDGED, None)
 

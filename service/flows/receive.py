@@ -24,6 +24,7 @@ from service.judging.plausible import doubts
 from service.judging.tolerances import type_of
 from service.metrics import Metrics
 from service.records.decision import Verdict
+from service.records.doubt import remedies_among
 from service.records.received import Content, Received, Replaced, SentFile, where
 from service.records.session import Receipt, StoredSession
 from service.storage import Storage
@@ -156,7 +157,7 @@ def _store(store: Store, way: Deriving, received: Received, new: Calibrated, rep
     keep(store, unit, record, new.calibration, received.at)
     doubted = doubts(store, new.checked, new.calibration, {record.id} | ({replaces.session} if replaces else set()))
     if doubted:
-        question(store, way, record, " ".join(doubt.text for doubt in doubted))
+        question(store, way, record, " ".join(doubt.text for doubt in doubted), remedies_among(doubted))
     old = None if replaces is None else give_way(store, way.at, replaces, record)
     since = record.started_at
     if old is not None and old.unit == record.unit:

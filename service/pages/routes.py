@@ -118,7 +118,7 @@ def show_session(
         report,
         made,
         traceability_of(store, report.session),
-        remedies=remedies_of(storage, id) if questioned else Remedies(),
+        remedies=remedies_of(storage, id, report.states) if questioned else Remedies(),
         follow=None if made else follow_seconds(report.session.uploaded_at, now, settings.diagnosis_workers),
         model=model_as_of(store.models.of_session(id), report.session.revision),
         computed=store.calibrations.revisions(id),

@@ -1,5 +1,6 @@
 """What of a session cannot be as its file says, which slip is likely, and what would put it right."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -64,3 +65,10 @@ class Remedies:
     """What a corrected file would hold otherwise; empty where nothing is known."""
     stands_for: str | None = None
     """The session that it could stand for."""
+
+
+def remedies_among(doubts: Iterable[Doubt]) -> Remedies:
+    """All corrections in one file, and the first session that it could stand for."""
+    found = tuple(doubts)
+    correction = ", ".join(doubt.correction.text for doubt in found if doubt.correction is not None)
+    return Remedies(correction, next((doubt.stands_for for doubt in found if doubt.stands_for is not None), None))

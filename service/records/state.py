@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 
+from service.records.doubt import Remedies
+
 
 class RecordState(StrEnum):
     """What is known of a unit is derived from its accepted records alone."""
@@ -45,6 +47,9 @@ class StateChange:
     why: str
     superseded_by: str | None = None
     """The session that stands for a superseded one."""
+    remedies: Remedies | None = None
+    """What would put a questioned one right, as far as was known then; None of others, and of lines from before this
+    was kept."""
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ and one that is not seen or turns the direction of writing, is printed as its co
 shows empty boxes, never says less than the record, and is the same on every machine.
 """
 
+import re
 from dataclasses import asdict
 from functools import lru_cache
 from typing import Any
@@ -24,10 +25,16 @@ def printable(text: str) -> str:
     """The text with every character that cannot be printed as its code point."""
     if text.isascii() and text.isprintable():
         return text
-    return "".join(c if is_printable(c) else f"‹U+{ord(c):04X}›" for c in text)
+    return _unprintable().sub(lambda found: f"‹U+{ord(found[0]):04X}›", text)
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=1)
+def _unprintable() -> re.Pattern[str]:
+    """Every other character: pictures are long texts, and are looked through as fast as they can be."""
+    inside = (chr(code) for low, high in RANGES for code in range(low, high + 1))
+    return re.compile(f"[^{re.escape(''.join(filter(is_printable, (*inside, *BREAKS))))}]")
+
+
 def is_printable(character: str) -> bool:
     """Whether a document can show the character."""
     if character in BREAKS:

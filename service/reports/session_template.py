@@ -26,7 +26,8 @@ from estimator.session import (
 )
 from estimator.writing import session_document
 from service.languages.language import Language
-from service.reports.sheets import OPTIONS, naive
+from service.reports.sheet_rows import naive
+from service.reports.sheets import OPTIONS
 from service.reports.template_wording import Wording, wording
 from service.words.session_keys import COLUMN_HINTS, KEY_HINTS, NEEDED_HERE, reading_hint, standard_error_hint
 

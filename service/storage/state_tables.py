@@ -1,8 +1,9 @@
 """The tables of what became of records; the others are in `tables`."""
 
 from datetime import datetime
+from typing import Any
 
-from sqlalchemy import ForeignKey, Index, String
+from sqlalchemy import JSON, ForeignKey, Index, String
 from sqlalchemy.orm import Mapped, mapped_column
 
 from service.storage.tables import Base
@@ -21,6 +22,7 @@ class RecordStateRow(Base):
     at: Mapped[datetime]
     why: Mapped[str]
     superseded_by: Mapped[str | None] = mapped_column(String(20))
+    remedies: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
 
 
 class ReferenceChoiceRow(Base):

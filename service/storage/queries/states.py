@@ -1,7 +1,10 @@
 """What became of sessions and services, and the references that engineers chose."""
 
+from dataclasses import asdict
+
 from sqlalchemy import select, update
 
+from service.records.doubt import Remedies
 from service.records.state import RecordKind, RecordState, ReferenceChoice, StateChange, Step
 from service.storage.queries.base import Queries
 from service.storage.state_tables import RecordStateRow, ReferenceChoiceRow
@@ -12,7 +15,14 @@ class States(Queries):
     """The lives of records; a line is written once."""
 
     def add(
-        self, kind: RecordKind, record: str, state: RecordState, step: Step, superseded_by: str | None = None
+        self,
+        kind: RecordKind,
+        record: str,
+        state: RecordState,
+        step: Step,
+        *,
+        superseded_by: str | None = None,
+        remedies: Remedies | None = None,
     ) -> None:
         """Writes another line of a record's life."""
         self._session.add(
@@ -24,6 +34,7 @@ class States(Queries):
                 at=step.at,
                 why=step.why,
                 superseded_by=superseded_by,
+                remedies=None if remedies is None else asdict(remedies),
             )
         )
         self._session.flush()
@@ -60,4 +71,5 @@ def state_change(row: RecordStateRow) -> StateChange:
         at=row.at,
         why=row.why,
         superseded_by=row.superseded_by,
+        remedies=None if row.remedies is None else Remedies(**row.remedies),
     )

@@ -7,9 +7,9 @@ import httpx
 from tests.service.sessions import session_bytes
 
 
-def in_mv() -> bytes:
+def in_mv(unit: str = "BA-031") -> bytes:
     """A session whose readings are in mV, declared V."""
-    document = json.loads(session_bytes(unit="BA-031"))
+    document = json.loads(session_bytes(unit=unit))
     for sensor in document["sensors"]:
         for column in (sensor["name"], f"{sensor['name']}_se"):
             document["table"][column] = [1000 * value for value in document["table"][column]]

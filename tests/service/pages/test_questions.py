@@ -12,6 +12,7 @@ from sqlalchemy import Engine, event
 from service.flows.diagnose import diagnose
 from service.flows.receive import upload
 from service.storage import Storage
+from tests.service.pages.test_questioned import in_mv
 from tests.service.sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
@@ -47,10 +48,14 @@ def pages(storage: Storage, client: httpx.Client) -> dict[str, str]:
     diagnose(storage, ids[-1], NOW)
     number = client.post(f"/api/v1/units/{UNIT}/services", json=SERVICE).json()["id"]
     client.post(f"/api/v1/services/{number}/withdraw", json={"by": "K. Ito", "why": "another unit"}).raise_for_status()
-    return {"fleet": "/", "unit": f"/units/{UNIT}", "session": f"/sessions/{ids[-1]}"}
+    doubtful = upload(storage, in_mv(UNIT), "a.json", NOW).id
+    return {
+        "fleet": "/", "unit": f"/units/{UNIT}", "session": f"/sessions/{ids[-1]}",
+        "questioned session": f"/sessions/{doubtful}",
+    }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", ["fleet", "unit", "session"])
+@pytest.mark.parametrize("name", ["fleet", "unit", "session", "questioned session"])
 def test_a_page_asks_eight_questions_at_most(client: httpx.Client, pages: dict[str, str], name: str) -> None:
     client.get(pages[name], headers=HTML)
     with asked() as statements:
