@@ -4,6 +4,7 @@ PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; 
 BIN := .venv/bin
 STAMP := .venv/.complete
 DOCS := .venv/.docs
+BENCH := .venv/.bench
 # Sessions are small matrices: several threads of BLAS only get in each other's way.
 export OPENBLAS_NUM_THREADS ?= 1
 
@@ -43,8 +44,13 @@ format: setup
 words: setup
 	$(BIN)/python -m service.languages
 
-bench: setup
-	$(BIN)/python -m benchmarks
+bench: $(BENCH)
+	$(BIN)/python -m benchmarks $(if $(ONLY),--only $(ONLY))
+
+# A rival is installed for comparison only.
+$(BENCH): $(STAMP) requirements-bench.lock
+	$(BIN)/pip install --quiet --disable-pip-version-check -r requirements-bench.lock
+	touch $@
 
 papers: setup
 	$(BIN)/python -m benchmarks.papers
@@ -80,6 +86,7 @@ lock: setup
 	$(BIN)/pip install --quiet uv
 	$(BIN)/uv pip compile --quiet --upgrade --extra test --no-emit-index-url --no-header --no-annotate pyproject.toml -o requirements.lock
 	$(BIN)/uv pip compile --quiet --upgrade --extra docs --constraint requirements.lock --no-emit-index-url --no-header --no-annotate pyproject.toml | grep -vxFf requirements.lock > requirements-docs.lock
+	$(BIN)/uv pip compile --quiet --upgrade --extra bench --constraint requirements.lock --no-emit-index-url --no-header --no-annotate pyproject.toml | grep -vxFf requirements.lock > requirements-bench.lock
 
 clean:
 	rm -rf .venv build dist *.egg-info

@@ -16,7 +16,8 @@ MEMORY, WAIT = 300.0, 0.5
 """MiB and s that are allowed."""
 
 NOTE = """
-P12 holds for hostile files too: [every one, with what it costs](../docs/security/files.md).
+P12 holds for hostile files too: [every one, with what it costs](../docs/security/files.md). Waiting is by the clock: on
+a machine that does much else it shows that.
 """
 
 

@@ -6,7 +6,7 @@ from datetime import datetime
 from typing import Any
 
 from sqlalchemy import ScalarSelect, Select, delete, func, literal, or_, select, union_all, update
-from sqlalchemy.orm import aliased, defer
+from sqlalchemy.orm import aliased, load_only
 
 from estimator.session import PROGRAMMES
 from service.records.decision import Verdict
@@ -189,6 +189,19 @@ def _condition(rows: Sequence[Sequence[Any]]) -> FleetCondition:
     return FleetCondition.of([_tally(row[:-1]) for row in rows], rows[0][-1] if rows else 0)
 
 
+LAST = (
+    SessionRow.started_at,
+    SessionRow.verdict,
+    SessionRow.is_reference,
+    SessionRow.reason,
+    SessionRow.worst_sensor,
+    SessionRow.worst_parameter,
+    SessionRow.margin,
+)
+FOUND = (DiagnosisRow.state, DiagnosisRow.summary, DiagnosisRow.reservations)
+"""What a line of the fleet tells of the latest session and of its diagnosis; the rest is long, and stays unread."""
+
+
 def _summaries(*, measured: bool = True) -> Summaries:
     """Units with their latest accepted session; those without one too where they need not be measured."""
     return (
@@ -203,7 +216,7 @@ def _summaries(*, measured: bool = True) -> Summaries:
             PendingOutlookRow.claimed_until,
             OutlookRow.reason,
         )
-        .options(defer(DiagnosisRow.document))
+        .options(load_only(*LAST, raiseload=True), load_only(*FOUND, raiseload=True))
         .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
         .join(ConditionRow, ConditionRow.unit_id == UnitRow.id, isouter=not measured)
         .outerjoin(SessionRow, SessionRow.id == ConditionRow.last_session)

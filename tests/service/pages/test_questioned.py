@@ -1,10 +1,17 @@
 """A questioned session is seen by those who can put it right, and put right by one button."""
 
 import json
+from datetime import UTC, datetime
 
 import httpx
 
+from service.flows.correct_session import remedies_of
+from service.flows.receive import upload
+from service.records.state import RecordKind
+from service.storage import Storage
 from tests.service.sessions import session_bytes
+
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 
 
 def in_mv(unit: str = "BA-031") -> bytes:
@@ -41,3 +48,23 @@ def test_programs_have_it_corrected_too(client: httpx.Client) -> None:
     receipt = client.post(f"/api/v1/sessions/{id}/correct", json={"by": "K. Ito"}).json()
     assert (receipt["state"], receipt["is_reference"], receipt["unit"]) == ("accepted", True, "BA-031")
     assert client.post(f"/api/v1/sessions/{id}/correct", json={"by": "K. Ito"}).status_code == 409
+
+
+def test_what_would_put_it_right_is_kept_as_its_file_tells_it(storage: Storage) -> None:
+    id = upload(storage, in_mv(), "a.json", NOW).id
+    with storage.database.reading() as store:
+        life = store.states.of(RecordKind.SESSION, id)
+    assert remedies_of(storage, id, life) == remedies_of(storage, id, ())
+    for file in storage.files.folder.rglob("*"):
+        if file.is_file():
+            file.unlink()
+    assert remedies_of(storage, id, life).correction == "readings of A1–A6 × 0.001"
+
+
+def test_what_would_put_it_right_is_kept_as_its_file_tells_it(storage: Storage) -> None:
+    id = upload(storage, in_mv(), "a.json", NOW).id
+    with storage.database.reading() as store:
+        life = store.states.of(RecordKind.SESSION, id)
+    assert remedies_of(storage, id, life) == remedies_of(storage, id, ())
+    storage.files.path(storage_digest(storage, id)).unlink()
+    assert remedies_of(storage, id, life).correction == "readings of A1–A6 × 0.001"
