@@ -3,7 +3,9 @@
 Where the noise was estimated from ν degrees of freedom, χ²/r is Fisher's F of r and ν; limits are widened by as much.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from scipy import stats
@@ -38,14 +40,43 @@ def fit(changes: Changes, inside: list[int]) -> Fit:
     along A (a frame held by the axes themselves) from being inverted as it is.
     """
     at, n = changes.where(inside), len(changes.y)
-    a, c = changes.design[at], changes.covariance[np.ix_(at, at)]
-    typical = max(float(np.trace(c)) / len(at), 1e-18)
-    v = np.linalg.inv(c + typical * (a @ a.T) + 1e-12 * typical * np.eye(len(at)))
-    g = np.linalg.solve(a.T @ v @ a, a.T @ v)
-    w = v - v @ a @ g
-    gain, weight = np.zeros((a.shape[1], n)), np.zeros((n, n))
+    g, w = _solved(changes.design[at], changes.covariance[np.ix_(at, at)])
+    gain, weight = np.zeros((g.shape[0], n)), np.zeros((n, n))
     gain[:, at], weight[np.ix_(at, at)] = g, w
     return Fit(gain, weight, float(changes.y @ weight @ changes.y))
+
+
+@dataclass(frozen=True, eq=False)
+class Fits:
+    """Generalised least squares over each of s sets of sensors."""
+
+    gain: Array
+    """(s, k, m r) x = gain·y, dimensionless."""
+    chi2: Array
+    """(s,)"""
+
+
+def fits(changes: Changes, sets: Sequence[Sequence[int]]) -> Fits:
+    """`fit` for each of several sets; those of one size are solved as one stack."""
+    chi2, gain = np.zeros(len(sets)), np.zeros((len(sets), changes.design.shape[1], len(changes.y)))
+    covariance = changes.covariance
+    for size in {len(one) for one in sets}:
+        own = [i for i, one in enumerate(sets) if len(one) == size]
+        at = np.stack([changes.where(list(sets[i])) for i in own])
+        g, w = _solved(changes.design[at], covariance[at[:, :, None], at[:, None, :]])
+        y = changes.y[at]
+        chi2[own] = np.einsum("sp,spq,sq->s", y, w, y)
+        gain[np.array(own)[:, None], :, at] = np.swapaxes(g, -1, -2)
+    return Fits(gain, chi2)
+
+
+def _solved(a: Array, c: Array) -> tuple[Array, Array]:
+    """Gain (..., k, p) and W (..., p, p) of designs (..., p, k) and covariances (..., p, p); see `fit`."""
+    size, across = a.shape[-2], np.swapaxes(a, -1, -2)
+    typical = np.maximum(np.trace(c, axis1=-2, axis2=-1) / size, 1e-18)[..., None, None]
+    v = np.linalg.inv(c + typical * (a @ across) + 1e-12 * typical * np.eye(size))
+    g = np.linalg.solve(across @ v @ a, across @ v)
+    return g, v - v @ a @ g
 
 
 def moved(changes: Changes) -> list[int] | None:
@@ -69,6 +100,7 @@ def _limit(changes: Changes) -> float:
     return chi2_limit(float(single), changes.rows, changes.dof)
 
 
+@cache
 def chi2_limit(level: float, rows: int, dof: float | None) -> float:
     """χ² of so many rows that noise known to ``dof`` degrees of freedom exceeds with a probability."""
     if dof is None:

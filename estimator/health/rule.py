@@ -33,6 +33,8 @@ reference is therefore called conditional-fail or fail in at most 1 % of its ses
 untouched: `pass` needs |y| + U ≤ T as before, and `fail` still needs |y| − U > T.
 """
 
+from functools import cache
+
 import numpy as np
 from scipy import stats
 
@@ -70,6 +72,7 @@ def state(size: float, expanded: float, tolerance: float, critical: float) -> st
     return FAIL if size - expanded > tolerance else CONDITIONAL_FAIL
 
 
+@cache
 def critical_factors(judged: int, dof: float | None = None, level: float = SESSION_LEVEL) -> tuple[float, float]:
     """Factors of the standard uncertainty beyond which a scalar, and a two-vector (Mahalanobis length), is a change.
 

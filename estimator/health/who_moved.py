@@ -23,15 +23,15 @@ Looked at are the sets within one addition, one removal or one exchange of the s
 in x itself where the others would be too few. Units as in `changes`.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 
 from estimator.health.changes import Changes
 from estimator.health.deviation import Deviation
-from estimator.health.moved import FEWEST_AGREEING, Fit, fit, is_majority
+from estimator.health.moved import FEWEST_AGREEING, fits, is_majority
 from estimator.session import Array
 
 ODDS = 0.1
@@ -68,31 +68,51 @@ class Sets:
         return float(np.log(ODDS) + self.changes.rows * np.log(sigma / reach))
 
 
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """Every sensor beside every set that may have moved: n pairs."""
+
+    judged: list[int]
+    """(n,) number of the sensor, rising."""
+    moved: list[Sensors]
+    inside: list[Sensors]
+    """Whom x rests on."""
+
+
 def residuals(sets: Sets, out: Iterable[int]) -> dict[str, Deviation]:
     """By sensor; ``out`` the sensors that tests found to have moved."""
-    fits: dict[Sensors, tuple[Fit, Fit]] = {}
-    names = sets.changes.names
-    return {name: _averaged(sets, j, frozenset(out), fits) for j, name in enumerate(names)}
+    tried, changes = _tried(sets, frozenset(out)), sets.changes
+    likely = _weights(sets, tried)
+    vectors, own, origin = _beside(sets, tried)
+    mean = likely @ vectors
+    away = vectors - mean[tried.judged]
+    own = np.tensordot(likely, own + away[:, :, None] * away[:, None, :], axes=1)
+    origin = np.tensordot(likely, origin, axes=1)
+    dofs = changes.dofs or ((None, None),) * len(changes.names)
+    return {name: Deviation(mean[j], own[j], origin[j], *dofs[j]) for j, name in enumerate(changes.names)}
 
 
-def _averaged(sets: Sets, j: int, out: Sensors, fits: dict[Sensors, tuple[Fit, Fit]]) -> Deviation:
-    """The mixture for one sensor."""
-    chosen = list(dict.fromkeys(_near(sets, j, out - {j})))
-    inside = [_inside(sets, j, moved) for moved in chosen]
-    for one in {*inside, *(sets.everyone() - moved for moved in chosen)} - fits.keys():
-        fits[one] = fit(sets.changes, sorted(one)), fit(sets.weighing, sorted(one))
-    logs = np.array([_weight(sets, j, *pair, fits) for pair in zip(chosen, inside, strict=True)])
-    weights = np.exp(logs - logs.max())
-    weights /= weights.sum()
-    told = [(w, _beside(sets, j, fits[one][1].gain)) for w, one in zip(weights, inside, strict=True) if w > LEAST]
-    return _mixture(told)
+def _tried(sets: Sets, out: Sensors) -> Tried:
+    """All pairs; a sensor's own sets are others for each."""
+    numbers = range(len(sets.changes.names))
+    pairs = [(j, moved) for j in numbers for moved in dict.fromkeys(_near(sets, j, out - {j}))]
+    return Tried([j for j, _ in pairs], [moved for _, moved in pairs], [_inside(sets, *pair) for pair in pairs])
 
 
-def _weight(sets: Sets, j: int, moved: Sensors, inside: Sensors, fits: Mapping[Sensors, tuple[Fit, Fit]]) -> float:
-    """log w_M, up to a constant; x rests on the sensors ``inside``."""
-    rest = sets.everyone() - moved
-    stays, goes = -fits[rest][0].chi2 / 2, sets.cost(j) - fits[inside][0].chi2 / 2
-    return sum(map(sets.cost, moved)) + (stays if inside == rest else float(np.logaddexp(stays, goes)))
+def _weights(sets: Sets, tried: Tried) -> Array:
+    """(m, n) w_M of every sensor's sets, each row of sum 1, dimensionless; 0 for other sensors' and negligible ones."""
+    rests = [sets.everyone() - moved for moved in tried.moved]
+    every = list({*tried.inside, *rests})
+    chi2 = dict(zip(every, fits(sets.changes, [sorted(one) for one in every]).chi2, strict=True))
+    costs = [sets.cost(i) for i in range(len(sets.changes.names))]
+    logs = np.full((len(costs), len(rests)), -np.inf)
+    for n, (j, moved, inside, rest) in enumerate(zip(tried.judged, tried.moved, tried.inside, rests, strict=True)):
+        stays, goes = -chi2[rest] / 2, costs[j] - chi2[inside] / 2
+        logs[j, n] = sum(costs[i] for i in moved) + (stays if inside == rest else np.logaddexp(stays, goes))
+    weights = np.exp(logs - logs.max(axis=1, keepdims=True))
+    weights /= weights.sum(axis=1, keepdims=True)
+    weights[weights <= LEAST] = 0.0
+    return weights / weights.sum(axis=1, keepdims=True)
 
 
 def _near(sets: Sets, j: int, out: Sensors) -> Iterator[Sensors]:
@@ -111,26 +131,18 @@ def _inside(sets: Sets, j: int, moved: Sensors) -> Sensors:
     return others if len(others) >= FEWEST_AGREEING[sets.changes.rows] else others | {j}
 
 
-def _beside(sets: Sets, j: int, gain: Array) -> Deviation:
-    """What x = gain·y leaves of the sensor; gain (k, m r) dimensionless. What the others do on their own is a part of
-    its uncertainty, what it does itself is not."""
-    changes, at = sets.changes, sets.changes.where([j])
-    drag = changes.design[at] @ gain
+def _beside(sets: Sets, tried: Tried) -> tuple[Array, Array, Array]:
+    """What x leaves of the sensor of every pair: (n, r), and the covariances (n, r, r) of both sessions; rad or
+    relative. What the others do on their own is a part of its uncertainty, what it does itself is not."""
+    changes, every = sets.changes, list(dict.fromkeys(tried.inside))
+    found = fits(sets.weighing, [sorted(one) for one in every])
+    numbers, rows = np.arange(len(tried.judged)), changes.rows
+    at = np.array(tried.judged)[:, None] * rows + np.arange(rows)
+    drag = changes.design[at] @ found.gain[[every.index(one) for one in tried.inside]]
     rest = -drag
-    rest[:, at] += np.eye(changes.rows)
-    others = np.delete(drag, at, axis=1)
-    own = rest @ changes.own @ rest.T + changes.scatter**2 * others @ others.T
-    dofs = changes.dofs[j] if changes.dofs else (None, None)
-    return Deviation(rest @ changes.y, own, rest @ changes.origin @ rest.T, *dofs)
-
-
-def _mixture(told: list[tuple[float, Deviation]]) -> Deviation:
-    """One deviation with the mixture's mean and covariance; what the sets differ by is this session's."""
-    total = sum(w for w, _ in told)
-    shares = [(w / total, d) for w, d in told]
-    mean = sum((w * d.vector for w, d in shares), np.zeros_like(told[0][1].vector))
-    own, origin = np.zeros_like(told[0][1].own), np.zeros_like(told[0][1].own)
-    for w, d in shares:
-        away = d.vector - mean
-        own, origin = own + w * (d.own + np.outer(away, away)), origin + w * d.origin
-    return replace(told[0][1], vector=mean, own=own, origin=origin)
+    rest[numbers[:, None], np.arange(rows), at] += 1.0
+    drag[numbers[:, None], :, at] = 0.0
+    across = np.swapaxes(rest, -1, -2)
+    others = drag @ np.swapaxes(drag, -1, -2)
+    own = rest @ changes.own @ across + changes.scatter**2 * others
+    return rest @ changes.y, own, rest @ changes.origin @ across
