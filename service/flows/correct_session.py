@@ -16,6 +16,7 @@ from service.errors import ConflictError
 from service.flows.receive import Reception, receive
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
+from service.judging.known_unit import known_unit
 from service.judging.plausible import doubts
 from service.records.doubt import Correction, Doubt, Remedies, Remedy, remedies_among
 from service.records.received import Replaced, SentFile
@@ -63,11 +64,12 @@ def _corrections(storage: Storage, id: str) -> tuple[CalibrationSession, tuple[C
 def _doubted(storage: Storage, id: str) -> tuple[CalibrationSession, tuple[Doubt, ...]]:
     """The session as its file has it, and what is in doubt of it."""
     with storage.database.reading() as store:
-        stored, calibration = store.sessions.get(id), store.calibrations.get(id)
+        stored = store.sessions.get(id)
         if stored.state is not RecordState.QUESTIONED:
             raise ConflictError(f"Session {id} is not questioned, so there is nothing to correct.")
         source = read_upload(storage.files.content(stored.sha256), stored.filename)
-        found = doubts(store, as_checked(source, stored.started_at), calibration, (id,))
+        known = known_unit(store, store.units.key(stored.unit))
+        found = doubts(known, as_checked(source, stored.started_at), known.calibration(id), (id,))
     return source, found
 
 

@@ -5,14 +5,13 @@ flags. Every flow that changes which records count ends with it, within its own 
 rests on what it must rest on is left alone, so an ordinary upload judges one session.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 from datetime import datetime
 
 from estimator.errors import SessionError
 from estimator.parity import parity_check
 from estimator.parity.as_calibration import parity_calibration
-from estimator.results import Calibration
 from estimator.session import CALIBRATIONS, IN_SERVICE
 from service.flows.flagging.drift import flag_drift
 from service.flows.flagging.fold import settle_sessions
@@ -25,15 +24,18 @@ from service.ingest import read_upload
 from service.judging.calibrate import Comparison
 from service.judging.epochs import Place, needs_judging, placed
 from service.judging.judge import judge, judge_recording
+from service.judging.known_unit import KnownUnit, known_unit
 from service.judging.parameter_values import parameter_values
 from service.records.decision import Judged, Opening
-from service.records.derivation import Counted
+from service.records.derivation import Decided
 from service.records.group import Level
 from service.records.session import StoredSession
+from service.records.unit import UnitType
 from service.storage import Files
 from service.storage.files import LOST
+from service.storage.queries.sessions import NOT_JUDGED
+from service.storage.queries.unit_types import TypeThroughTime, held_at
 from service.storage.store import Store
-from service.words.advice import too_few
 
 AT_ONCE = 20
 """Sessions that are judged within the request that changed a record, about a second; of more, all but the request's
@@ -65,45 +67,59 @@ class Derived:
     judged: tuple[str, ...]
     waiting: int
     """Sessions that are to be judged after the answer."""
+    latest: StoredSession | None
+    """The unit's latest session that counts."""
 
 
-@dataclass(frozen=True)
-class _Known:
-    """Calibrations that this derivation has read."""
+def derive_again(
+    store: Store,
+    way: Deriving,
+    serial: str,
+    since: datetime,
+    touched: Sequence[str] = (),
+    *,
+    known: KnownUnit | None = None,
+) -> Derived:
+    """Derives what is known of a unit after its records changed from a date on; ``touched`` are judged in any case.
 
-    store: Store
-    by_id: dict[str, Calibration] = field(default_factory=dict)
-
-    def get(self, id: str) -> Calibration:
-        if id not in self.by_id:
-            self.by_id[id] = self.store.calibrations.get(id)
-        return self.by_id[id]
-
-    def is_blind(self, one: Counted) -> bool:
-        """Whether a session gives no uncertainty; a reference gave one when it was taken for it."""
-        return not one.is_reference and bool(too_few(self.get(one.id)))
-
-
-def derive_again(store: Store, way: Deriving, serial: str, since: datetime, touched: Sequence[str] = ()) -> Derived:
-    """Derives what is known of a unit after its records changed from a date on; ``touched`` are judged in any case."""
-    unit, known = store.units.hold(serial), _Known(store)
-    choices = tuple(choice.session for choice in store.states.choices(unit))
-    places = placed(store.derivations.counted(unit), store.services.breaks(unit), choices, known.is_blind)
+    ``known``: what this transaction has read of the unit, where nothing of it changed since.
+    """
+    known = known or known_unit(store, store.units.hold(serial))
+    places = _placed(known)
     stale = needs_judging(places, since)
-    store.derivations.put_references(unit, (p.session.id for p in places if p.is_reference))
+    references = {p.session.id for p in places if p.is_reference}
+    if references != known.records.references:
+        store.derivations.put_references(known.unit, references)
     now, later = _shared(stale, touched, way.at_once)
+    store.derivations.wait([p.session.id for p in later])
+    _judge_all(way, serial, known, now)
+    _ask_again(way, known, since, [p.session.id for p in now], touched)
     for place in now:
-        _judge(store, way, place, known)
-    store.derivations.wait(p.session.id for p in later)
-    store.pending.look_again(unit, since, [p.session.id for p in now])
-    store.pending.add(store.derivations.forget_diagnoses(unit, since, touched), way.at)
-    for place in now:
-        weigh_again(store, way.files, place.session.id)
-    _sum_up(store, way, serial, touched)
+        if place.session.id in known.records.diagnosed:
+            weigh_again(store, way.files, place.session.id)
+    latest = _sum_up(store, way, serial, touched)
     groups = store.groups.of_unit(serial)
     store.pending_groups.ask(groups, way.at)
     store.pending_summaries.ask((group for group in groups if group.level is not Level.UNIT), way.at)
-    return Derived(tuple(p.session.id for p in now), len(later))
+    return Derived(tuple(p.session.id for p in now), len(later), latest)
+
+
+def _placed(known: KnownUnit) -> tuple[Place, ...]:
+    """The unit's accepted sessions, each with its reference."""
+    own = known.records
+    return placed(own.counted, own.breaks, own.choices, known.is_blind)
+
+
+def _ask_again(
+    way: Deriving, known: KnownUnit, since: datetime, judged: Collection[str], touched: Collection[str]
+) -> None:
+    """Diagnoses that looked at what has changed are asked for again, and those that are being made look again."""
+    store, own = known.store, known.records
+    store.fleet.touch(known.unit)
+    if any(at >= since or id in judged for id, at in own.waiting.items() if id not in known.made):
+        store.pending.look_again(known.unit, since, judged)
+    if any(at >= since and id not in touched for id, at in own.diagnosed.items()):
+        store.pending.add(store.derivations.forget_diagnoses(known.unit, since, touched), way.at)
 
 
 def _shared(
@@ -120,14 +136,13 @@ def _shared(
 
 def derive_batch(store: Store, way: Deriving, serial: str, most: int) -> int:
     """Judges the first of the sessions that wait, and returns how many still do."""
-    unit, known = store.units.hold(serial), _Known(store)
-    choices = tuple(choice.session for choice in store.states.choices(unit))
-    places = placed(store.derivations.counted(unit), store.services.breaks(unit), choices, known.is_blind)
-    waiting = tuple(p for p in places if p.session.basis == "")
-    store.pending.look_again(unit, END_OF_TIME, [p.session.id for p in waiting[:most]])
-    for place in waiting[:most]:
-        _judge(store, way, place, known)
-        weigh_again(store, way.files, place.session.id)
+    known = known_unit(store, store.units.hold(serial))
+    waiting = tuple(p for p in _placed(known) if p.session.basis == NOT_JUDGED)
+    ids = [p.session.id for p in waiting[:most]]
+    store.pending.look_again(known.unit, END_OF_TIME, ids)
+    _judge_all(way, serial, known, waiting[:most])
+    for id in ids:
+        weigh_again(store, way.files, id)
     left = max(len(waiting) - most, 0)
     if not left:
         _sum_up(store, way, serial, ())
@@ -135,62 +150,92 @@ def derive_batch(store: Store, way: Deriving, serial: str, most: int) -> int:
     return left
 
 
-def _judge(store: Store, way: Deriving, place: Place, known: _Known) -> None:
-    """A session judged as its place says, with what it tells of flags."""
-    session = store.sessions.get(place.session.id)
-    judged = _recording(store, way, session, place, known) if session.programme == IN_SERVICE else None
+@dataclass(frozen=True)
+class _Judging:
+    """What sessions of a unit are judged by."""
+
+    way: Deriving
+    serial: str
+    known: KnownUnit
+    computed: Mapping[str, datetime]
+    """When each calibration was computed."""
+    of_type: TypeThroughTime
+
+    def unit_type(self, id: str) -> UnitType:
+        """With the tolerances that held when the calibration of a session was computed."""
+        return held_at(self.of_type, self.computed.get(id, self.way.at))
+
+
+def _judge_all(way: Deriving, serial: str, known: KnownUnit, places: Sequence[Place]) -> None:
+    """Sessions judged as their places say, with what they tell of flags."""
+    if not places:
+        return
+    store, ids = known.store, [p.session.id for p in places]
+    computed = store.derivations.computed_at([id for id in ids if id not in known.made])
+    known.read_all([*ids, *(p.reference.id for p in places if p.reference is not None)])
+    by = _Judging(way, serial, known, computed, store.unit_types.of_unit_through_time(serial))
+    store.derivations.put_judged([_decided(by, place) for place in places])
+
+
+def _decided(by: _Judging, place: Place) -> Decided:
+    """A session with what was decided of it."""
+    own = place.session
+    judged = _recording(by, place) if own.programme == IN_SERVICE else None
     if judged is None:
-        judged = _calibration(store, way, session, place, known)
-    store.derivations.put_judged(session.id, session.revision, judged, place.basis, told_by(session, judged))
-    store.sessions.add_decisions(session.id, judged.decisions, session.revision)
-    store.sessions.add_motions(session.id, judged.motions, session.revision)
+        judged = _calibration(by, place)
+    told = told_by(own.at, judged)
+    return Decided(own.id, own.revision, judged, place.basis, told, is_first=own.id in by.known.made)
 
 
-def _calibration(store: Store, way: Deriving, session: StoredSession, place: Place, known: _Known) -> Judged:
+def _calibration(by: _Judging, place: Place) -> Judged:
     """By the tolerances that held when it was computed."""
-    against = None if place.is_reference or place.reference is None else known.get(place.reference.id)
-    unit_type = store.unit_types.of_unit_at(session.unit, store.derivations.computed_at(session.id))
+    own, k = by.known.calibration(place.session.id), by.way.coverage_factor
+    against = None if place.is_reference or place.reference is None else by.known.calibration(place.reference.id)
     opening = Opening.CHOSEN if place.is_chosen else Opening.SERVICE if place.since is not None else Opening.FIRST
-    return judge(known.get(session.id), against, unit_type, way.coverage_factor, opening=opening)
+    return judge(own, against, by.unit_type(place.session.id), k, opening=opening)
 
 
-def _recording(store: Store, way: Deriving, session: StoredSession, place: Place, known: _Known) -> Judged:
+def _recording(by: _Judging, place: Place) -> Judged:
     """A recording in service moves the calibration that it is compared with, so it is compared anew."""
-    computed_at = store.derivations.computed_at(session.id)
+    store, id = by.known.store, place.session.id
+    session, own = store.sessions.get(id), by.known.calibration(id)
     store.history.drop(session)
     if place.reference is None:
-        return Judged(known.get(session.id), (), NOTHING_TO_COMPARE, is_reference=False)
+        return Judged(own, (), NOTHING_TO_COMPARE, is_reference=False)
     try:
-        source = read_upload(way.files.content(session.sha256), session.filename)
+        source = read_upload(by.way.files.content(session.sha256), session.filename)
     except (*LOST, SessionError) as lost:
-        return Judged(known.get(session.id), (), f"It cannot be compared: {lost}", is_reference=False)
-    reference = known.get(place.reference.id)
+        return Judged(own, (), f"It cannot be compared: {lost}", is_reference=False)
+    reference = by.known.calibration(place.reference.id)
     found = Comparison(reference, parity_check(source, reference))
-    unit_type = store.unit_types.of_unit_at(session.unit, computed_at)
-    judged = judge_recording(parity_calibration(found.result, reference), found, unit_type, way.coverage_factor)
-    store.calibrations.put(session.id, session.revision, judged, computed_at)
-    store.history.add(store.units.key(session.unit), session, parameter_values(judged.calibration))
+    moved = parity_calibration(found.result, reference)
+    judged = judge_recording(moved, found, by.unit_type(id), by.way.coverage_factor)
+    store.calibrations.put(id, session.revision, judged.calibration)
+    store.history.add(by.known.unit, ((session, parameter_values(judged.calibration)),))
     return judged
 
 
-def _sum_up(store: Store, way: Deriving, serial: str, touched: Sequence[str]) -> None:
-    """The outlook, the unit's line and its flags."""
+def _sum_up(store: Store, way: Deriving, serial: str, touched: Sequence[str]) -> StoredSession | None:
+    """The outlook, the unit's line and its flags; the latest session that counts."""
     unit = store.units.key(serial)
     was = store.fleet.refresh(unit)
-    occasion = Occasion(unit, was.last_session, way.at)
-    if was.last_session is None:
+    latest = was.latest
+    occasion = Occasion(unit, None if latest is None else latest.id, way.at)
+    if latest is None:
         store.outlooks.drop(unit)
         store.pending_outlooks.settle(unit)
         settle_sessions(store, occasion)
         flag_drift(store, occasion, None)
-        return
-    latest = store.sessions.get(was.last_session)
+        return None
+    if was.before is None:
+        store.fleet.count_flags(unit)
     tell_verdict(store, occasion, latest, was)
-    settle_sessions(store, occasion)
+    opened = settle_sessions(store, occasion)
     if way.outlook and way.is_dated_later:
         store.pending_outlooks.ask(unit, way.at)
     elif way.outlook:
         refresh_outlook(store, serial)
         flag_drift(store, occasion, store.outlooks.of_unit(serial))
     if latest.id in touched and latest.programme in CALIBRATIONS:
-        no_longer_overdue(store, occasion, latest)
+        no_longer_overdue(store, occasion, latest, opened)
+    return latest

@@ -1,16 +1,31 @@
-"""Step: what the database keeps of a session's calibration under one model revision, beside what others gave."""
+"""Step: what the database keeps of sessions' calibrations under a model revision, beside what others gave."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from datetime import datetime
 
 from estimator.results import Calibration
 from service.judging.parameter_values import parameter_values
-from service.records.decision import Judged
-from service.records.session import StoredSession
+from service.records.session import ParameterValue, StoredSession
+from service.storage.calibration_document import Packed, pack
 from service.storage.store import Store
 
 
-def keep(store: Store, unit: int, record: StoredSession, calibration: Calibration, at: datetime) -> None:
-    """The calibration and the parameters of the history; what is decided of them is derived."""
-    unjudged = Judged(calibration, (), record.reason, is_reference=False)
-    store.calibrations.put(record.id, record.revision, unjudged, at)
-    store.history.add(unit, record, parameter_values(calibration))
+@dataclass(frozen=True, eq=False)
+class Made:
+    """A calibration on its way into the store."""
+
+    calibration: Calibration
+    packed: Packed
+    values: tuple[ParameterValue, ...]
+
+
+def made(calibration: Calibration) -> Made:
+    """Ready to be kept, with no transaction open."""
+    return Made(calibration, pack(calibration), parameter_values(calibration))
+
+
+def keep(store: Store, unit: int, new: Sequence[tuple[StoredSession, Made]], at: datetime) -> None:
+    """The calibrations and the parameters of the history; what is decided of them is derived."""
+    store.calibrations.add([(record, one.packed) for record, one in new], at)
+    store.history.add(unit, [(record, one.values) for record, one in new])

@@ -4,6 +4,7 @@ from service.flows.change_state import change
 from service.flows.derive_again import Deriving, derive_again
 from service.flows.flagging.settle import SERVICE
 from service.records.decision import Judged
+from service.records.derivation import Decided
 from service.records.diagnosis import Diagnosed
 from service.records.doubt import Remedies
 from service.records.session import StoredSession
@@ -23,7 +24,7 @@ def question(store: Store, way: Deriving, session: StoredSession, why: str, reme
     """Takes a stored session out of what counts, and says why before everything else, and what would put it right."""
     change(store, session, RecordState.QUESTIONED, Step(SERVICE, way.at, why), remedies=remedies)
     unjudged = Judged(store.calibrations.get(session.id), (), QUESTIONED + why, is_reference=False)
-    store.derivations.put_judged(session.id, session.revision, unjudged, NOT_JUDGED, None)
+    store.derivations.put_judged((Decided(session.id, session.revision, unjudged, NOT_JUDGED, None),))
 
 
 def question_diagnosed(store: Store, way: Deriving, id: str, found: Diagnosed) -> None:

@@ -1,22 +1,23 @@
 """Flow: a unit's stored sessions, computed again under the model that is in force now; nothing is overwritten."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 from datetime import datetime
 
 from estimator.errors import SessionError
 from estimator.results import Calibration
 from estimator.session import IN_SERVICE
 from service.flows.derive_again import Deriving, derive_again
-from service.flows.keep import keep
+from service.flows.keep import Made, keep, made
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
 from service.judging.calibrate import Basis, calibrate, rests_on_model
+from service.judging.known_unit import known_unit
 from service.judging.model_in_force import model_of
 from service.judging.moved import furthest, moved_parameters, moved_verdicts
-from service.records.model import Model
+from service.records.model import Model, ModelRevision, Scope
 from service.records.recomputation import LeftSession, MovedParameter, MovedVerdict
-from service.records.session import StoredSession
+from service.records.session import ParameterValue, StoredSession
 from service.storage import Storage
 from service.storage.files import LOST
 from service.storage.store import Store
@@ -65,29 +66,62 @@ def recalibrate(
     ``until``: the last revision that counts, so that what each of several moved can be told apart; None for all.
     ``then`` belongs to the transaction that puts it in force.
     """
-    with storage.database.reading() as store:
-        store.units.key(serial)
-        stored = store.sessions.of_unit(serial)
-    outcomes = [_recalibrated(storage, session, until) for session in stored]
-    made = [one for one in outcomes if isinstance(one, _Made)]
+    sources = _sources(storage, serial, until)
+    outcomes = [_recalibrated(storage, source) for source in sources]
+    stored = [source.session for source in sources]
+    new = [one for one in outcomes if isinstance(one, _Recomputed)]
     way = Deriving(storage.files, coverage_factor, now, at_once=None)
     with storage.database.writing() as store:
-        moved = _put_in_force(store, way, serial, made, who) if made else ()
+        moved = _put_in_force(store, way, serial, new, who) if new else ()
         done = _told(serial, stored, outcomes, moved)
         then(store, done)
     return done
 
 
+@dataclass(frozen=True)
+class _Source:
+    """A stored session with what it is computed again by."""
+
+    session: StoredSession
+    model: Model
+    """In force now."""
+    values: tuple[ParameterValue, ...]
+    """As they were computed before."""
+    recording: Calibration | None
+    """The calibration of a recording in service."""
+
+    @property
+    def is_behind(self) -> bool:
+        """Whether another model concerns it than the one that it was computed under."""
+        return self.model.revision > self.session.revision and rests_on_model(self.session.programme)
+
+
+def _sources(storage: Storage, serial: str, until: int | None) -> list[_Source]:
+    """Every session of a unit, read at once."""
+    with storage.database.reading() as store:
+        unit, stored = store.units.key(serial), store.sessions.of_unit(serial)
+        revisions = [r for r in store.models.of_unit(serial) if until is None or r.id <= until]
+        models = {s.id: model_of(_concerning(revisions, s.stand), s.started_at) for s in stored}
+        behind = [s for s in stored if models[s.id].revision > s.revision]
+        values = store.history.in_force(unit) if behind else {}
+        recordings = store.calibrations.in_force([s.id for s in behind if s.programme == IN_SERVICE])
+    return [_Source(s, models[s.id], values.get(s.id, ()), recordings.get(s.id)) for s in stored]
+
+
+def _concerning(revisions: Iterable[ModelRevision], stand: str | None) -> list[ModelRevision]:
+    """Of a unit's revisions those that concern its sessions on a stand."""
+    return [r for r in revisions if r.scope is not Scope.STAND or r.subject == stand]
+
+
 def _told(
     serial: str,
     stored: Sequence[StoredSession],
-    outcomes: "Sequence[_Made | LeftSession | None]",
+    outcomes: "Sequence[_Recomputed | LeftSession | None]",
     moved: tuple[MovedVerdict, ...],
 ) -> Recalibrated:
-    used = [
-        one.model.revision if isinstance(one, _Made) else s.revision for one, s in zip(outcomes, stored, strict=True)
-    ]
-    made = [one for one in outcomes if isinstance(one, _Made)]
+    pairs = zip(outcomes, stored, strict=True)
+    used = [one.model.revision if isinstance(one, _Recomputed) else own.revision for one, own in pairs]
+    made = [one for one in outcomes if isinstance(one, _Recomputed)]
     return Recalibrated(
         unit=serial,
         sessions=len(stored),
@@ -101,52 +135,53 @@ def _told(
 
 
 @dataclass(frozen=True, eq=False)
-class _Made:
+class _Recomputed:
     """A session computed again."""
 
     session: StoredSession
     model: Model
-    calibration: Calibration
+    made: Made
     moved: tuple[MovedParameter, ...]
 
 
-def _recalibrated(storage: Storage, stored: StoredSession, until: int | None) -> _Made | LeftSession | None:
+def _recalibrated(storage: Storage, source: _Source) -> _Recomputed | LeftSession | None:
     """One session under the model in force, why it cannot be, or None where it is already.
 
     A recording keeps its calibration here: it is compared anew with the reference that was computed again.
     """
-    with storage.database.reading() as store:
-        revisions = [r for r in store.models.of_session(stored.id) if until is None or r.id <= until]
-        model, known = model_of(revisions, stored.started_at), store.calibrations.get(stored.id)
-    if model.revision <= stored.revision or not rests_on_model(stored.programme):
+    stored, model = source.session, source.model
+    if not source.is_behind:
         return None
-    if stored.programme == IN_SERVICE:
-        return _Made(stored, model, known, ())
+    if source.recording is not None:
+        return _Recomputed(stored, model, made(source.recording), ())
     try:
         session = read_upload(storage.files.content(stored.sha256), stored.filename)
         found = calibrate(as_checked(session, stored.started_at), Basis(model, None)).calibration
     except (*LOST, SessionError) as fault:
         return LeftSession(stored.id, str(fault))
-    return _Made(stored, model, found, tuple(moved_parameters(stored.id, known, found)))
+    own = made(found)
+    return _Recomputed(stored, model, own, tuple(moved_parameters(stored.id, source.values, own.values)))
 
 
 def _put_in_force(
-    store: Store, way: Deriving, serial: str, made: Sequence[_Made], who: str
+    store: Store, way: Deriving, serial: str, made: Sequence[_Recomputed], who: str
 ) -> tuple[MovedVerdict, ...]:
     """Other calibrations beside the ones before, in force from now on, with what follows from them; what moved, also
     of sessions that are judged against one of them."""
     unit = store.units.hold(serial)
     before = {session.id: session for session in store.sessions.of_unit(serial)}
     new = [one for one in made if before[one.session.id].revision < one.model.revision]
-    for one in new:
-        store.derivations.put_revision(one.session.id, one.model.revision)
-        keep(store, unit, store.sessions.get(one.session.id), one.calibration, way.at)
     if not new:
         return ()
+    store.derivations.put_revisions({one.session.id: one.model.revision for one in new})
+    records = [(replace(before[one.session.id], revision=one.model.revision), one.made) for one in new]
+    keep(store, unit, records, way.at)
     touched = [one.session.id for one in made]
-    derive_again(store, way, serial, min(one.session.started_at for one in new), touched)
+    known = known_unit(store, unit, {one.session.id: one.made.calibration for one in new})
+    derive_again(store, way, serial, min(one.session.started_at for one in new), touched, known=known)
+    after = {session.id: session for session in store.sessions.of_unit(serial)}
     for one in new:
-        known, now = before[one.session.id], store.sessions.get(one.session.id)
-        details = {"revision": now.revision, "verdict": now.verdict.value, "before": known.verdict.value}
+        was, now = before[one.session.id], after[one.session.id]
+        details = {"revision": now.revision, "verdict": now.verdict.value, "before": was.verdict.value}
         store.audit.write(way.at, who, "recalibrate", now.id, details)
-    return tuple(moved_verdicts(before, store.sessions.of_unit(serial)))
+    return tuple(moved_verdicts(before, tuple(after.values())))

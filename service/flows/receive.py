@@ -11,7 +11,7 @@ from datetime import datetime
 from estimator.errors import SessionError
 from service.errors import RefusedError
 from service.flows.derive_again import Deriving, derive_again
-from service.flows.keep import keep
+from service.flows.keep import Made, keep, made
 from service.flows.question_session import question
 from service.flows.refuse import refuse
 from service.flows.supersede_session import give_way, supersede
@@ -19,6 +19,7 @@ from service.ingest import in_turn
 from service.ingest.checked import Checked, check, plain_filename
 from service.ingest.digest import content_digest
 from service.judging.calibrate import Calibrated, basis_of, calibrate
+from service.judging.known_unit import KnownUnit, known_unit
 from service.judging.model_in_force import model_for
 from service.judging.plausible import doubts
 from service.judging.tolerances import type_of
@@ -117,12 +118,12 @@ def upload(
         storage.files.put_back(content)
         return _known(storage, way, known, replaces)
     try:
-        calibrated = _calibrated(storage, check(where(content), received.filename, now))
+        ready = _ready(_calibrated(storage, check(where(content), received.filename, now)))
     except SessionError as fault:
         raise refuse(storage, received, fault.problems) from fault
     storage.files.keep(content)
     with storage.database.writing() as store:
-        return _store(store, way, received, calibrated, replaces)
+        return _store(store, way, received, ready, replaces)
 
 
 def _known(storage: Storage, way: Deriving, known: StoredSession, replaces: Replaced | None) -> Receipt:
@@ -141,21 +142,46 @@ def _calibrated(storage: Storage, checked: Checked) -> Calibrated:
     return calibrate(checked, basis)
 
 
-def _store(store: Store, way: Deriving, received: Received, new: Calibrated, replaces: Replaced | None) -> Receipt:
+@dataclass(frozen=True, eq=False)
+class _Ready:
+    """A session with all that its transaction needs not wait for."""
+
+    new: Calibrated
+    digest: str
+    made: Made
+
+
+def _ready(new: Calibrated) -> _Ready:
+    """With no transaction open."""
+    return _Ready(new, content_digest(new.checked.session), made(new.calibration))
+
+
+def _store(store: Store, way: Deriving, received: Received, ready: _Ready, replaces: Replaced | None) -> Receipt:
     """The record, and everything that follows from it, within one transaction."""
+    new = ready.new
     unit = _unit(store, received, new)
-    digest = content_digest(new.checked.session)
-    known = store.sessions.by_hash(received.sha256) or store.sessions.by_digest(digest)
+    known = store.sessions.same(received.sha256, ready.digest)
     if known is not None:
         if replaces is not None:
             supersede(store, way, replaces, known)
         return _receipt(store.sessions.get(known.id), created=False)
     record = _record(received, new)
     stand = store.units.stand_key(record.stand)
-    store.sessions.add(record, unit, stand, new.checked.session.block, digest)
+    store.sessions.add(record, unit, stand, new.checked.session.block, ready.digest)
     store.pending.add((record.id,), received.at)
-    keep(store, unit, record, new.calibration, received.at)
-    doubted = doubts(store, new.checked, new.calibration, {record.id} | ({replaces.session} if replaces else set()))
+    keep(store, unit, ((record, ready.made),), received.at)
+    stored = _derived(way, known_unit(store, unit, {record.id: new.calibration}), record, new.checked, replaces)
+    details = {"unit": stored.unit, "verdict": stored.verdict.value, "revision": stored.revision}
+    store.audit.write(received.at, received.who, "upload", stored.id, details)
+    return _receipt(stored, created=True)
+
+
+def _derived(
+    way: Deriving, known: KnownUnit, record: StoredSession, new: Checked, replaces: Replaced | None
+) -> StoredSession:
+    """The stored session with its verdict, after all that follows from it."""
+    store, shared = known.store, {record.id} | ({replaces.session} if replaces else set())
+    doubted = doubts(known, new, known.calibration(record.id), shared)
     if doubted:
         question(store, way, record, " ".join(doubt.text for doubt in doubted), remedies_among(doubted))
     old = None if replaces is None else give_way(store, way.at, replaces, record)
@@ -164,20 +190,20 @@ def _store(store: Store, way: Deriving, received: Received, new: Calibrated, rep
         since = min(since, old.started_at)
     elif old is not None:
         derive_again(store, way, old.unit, old.started_at, (old.id,))
-    derive_again(store, way, record.unit, since, (record.id,))
-    stored = store.sessions.get(record.id)
-    details = {"unit": stored.unit, "verdict": stored.verdict.value, "revision": stored.revision}
-    store.audit.write(received.at, received.who, "upload", stored.id, details)
-    return _receipt(stored, created=True)
+    unchanged = None if doubted or replaces else known
+    latest = derive_again(store, way, record.unit, since, (record.id,), known=unchanged).latest
+    return latest if latest is not None and latest.id == record.id else store.sessions.get(record.id)
 
 
 def _unit(store: Store, received: Received, new: Calibrated) -> int:
     """The unit, stored with its type when this is its first session, and held: rivals wait here."""
     serial = new.checked.session.unit
-    if not store.units.exists(serial):
-        unit_type = type_of(new.checked, new.calibration)
-        store.unit_types.add_once(unit_type, received.at)
-        store.units.add_once(serial, unit_type.name, received.simulated)
+    known = store.units.held(serial)
+    if known is not None:
+        return known
+    unit_type = type_of(new.checked, new.calibration)
+    store.unit_types.add_once(unit_type, received.at)
+    store.units.add_once(serial, unit_type.name, received.simulated)
     return store.units.hold(serial)
 
 

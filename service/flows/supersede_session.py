@@ -8,6 +8,7 @@ from service.flows.change_state import change
 from service.flows.derive_again import Derived, Deriving, derive_again
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
+from service.judging.known_unit import known_unit
 from service.judging.plausible import doubts
 from service.records.received import Replaced
 from service.records.session import StoredSession
@@ -44,7 +45,8 @@ def _is_settled(store: Store, way: Deriving, replaced: str, by: StoredSession) -
         source = read_upload(way.files.content(by.sha256), by.filename)
     except (*LOST, SessionError):
         return False
-    found = doubts(store, as_checked(source, by.started_at), store.calibrations.get(by.id), (by.id,))
+    known = known_unit(store, store.units.key(by.unit))
+    found = doubts(known, as_checked(source, by.started_at), known.calibration(by.id), (by.id,))
     asked = store.states.of(RecordKind.SESSION, by.id)[-1].why
     return [doubt.stands_for for doubt in found] == [replaced] and asked == found[0].text
 

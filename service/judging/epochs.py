@@ -11,7 +11,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
-from estimator.session import CALIBRATIONS, IN_SERVICE, comparable
+from estimator.session import IN_SERVICE
+from service.judging.reference import alike
 from service.records.derivation import Counted
 
 Group = tuple[str, tuple[str, ...], int]
@@ -86,8 +87,7 @@ def _is_stale(place: Place, since: datetime, moved: set[tuple[str, datetime | No
 
 def _group(one: Counted, breaks: Sequence[datetime]) -> Group:
     """A recording in service is compared with the calibrations' reference."""
-    alike = CALIBRATIONS if one.programme == IN_SERVICE else comparable(one.programme)
-    return one.block, alike, bisect_right(breaks, one.at)
+    return one.block, alike(one.programme), bisect_right(breaks, one.at)
 
 
 def _since(at: datetime, breaks: Sequence[datetime]) -> datetime | None:

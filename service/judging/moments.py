@@ -9,9 +9,9 @@ from collections.abc import Collection, Iterator
 from datetime import UTC, datetime, timedelta
 
 from service.ingest.checked import Checked
+from service.judging.known_unit import KnownUnit
 from service.records.doubt import Doubt
 from service.records.session import StoredSession
-from service.storage.store import Store
 from service.words.names import day_of
 
 FIRST_CLOCK = datetime(1980, 1, 7, tzinfo=UTC)
@@ -23,26 +23,29 @@ LONGEST_LIFE = timedelta(days=3653)
 LOST = "the clock had lost its time; put the date of the measurement into the file"
 
 
-def of_date(store: Store, new: Checked, but: Collection[str]) -> Iterator[Doubt]:
+def of_date(known: KnownUnit, new: Checked, but: Collection[str]) -> Iterator[Doubt]:
     """A doubt for a date before the unit existed; ``but`` are sessions that say nothing of that."""
     at, day = new.measured_at, day_of(new.measured_at)
     if at < FIRST_CLOCK or MILLENNIUM <= at < MILLENNIUM + RUNNING:
         yield Doubt(f"It is dated {day}", LOST)
         return
-    first = store.sessions.first_at(store.units.key(new.session.unit), but)
+    first = next((one.at for one in known.records.counted if one.id not in but), None)
     if first is not None and first - at > LONGEST_LIFE:
         years = (first - at).days // 365
         yield Doubt(f"It is dated {day}, {years} years before the unit's first session", LOST)
 
 
-def of_moment(store: Store, new: Checked, but: Collection[str]) -> Iterator[Doubt]:
+def of_moment(known: KnownUnit, new: Checked, but: Collection[str]) -> Iterator[Doubt]:
     """A doubt for an accepted session of the same block, programme and moment, other than ``but``."""
     session = new.session
     if session.started_at is None:
         return
-    unit = store.units.key(session.unit)
-    for rival in store.sessions.at_moment(unit, session.block, session.programme, new.measured_at):
-        if rival.id not in but and not _are_apart(store, rival, new):
+    own = (session.block, session.programme, new.measured_at)
+    for one in known.records.counted:
+        if (one.block, one.programme, one.at) != own or one.id in but:
+            continue
+        rival = known.store.sessions.get(one.id)
+        if not _are_apart(known, rival, new):
             yield Doubt(
                 f"The session of {rival.filename} was measured at the same moment, {_moment(new.measured_at)}",
                 "this file corrects that one or is a copy of it, or one of both has a wrong time",
@@ -56,9 +59,9 @@ def _moment(at: datetime) -> str:
     return f"{day_of(at)}, {at:%H:%M:%S} UTC"
 
 
-def _are_apart(store: Store, rival: StoredSession, new: Checked) -> bool:
+def _are_apart(known: KnownUnit, rival: StoredSession, new: Checked) -> bool:
     """Whether both can be, at one moment."""
     if {rival.stage, new.session.stage} == {"as-found", "as-left"}:
         return True
-    measured = {sensor.name for sensor in store.calibrations.get(rival.id).sensors}
+    measured = {sensor.name for sensor in known.calibration(rival.id).sensors}
     return measured.isdisjoint(sensor.name for sensor in new.session.sensors)

@@ -3,8 +3,6 @@
 from collections.abc import Iterator, Mapping, Sequence
 from math import dist
 
-from estimator.results import Calibration
-from service.judging.parameter_values import parameter_values
 from service.records.recomputation import MovedParameter, MovedVerdict
 from service.records.session import ParameterValue, StoredSession
 
@@ -17,10 +15,12 @@ def moved_verdicts(before: Mapping[str, StoredSession], after: Sequence[StoredSe
             yield MovedVerdict(now.id, now.started_at, was.verdict, now.verdict)
 
 
-def moved_parameters(session: str, before: Calibration, after: Calibration) -> Iterator[MovedParameter]:
+def moved_parameters(
+    session: str, before: Sequence[ParameterValue], after: Sequence[ParameterValue]
+) -> Iterator[MovedParameter]:
     """Every parameter that both calibrations of a session give, and by how much it moved."""
-    known = {(value.sensor, value.parameter): value for value in parameter_values(before)}
-    for now in parameter_values(after):
+    known = {(value.sensor, value.parameter): value for value in before}
+    for now in after:
         was = known.get((now.sensor, now.parameter))
         change = None if was is None else _change(was, now)
         if change is not None and was is not None and was.u:

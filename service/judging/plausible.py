@@ -16,8 +16,8 @@ from estimator.results import Calibration, SensorCalibration
 from estimator.session import CALIBRATIONS, Array, Sensor
 from service.ingest.checked import Checked
 from service.judging.beside_type import MOST, beside_type, type_of_references
+from service.judging.known_unit import KnownUnit
 from service.judging.moments import of_date, of_moment
-from service.judging.reference import reference_of
 from service.judging.tolerances import tolerances_of
 from service.records.doubt import Correction, Doubt, Remedy
 from service.records.unit import UnitType
@@ -38,24 +38,24 @@ TOO_QUIET = 1e-4
 """χ² a degree of freedom: standard errors that are stated a hundred times larger than the readings scatter."""
 
 
-def doubts(store: Store, new: Checked, calibration: Calibration, but: Collection[str]) -> tuple[Doubt, ...]:
+def doubts(known: KnownUnit, new: Checked, calibration: Calibration, but: Collection[str]) -> tuple[Doubt, ...]:
     """Everything that cannot be as the file says; none where all is plausible. ``but`` are sessions that it may share
     its moment with: itself, and the one that it replaces."""
-    return (*of_date(store, new, but), *_of_calibration(store, new, calibration), *of_moment(store, new, but))
+    return (*of_date(known, new, but), *_of_calibration(known, new, calibration), *of_moment(known, new, but))
 
 
-def _of_calibration(store: Store, new: Checked, calibration: Calibration) -> Iterator[Doubt]:
+def _of_calibration(known: KnownUnit, new: Checked, calibration: Calibration) -> Iterator[Doubt]:
     if new.session.programme not in CALIBRATIONS:
         return
     found = list(zip(new.session.sensors, calibration.sensors, strict=True))
-    reference = _reference(store, new)
+    reference = known.reference(new.session.block, new.session.programme, new.measured_at)
     beyond = (*_of_scale(found, "nominal value", {s.name: s.nominal_scale for s, _ in found}), *_of_axes(found))
     yield from beyond
     if not beyond and reference is None:
-        yield from _beside_its_type(store, new, found, calibration)
+        yield from _beside_its_type(known.store, new, found, calibration)
     elif not beyond and reference is not None:
-        known = _scales(store.calibrations.get(reference).sensors)
-        yield from _of_scale(found, "value at the unit's reference", known, Remedy.BOTH)
+        before = _scales(known.calibration(reference).sensors)
+        yield from _of_scale(found, "value at the unit's reference", before, Remedy.BOTH)
     fit = calibration.fit
     if fit.dof > 0 and 0 < fit.chi2 / fit.dof < TOO_QUIET and new.session.standard_errors is not None:
         times = (fit.dof / fit.chi2) ** 0.5
@@ -127,15 +127,6 @@ def _slip(ratio: float, sensors: tuple[str, ...], remedy: Remedy) -> tuple[str, 
             if factor / LIKE < ratio < factor * LIKE:
                 return f"{slip} in the nominal scale factor", Correction(Remedy.NOMINAL, sensors, factor)
     return "unit, sensor or nominal scale factor is another one than the file says", None
-
-
-def _reference(store: Store, new: Checked) -> str | None:
-    """The reference in force when the session was measured; None before the first."""
-    session = new.session
-    if not store.units.exists(session.unit):
-        return None
-    unit = store.units.key(session.unit)
-    return reference_of(store, unit, session.block, session.programme, new.measured_at).session
 
 
 def _scales(sensors: Sequence[SensorCalibration]) -> dict[str, float]:

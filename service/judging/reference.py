@@ -28,8 +28,12 @@ class Reference:
 def reference_of(store: Store, unit: int, block: str, programme: str, at: datetime) -> Reference:
     """The reference for a session of a block of the unit, by what was measured and when."""
     since, until = store.services.around(unit, at)
-    alike = CALIBRATIONS if programme == IN_SERVICE else comparable(programme)
-    return Reference(store.sessions.reference(unit, block, since, until, alike), since)
+    return Reference(store.sessions.reference(unit, block, since, until, alike(programme)), since)
+
+
+def alike(programme: str) -> tuple[str, ...]:
+    """Programmes whose sessions a session is judged against; a recording in service against the calibrations'."""
+    return CALIBRATIONS if programme == IN_SERVICE else comparable(programme)
 
 
 def calibration_to_compare_with(store: Store, recording: Checked) -> Calibration:

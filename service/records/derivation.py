@@ -1,8 +1,10 @@
 """A unit's accepted sessions as the derivation sees them, and what they tell of flags."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
 
+from service.records.decision import Judged
 from service.records.flag import Concern
 
 
@@ -21,9 +23,41 @@ class Counted:
 
 
 @dataclass(frozen=True)
+class UnitRecords:
+    """What everything that is derived of a unit rests on."""
+
+    counted: tuple[Counted, ...]
+    """In order of time."""
+    breaks: tuple[datetime, ...]
+    """When the epochs begin, the first one apart, in order."""
+    choices: tuple[str, ...]
+    """Sessions that engineers chose for references, the oldest choice first."""
+    references: frozenset[str]
+    """Sessions that are said to be what others are judged against, whatever their state."""
+    diagnosed: Mapping[str, datetime]
+    """Sessions with a diagnosis, whatever their state, and when they were measured."""
+    waiting: Mapping[str, datetime]
+    """The same of sessions whose diagnosis is asked for."""
+
+
+@dataclass(frozen=True)
 class Told:
     """What one session tells of its unit's flags: by its verdict, or by its diagnosis."""
 
     concerns: tuple[Concern, ...]
     clear: tuple[tuple[str, str, str], ...]
     """Matter, place (``*`` is any) and why a flag on it could be resolved."""
+
+
+@dataclass(frozen=True)
+class Decided:
+    """What was decided of a session under its model revision."""
+
+    session: str
+    revision: int
+    judged: Judged
+    basis: str
+    """What it rests on."""
+    told: Told | None
+    is_first: bool = False
+    """Whether nothing was decided of it under this revision before."""

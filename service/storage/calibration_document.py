@@ -1,5 +1,8 @@
-"""imu-calibration/1 back to the object that wrote it."""
+"""imu-calibration/1 as it is kept, and back to the object that wrote it."""
 
+import json
+import zlib
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,6 +16,24 @@ from estimator.results import (
     SensorCalibration,
 )
 from estimator.session import Array
+
+LEVEL = 4
+"""Of deflate: 4 % more bytes than the usual 6, in 40 % of the time; an upload waits for it."""
+
+
+@dataclass(frozen=True)
+class Packed:
+    """A calibration as it is kept."""
+
+    method: str
+    document: bytes
+    """The whole imu-calibration/1, deflated."""
+
+
+def pack(calibration: Calibration) -> Packed:
+    """Ready to be stored, so that no transaction waits for it."""
+    document = json.dumps(calibration.to_dict(), separators=(",", ":"), allow_nan=False)
+    return Packed(calibration.method, zlib.compress(document.encode(), LEVEL))
 
 
 def calibration_from_dict(document: dict[str, Any]) -> Calibration:

@@ -33,9 +33,10 @@ class Opened:
     proposal: str = ""
 
 
-def settle_sessions(store: Store, occasion: Occasion) -> None:
-    """Brings the flags that sessions tell of in line with the unit's accepted sessions."""
-    opened = tuple(flag for flag in store.flags.open_of(occasion.unit) if flag.matter in MATTERS)
+def settle_sessions(store: Store, occasion: Occasion) -> tuple[Flag, ...]:
+    """Brings the flags that sessions tell of in line with the unit's accepted sessions; those that were open."""
+    every = store.flags.open_of(occasion.unit)
+    opened = tuple(flag for flag in every if flag.matter in MATTERS)
     wanted = _open_now(store, occasion.unit, opened)
     by_key = {flag.key: flag for flag in opened}
     for key, one in wanted.items():
@@ -43,7 +44,9 @@ def settle_sessions(store: Store, occasion: Occasion) -> None:
     for key, flag in by_key.items():
         if key not in wanted:
             resolve_as_done(store, occasion, flag, NOT_SHOWN)
-    store.fleet.count_flags(occasion.unit)
+    if wanted.keys() - by_key.keys():
+        store.fleet.count_flags(occasion.unit)
+    return every
 
 
 def _open_now(store: Store, unit: int, opened: Iterable[Flag]) -> dict[Key, Opened]:
@@ -54,7 +57,7 @@ def _open_now(store: Store, unit: int, opened: Iterable[Flag]) -> dict[Key, Open
         for told in (verdict, diagnosis, Told(kept, ())):
             if told is not None:
                 found = _after(found, told, at)
-    settled = store.derivations.settled(unit, SERVICE)
+    settled = store.derivations.settled(unit, SERVICE) if found else {}
     return {key: one for key, one in found.items() if key not in settled or settled[key] < one.at}
 
 

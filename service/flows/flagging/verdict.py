@@ -1,9 +1,12 @@
 """Step: what the decisions of a session tell of its unit's flags, and that its unit's verdict is another one now."""
 
+from collections.abc import Iterable
+from datetime import datetime
+
 from service.flows.flagging.settle import SERVICE, Occasion, resolve_as_done
 from service.records.decision import Decision, Judged, Verdict, worst_of
 from service.records.derivation import Told
-from service.records.flag import Concern, Matter, NoticeKind
+from service.records.flag import Concern, Flag, Matter, NoticeKind
 from service.records.session import StoredSession
 from service.storage.queries.fleet import Refreshed
 from service.storage.store import Store
@@ -29,10 +32,10 @@ def tell_verdict(store: Store, occasion: Occasion, latest: StoredSession, was: R
     store.notices.add(occasion.unit, NoticeKind.VERDICT, occasion.at, SERVICE, text, session=latest.id)
 
 
-def told_by(session: StoredSession, judged: Judged) -> Told:
+def told_by(measured_at: datetime, judged: Judged) -> Told:
     """One concern a sensor that is out of tolerance; a sensor that is wholly within it is clear, and every sensor of a
     new reference."""
-    day = day_of(session.started_at)
+    day = day_of(measured_at)
     concerns, clear = [], []
     for sensor, own in _by_sensor(judged).items():
         failed = tuple(d for d in own if d.verdict in FAILS)
@@ -60,9 +63,9 @@ def _concern(sensor: str, failed: tuple[Decision, ...]) -> Concern:
     return Concern(Matter.TOLERANCE, sensor, severity, reason(failed) + more)
 
 
-def no_longer_overdue(store: Store, occasion: Occasion, latest: StoredSession) -> None:
+def no_longer_overdue(store: Store, occasion: Occasion, latest: StoredSession, opened: Iterable[Flag]) -> None:
     """The one matter that resolves itself: the calibration that was due has been done, and the next is not yet due."""
-    overdue = [flag for flag in store.flags.open_of(occasion.unit) if flag.matter is Matter.OVERDUE]
+    overdue = [flag for flag in opened if flag.matter is Matter.OVERDUE]
     outlook = store.outlooks.of_unit(latest.unit) if overdue else None
     if outlook is None or (outlook.due is not None and outlook.due < occasion.at):
         return

@@ -49,8 +49,8 @@ class Audit(Queries):
         last = self.last()
         for row in written:
             row.hash = last = _hash(last, row)
-        self._session.add_all(written)
-        self._session.flush()
+        names = ("at", "who", "account", "action", "subject", "details", "hash")
+        self.insert_many(AuditRow, [{name: getattr(row, name) for name in names} for row in written])
 
     def page(self, most: int, before: int | None = None, subject: str | None = None) -> tuple[AuditLine, ...]:
         """Lines, the newest first: of one subject, and before a line where one is given."""

@@ -27,11 +27,16 @@ class Queries:
 
     def remember_unit(self, serial: str, key: int) -> None:
         """Spares the transaction another question for a unit's key, which never changes."""
-        self._session.info[serial] = key
+        self._session.info["unit", serial] = key
 
     def remembered_unit(self, serial: str) -> int | None:
         """The key of a unit that this transaction has met."""
-        return self._session.info.get(serial)
+        return self._session.info.get(("unit", serial))
+
+    def insert_all_once(self, table: type[Base], rows: Sequence[Mapping[str, Any]]) -> None:
+        """Inserts rows in one statement, but those that are there already."""
+        if rows:
+            self._session.execute(self._upsert(table).on_conflict_do_nothing(), list(rows))
 
     def touch(self, *units: int) -> None:
         """Notes that these units may count otherwise in the fleet by the end of the transaction."""
@@ -47,6 +52,10 @@ class Queries:
 
     def insert_once(self, table: type[Base], **values: Any) -> bool:
         """Inserts a row unless a unique constraint says it is there; waits for a rival that is inserting the same."""
+        inserted = self._upsert(table).values(**values).on_conflict_do_nothing()
+        return self._session.scalar(inserted.returning(literal_column("1", Integer))) is not None
+
+    def _upsert(self, table: type[Base]) -> postgresql.Insert | sqlite.Insert:
+        """An insertion that says what becomes of rows that are there."""
         own = postgresql.insert if self._session.get_bind().dialect.name == "postgresql" else sqlite.insert
-        inserted = own(table).values(**values).on_conflict_do_nothing().returning(literal_column("1", Integer))
-        return self._session.scalar(inserted) is not None
+        return own(table)

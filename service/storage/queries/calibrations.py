@@ -2,18 +2,18 @@
 
 import json
 import zlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from datetime import datetime
 from functools import lru_cache
 
-from sqlalchemy import Select, select
+from sqlalchemy import Select, select, update
 
 from estimator.results import Calibration
 from service.errors import NotFoundError
-from service.records.decision import Judged
+from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState, DiagnosisSummary
 from service.records.session import StoredSession
-from service.storage.calibration_document import calibration_from_dict
+from service.storage.calibration_document import Packed, calibration_from_dict, pack
 from service.storage.queries.base import Queries
 from service.storage.queries.sessions import session_record, session_rows, worst_columns
 from service.storage.tables import CalibrationRow, DiagnosisRow, SessionRow
@@ -25,22 +25,25 @@ AT_HAND = 32
 class Calibrations(Queries):
     """Calibrations by session and model revision."""
 
-    def put(self, session: str, revision: int, judged: Judged, at: datetime) -> None:
-        """Stores the calibration of a session with its full covariance and residuals, and the verdict it led to."""
-        document = json.dumps(judged.calibration.to_dict(), separators=(",", ":"), allow_nan=False)
-        self._session.merge(
-            CalibrationRow(
-                session_id=session,
-                revision=revision,
-                method=judged.calibration.method,
-                document=zlib.compress(document.encode()),
-                computed_at=at,
-                verdict=judged.verdict,
-                reason=judged.reason,
-                **worst_columns(judged.worst),
-            )
-        )
-        self._session.flush()
+    def add(self, new: Sequence[tuple[StoredSession, Packed]], at: datetime) -> None:
+        """Stores new calibrations of sessions under their revisions, with full covariance and residuals; they are
+        still to be judged."""
+        rows = [
+            {
+                "session_id": session.id, "revision": session.revision, "method": packed.method,
+                "document": packed.document, "computed_at": at, "verdict": Verdict.UNDECIDABLE,
+                "reason": session.reason, **worst_columns(None),
+            }
+            for session, packed in new
+        ]  # fmt: skip
+        self.insert_many(CalibrationRow, rows)
+
+    def put(self, session: str, revision: int, calibration: Calibration) -> None:
+        """Stores another calibration in place of the one of a session and revision."""
+        packed = pack(calibration)
+        own = (CalibrationRow.session_id == session, CalibrationRow.revision == revision)
+        values = {"method": packed.method, "document": packed.document}
+        self._session.execute(update(CalibrationRow).where(*own).values(**values))
 
     def json(self, session: str, revision: int | None = None) -> bytes:
         """imu-calibration/1 of a session, as it was written: the one in force, or the one of a revision."""

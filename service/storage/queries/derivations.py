@@ -1,16 +1,18 @@
 """What is derived of a unit's accepted sessions: who is the reference, what was decided, what it tells of flags."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from datetime import datetime
+from typing import Any
 
-from sqlalchemy import delete, func, select, update
+from sqlalchemy import Table, Update, bindparam, delete, func, select, update
 
 from service.records.decision import Judged
-from service.records.derivation import Counted, Told
+from service.records.derivation import Counted, Decided, Told, UnitRecords
 from service.records.flag import Concern, FlagState, Matter, NoticeKind
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
 from service.storage.queries.sessions import NOT_JUDGED, worst_columns
+from service.storage.queries.unit_records import unit_records
 from service.storage.tables import (
     CalibrationRow,
     CommonMotionRow,
@@ -40,12 +42,18 @@ class Derivations(Queries):
         rows = self._session.execute(query.order_by(SessionRow.started_at, SessionRow.id))
         return tuple(Counted(*row) for row in rows)
 
-    def computed_at(self, id: str) -> datetime:
-        """When the calibration in force of a session was computed."""
-        query = select(CalibrationRow.computed_at).join(
-            SessionRow, (SessionRow.id == CalibrationRow.session_id) & (SessionRow.revision == CalibrationRow.revision)
-        )
-        return self._session.scalars(query.where(SessionRow.id == id)).one()
+    def records(self, unit: int) -> UnitRecords:
+        """Everything that the derived part of a unit rests on, in one statement."""
+        return unit_records(self._session, unit)
+
+    def computed_at(self, ids: Collection[str]) -> dict[str, datetime]:
+        """When the calibrations in force of some sessions were computed."""
+        if not ids:
+            return {}
+        in_force = (SessionRow.id == CalibrationRow.session_id) & (SessionRow.revision == CalibrationRow.revision)
+        query = select(SessionRow.id, CalibrationRow.computed_at).join(CalibrationRow, in_force)
+        rows = self._session.execute(query.where(SessionRow.id.in_(ids)))
+        return {id: at for id, at in rows}  # noqa: C416 - rows are no pairs
 
     def put_references(self, unit: int, references: Iterable[str]) -> None:
         """Says which of a unit's sessions others are judged against."""
@@ -54,14 +62,16 @@ class Derivations(Queries):
         self._session.execute(update(SessionRow).where(*own).values(is_reference=wanted))
         self._session.expire_all()
 
-    def put_revision(self, id: str, revision: int) -> None:
-        """Makes a session speak for its calibration of a revision; the ones before stay where they are."""
-        own = update(SessionRow).where(SessionRow.id == id)
-        self._session.execute(own.values(revision=revision, basis=NOT_JUDGED))
+    def put_revisions(self, revisions: Mapping[str, int]) -> None:
+        """Makes sessions speak for their calibrations of a revision; the ones before stay where they are."""
+        own = [{"session": id, "new_revision": revision, "new_basis": NOT_JUDGED} for id, revision in revisions.items()]
+        self._session.execute(_REVISED, own)
         self._session.expire_all()
 
-    def wait(self, ids: Iterable[str]) -> None:
+    def wait(self, ids: Collection[str]) -> None:
         """Leaves sessions to be judged later."""
+        if not ids:
+            return
         self._session.execute(update(SessionRow).where(SessionRow.id.in_(tuple(ids))).values(basis=NOT_JUDGED))
         self._session.expire_all()
 
@@ -77,16 +87,18 @@ class Derivations(Queries):
         own = (UnitRow.serial == serial, SessionRow.basis == NOT_JUDGED, IS_ACCEPTED)
         return self._session.scalar(query.where(*own)) or 0
 
-    def put_judged(self, id: str, revision: int, judged: Judged, basis: str, told: Told | None) -> None:
-        """What was decided of a session under its revision, in place of what was; the calibration stays."""
-        for table in (DecisionRow, CommonMotionRow):
-            self._session.execute(delete(table).where(table.session_id == id, table.revision == revision))
-        summary = {"verdict": judged.verdict, "reason": judged.reason, **worst_columns(judged.worst)}
-        tells = None if told is None else told_to_dict(told)
-        own = update(SessionRow).where(SessionRow.id == id)
-        self._session.execute(own.values(basis=basis, tells=tells, revision=revision, **summary))
-        under = update(CalibrationRow).where(CalibrationRow.session_id == id, CalibrationRow.revision == revision)
-        self._session.execute(under.values(**summary))
+    def put_judged(self, decided: Sequence[Decided]) -> None:
+        """What was decided of sessions under their revisions, in place of what was; the calibrations stay."""
+        if not decided:
+            return
+        again = [one.session for one in decided if not one.is_first]
+        for table in (DecisionRow, CommonMotionRow) if again else ():
+            own = select(SessionRow.revision).where(SessionRow.id == table.session_id).scalar_subquery()
+            self._session.execute(delete(table).where(table.session_id.in_(again), table.revision == own))
+        self._session.execute(_JUDGED, [_judged(one) for one in decided])
+        self._session.execute(_JUDGED_UNDER, [_judged_under(one) for one in decided])
+        self.insert_many(DecisionRow, [row for one in decided for row in _decision_rows(one)])
+        self.insert_many(CommonMotionRow, [row for one in decided for row in _motion_rows(one)])
         self._session.expire_all()
 
     def tell(self, id: str, told: Told) -> None:
@@ -131,6 +143,46 @@ class Derivations(Queries):
         )
         gone = delete(DiagnosisRow).where(DiagnosisRow.session_id.in_(later)).returning(DiagnosisRow.session_id)
         return tuple(sorted(self._session.scalars(gone)))
+
+
+def _changed(table: type[SessionRow] | type[CalibrationRow], *names: str) -> Update:
+    """An update of columns by parameters of their names."""
+    own = table.__table__
+    assert isinstance(own, Table)
+    return update(own).values({name: bindparam(f"new_{name}") for name in names})
+
+
+_SUMMARY = ("verdict", "reason", "worst_sensor", "worst_parameter", "margin")
+_JUDGED = _changed(SessionRow, *_SUMMARY, "basis", "tells").where(SessionRow.id == bindparam("session"))
+_REVISED = _changed(SessionRow, "revision", "basis").where(SessionRow.id == bindparam("session"))
+_JUDGED_UNDER = _changed(CalibrationRow, *_SUMMARY).where(
+    CalibrationRow.session_id == bindparam("session"), CalibrationRow.revision == bindparam("under")
+)
+
+
+def _summary(judged: Judged) -> dict[str, Any]:
+    own = {"verdict": judged.verdict, "reason": judged.reason, **worst_columns(judged.worst)}
+    return {f"new_{name}": value for name, value in own.items()}
+
+
+def _judged(one: Decided) -> dict[str, Any]:
+    tells = None if one.told is None else told_to_dict(one.told)
+    return {"session": one.session, "new_basis": one.basis, "new_tells": tells, **_summary(one.judged)}
+
+
+def _judged_under(one: Decided) -> dict[str, Any]:
+    return {"session": one.session, "under": one.revision, **_summary(one.judged)}
+
+
+def _decision_rows(one: Decided) -> Iterator[dict[str, Any]]:
+    own = {"session_id": one.session, "revision": one.revision}
+    for position, decision in enumerate(one.judged.decisions):
+        yield {**own, "position": position, "guard_band": decision.guard_band, **vars(decision)}
+
+
+def _motion_rows(one: Decided) -> Iterator[dict[str, Any]]:
+    for motion in one.judged.motions:
+        yield {"session_id": one.session, "revision": one.revision, **vars(motion)}
 
 
 def told_to_dict(told: Told) -> dict[str, list[list[str | int]]]:

@@ -5,7 +5,19 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import ScalarSelect, Select, delete, func, literal, or_, select, union_all, update
+from sqlalchemy import (
+    BindParameter,
+    ScalarSelect,
+    Select,
+    bindparam,
+    delete,
+    func,
+    literal,
+    or_,
+    select,
+    union_all,
+    update,
+)
 from sqlalchemy.orm import aliased, load_only
 
 from estimator.session import PROGRAMMES
@@ -16,6 +28,7 @@ from service.records.fleet import NOT_KNOWN, FleetChoices, FleetQuery, Tally
 from service.records.model import Scope
 from service.records.paper import Customer
 from service.records.reservation import Reservations
+from service.records.session import StoredSession
 from service.records.state import RecordState
 from service.records.unit import FleetCondition, UnitKnown, UnitSummary
 from service.storage.fleet_tables import FleetTallyRow
@@ -24,7 +37,7 @@ from service.storage.pending_tables import NEVER, PendingOutlookRow
 from service.storage.queries.accepted import IS_ACCEPTED, IS_BREAK
 from service.storage.queries.base import Queries
 from service.storage.queries.outlooks import outlook_of
-from service.storage.queries.sessions import NOT_JUDGED
+from service.storage.queries.sessions import NOT_JUDGED, session_record, session_rows
 from service.storage.queries.unit_types import unit_type_of
 from service.storage.queries.wanted_units import Summaries, beyond, keys, matching
 from service.storage.reservation_document import reservations_from_list
@@ -50,7 +63,7 @@ CHOICES = ("types", "stands", "lots")
 class Refreshed:
     """A unit's row, and what it said before."""
 
-    last_session: str | None
+    latest: StoredSession | None
     """None where the unit has no accepted session, and so no row."""
     before: Verdict | None
     """None where there was no row."""
@@ -64,36 +77,51 @@ OPEN_OF_GROUPS = (
 """Open flags of types and stands."""
 
 
+_UNIT: BindParameter[int] = bindparam("unit")
+_Was = aliased(SessionRow)
+"""The session that was the unit's latest."""
+_LATEST = (
+    session_rows()
+    .add_columns(
+        ConditionRow.severity,
+        ConditionRow.last_session,
+        _Was.is_reference,
+        select(func.count())
+        .select_from(Other)
+        .where(Other.unit_id == _UNIT, Other.state == RecordState.ACCEPTED)
+        .scalar_subquery(),
+    )
+    .outerjoin(ConditionRow, ConditionRow.unit_id == SessionRow.unit_id)
+    .outerjoin(_Was, _Was.id == ConditionRow.last_session)
+    .where(SessionRow.unit_id == _UNIT, IS_ACCEPTED)
+    .order_by(SessionRow.started_at.desc(), SessionRow.id.desc())
+    .limit(1)
+)
+"""The latest accepted session of a unit, what was known of it, and how many there are."""
+
+
 class Fleet(Queries):
     """All units at a glance."""
 
     def refresh(self, unit: int) -> Refreshed:
         """Rewrites a unit's row from its latest accepted session; without one it has none."""
         self.touch(unit)
-        row = self._session.get(ConditionRow, unit)
-        own = (SessionRow.unit_id == unit, IS_ACCEPTED)
-        count = self._session.scalar(select(func.count()).select_from(SessionRow).where(*own))
-        newest = select(SessionRow).where(*own).order_by(SessionRow.started_at.desc(), SessionRow.id.desc())
-        last = self._session.scalars(newest.limit(1)).one_or_none()
-        if last is None:
+        found = self._session.execute(_LATEST, {"unit": unit}).one_or_none()
+        if found is None:
             self._session.execute(delete(ConditionRow).where(ConditionRow.unit_id == unit))
-            self._session.expire_all()
             return Refreshed(None, None, was_reference=False)
-        changed = row is not None and row.severity != Verdict(last.verdict).severity
-        before = self._session.get_one(SessionRow, row.last_session) if row is not None and changed else None
-        refreshed = Refreshed(
-            last_session=last.id,
-            before=None if row is None else list(Verdict)[row.severity],
-            was_reference=before is not None and before.is_reference,
-        )
-        if row is None:
-            row = ConditionRow(unit_id=unit, flags=0)
-            self._session.add(row)
-        row.sessions, row.last_session = count or 0, last.id
-        row.severity, row.margin = Verdict(last.verdict).severity, last.margin
-        row.last_at, row.stand_id = last.started_at, last.stand_id
-        self._session.flush()
-        return refreshed
+        *session, severity, was_last, was_reference, count = found
+        last, latest = session[0], session_record(*session)
+        values = {
+            "sessions": count, "last_session": last.id, "severity": latest.verdict.severity, "margin": last.margin,
+            "last_at": last.started_at, "stand_id": last.stand_id,
+        }  # fmt: skip
+        if was_last is None:
+            self.insert_many(ConditionRow, ({"unit_id": unit, "flags": 0, **values},))
+            return Refreshed(latest, None, was_reference=False)
+        self._session.execute(update(ConditionRow).where(ConditionRow.unit_id == unit).values(**values))
+        changed = severity != latest.verdict.severity
+        return Refreshed(latest, list(Verdict)[severity], was_reference=changed and was_reference)
 
     def count_flags(self, unit: int) -> None:
         """Rewrites how many flags of a unit are open; those of its type and of stands are not its own."""

@@ -3,7 +3,7 @@
 import zlib
 from datetime import datetime
 
-from sqlalchemy import ColumnElement, Select, and_, delete, func, or_, select, update
+from sqlalchemy import ColumnElement, Select, and_, bindparam, delete, func, or_, select, update
 
 from estimator.groups.statistics import FORMAT
 from estimator.session import CALIBRATIONS
@@ -47,16 +47,10 @@ class Groups(Queries):
 
     def of_unit(self, serial: str) -> tuple[Group, ...]:
         """The groups that a unit's sessions are in, whatever their state."""
-        unit, of_type = self._session.execute(
-            select(UnitRow, UnitTypeRow).join(UnitTypeRow).where(UnitRow.serial == serial)
-        ).one()
-        stands = select(StandRow.id, StandRow.name).join(SessionRow, SessionRow.stand_id == StandRow.id)
-        on = self._session.execute(stands.where(SessionRow.unit_id == unit.id).distinct().order_by(StandRow.id))
-        return (
-            Group(Level.UNIT, unit.id, serial),
-            Group(Level.TYPE, of_type.id, of_type.name),
-            *(Group(Level.STAND, key, name) for key, name in on),
-        )
+        rows = self._session.execute(_OF_UNIT, {"serial": serial}).all()
+        unit, of_type, called = rows[0][:3]
+        on = (Group(Level.STAND, key, name) for *_, key, name in rows if key is not None)
+        return (Group(Level.UNIT, unit, serial), Group(Level.TYPE, of_type, called), *on)
 
     def members(self, group: Group, since: datetime | None) -> Members:
         """The newest accepted sessions of a group that calibrate a block, not before a time.
@@ -111,6 +105,15 @@ class Groups(Queries):
         self._session.expire_all()
 
 
+_OF_UNIT = (
+    select(UnitRow.id, UnitTypeRow.id, UnitTypeRow.name, StandRow.id, StandRow.name)
+    .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+    .outerjoin(SessionRow, SessionRow.unit_id == UnitRow.id)
+    .outerjoin(StandRow, StandRow.id == SessionRow.stand_id)
+    .where(UnitRow.serial == bindparam("serial"))
+    .distinct()
+    .order_by(StandRow.id)
+)
 _COUNTS = (IS_ACCEPTED, SessionRow.programme.in_(CALIBRATIONS))
 
 

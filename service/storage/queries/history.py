@@ -1,8 +1,9 @@
 """Parameters through time, one row a session, sensor and parameter."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from datetime import datetime
+from typing import Any
 
 from sqlalchemy import ColumnElement, delete, func, select
 
@@ -35,23 +36,9 @@ class HistoryQuery:
 class History(Queries):
     """Parameters through time."""
 
-    def add(self, unit: int, record: StoredSession, values: Iterable[ParameterValue]) -> None:
-        """Stores the parameters of a session under its model revision, sensor after sensor."""
-        own = {"session_id": record.id, "revision": record.revision, "unit_id": unit, "at": record.started_at}
-        rows = [
-            {
-                **own,
-                "sensor": value.sensor,
-                "sensor_index": value.sensor_index,
-                "kind": value.kind,
-                "parameter": value.parameter,
-                "value": value.value,
-                "u": value.u,
-                **dict(zip(("axis_x", "axis_y", "axis_z"), value.axis or (None, None, None), strict=True)),
-            }
-            for value in values
-        ]
-        self.insert_many(ParameterRow, rows)
+    def add(self, unit: int, new: Iterable[tuple[StoredSession, Iterable[ParameterValue]]]) -> None:
+        """Stores the parameters of sessions under their model revisions, sensor after sensor."""
+        self.insert_many(ParameterRow, [row for record, values in new for row in _rows(unit, record, values)])
 
     def drop(self, record: StoredSession) -> None:
         """Takes out what a session gave under its model revision: a recording moves another calibration now."""
@@ -82,6 +69,18 @@ class History(Queries):
         ]
         return tuple(reversed(found)) if wanted.newest else tuple(found)
 
+    def in_force(self, unit: int) -> dict[str, tuple[ParameterValue, ...]]:
+        """The parameters of a unit's sessions under their revisions in force, by session."""
+        names = ("sensor", "sensor_index", "kind", "parameter", "value", "u", "axis_x", "axis_y", "axis_z")
+        columns = (getattr(ParameterRow, name) for name in names)
+        own = (SessionRow.id == ParameterRow.session_id) & (SessionRow.revision == ParameterRow.revision)
+        query = select(ParameterRow.session_id, *columns).join(SessionRow, own).where(ParameterRow.unit_id == unit)
+        found: dict[str, list[ParameterValue]] = {}
+        rows: Iterable[Any] = self._session.execute(query)
+        for row in rows:
+            found.setdefault(row.session_id, []).append(_parameter_value(row))
+        return {session: tuple(values) for session, values in found.items()}
+
     def references_of_type(self, name: str, but: str, most: int) -> tuple[ParameterValue, ...]:
         """The parameters of the newest reference sessions of a type's units, without one unit."""
         newest = (
@@ -98,7 +97,16 @@ class History(Queries):
         return tuple(_parameter_value(row) for row in rows)
 
 
-def _parameter_value(row: ParameterRow) -> ParameterValue:
+def _rows(unit: int, record: StoredSession, values: Iterable[ParameterValue]) -> Iterator[dict[str, Any]]:
+    own = {"session_id": record.id, "revision": record.revision, "unit_id": unit, "at": record.started_at}
+    for value in values:
+        x, y, z = value.axis or (None, None, None)
+        seen = {name: getattr(value, name) for name in ("sensor", "sensor_index", "kind", "parameter", "value", "u")}
+        yield {**own, **seen, "axis_x": x, "axis_y": y, "axis_z": z}
+
+
+def _parameter_value(row: Any) -> ParameterValue:
+    """Of a row of `ParameterRow`, or of its columns."""
     axis = None
     if row.axis_x is not None and row.axis_y is not None and row.axis_z is not None:
         axis = (row.axis_x, row.axis_y, row.axis_z)

@@ -100,6 +100,22 @@ class Models(Queries):
         )
         return tuple(map(_revision, self._session.scalars(query)))
 
+    def of_unit(self, serial: str) -> tuple[ModelRevision, ...]:
+        """All revisions that concern any session of a unit, oldest first, in one query."""
+        stands = (
+            select(StandRow.name)
+            .join(SessionRow, SessionRow.stand_id == StandRow.id)
+            .join(UnitRow, UnitRow.id == SessionRow.unit_id)
+            .where(UnitRow.serial == serial)
+        )
+        of_type = select(UnitTypeRow.name).join(UnitRow, UnitRow.unit_type_id == UnitTypeRow.id)
+        owner = or_(
+            and_(ModelRow.scope == Scope.UNIT, ModelRow.subject == serial),
+            and_(ModelRow.scope == Scope.UNIT_TYPE, ModelRow.subject.in_(of_type.where(UnitRow.serial == serial))),
+            and_(ModelRow.scope == Scope.STAND, ModelRow.subject.in_(stands)),
+        )
+        return tuple(map(_revision, self._session.scalars(select(ModelRow).where(owner).order_by(ModelRow.id))))
+
     def units_behind(self, after: str, limit: int) -> tuple[str, ...]:
         """Serial numbers, in order and after one, of units with sessions that a later revision than theirs concerns."""
         query = select(UnitRow.serial).join(UnitTypeRow).where(_is_behind(), UnitRow.serial > after)

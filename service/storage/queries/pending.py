@@ -17,9 +17,8 @@ class PendingDiagnoses(Queries):
 
     def add(self, sessions: Iterable[str], now: datetime) -> None:
         """Asks for diagnoses; one that is asked for already is left alone."""
-        for id in sessions:
-            values = {"asked_at": now, "ticket": uuid4().hex, "attempts": 0}
-            self.insert_once(PendingRow, session_id=id, **values)
+        rows = [{"session_id": id, "asked_at": now, "ticket": uuid4().hex, "attempts": 0} for id in sessions]
+        self.insert_all_once(PendingRow, rows)
 
     def look_again(self, unit: int, since: datetime, judged: Collection[str]) -> None:
         """What is being made of a unit's sessions from a date on, or of some, looks at what has changed since."""

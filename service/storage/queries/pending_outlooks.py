@@ -3,7 +3,7 @@
 from datetime import datetime
 from uuid import uuid4
 
-from sqlalchemy import ColumnElement, Update, delete, or_, select, update
+from sqlalchemy import ColumnElement, Update, case, delete, or_, select, update
 
 from service.storage.pending_tables import NEVER, PendingOutlookRow
 from service.storage.queries.base import Queries
@@ -15,11 +15,13 @@ class PendingOutlooks(Queries):
 
     def ask(self, unit: int, now: datetime) -> None:
         """Asks for a unit's outlook; what is being made of it now is made again."""
-        ticket = uuid4().hex
-        if not self.insert_once(PendingOutlookRow, unit_id=unit, asked_at=now, ticket=ticket, attempts=0):
-            own = update(PendingOutlookRow).where(PendingOutlookRow.unit_id == unit)
-            self._session.execute(own.values(ticket=ticket))
-            self._session.execute(own.where(_IS_GIVEN_UP).values(claimed_until=None, attempts=0))
+        new = self._upsert(PendingOutlookRow).values(unit_id=unit, asked_at=now, ticket=uuid4().hex, attempts=0)
+        again = {
+            "ticket": new.excluded.ticket,
+            "claimed_until": case((_IS_GIVEN_UP, None), else_=PendingOutlookRow.claimed_until),
+            "attempts": case((_IS_GIVEN_UP, 0), else_=PendingOutlookRow.attempts),
+        }
+        self._session.execute(new.on_conflict_do_update(index_elements=["unit_id"], set_=again))
 
     def ticket(self, serial: str) -> str | None:
         """Under which a unit's is asked for; None where it is as its history says."""

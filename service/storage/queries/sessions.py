@@ -1,11 +1,10 @@
 """Sessions and their decisions."""
 
-from collections.abc import Collection
 from dataclasses import asdict, fields, replace
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Select, and_, func, or_, select, update
+from sqlalchemy import Select, and_, or_, select, update
 
 from estimator.health.common_motion import CommonMotion
 from estimator.session import CALIBRATIONS
@@ -43,10 +42,11 @@ class Sessions(Queries):
         found = self._session.execute(session_rows().where(SessionRow.sha256 == sha256)).one_or_none()
         return None if found is None else session_record(*found)
 
-    def by_digest(self, digest: str) -> StoredSession | None:
-        """The session of this content, whatever the format of its file."""
-        found = self._session.execute(session_rows().where(SessionRow.content_digest == digest)).first()
-        return None if found is None else session_record(*found)
+    def same(self, sha256: str, digest: str) -> StoredSession | None:
+        """The session made of these bytes, or else of this content, whatever the format of its file."""
+        same = (SessionRow.sha256 == sha256) | (SessionRow.content_digest == digest)
+        found = [session_record(*row) for row in self._session.execute(session_rows().where(same))]
+        return min(found, key=lambda one: one.sha256 != sha256, default=None)
 
     def get(self, id: str) -> StoredSession:
         """One session."""
@@ -105,10 +105,8 @@ class Sessions(Queries):
         """Stores a session that is still to be judged; its hash is unique."""
         values = asdict(record)
         del values["unit"], values["stand"], values["reservations"]
-        self._session.add(
-            SessionRow(unit_id=unit, stand_id=stand, block=block, content_digest=digest, basis=NOT_JUDGED, **values)
-        )
-        self._session.flush()
+        own = {"unit_id": unit, "stand_id": stand, "block": block, "content_digest": digest, "basis": NOT_JUDGED}
+        self.insert_many(SessionRow, ({**values, **own},))
 
     def set_stage(self, id: str, stage: str | None) -> None:
         """Says of a session whether it shows the unit as found or as left."""
@@ -152,22 +150,6 @@ class Sessions(Queries):
         latest = query.order_by(SessionRow.started_at.desc(), SessionRow.id.desc()).limit(most)
         return tuple(session_record(*found) for found in self._session.execute(latest))[::-1]
 
-    def first_at(self, unit: int, but: Collection[str]) -> datetime | None:
-        """When a unit was first measured, by its accepted sessions without some; None without any."""
-        query = select(func.min(SessionRow.started_at)).where(SessionRow.unit_id == unit, IS_ACCEPTED)
-        return self._session.scalar(query.where(SessionRow.id.not_in(but)))
-
-    def at_moment(self, unit: int, block: str, programme: str, at: datetime) -> tuple[StoredSession, ...]:
-        """Accepted sessions of a unit's block and programme that were measured at one moment."""
-        query = session_rows().where(
-            SessionRow.unit_id == unit,
-            SessionRow.block == block,
-            SessionRow.programme == programme,
-            SessionRow.started_at == at,
-            IS_ACCEPTED,
-        )
-        return tuple(session_record(*found) for found in self._session.execute(query.order_by(SessionRow.id)))
-
     def corrected(self, session: StoredSession) -> tuple[str, ...]:
         """Sessions, accepted or questioned, that were uploaded later than one, of the same unit, programme and date."""
         query = session_rows().where(
@@ -194,18 +176,6 @@ class Sessions(Queries):
             )
         )
         return tuple(self._session.scalars(query.order_by(SessionRow.id).limit(limit)))
-
-    def add_decisions(self, id: str, decisions: tuple[Decision, ...], revision: int) -> None:
-        """Stores what was decided of a session's parameters under a model revision."""
-        rows = [
-            {"session_id": id, "revision": revision, "position": position, "guard_band": one.guard_band, **vars(one)}
-            for position, one in enumerate(decisions)
-        ]
-        self.insert_many(DecisionRow, rows)
-
-    def add_motions(self, id: str, motions: tuple[CommonMotion, ...], revision: int) -> None:
-        """Stores what all sensors of a session did together under a model revision."""
-        self.insert_many(CommonMotionRow, [{"session_id": id, "revision": revision, **vars(one)} for one in motions])
 
     def motions(self, id: str) -> tuple[CommonMotion, ...]:
         """What all sensors of a session did together under the revision in force."""

@@ -5,10 +5,10 @@ order of their keys, so that two transactions never wait for each other crosswis
 """
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from sqlalchemy import delete, func, insert, select
+from sqlalchemy import BindParameter, CompoundSelect, bindparam, delete, func, literal_column, select, union_all
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
@@ -37,69 +37,72 @@ class Tallies(Queries):
             self._settle_stands(units)
 
     def _settle_conditions(self, units: Collection[int]) -> None:
-        was, now = self._tallied(units), self._seen(units)
+        was, now = self._tallied_and_seen(units)
         changed = {unit for unit, own in now.items() if was.get(unit) != own}
         if not changed:
             return
-        self._session.execute(delete(TalliedRow).where(TalliedRow.unit_id.in_(changed)))
-        self._session.execute(insert(TalliedRow), [{"unit_id": unit, **now[unit]} for unit in sorted(changed)])
+        rows = [{"unit_id": unit, **now[unit]} for unit in sorted(changed)]
+        _put(self._session, TalliedRow, ("unit_id",), rows)
         gone = [was[unit] for unit in changed if unit in was]
         counts = _counted([now[unit] for unit in changed], gone)
         _add(self._session, FleetTallyRow, KEY, counts)
 
-    def _tallied(self, units: Collection[int]) -> dict[int, dict[str, Any]]:
-        """What units added so far."""
-        columns = [getattr(TalliedRow, name) for name in (*KEY, "flags", "reserved")]
-        rows = self._session.execute(select(TalliedRow.unit_id, *columns).where(TalliedRow.unit_id.in_(units)))
-        return {row[0]: dict(zip((*KEY, "flags", "reserved"), row[1:], strict=True)) for row in rows}
-
-    def _seen(self, units: Collection[int]) -> dict[int, dict[str, Any]]:
-        """What they add by their rows of now."""
-        query = (
-            select(
-                UnitRow.id, UnitRow.unit_type_id, UnitRow.simulated, ConditionRow.severity, SessionRow.is_reference,
-                ConditionRow.margin, ConditionRow.flags, DiagnosisRow.reservations.is_not(None),
-            )
-            .outerjoin(ConditionRow, ConditionRow.unit_id == UnitRow.id)
-            .outerjoin(SessionRow, SessionRow.id == ConditionRow.last_session)
-            .outerjoin(DiagnosisRow, DiagnosisRow.session_id == ConditionRow.last_session)
-            .where(UnitRow.id.in_(units))
-        )  # fmt: skip
-        return {
+    def _tallied_and_seen(self, units: Collection[int]) -> tuple[dict[int, dict[str, Any]], dict[int, dict[str, Any]]]:
+        """What units added so far, and what they add by their rows of now."""
+        rows = self._session.execute(_TALLIED_AND_SEEN, {"units": sorted(units)}).all()
+        was = {row[0]: dict(zip((*KEY, "flags", "reserved"), row[8:], strict=True)) for row in rows}
+        now = {
             unit: {
-                "unit_type_id": of_type, "is_simulated": simulated, "bar": bar_of(margin), "flags": flags or 0,
-                "severity": NOT_KNOWN if severity is None else severity, "is_reference": bool(reference),
-                "reserved": int(bool(reserved)),
+                "unit_type_id": of_type, "severity": NOT_KNOWN if severity is None else severity,
+                "is_reference": bool(reference), "is_simulated": simulated, "bar": bar_of(margin),
+                "flags": flags or 0, "reserved": int(bool(reserved)),
             }
-            for unit, of_type, simulated, severity, reference, margin, flags, reserved in self._session.execute(query)
+            for unit, of_type, severity, reference, simulated, margin, flags, reserved, *_ in rows
         }  # fmt: skip
+        return {unit: own for unit, own in was.items() if own["severity"] is not None}, now
 
     def _settle_stands(self, units: Collection[int]) -> None:
-        was, now = self._stood(units), self._stands(units)
+        was, now = self._stood_and_stands(units)
         changed = sorted(key for key in {*was, *now} if was.get(key) != now.get(key))
-        for unit, stand in changed:
+        for unit, stand in (key for key in changed if key not in now):
             own = (StandUnitRow.unit_id == unit, StandUnitRow.stand_id == stand)
             self._session.execute(delete(StandUnitRow).where(*own))
         kept = [{"unit_id": key[0], "stand_id": key[1], "sessions": now[key]} for key in changed if key in now]
-        if kept:
-            self._session.execute(insert(StandUnitRow), kept)
+        _put(self._session, StandUnitRow, ("unit_id", "stand_id"), kept)
         counts: dict[Key, Counter[str]] = {}
         for key in changed:
             more = {"sessions": now.get(key, 0) - was.get(key, 0), "units": (key in now) - (key in was)}
             counts.setdefault((key[1],), Counter()).update(more)
         _add(self._session, StandTallyRow, ("stand_id",), counts)
 
-    def _stood(self, units: Collection[int]) -> dict[Stood, int]:
-        """Sessions by unit and stand as they were counted so far."""
-        row = StandUnitRow
-        query = select(row.unit_id, row.stand_id, row.sessions).where(row.unit_id.in_(units))
-        return {(unit, stand): count for unit, stand, count in self._session.execute(query)}
+    def _stood_and_stands(self, units: Collection[int]) -> tuple[dict[Stood, int], dict[Stood, int]]:
+        """Sessions by unit and stand as they were counted so far, and by the rows of now."""
+        rows = self._session.execute(_STOOD_AND_STANDS, {"units": sorted(units)}).all()
+        was, now = ({(unit, stand): count for what, unit, stand, count in rows if what == of} for of in ("was", "now"))
+        return was, now
 
-    def _stands(self, units: Collection[int]) -> dict[Stood, int]:
-        """The same by the rows of now."""
-        place = (SessionRow.unit_id, SessionRow.stand_id)
-        query = select(*place, func.count()).where(SessionRow.unit_id.in_(units), IS_ACCEPTED).group_by(*place)
-        return {(unit, stand): count for unit, stand, count in self._session.execute(query) if stand is not None}
+
+_UNITS: BindParameter[list[int]] = bindparam("units", expanding=True)
+_TALLIED_AND_SEEN = (
+    select(
+        UnitRow.id, UnitRow.unit_type_id, ConditionRow.severity, SessionRow.is_reference, UnitRow.simulated,
+        ConditionRow.margin, ConditionRow.flags, DiagnosisRow.reservations.is_not(None),
+        *(getattr(TalliedRow, name) for name in (*KEY, "flags", "reserved")),
+    )
+    .outerjoin(ConditionRow, ConditionRow.unit_id == UnitRow.id)
+    .outerjoin(SessionRow, SessionRow.id == ConditionRow.last_session)
+    .outerjoin(DiagnosisRow, DiagnosisRow.session_id == ConditionRow.last_session)
+    .outerjoin(TalliedRow, TalliedRow.unit_id == UnitRow.id)
+    .where(UnitRow.id.in_(_UNITS))
+)  # fmt: skip
+_STOOD_AND_STANDS: CompoundSelect[*tuple[Any, ...]] = union_all(
+    select(literal_column("'was'"), StandUnitRow.unit_id, StandUnitRow.stand_id, StandUnitRow.sessions).where(
+        StandUnitRow.unit_id.in_(_UNITS)
+    ),
+    select(literal_column("'now'"), SessionRow.unit_id, SessionRow.stand_id, func.count())
+    .where(SessionRow.unit_id.in_(_UNITS), IS_ACCEPTED, SessionRow.stand_id.is_not(None))
+    .group_by(SessionRow.unit_id, SessionRow.stand_id),
+)
 
 
 def _counted(come: Iterable[Mapping[str, Any]], gone: Iterable[Mapping[str, Any]]) -> dict[Key, dict[str, int]]:
@@ -123,6 +126,16 @@ def _add(session: Session, table: type[Base], key: tuple[str, ...], counts: Mapp
     names = [name for name in rows[0] if name not in key]
     added = {name: getattr(table, name) + getattr(new.excluded, name) for name in names}
     session.execute(new.on_conflict_do_update(index_elements=list(key), set_=added))
+
+
+def _put(session: Session, table: type[Base], key: tuple[str, ...], rows: Sequence[Mapping[str, Any]]) -> None:
+    """Rows in place of those of their keys."""
+    if not rows:
+        return
+    own = postgresql.insert if session.get_bind().dialect.name == "postgresql" else sqlite.insert
+    new = own(table)
+    kept = {name: getattr(new.excluded, name) for name in rows[0] if name not in key}
+    session.execute(new.on_conflict_do_update(index_elements=list(key), set_=kept), list(rows))
 
 
 def _rows(key: tuple[str, ...], counts: Mapping[Key, Mapping[str, int]]) -> Iterator[dict[str, Any]]:

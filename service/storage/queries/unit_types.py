@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from datetime import datetime
 
-from sqlalchemy import Select, func, select
+from sqlalchemy import Select, bindparam, func, select
 
 from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
@@ -14,6 +14,9 @@ from service.storage.fleet_tables import FleetTallyRow
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
 from service.storage.tables import ParameterRow, SessionRow, ToleranceRow, UnitRow, UnitTypeRow
+
+TypeThroughTime = tuple[tuple[datetime, UnitType], ...]
+"""A type with every revision of its tolerances, and since when each holds; oldest first."""
 
 
 class UnitTypes(Queries):
@@ -50,18 +53,10 @@ class UnitTypes(Queries):
             raise NotFoundError(f"There is no unit {serial!r}.")
         return unit_type_of(*found)
 
-    def of_unit_at(self, serial: str, at: datetime) -> UnitType:
-        """The type of a unit with the tolerances that held at a time; with its first ones before that."""
-        query = (
-            select(UnitTypeRow, ToleranceRow)
-            .join(UnitRow, UnitRow.unit_type_id == UnitTypeRow.id)
-            .join(ToleranceRow, ToleranceRow.unit_type_id == UnitTypeRow.id)
-            .where(UnitRow.serial == serial)
-            .order_by(ToleranceRow.revision)
-        )
-        found = self._session.execute(query).all()
-        held = [row for row in found if row[1].since <= at] or found[:1]
-        return unit_type_of(*held[-1])
+    def of_unit_through_time(self, serial: str) -> TypeThroughTime:
+        """The type of a unit with every revision of its tolerances, oldest first."""
+        found = self._session.execute(_THROUGH_TIME, {"serial": serial})
+        return tuple((tolerances.since, unit_type_of(row, tolerances)) for row, tolerances in found)
 
     def page(self, offset: int, limit: int) -> tuple[UnitType, ...]:
         """Types by name."""
@@ -146,6 +141,20 @@ class UnitTypes(Queries):
 
     def _record(self, row: UnitTypeRow) -> UnitType:
         return unit_type_of(row, self._session.get_one(ToleranceRow, (row.id, row.revision)))
+
+
+_THROUGH_TIME = (
+    select(UnitTypeRow, ToleranceRow)
+    .join(UnitRow, UnitRow.unit_type_id == UnitTypeRow.id)
+    .join(ToleranceRow, ToleranceRow.unit_type_id == UnitTypeRow.id)
+    .where(UnitRow.serial == bindparam("serial"))
+    .order_by(ToleranceRow.revision)
+)
+
+
+def held_at(known: TypeThroughTime, at: datetime) -> UnitType:
+    """The type with the tolerances that held at a time; with its first ones before that."""
+    return ([of for since, of in known if since <= at] or [known[0][1]])[-1]
 
 
 def _with_tolerances() -> Select[UnitTypeRow, ToleranceRow]:

@@ -51,9 +51,20 @@ class Units(Queries):
         type_id = select(UnitTypeRow.id).where(UnitTypeRow.name == unit_type).scalar_subquery()
         self.insert_once(UnitRow, serial=serial, unit_type_id=type_id, simulated=simulated)
 
+    def held(self, serial: str) -> int | None:
+        """The key of a unit that is there, with the unit held until the transaction ends: its sessions are judged one
+        after another."""
+        known: int | None = self._session.info.get(("held", serial))
+        if known is None:
+            known = self._session.scalar(select(UnitRow.id).where(UnitRow.serial == serial).with_for_update())
+        if known is not None:
+            self._session.info["held", serial] = known
+            self.remember_unit(serial, known)
+        return known
+
     def hold(self, serial: str) -> int:
-        """The unit's key, with the unit held until the transaction ends: its sessions are judged one after another."""
-        key = self._session.scalar(select(UnitRow.id).where(UnitRow.serial == serial).with_for_update())
+        """The same of a unit that must be there."""
+        key = self.held(serial)
         if key is None:
             raise NotFoundError(f"There is no unit {serial!r}.")
         return key
@@ -73,5 +84,9 @@ class Units(Queries):
         """The key of a stand, stored when it is new; None without a stand."""
         if name is None:
             return None
-        self.insert_once(StandRow, name=name)
-        return self._session.scalar(select(StandRow.id).where(StandRow.name == name))
+        query = select(StandRow.id).where(StandRow.name == name)
+        known = self._session.scalar(query)
+        if known is None:
+            self.insert_once(StandRow, name=name)
+            known = self._session.scalar(query)
+        return known

@@ -59,12 +59,3 @@ def test_what_would_put_it_right_is_kept_as_its_file_tells_it(storage: Storage) 
         if file.is_file():
             file.unlink()
     assert remedies_of(storage, id, life).correction == "readings of A1–A6 × 0.001"
-
-
-def test_what_would_put_it_right_is_kept_as_its_file_tells_it(storage: Storage) -> None:
-    id = upload(storage, in_mv(), "a.json", NOW).id
-    with storage.database.reading() as store:
-        life = store.states.of(RecordKind.SESSION, id)
-    assert remedies_of(storage, id, life) == remedies_of(storage, id, ())
-    storage.files.path(storage_digest(storage, id)).unlink()
-    assert remedies_of(storage, id, life).correction == "readings of A1–A6 × 0.001"

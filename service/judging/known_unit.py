@@ -1,0 +1,63 @@
+"""Step: what a transaction has read of a unit that it holds, so that nothing is read twice."""
+
+from collections.abc import Collection
+from dataclasses import dataclass, field
+from datetime import datetime
+
+from estimator.results import Calibration
+from service.judging.reference import alike
+from service.records.derivation import Counted, UnitRecords
+from service.storage.queries.services import epoch
+from service.storage.store import Store
+from service.words.advice import too_few
+
+
+@dataclass(frozen=True)
+class KnownUnit:
+    """A unit's records, and the calibrations of its sessions that were asked for."""
+
+    store: Store
+    unit: int
+    records: UnitRecords
+    made: dict[str, Calibration] = field(default_factory=dict)
+    """Calibrations that this transaction stores: nothing was decided of them before."""
+    read: dict[str, Calibration] = field(default_factory=dict)
+    """Calibrations in force that it has read."""
+
+    def calibration(self, id: str) -> Calibration:
+        """The one in force of a session."""
+        if id in self.made:
+            return self.made[id]
+        if id not in self.read:
+            self.read[id] = self.store.calibrations.get(id)
+        return self.read[id]
+
+    def read_all(self, ids: Collection[str]) -> None:
+        """Reads those of several sessions at once."""
+        unread = {*ids} - self.made.keys() - self.read.keys()
+        if len(unread) > 1:
+            self.read.update(self.store.calibrations.in_force(unread))
+
+    def is_blind(self, one: Counted) -> bool:
+        """Whether a session gives no uncertainty; a reference gave one when it was taken for it."""
+        return not one.is_reference and bool(too_few(self.calibration(one.id)))
+
+    def reference(self, block: str, programme: str, at: datetime) -> str | None:
+        """The session that one of a block, programme and time is judged against."""
+        since, until = epoch(self.records.breaks, at)
+        return next(
+            (
+                one.id
+                for one in self.records.counted
+                if one.is_reference
+                and (one.block, one.programme in alike(programme)) == (block, True)
+                and (since is None or one.at >= since)
+                and (until is None or one.at < until)
+            ),
+            None,
+        )
+
+
+def known_unit(store: Store, unit: int, made: dict[str, Calibration] | None = None) -> KnownUnit:
+    """A unit as its rows are now, with calibrations that were stored just before."""
+    return KnownUnit(store, unit, store.derivations.records(unit), made or {})
