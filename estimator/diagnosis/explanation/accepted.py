@@ -34,7 +34,7 @@ def calibrate_extended(session: CalibrationSession, causes: Sequence[Accepted]) 
     rows = averaged(session)
     known = [cause(identifier) for identifier, _ in causes]
     clips, whole = unclipped(rows, known)
-    state = begin(with_its_flip(whole), (), known)
+    state = begin(with_its_flip(whole), (), known, patterns=())
     done = {(clip.cause.identifier, (clip.sensor,)) for clip in clips}
     for identifier, sensors in causes:
         for place in places(rows, sensors):

@@ -24,8 +24,14 @@ CLOSE = 0.01
 """Relative change of a variance below which it has settled: hundreds of readings tell it to some per cent."""
 
 
-def begin(baseline: Baseline, history: Sequence[Baseline], catalogue: Sequence[Cause]) -> SearchState:
-    """The search for causes of a catalogue in a fitted session; ``history`` in the frame of the session."""
+def begin(
+    baseline: Baseline,
+    history: Sequence[Baseline],
+    catalogue: Sequence[Cause],
+    patterns: Sequence[Signature] = PATTERNS,
+) -> SearchState:
+    """The search for causes of a catalogue in a fitted session; ``history`` in the frame of the session. ``patterns``
+    are looked for besides; none where nothing is searched for."""
     baseline = since(baseline, history)
     residuals = WhitenedResiduals.of(baseline, parameter_change(baseline, history))
     signatures = [c for c in catalogue if isinstance(c, Signature)]
@@ -34,19 +40,19 @@ def begin(baseline: Baseline, history: Sequence[Baseline], catalogue: Sequence[C
         tuple(catalogue),
         residuals,
         tuple(traces_of(residuals, signatures)),
-        tuple(pattern_traces(residuals)),
+        tuple(pattern_traces(residuals, patterns)),
         baseline.variance,
     )
 
 
-def pattern_traces(residuals: WhitenedResiduals) -> Iterator[Traces]:
+def pattern_traces(residuals: WhitenedResiduals, patterns: Sequence[Signature]) -> Iterator[Traces]:
     """The traces of structure without a name.
 
     Whether a sensor changed since the history is asked in stated noise only: one that is estimated from what is left
     would be smaller for two structures than for the one cause that they stand in for.
     """
     stated = ~residuals.baseline.unstated
-    for traces in traces_of(residuals, PATTERNS):
+    for traces in traces_of(residuals, patterns):
         asked = range(len(traces.shapes))
         own = [k for k in asked if stated[traces.sensor[k]]] if traces.cause.between else asked
         if own:
