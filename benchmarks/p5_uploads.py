@@ -4,6 +4,9 @@ The peer is a FastAPI endpoint that parses the same JSON and commits its bytes i
 same durability. Both are processes of their own; clients are threads of this one, over connections that they keep. The
 two are driven in turn, so that a busy machine slows both. Every upload is another session of one of some units, later
 than the ones before; diagnoses follow in processes of the service, on the same cores.
+
+How services share work is measured without those processes: two cores have room for two services, and for nothing
+beside. What an upload takes of the processor is told too, which other programs on the machine hardly change.
 """
 
 import json
@@ -22,6 +25,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
+import psutil
 import uvicorn
 from fastapi import FastAPI, Request
 
@@ -171,11 +175,11 @@ def delays(port: int, document: dict[str, Any]) -> list[float]:
 
 
 @contextmanager
-def services(folder: str, how_many: int) -> Iterator[tuple[int, ...]]:
-    """Ports of services on one new database."""
-    settings = Settings(data_folder=Path(folder), database_url=f"sqlite:///{folder}/{how_many}.sqlite")
+def services(folder: str, how_many: int, *, beside: bool = True) -> Iterator[tuple[int, ...]]:
+    """Ports of services on one new database, with the processes that work beside their requests, or without."""
+    settings = Settings(data_folder=Path(folder), database_url=f"sqlite:///{folder}/{next(numbers)}.sqlite")
     upgrade(settings.database)
-    started = [Service(settings, free_port()) for _ in range(how_many)]
+    started = [Service(settings, free_port(), beside=beside) for _ in range(how_many)]
     for service in started:
         service.start()
     try:
@@ -183,6 +187,34 @@ def services(folder: str, how_many: int) -> Iterator[tuple[int, ...]]:
     finally:
         for service in started:
             service.kill()
+
+
+def processor(port: int) -> float:
+    """Seconds of the processor that the process that listens on a port has taken so far, without its children."""
+    (own,) = {c.pid for c in psutil.net_connections("tcp") if c.status == "LISTEN" and c.laddr.port == port}
+    times = psutil.Process(own).cpu_times()
+    return float(times.user + times.system)
+
+
+def taken_by(port: int, document: dict[str, Any]) -> float:
+    """Seconds of the processor for an upload of one client."""
+    began, end = processor(port), time.monotonic() + SECONDS
+    done = len(Client(port, 0, document).upload_until(end))
+    return (processor(port) - began) / done
+
+
+def alone(folder: str, peer: int, document: dict[str, Any]) -> Iterator[Figure]:
+    """What uploads take where nothing is made beside them, and how clients and services share the cores."""
+    with services(folder, 1, beside=False) as ports:
+        taken_by(ports[0], document)
+        ours, theirs = in_turn(lambda: taken_by(ports[0], document), lambda: taken_by(peer, document))
+        yield Figure("P5, processor", WORK.format(clients="processor of the service"), PEER, ours, theirs, "0.2")
+        eight, two = in_turn(lambda: rate(ports, 8, document), lambda: rate(ports, 2, document))
+        yield Figure("P5, clients", WORK.format(clients="8 clients"), "2 clients", 1 / eight, 1 / two, "≥ 1")
+        with services(folder, 2, beside=False) as more:
+            both, one = in_turn(lambda: rate(more, 8, document), lambda: rate(ports, 8, document))
+        what = WORK.format(clients="8 clients, two services")
+        yield Figure("P5, services", what, "one service", 1 / both, 1 / one, "≥ 1.7")
 
 
 def run() -> Iterator[Figure]:
@@ -202,6 +234,7 @@ def run() -> Iterator[Figure]:
                 )
             name = f"{clients} client{'s' if clients > 1 else ''}{', two services' if how_many == 2 else ''}"
             yield Figure(f"P5, {name}", WORK.format(clients=name), PEER, 1 / ours, 1 / theirs, "0.2")
+        yield from alone(folder, peer, document)
 
 
 def main() -> None:

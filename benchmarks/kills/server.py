@@ -29,11 +29,13 @@ def free_port() -> int:
     return port
 
 
-def serve(settings: Settings, port: int) -> None:
-    """What the process does until it is killed."""
+def serve(settings: Settings, port: int, *, beside: bool = True) -> None:
+    """What the process does until it is killed; without work ``beside`` it answers requests and nothing else."""
     logging.disable()
     here = settings.model_copy(update={"port": port})
-    Server(create_app(here), here).run()
+    server = Server(create_app(here), here)
+    server.config.lifespan = "on" if beside else "off"
+    server.run()
 
 
 @dataclass
@@ -43,6 +45,8 @@ class Service:
     settings: Settings
     port: int
     process: BaseProcess | None = None
+    beside: bool = True
+    """Whether it makes diagnoses and the like beside the requests."""
 
     @property
     def address(self) -> str:
@@ -51,7 +55,7 @@ class Service:
 
     def start(self) -> None:
         """Starts it, and waits until it is ready."""
-        self.process = forking.Process(target=serve, args=(self.settings, self.port))
+        self.process = forking.Process(target=serve, args=(self.settings, self.port), kwargs={"beside": self.beside})
         self.process.start()
         transport = httpx.HTTPTransport(retries=0)
         with httpx.Client(transport=transport) as client:

@@ -4,7 +4,9 @@ The unit of a change is that of its quantity: rad for axes, relative for scales.
 reference turned by a rotation of the block, exactly: what is left is small whatever the turn, and only that is linear.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -32,17 +34,17 @@ class Changes:
     dofs: tuple[tuple[float | None, float | None], ...] = ()
     """Of each sensor the degrees of freedom of both covariances; none where all noise is known."""
 
-    @property
+    @cached_property
     def rows(self) -> int:
         """r."""
         return len(self.y) // max(len(self.names), 1)
 
-    @property
+    @cached_property
     def covariance(self) -> Array:
         """(m r, m r) of both sessions, and what sensors do on their own, rad² or relative²."""
         return self.own + self.origin + self.scatter**2 * np.eye(len(self.y))
 
-    @property
+    @cached_property
     def dof(self) -> float | None:
         """Effective degrees of freedom that the least known sensor's noise is known to; None when all is known."""
         own, origin = np.diagonal(self.own), np.diagonal(self.origin)
@@ -52,9 +54,11 @@ class Changes:
             found.append(combined((float(own[at].sum()), now), (float(origin[at].sum()), then), known))
         return min((dof for dof in found if dof is not None), default=None)
 
-    def where(self, sensors: list[int]) -> Array:
-        """(n r,) places of the rows of n sensors, a number without unit."""
-        return (np.array(sensors, dtype=int)[:, None] * self.rows + np.arange(self.rows)).ravel()
+    def where(self, sensors: Sequence[int] | Sequence[Sequence[int]]) -> Array:
+        """(..., n r) places of the rows of n sensors each, a number without unit."""
+        numbers = np.array(sensors, dtype=int)
+        places = numbers[..., None] * self.rows + np.arange(self.rows)
+        return places.reshape(*numbers.shape[:-1], -1)
 
 
 @dataclass(frozen=True, eq=False)

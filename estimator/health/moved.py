@@ -62,7 +62,7 @@ def fits(changes: Changes, sets: Sequence[Sequence[int]]) -> Fits:
     covariance = changes.covariance
     for size in {len(one) for one in sets}:
         own = [i for i, one in enumerate(sets) if len(one) == size]
-        at = np.stack([changes.where(list(sets[i])) for i in own])
+        at = changes.where([list(sets[i]) for i in own])
         g, w = _solved(changes.design[at], covariance[at[:, :, None], at[:, None, :]])
         y = changes.y[at]
         chi2[own] = np.einsum("sp,spq,sq->s", y, w, y)

@@ -105,10 +105,12 @@ def _weights(sets: Sets, tried: Tried) -> Array:
     every = list({*tried.inside, *rests})
     chi2 = dict(zip(every, fits(sets.changes, [sorted(one) for one in every]).chi2, strict=True))
     costs = [sets.cost(i) for i in range(len(sets.changes.names))]
+    stays = np.array([-chi2[rest] / 2 for rest in rests])
+    goes = np.array([costs[j] - chi2[inside] / 2 for j, inside in zip(tried.judged, tried.inside, strict=True)])
+    held = [inside == rest for inside, rest in zip(tried.inside, rests, strict=True)]
+    paid = [sum(costs[i] for i in moved) for moved in tried.moved]
     logs = np.full((len(costs), len(rests)), -np.inf)
-    for n, (j, moved, inside, rest) in enumerate(zip(tried.judged, tried.moved, tried.inside, rests, strict=True)):
-        stays, goes = -chi2[rest] / 2, costs[j] - chi2[inside] / 2
-        logs[j, n] = sum(costs[i] for i in moved) + (stays if inside == rest else np.logaddexp(stays, goes))
+    logs[tried.judged, np.arange(len(rests))] = paid + np.where(held, stays, np.logaddexp(stays, goes))
     weights = np.exp(logs - logs.max(axis=1, keepdims=True))
     weights /= weights.sum(axis=1, keepdims=True)
     weights[weights <= LEAST] = 0.0

@@ -6,12 +6,13 @@ rests on what it must rest on is left alone, so an ordinary upload judges one se
 """
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 
 from estimator.errors import SessionError
 from estimator.parity import parity_check
 from estimator.parity.as_calibration import parity_calibration
+from estimator.results import Calibration
 from estimator.session import CALIBRATIONS, IN_SERVICE
 from service.flows.flagging.drift import flag_drift
 from service.flows.flagging.fold import settle_sessions
@@ -24,10 +25,10 @@ from service.ingest import read_upload
 from service.judging.calibrate import Comparison
 from service.judging.epochs import Place, needs_judging, placed
 from service.judging.judge import judge, judge_recording
-from service.judging.known_unit import KnownUnit, known_unit
+from service.judging.known_unit import Foreseen, KnownUnit, known_unit
 from service.judging.parameter_values import parameter_values
 from service.records.decision import Judged, Opening
-from service.records.derivation import Decided
+from service.records.derivation import Counted, Decided
 from service.records.group import Level
 from service.records.session import StoredSession
 from service.records.unit import UnitType
@@ -187,12 +188,32 @@ def _decided(by: _Judging, place: Place) -> Decided:
     return Decided(own.id, own.revision, judged, place.basis, told, is_first=own.id in by.known.made)
 
 
+def foresee(store: Store, way: Deriving, serial: str, new: Counted, calibration: Calibration) -> Foreseen | None:
+    """How a calibration that is to be stored is judged if nothing changes until then; None where that is soon done:
+    it is a unit's first, or becomes a reference."""
+    unit = store.units.find(serial)
+    if unit is None or new.programme == IN_SERVICE:
+        return None
+    found = known_unit(store, unit, {new.id: calibration})
+    counted = tuple(sorted((*found.records.counted, new), key=lambda one: (one.at, one.id)))
+    known = replace(found, records=replace(found.records, counted=counted))
+    place = next(p for p in _placed(known) if p.session.id == new.id)
+    if place.is_reference or place.reference is None:
+        return None
+    by = _Judging(way, serial, known, {}, store.unit_types.of_unit_through_time(serial))
+    return Foreseen(place.basis, by.unit_type(new.id), _calibration(by, place))
+
+
 def _calibration(by: _Judging, place: Place) -> Judged:
     """By the tolerances that held when it was computed."""
-    own, k = by.known.calibration(place.session.id), by.way.coverage_factor
-    against = None if place.is_reference or place.reference is None else by.known.calibration(place.reference.id)
+    known, unit_type, foreseen = by.known, by.unit_type(place.session.id), by.known.foreseen
+    is_foreseen = foreseen is not None and place.session.id in known.made
+    if foreseen is not None and is_foreseen and (foreseen.basis, foreseen.unit_type) == (place.basis, unit_type):
+        return foreseen.judged
+    own, k = known.calibration(place.session.id), by.way.coverage_factor
+    against = None if place.is_reference or place.reference is None else known.calibration(place.reference.id)
     opening = Opening.CHOSEN if place.is_chosen else Opening.SERVICE if place.since is not None else Opening.FIRST
-    return judge(own, against, by.unit_type(place.session.id), k, opening=opening)
+    return judge(own, against, unit_type, k, opening=opening)
 
 
 def _recording(by: _Judging, place: Place) -> Judged:

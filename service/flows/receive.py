@@ -10,7 +10,7 @@ from datetime import datetime
 
 from estimator.errors import SessionError
 from service.errors import RefusedError
-from service.flows.derive_again import Deriving, derive_again
+from service.flows.derive_again import Deriving, derive_again, foresee
 from service.flows.keep import Made, keep, made
 from service.flows.question_session import question
 from service.flows.refuse import refuse
@@ -19,17 +19,19 @@ from service.ingest import in_turn
 from service.ingest.checked import Checked, check, plain_filename
 from service.ingest.digest import content_digest
 from service.judging.calibrate import Calibrated, basis_of, calibrate
-from service.judging.known_unit import KnownUnit, known_unit
+from service.judging.known_unit import Foreseen, KnownUnit, known_unit
 from service.judging.model_in_force import model_for
 from service.judging.plausible import doubts
 from service.judging.tolerances import type_of
 from service.metrics import Metrics
 from service.records.decision import Verdict
+from service.records.derivation import Counted
 from service.records.doubt import remedies_among
 from service.records.received import Content, Received, Replaced, SentFile, where
 from service.records.session import Receipt, StoredSession
 from service.storage import Storage
 from service.storage.files import content_hash
+from service.storage.queries.sessions import NOT_JUDGED
 from service.storage.store import Store
 
 ID_DIGITS = 20
@@ -118,7 +120,7 @@ def upload(
         storage.files.put_back(content)
         return _known(storage, way, known, replaces)
     try:
-        ready = _ready(_calibrated(storage, check(where(content), received.filename, now)))
+        ready = _ready(storage, way, received, _calibrated(storage, check(where(content), received.filename, now)))
     except SessionError as fault:
         raise refuse(storage, received, fault.problems) from fault
     storage.files.keep(content)
@@ -149,11 +151,17 @@ class _Ready:
     new: Calibrated
     digest: str
     made: Made
+    foreseen: Foreseen | None
 
 
-def _ready(new: Calibrated) -> _Ready:
-    """With no transaction open."""
-    return _Ready(new, content_digest(new.checked.session), made(new.calibration))
+def _ready(storage: Storage, way: Deriving, received: Received, new: Calibrated) -> _Ready:
+    """With no transaction open that others wait for."""
+    record, session = _record(received, new), new.checked.session
+    own = (record.id, session.block, record.programme, record.started_at, record.revision)
+    with storage.database.reading() as store:
+        counted = Counted(*own, is_reference=False, basis=NOT_JUDGED)
+        foreseen = foresee(store, way, record.unit, counted, new.calibration)
+    return _Ready(new, content_digest(session), made(new.calibration), foreseen)
 
 
 def _store(store: Store, way: Deriving, received: Received, ready: _Ready, replaces: Replaced | None) -> Receipt:
@@ -170,7 +178,9 @@ def _store(store: Store, way: Deriving, received: Received, ready: _Ready, repla
     store.sessions.add(record, unit, stand, new.checked.session.block, ready.digest)
     store.pending.add((record.id,), received.at)
     keep(store, unit, ((record, ready.made),), received.at)
-    stored = _derived(way, known_unit(store, unit, {record.id: new.calibration}), record, new.checked, replaces)
+    stored = _derived(
+        way, known_unit(store, unit, {record.id: new.calibration}, ready.foreseen), record, new.checked, replaces
+    )
     details = {"unit": stored.unit, "verdict": stored.verdict.value, "revision": stored.revision}
     store.audit.write(received.at, received.who, "upload", stored.id, details)
     return _receipt(stored, created=True)

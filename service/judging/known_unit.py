@@ -6,10 +6,23 @@ from datetime import datetime
 
 from estimator.results import Calibration
 from service.judging.reference import alike
+from service.records.decision import Judged
 from service.records.derivation import Counted, UnitRecords
+from service.records.unit import UnitType
 from service.storage.queries.services import epoch
 from service.storage.store import Store
 from service.words.advice import too_few
+
+
+@dataclass(frozen=True)
+class Foreseen:
+    """How a new session is judged if nothing changes until its transaction: judging takes longer than storing, and
+    nobody else can store meanwhile."""
+
+    basis: str
+    """What it was judged by, as its place says."""
+    unit_type: UnitType
+    judged: Judged
 
 
 @dataclass(frozen=True)
@@ -23,6 +36,8 @@ class KnownUnit:
     """Calibrations that this transaction stores: nothing was decided of them before."""
     read: dict[str, Calibration] = field(default_factory=dict)
     """Calibrations in force that it has read."""
+    foreseen: Foreseen | None = None
+    """Of the only session that it stores."""
 
     def calibration(self, id: str) -> Calibration:
         """The one in force of a session."""
@@ -58,6 +73,8 @@ class KnownUnit:
         )
 
 
-def known_unit(store: Store, unit: int, made: dict[str, Calibration] | None = None) -> KnownUnit:
+def known_unit(
+    store: Store, unit: int, made: dict[str, Calibration] | None = None, foreseen: Foreseen | None = None
+) -> KnownUnit:
     """A unit as its rows are now, with calibrations that were stored just before."""
-    return KnownUnit(store, unit, store.derivations.records(unit), made or {})
+    return KnownUnit(store, unit, store.derivations.records(unit), made or {}, foreseen=foreseen)

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cached_property
 from math import inf
 
 from estimator.coverage import nominal_factor
@@ -92,10 +93,13 @@ class Judged:
     @property
     def verdict(self) -> Verdict:
         """That of the worst decision."""
-        worst = worst_of(self.decisions)
-        return Verdict.UNDECIDABLE if worst is None else worst.verdict
+        return Verdict.UNDECIDABLE if self._worst is None else self._worst.verdict
 
     @property
     def worst(self) -> Decision | None:
         """What the verdict hangs on; None when nothing was judged, as of a reference."""
-        return None if self.is_reference else worst_of(self.decisions)
+        return None if self.is_reference else self._worst
+
+    @cached_property
+    def _worst(self) -> Decision | None:
+        return worst_of(self.decisions)

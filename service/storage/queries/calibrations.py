@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from datetime import datetime
 from functools import lru_cache
 
-from sqlalchemy import Select, select, update
+from sqlalchemy import Select, bindparam, select, update
 
 from estimator.results import Calibration
 from service.errors import NotFoundError
@@ -47,14 +47,8 @@ class Calibrations(Queries):
 
     def json(self, session: str, revision: int | None = None) -> bytes:
         """imu-calibration/1 of a session, as it was written: the one in force, or the one of a revision."""
-        query = select(CalibrationRow.document).where(CalibrationRow.session_id == session)
-        if revision is None:
-            query = query.join(SessionRow, SessionRow.id == CalibrationRow.session_id).where(
-                CalibrationRow.revision == SessionRow.revision
-            )
-        else:
-            query = query.where(CalibrationRow.revision == revision)
-        deflated = self._session.scalar(query)
+        query = _IN_FORCE if revision is None else _UNDER
+        deflated = self._session.scalar(query, {"session": session, "under": revision})
         if deflated is None:
             under = "" if revision is None else f" under model revision {revision}"
             raise NotFoundError(f"There is no calibration of session {session!r}{under}.")
@@ -101,6 +95,16 @@ class Calibrations(Queries):
         """The model revisions that a session was computed under, in order."""
         query = select(CalibrationRow.revision).where(CalibrationRow.session_id == session)
         return tuple(self._session.scalars(query.order_by(CalibrationRow.revision)))
+
+
+_UNDER = select(CalibrationRow.document).where(
+    CalibrationRow.session_id == bindparam("session"), CalibrationRow.revision == bindparam("under")
+)
+_IN_FORCE = (
+    select(CalibrationRow.document)
+    .join(SessionRow, SessionRow.id == CalibrationRow.session_id)
+    .where(CalibrationRow.session_id == bindparam("session"), CalibrationRow.revision == SessionRow.revision)
+)
 
 
 @lru_cache(maxsize=AT_HAND)

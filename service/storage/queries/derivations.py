@@ -112,15 +112,9 @@ class Derivations(Queries):
 
         None where that was not kept or is not there; last whether the session was judged before it was kept.
         """
-        query = (
-            select(SessionRow.started_at, SessionRow.id, SessionRow.tells, DiagnosisRow.tells, SessionRow.basis)
-            .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
-            .where(SessionRow.unit_id == unit, IS_ACCEPTED)
-            .order_by(SessionRow.started_at, SessionRow.id)
-        )
         return tuple(
             ((at, id), _told(verdict), _told(diagnosis), basis is None)
-            for at, id, verdict, diagnosis, basis in self._session.execute(query)
+            for at, id, verdict, diagnosis, basis in self._session.execute(_TOLD, {"unit": unit})
         )
 
     def settled(self, unit: int, by_service: str) -> dict[Key, Moment]:
@@ -152,6 +146,12 @@ def _changed(table: type[SessionRow] | type[CalibrationRow], *names: str) -> Upd
     return update(own).values({name: bindparam(f"new_{name}") for name in names})
 
 
+_TOLD = (
+    select(SessionRow.started_at, SessionRow.id, SessionRow.tells, DiagnosisRow.tells, SessionRow.basis)
+    .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
+    .where(SessionRow.unit_id == bindparam("unit"), IS_ACCEPTED)
+    .order_by(SessionRow.started_at, SessionRow.id)
+)
 _SUMMARY = ("verdict", "reason", "worst_sensor", "worst_parameter", "margin")
 _JUDGED = _changed(SessionRow, *_SUMMARY, "basis", "tells").where(SessionRow.id == bindparam("session"))
 _REVISED = _changed(SessionRow, "revision", "basis").where(SessionRow.id == bindparam("session"))

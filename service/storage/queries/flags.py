@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from itertools import groupby
 
-from sqlalchemy import ColumnElement, Row, and_, case, or_, select, update
+from sqlalchemy import ColumnElement, Row, and_, bindparam, case, or_, select, update
 from sqlalchemy.orm import aliased
 
 from service.errors import NotFoundError
@@ -97,9 +97,7 @@ class Flags(Queries):
 
     def open_of(self, unit: int) -> tuple[Flag, ...]:
         """The flags of a unit that are not resolved, without their lives."""
-        query = select(FlagRow, UnitRow.serial).join(UnitRow, UnitRow.id == FlagRow.unit_id)
-        own = (FlagRow.unit_id == unit, IS_OF_UNIT, FlagRow.state != FlagState.RESOLVED)
-        found = self._session.execute(query.where(*own))
+        found = self._session.execute(_OPEN_OF, {"unit": unit})
         return tuple(_flag(row, serial) for row, serial in found)
 
     def open_about(self, *matters: Matter) -> tuple[Flag, ...]:
@@ -189,6 +187,13 @@ class Flags(Queries):
         """Writes what a notice changed."""
         self._session.execute(update(FlagRow).where(FlagRow.id == id).values(changed_at=at, **changed))
         self._session.expire_all()
+
+
+_OPEN_OF = (
+    select(FlagRow, UnitRow.serial)
+    .join(UnitRow, UnitRow.id == FlagRow.unit_id)
+    .where(FlagRow.unit_id == bindparam("unit"), IS_OF_UNIT, FlagRow.state != FlagState.RESOLVED)
+)
 
 
 def _with_lives(rows: Iterable[Row[FlagRow, str, NoticeRow]]) -> tuple[Flag, ...]:

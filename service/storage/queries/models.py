@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from sqlalchemy import ColumnElement, and_, func, or_, select
+from sqlalchemy import ColumnElement, and_, bindparam, func, or_, select
 
 from estimator.session import CALIBRATIONS, IN_SERVICE
 from service.errors import NotFoundError
@@ -73,18 +73,8 @@ class Models(Queries):
 
     def for_upload(self, unit: str, new_type: str, stand: str | None) -> tuple[ModelRevision, ...]:
         """All revisions that concern a session yet to be stored, oldest first; a new unit gets the new type."""
-        known_type = (
-            select(UnitTypeRow.name).join(UnitRow, UnitRow.unit_type_id == UnitTypeRow.id).where(UnitRow.serial == unit)
-        )
-        owner = or_(
-            and_(ModelRow.scope == Scope.UNIT, ModelRow.subject == unit),
-            and_(
-                ModelRow.scope == Scope.UNIT_TYPE,
-                ModelRow.subject == func.coalesce(known_type.scalar_subquery(), new_type),
-            ),
-            and_(ModelRow.scope == Scope.STAND, ModelRow.subject == (stand or "")),
-        )
-        return tuple(map(_revision, self._session.scalars(select(ModelRow).where(owner).order_by(ModelRow.id))))
+        named = {"serial": unit, "new_type": new_type, "stand": stand or ""}
+        return tuple(map(_revision, self._session.scalars(_FOR_UPLOAD, named)))
 
     def of_session(self, id: str) -> tuple[ModelRevision, ...]:
         """All revisions that concern a stored session, oldest first, in one query."""
@@ -124,6 +114,27 @@ class Models(Queries):
     def count_behind(self) -> int:
         """How many those are."""
         return self._session.scalar(select(func.count(UnitRow.id)).join(UnitTypeRow).where(_is_behind())) or 0
+
+
+_KNOWN_TYPE = (
+    select(UnitTypeRow.name)
+    .join(UnitRow, UnitRow.unit_type_id == UnitTypeRow.id)
+    .where(UnitRow.serial == bindparam("serial"))
+    .scalar_subquery()
+)
+_FOR_UPLOAD = (
+    select(ModelRow)
+    .where(
+        or_(
+            and_(ModelRow.scope == Scope.UNIT, ModelRow.subject == bindparam("serial")),
+            and_(
+                ModelRow.scope == Scope.UNIT_TYPE, ModelRow.subject == func.coalesce(_KNOWN_TYPE, bindparam("new_type"))
+            ),
+            and_(ModelRow.scope == Scope.STAND, ModelRow.subject == bindparam("stand")),
+        )
+    )
+    .order_by(ModelRow.id)
+)
 
 
 def _is_behind() -> ColumnElement[bool]:

@@ -4,7 +4,7 @@ from dataclasses import asdict, fields, replace
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Select, and_, or_, select, update
+from sqlalchemy import Select, and_, bindparam, or_, select, update
 
 from estimator.health.common_motion import CommonMotion
 from estimator.session import CALIBRATIONS
@@ -39,18 +39,18 @@ class Sessions(Queries):
 
     def by_hash(self, sha256: str) -> StoredSession | None:
         """The session made of these bytes, if they were uploaded before."""
-        found = self._session.execute(session_rows().where(SessionRow.sha256 == sha256)).one_or_none()
+        found = self._session.execute(_BY_HASH, {"sha256": sha256}).one_or_none()
         return None if found is None else session_record(*found)
 
     def same(self, sha256: str, digest: str) -> StoredSession | None:
         """The session made of these bytes, or else of this content, whatever the format of its file."""
-        same = (SessionRow.sha256 == sha256) | (SessionRow.content_digest == digest)
-        found = [session_record(*row) for row in self._session.execute(session_rows().where(same))]
+        rows = self._session.execute(_SAME, {"sha256": sha256, "digest": digest})
+        found = [session_record(*row) for row in rows]
         return min(found, key=lambda one: one.sha256 != sha256, default=None)
 
     def get(self, id: str) -> StoredSession:
         """One session."""
-        found = self._session.execute(session_rows().where(SessionRow.id == id)).one_or_none()
+        found = self._session.execute(_BY_ID, {"id": id}).one_or_none()
         if found is None:
             raise NotFoundError(f"There is no session {id!r}.")
         return session_record(*found)
@@ -250,11 +250,20 @@ def session_rows() -> Select[SessionRow, str, str, str | None, list[Any] | None]
     )
 
 
+_BY_ID = session_rows().where(SessionRow.id == bindparam("id"))
+_BY_HASH = session_rows().where(SessionRow.sha256 == bindparam("sha256"))
+_SAME = session_rows().where(
+    (SessionRow.sha256 == bindparam("sha256")) | (SessionRow.content_digest == bindparam("digest"))
+)
+FIELDS = tuple(f.name for f in fields(StoredSession) if f.name not in ELSEWHERE)
+"""Plain columns of a session's row."""
+
+
 def session_record(
     row: SessionRow, unit: str, stand: str | None, diagnosed: str | None, reservations: list[Any] | None
 ) -> StoredSession:
     """A stored session, of a row of `session_rows`."""
-    own = {f.name: getattr(row, f.name) for f in fields(StoredSession) if f.name not in ELSEWHERE}
+    own = {name: getattr(row, name) for name in FIELDS}
     verdict, state = Verdict(row.verdict), RecordState(row.state)
     said_with = reservations_from_list(diagnosed, reservations)
     return StoredSession(unit=unit, stand=stand, verdict=verdict, state=state, reservations=said_with, **own)

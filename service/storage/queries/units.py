@@ -69,6 +69,10 @@ class Units(Queries):
             raise NotFoundError(f"There is no unit {serial!r}.")
         return key
 
+    def find(self, serial: str) -> int | None:
+        """The key of a unit; None where no session of it was ever stored."""
+        return self._session.scalar(select(UnitRow.id).where(UnitRow.serial == serial))
+
     def key(self, serial: str) -> int:
         """The unit's key, which never changes: asked for once a transaction."""
         known = self.remembered_unit(serial)
