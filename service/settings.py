@@ -163,6 +163,13 @@ class Settings(BaseSettings):
         description="Processes that make diagnoses and outlooks beside the requests. 0: a diagnosis is made when "
         "somebody reads it, an outlook with the upload.",
     )
+    diagnosis_niceness: int = Field(
+        default=10,
+        ge=0,
+        le=19,
+        description="How far those processes stand back behind requests where all cores are busy, as `nice` counts: 10 "
+        "leaves them about a tenth of a core that requests want too, 0 half of it.",
+    )
     coverage_factor: float = Field(
         default=2.0, gt=0, le=5, description="k: expanded uncertainty and guard band are k times the standard one."
     )

@@ -35,9 +35,6 @@ LOOK_EVERY = 0.25
 """Seconds between two looks whether the service is stopping while a diagnosis is made."""
 LONGEST = 600
 """Seconds by the clock that a diagnosis may take; then its process is ended. The largest that is allowed takes tens."""
-GIVES_WAY = 10
-"""Of `nice`: on cores that are all busy a request goes before; it costs nothing where none waits. One that waits for
-rows that a transaction of such a process holds leaves it the core."""
 ANSWERS = multiprocessing.get_context("forkserver")
 """How processes are started."""
 
@@ -144,7 +141,7 @@ class Helper:
 def work(pipe: Connection, settings: Settings) -> None:
     """In the process: makes what is asked for until nobody is there to ask."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # of a terminal; the service decides
-    os.nice(GIVES_WAY)
+    os.nice(settings.diagnosis_niceness)  # a request that waits for what it holds leaves it the core
     limits.use(limits.limits_of(settings))
     write_log()
     storage = open_storage(settings)

@@ -3,9 +3,10 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from functools import lru_cache
 from hashlib import sha256
 
-from estimator.health.pooled import learn
+from estimator.health.pooled import Prior, learn
 from service.judging.forecast import Past, forecast
 from service.judging.histories import Histories, histories, told_of_type
 from service.measures import COVERAGE
@@ -18,6 +19,8 @@ END_OF_TIME = datetime(9999, 1, 1, tzinfo=UTC)
 """After every break."""
 RULE = b"3"
 """Version of what an outlook says of a history: those made by an earlier one are made again."""
+AT_HAND = 32
+"""Parameters whose prior is kept: those of several types. Units are worked out again type by type."""
 TypeHistories = dict[tuple[str, str], tuple[bytes, ...]]
 """What a type's units tell, by kind of sensor and parameter."""
 
@@ -68,9 +71,15 @@ def gathered(store: Store, serial: str, known: Histories) -> Sources:
 def worked_out(sources: Sources) -> UnitOutlook:
     """The numerical part, with no store at hand."""
     told = sources.told
-    priors = {place: learn([one for row in rows for one in unpacked(row)]) for place, rows in told.items()}
+    priors = {place: learned(rows) for place, rows in told.items()}
     outlook = forecast(sources.past, sources.known, priors)
     return replace(outlook, rests_on=digest(told), together=sources.together)
+
+
+@lru_cache(maxsize=AT_HAND)
+def learned(rows: tuple[bytes, ...]) -> Prior:
+    """What the histories of a type's units let expect of a parameter. It is the same for most units of a large type."""
+    return learn([one for row in rows for one in unpacked(row)])
 
 
 def of_type(store: Store, unit: int) -> TypeHistories:
