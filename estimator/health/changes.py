@@ -50,6 +50,8 @@ class Changes:
         own, origin = np.diagonal(self.own), np.diagonal(self.origin)
         found = []
         for i, (now, then) in enumerate(self.dofs):
+            if now is None and then is None:
+                continue
             at, known = self.where([i]), (self.rows * self.scatter**2, None)
             found.append(combined((float(own[at].sum()), now), (float(origin[at].sum()), then), known))
         return min((dof for dof in found if dof is not None), default=None)

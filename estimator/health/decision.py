@@ -4,7 +4,7 @@ What all sensors did together (`common_motion`) is taken off first: a sensor is 
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -172,27 +172,31 @@ def _assess_axis(change: Deviation, tolerance: float, k: float) -> _Assessed:
 def _judgement(case: _Case, found: _Assessed | None, k: float, together: tuple[int, float]) -> Judgement:
     """The case with its verdict; ``together``: how many are judged, and the level of them all."""
     value, reference = _values(case)
-    judgement = Judgement(
+    if found is None:
+        return Judgement(
+            sensor=case.sensor.name,
+            kind=case.sensor.kind,
+            parameter=case.parameter,
+            value=value,
+            reference=reference,
+            deviation=None,
+            uncertainty=None,
+            expanded=None,
+            tolerance=case.tolerance,
+            probability_out=None,
+            critical=None,
+            verdict=UNDECIDABLE,
+            coverage_factor=k,
+        )
+    (judged, level), dof, motion = together, found.change.dof, case.motion
+    critical = critical_factors(judged, dof, level)[found.is_vector] * found.critical_scale
+    return Judgement(
         sensor=case.sensor.name,
         kind=case.sensor.kind,
         parameter=case.parameter,
         value=value,
         reference=reference,
-        deviation=None,
-        uncertainty=None,
-        expanded=None,
         tolerance=case.tolerance,
-        probability_out=None,
-        critical=None,
-        verdict=UNDECIDABLE,
-        coverage_factor=k,
-    )
-    if found is None:
-        return judgement
-    (judged, level), dof, motion = together, found.change.dof, case.motion
-    critical = critical_factors(judged, dof, level)[found.is_vector] * found.critical_scale
-    return replace(
-        judgement,
         deviation=found.y,
         uncertainty=found.u,
         expanded=found.k * found.u,

@@ -32,6 +32,8 @@ class Deviation:
     @property
     def dof(self) -> float | None:
         """Effective degrees of freedom of both together; None when the noise is known."""
+        if self.own_dof is None and self.origin_dof is None:
+            return None
         own, origin = float(np.trace(self.own)), float(np.trace(self.origin))
         return combined((own, self.own_dof), (origin, self.origin_dof))
 

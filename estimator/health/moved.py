@@ -86,8 +86,8 @@ def moved(changes: Changes) -> list[int] | None:
     while is_majority(changes, out):
         inside = [i for i in range(m) if i not in out]
         found = fit(changes, inside)
-        evidence = [_evidence(changes, found, i) for i in inside]
-        if max(evidence) <= limit:
+        evidence = _evidence(changes, found, inside)
+        if evidence.max() <= limit:
             suspects = out + _rivals(changes, out, found.chi2)
             return suspects if is_majority(changes, suspects) else None
         out = [*out, inside[int(np.argmax(evidence))]]
@@ -114,11 +114,12 @@ def is_majority(changes: Changes, out: list[int]) -> bool:
     return 2 * (m - len(out)) > m and m - len(out) >= FEWEST_AGREEING[changes.rows]
 
 
-def _evidence(changes: Changes, found: Fit, sensor: int) -> float:
-    """χ²: twice what the log likelihood gains when the sensor is left out."""
-    at = changes.where([sensor])
-    pull = found.weight[at] @ changes.y
-    return float(pull @ np.linalg.solve(found.weight[np.ix_(at, at)], pull))
+def _evidence(changes: Changes, found: Fit, inside: list[int]) -> Array:
+    """(n,) χ²: twice what the log likelihood gains when each of n sensors is left out, dimensionless."""
+    at = changes.where([[i] for i in inside])
+    pull = (found.weight @ changes.y)[at][..., None]
+    gained = np.swapaxes(pull, -1, -2) @ np.linalg.solve(found.weight[at[:, :, None], at[:, None, :]], pull)
+    return np.asarray(gained[:, 0, 0])
 
 
 def _rivals(changes: Changes, out: list[int], chi2: float) -> list[int]:
