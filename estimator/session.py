@@ -26,6 +26,9 @@ PROGRAMMES = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, ROTATION_ALIGNMENT, RATE_T
 AS_FOUND, AS_LEFT = "as-found", "as-left"
 STAGES = (AS_FOUND, AS_LEFT)
 """Before and after a unit was worked on."""
+MEASURED, SIMULATED = "measured", "simulated"
+ORIGINS = (MEASURED, SIMULATED)
+"""Where the readings come from."""
 FREE_RUNNING, RESET = "free-running", "reset"
 COUNTERS = (FREE_RUNNING, RESET)
 """How pulses are counted: the difference of two readings of a counter that runs on, or from zero every time."""
@@ -158,11 +161,18 @@ class CalibrationSession:
     notes: str = ""
     stage: str | None = None
     """``as-found`` or ``as-left``: before or after the unit was worked on; None when the file does not say."""
+    origin: str | None = None
+    """``simulated``; None when measured, which is what a file without the field says."""
 
     @property
     def is_raw(self) -> bool:
         """Whether the rows are samples rather than averaged positions."""
         return self.sample_rate is not None
+
+    @property
+    def is_simulated(self) -> bool:
+        """Whether no hardware was measured."""
+        return self.origin == SIMULATED
 
     @property
     def quantisation(self) -> float | Array:

@@ -28,6 +28,7 @@ def session_document(session: CalibrationSession) -> dict[str, Any]:
             "operator": session.operator or None,
             "notes": session.notes or None,
             "stage": session.stage,
+            "origin": session.origin,
             "site": _stated(
                 {
                     "latitude_deg": _degrees(session.site.latitude),

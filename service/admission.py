@@ -84,7 +84,7 @@ def _unknown(request: Request) -> Person:
     if own.gate.is_open(own.storage) and (own.settings.sign_in == "off" or not _was_forwarded(request)):
         return EVERYBODY
     with own.storage.database.reading() as store:
-        return LOOKING if store.sessions.all_simulated() else STRANGER
+        return LOOKING if store.sessions.only_demonstration() else STRANGER
 
 
 def _was_forwarded(request: Request) -> bool:

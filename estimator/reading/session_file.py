@@ -12,7 +12,7 @@ from estimator.reading.sensors import KINDS, check_pulses, read_sensors
 from estimator.reading.setting import read_mounting, read_site, read_stand, read_started_at
 from estimator.reading.source import display_name, load
 from estimator.reading.table import read_table
-from estimator.session import COUNTERS, PROGRAMMES, STAGES, CalibrationSession
+from estimator.session import COUNTERS, ORIGINS, PROGRAMMES, SIMULATED, STAGES, CalibrationSession
 
 SAMPLE_RATE = Interval(0, 1e9, "Hz", above=True)
 COUNT_TIME = Interval(0, 1e6, "s", above=True)
@@ -69,6 +69,7 @@ def _assemble(document: Fields, *, part: bool) -> CalibrationSession:
     count_time = document.optional_number("count_time_s", COUNT_TIME)
     counter = document.choice("counter", COUNTERS) if document.has("counter") else None
     stage = document.choice("stage", STAGES) if document.has("stage") else None
+    origin = document.choice("origin", ORIGINS) if document.has("origin") else None
     texts = {key: document.optional_text(key) for key in ("unit_type", "operator", "notes")}
     table = read_table(document, programme, sensors)
     if table is not None and not part:
@@ -92,6 +93,7 @@ def _assemble(document: Fields, *, part: bool) -> CalibrationSession:
         operator=texts["operator"] or "",
         notes=texts["notes"] or "",
         stage=stage,
+        origin=SIMULATED if origin == SIMULATED else None,
     )
 
 

@@ -20,6 +20,7 @@ from estimator.session import (
     IN_SERVICE,
     RATE_TABLE,
     ROTATION_ALIGNMENT,
+    SIMULATED,
     TWO_AXIS_STAND,
     Array,
     CalibrationSession,
@@ -51,7 +52,7 @@ MOST_AFTER = 4
 """Sessions that are dated from the first date on; those of a longer series end with them."""
 FLIGHT_AFTER = timedelta(days=30)
 """From a calibration to the recording in service that follows it."""
-SIMULATED = (TWO_AXIS_STAND, IN_SERVICE, ROTATION_ALIGNMENT, RATE_TABLE)
+KNOWN = (TWO_AXIS_STAND, IN_SERVICE, ROTATION_ALIGNMENT, RATE_TABLE)
 """Programmes that can be simulated."""
 ON_TURNTABLE = (ROTATION_ALIGNMENT, RATE_TABLE)
 """Programmes of a turntable, which has no two-axis stand's geometry."""
@@ -126,7 +127,7 @@ def simulate_files(
         ),
     ] = None,
     lever_arm: Levers = None,
-    programme: Annotated[str, typer.Option(help=f"One of {', '.join(SIMULATED)}.")] = TWO_AXIS_STAND,
+    programme: Annotated[str, typer.Option(help=f"One of {', '.join(KNOWN)}.")] = TWO_AXIS_STAND,
     warming: Warming = 0.0,
     hide: NamedCause = None,
     strength: Strength = None,
@@ -141,12 +142,12 @@ def simulate_files(
     gyros on a turntable; there only the bias drifts, of A1 and A2, the axes x and y. --json prints the truth.
 
     --hide puts a cause of the catalogue into the last session, for `imu-health diagnose` to find. Neither the file nor
-    --json tells it; --answer does, and with the same options and seed it can be had later. Every file says in its
-    notes that it is simulated, and none is dated in the future.
+    --json tells it; --answer does, and with the same options and seed it can be had later. Every file says that it is
+    simulated, so that it counts for no measured unit, and none is dated in the future.
     """
     changes = tuple(read_drift(text) for text in drift or ())
-    if programme not in SIMULATED:
-        raise typer.BadParameter(f"--programme is {programme}; give one of {', '.join(SIMULATED)}")
+    if programme not in KNOWN:
+        raise typer.BadParameter(f"--programme is {programme}; give one of {', '.join(KNOWN)}")
     if any(change.sensor >= sensors for change in changes):
         raise typer.BadParameter(f"--drift names a sensor that is not there; the block has A1 to A{sensors}")
     if programme in ON_TURNTABLE and any(c.parameter != "bias" or c.sensor > 1 for c in changes):
@@ -253,7 +254,7 @@ def _measured(number: int, sessions: int) -> datetime:
 
 
 def _dated(session: CalibrationSession, at: datetime) -> CalibrationSession:
-    return replace(session, started_at=f"{at:%Y-%m-%dT%H:%M:%SZ}", notes="Simulated.")
+    return replace(session, started_at=f"{at:%Y-%m-%dT%H:%M:%SZ}", notes="Simulated.", origin=SIMULATED)
 
 
 def _truth(file: Path, simulated: Simulated) -> dict[str, Any]:

@@ -14,12 +14,11 @@ from service.flows.receive import upload
 from service.flows.record_service import record_service
 from service.records.event import NewService
 from service.records.flag import FlagState, Matter
+from service.records.received import DEMONSTRATION
 from service.storage import Storage
 
 UPLOADED_AFTER = timedelta(hours=3)
 """From the session to its upload; the demonstration has its own clock, so that it is always the same."""
-WHO = "demonstration"
-"""Signs every upload of the demonstration."""
 Done = Intervention | Handled | Remark
 """What people do between sessions."""
 FILES = sum(member.files for member in CAST)
@@ -29,8 +28,8 @@ FILES = sum(member.files for member in CAST)
 def is_wanted(storage: Storage) -> bool:
     """Whether the database is empty, or holds nothing but a demonstration whose filling was interrupted."""
     with storage.database.reading() as store:
-        found = store.fleet.condition()
-    return found.units == found.simulated < len(CAST)
+        units = store.fleet.condition().units
+        return units == 0 or (units < len(CAST) and store.sessions.only_demonstration())
 
 
 def fill(storage: Storage, coverage_factor: float, advance: Callable[[], None]) -> None:
@@ -53,7 +52,7 @@ def _upload_member(storage: Storage, member: Member, coverage_factor: float, adv
         at = file.at + UPLOADED_AFTER
         latest = upload(
             storage, file.content, file.name, at,
-            coverage_factor=coverage_factor, simulated=True, who=WHO,
+            coverage_factor=coverage_factor, who=DEMONSTRATION,
             outlook=file is files[-1], is_dated_later=False,
         )  # fmt: skip
         advance()

@@ -10,7 +10,16 @@ import numpy as np
 from estimator.arrays import unit
 from estimator.parameters import SensorParameters
 from estimator.results import ARCSEC
-from estimator.session import ACCELEROMETER, AS_FOUND, AS_LEFT, GYROSCOPE, ROTATION_ALIGNMENT, Array, CalibrationSession
+from estimator.session import (
+    ACCELEROMETER,
+    AS_FOUND,
+    AS_LEFT,
+    GYROSCOPE,
+    ROTATION_ALIGNMENT,
+    SIMULATED,
+    Array,
+    CalibrationSession,
+)
 from estimator.simulate import scattered, simulate
 from estimator.writing import session_document
 from service.demo.blocks import norms, schedule_of, sensors_of
@@ -109,7 +118,7 @@ def _alignments(member: Member, rng: np.random.Generator) -> Iterator[DemoFile]:
 
 def _file(session: CalibrationSession, at: datetime) -> DemoFile:
     """As it would be uploaded."""
-    dated = replace(session, started_at=f"{at:%Y-%m-%dT%H:%M:%SZ}")
+    dated = replace(session, started_at=f"{at:%Y-%m-%dT%H:%M:%SZ}", origin=SIMULATED)
     return DemoFile(f"{session.unit}-{at:%Y-%m-%d}.json", _content(dated), at)
 
 

@@ -23,6 +23,8 @@ def accept_session(storage: Storage, way: Deriving, id: str, step: Step) -> tupl
 def _require_possible(store: Store, session: StoredSession) -> None:
     if session.state is RecordState.ACCEPTED:
         raise ConflictError(f"Session {session.id} is accepted already.")
+    if session.simulated and not store.units.is_simulated(session.unit):
+        raise ConflictError(f"Session {session.id} is simulated, and unit {session.unit} has been measured since.")
     if session.superseded_by is None:
         return
     stands_for_it = store.sessions.get(session.superseded_by)

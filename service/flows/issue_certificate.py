@@ -6,6 +6,9 @@ from datetime import datetime
 from service.records.paper import Issue
 from service.storage import Storage
 
+SPECIMEN = "specimen-"
+"""Begins the number of what is written of a simulated session: no such number is a certificate's."""
+
 
 @dataclass(frozen=True)
 class Statement:
@@ -16,6 +19,8 @@ class Statement:
     revision: int
     content_hash: str
     """SHA-256 of all of it."""
+    is_specimen: bool = False
+    """Whether the session was simulated, so that it certifies nothing."""
 
 
 def issue_certificate(storage: Storage, statement: Statement, now: datetime, *, who: str) -> Issue:
@@ -26,7 +31,7 @@ def issue_certificate(storage: Storage, statement: Statement, now: datetime, *, 
         if issued and issued[-1].content_hash == statement.content_hash:
             return issued[-1]
         new = Issue(
-            number=f"{statement.session}-{statement.revision}-{len(issued) + 1}",
+            number=f"{SPECIMEN * statement.is_specimen}{statement.session}-{statement.revision}-{len(issued) + 1}",
             session=statement.session,
             revision=statement.revision,
             issued_at=now,

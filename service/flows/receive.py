@@ -21,6 +21,7 @@ from service.ingest.digest import content_digest
 from service.judging.calibrate import Calibrated, basis_of, calibrate
 from service.judging.known_unit import Foreseen, KnownUnit, known_unit
 from service.judging.model_in_force import model_for
+from service.judging.origin import require_one_origin
 from service.judging.plausible import doubts
 from service.judging.tolerances import type_of
 from service.metrics import Metrics
@@ -96,7 +97,6 @@ def upload(
     now: datetime,
     *,
     coverage_factor: float = 2.0,
-    simulated: bool = False,
     who: str = "crew",
     replaces: Replaced | None = None,
     outlook: bool = True,
@@ -110,7 +110,7 @@ def upload(
     stay as they were: another file of it follows. ``is_dated_later``: they are asked for, and made beside the requests.
     ``is_check``: the session is judged and moves no date; what is stored already stays what it is.
     """
-    received = Received(len(content), content_hash(content), plain_filename(filename), now, who, simulated, is_check)
+    received = Received(len(content), content_hash(content), plain_filename(filename), now, who, is_check)
     way = Deriving(storage.files, coverage_factor, now, outlook=outlook, is_dated_later=is_dated_later)
     with storage.database.reading() as store:
         if replaces is not None:
@@ -138,8 +138,10 @@ def _known(storage: Storage, way: Deriving, known: StoredSession, replaces: Repl
 
 
 def _calibrated(storage: Storage, checked: Checked) -> Calibrated:
-    """Under the model in force, with no transaction open; SessionError where the session does not tell enough."""
+    """Under the model in force, with no transaction open; SessionError where the session does not tell enough, or is
+    simulated and its unit is not."""
     with storage.database.reading() as store:
+        require_one_origin(store, checked.session)
         basis = basis_of(store, checked, model_for(store, checked))
     return calibrate(checked, basis)
 
@@ -208,13 +210,15 @@ def _derived(
 def _unit(store: Store, received: Received, new: Calibrated) -> int:
     """The unit, stored with its type when this is its first session, and held: rivals wait here."""
     serial = new.checked.session.unit
-    known = store.units.held(serial)
-    if known is not None:
-        return known
-    unit_type = type_of(new.checked, new.calibration)
-    store.unit_types.add_once(unit_type, received.at)
-    store.units.add_once(serial, unit_type.name, received.simulated)
-    return store.units.hold(serial)
+    unit = store.units.held(serial)
+    if unit is None:
+        unit_type = type_of(new.checked, new.calibration)
+        store.unit_types.add_once(unit_type, received.at)
+        store.units.add_once(serial, unit_type.name, new.checked.session.is_simulated)
+        unit = store.units.hold(serial)
+    if require_one_origin(store, new.checked.session):
+        store.units.set_simulated(serial, new.checked.session.is_simulated)
+    return unit
 
 
 def _record(received: Received, new: Calibrated) -> StoredSession:
@@ -235,7 +239,7 @@ def _record(received: Received, new: Calibrated) -> StoredSession:
         verdict=Verdict.UNDECIDABLE,
         reason="",
         is_reference=False,
-        simulated=received.simulated,
+        simulated=session.is_simulated,
         revision=new.model.revision,
         stage=session.stage,
         reservations=None,

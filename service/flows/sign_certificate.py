@@ -32,6 +32,7 @@ NOT_REVIEWED = "Certificate {number} must be reviewed before it is approved."
 SAME_PERSON = (
     "You have reviewed certificate {number}: somebody else must approve it, so that two people have looked at it."
 )
+SPECIMEN = "The session is simulated: its certificate is a specimen, and nobody puts a name under it."
 ALREADY = "Certificate {number} is {meaning} already, by {name}."
 
 
@@ -71,6 +72,8 @@ def require_signer(storage: Storage, signing: Signing) -> str:
 
 def signature_of(store: Store, signing: Signing, statement: Statement, rules: Rules, now: datetime) -> Signature:
     """The signature as it would be written; ConflictError where it may not be."""
+    if statement.is_specimen:
+        raise ConflictError(SPECIMEN)
     issue = _latest(store, signing)
     if issue.content_hash != statement.content_hash:
         raise ConflictError(CHANGED.format(number=issue.number))

@@ -12,8 +12,9 @@ Value = TypeVar("Value")
 SHEETS = {"session": "сеанс", "readings": "показания", "example": "пример"}
 STEPS = {
     "format": "формат", "unit": "прибор", "unit_type": "тип прибора", "block": "блок", "programme": "программа",
-    "started_at": "начало", "operator": "оператор", "notes": "примечания", "stage": "этап", "site": "место",
-    "stand": "стенд", "mounting": "установка", "sensors": "датчики", "count_time_s": "время счёта, с",
+    "started_at": "начало", "operator": "оператор", "notes": "примечания", "stage": "этап",
+    "origin": "происхождение", "site": "место", "stand": "стенд", "mounting": "установка", "sensors": "датчики",
+    "count_time_s": "время счёта, с",
     "counter": "счётчик", "sample_rate_hz": "частота отсчётов, Гц", "direction_sigma_deg": "сигма направлений, °",
     "latitude_deg": "широта, °", "height_m": "высота, м", "gravity_m_s2": "ускорение силы тяжести, м/с²",
     "id": "номер", "alpha_deg": "угол наклона α, °", "chi_deg": "угол наклона χ, °",
@@ -36,9 +37,9 @@ VALUES = {
     "arbitrary-orientations": "произвольные положения", "rotation-alignment": "выставка на поворотном столе",
     "rate-table": "стол угловых скоростей", "in-service": "в эксплуатации", "as-found": "до работ",
     "as-left": "после работ", "free-running": "непрерывный", "reset": "со сбросом", "direct": "прямая",
-    "flipped": "обратная",
+    "flipped": "обратная", "measured": "измерение", "simulated": "имитация",
 }  # fmt: skip
-CHOSEN = ("block", "kind", "programme", "stage", "counter", "run")
+CHOSEN = ("block", "kind", "programme", "stage", "origin", "counter", "run")
 """Keys and columns whose values are words of a list."""
 ERROR, ERROR_IN_RUSSIAN = "_se", ", СКО"
 """After a sensor's name: the column of its standard errors."""

@@ -71,7 +71,7 @@ def _beside_its_type(store: Store, new: Checked, found: Found, calibration: Cali
     kind = store.unit_types.of_unit(serial)
     if _is_unnamed(new, kind) and not _is_design(found, kind):
         return
-    values = store.history.references_of_type(kind.name, serial, MOST)
+    values = store.history.references_of_type(kind.name, serial, MOST, simulated=new.session.is_simulated)
     others = type_of_references(values, tolerances_of(kind))
     scales = tuple(_of_scale(found, "value in the type's other units", others.scales(), Remedy.BOTH))
     yield from scales

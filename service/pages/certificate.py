@@ -67,7 +67,7 @@ def certificate_page(
 ) -> CertificatePage:
     """The page of a session's certificate as somebody sees it."""
     rows = tuple(_issue(one) for one in papers.issues)
-    signs = _next(papers)
+    signs = None if session.simulated else _next(papers)
     return CertificatePage(
         session=session,
         counts=session.state is RecordState.ACCEPTED,

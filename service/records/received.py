@@ -6,6 +6,9 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+DEMONSTRATION = "demonstration"
+"""Signs every upload of the demonstration fleet."""
+
 
 @dataclass(frozen=True)
 class Replaced:
@@ -68,7 +71,5 @@ class Received:
     at: datetime
     who: str
     """That sent it."""
-    simulated: bool
-    """Whether it is of the demonstration."""
     is_check: bool = False
     """Whether it only looks after the unit and moves no date."""

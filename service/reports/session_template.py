@@ -111,8 +111,8 @@ def _session_sheet(sheet: Worksheet, style: Style, document: DOCUMENT) -> None:
 
 
 def _rows(document: DOCUMENT) -> Iterator[tuple[str, Any]]:
-    """Keys with what is known of them, what is asked first after the format."""
-    known = {key: value for key, value in document.items() if key not in ("table", *ASKED)}
+    """Keys with what is known of them, what is asked first after the format; what is filled in is measured."""
+    known = {key: value for key, value in document.items() if key not in ("table", "origin", *ASKED)}
     yield "format", known.pop("format")
     yield from ((key, "") for key in ASKED)
     yield from _flat(known, "")

@@ -9,6 +9,7 @@ KEY_HINTS = {
     "programme": "How it was measured.",
     "started_at": "When the first row was measured, with its zone: 2026-03-01T09:00:00Z, or with +03:00 for Moscow.",
     "stage": "as-found before the unit was worked on, as-left after it; empty otherwise.",
+    "origin": "simulated where no hardware was measured; empty otherwise.",
     "operator": "Who measured.",
     "notes": "Anything worth knowing.",
     "latitude_deg": "Latitude of the stand, degrees.",

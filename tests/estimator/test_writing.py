@@ -28,6 +28,7 @@ DOCUMENTS = {
     "no standard errors": builders.arbitrary_orientations(se=None),
     "raw log": builders.raw_log(),
     "a counter that is reset": builders.gyro_block() | {"counter": "reset"},
+    "simulated": builders.accelerometer_block() | {"origin": "simulated"},
     "positions": placed(builders.accelerometer_block()),
 }
 

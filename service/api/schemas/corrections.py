@@ -31,7 +31,7 @@ class CorrectionDocument(BaseModel):
     sha256: str = Field(description="SHA-256 of its file.")
     measured_at: datetime = Field(description="When it was measured, UTC.")
     verdict: Verdict = Field(description="Of the session: a unit that failed can be corrected, but should it be used?")
-    simulated: bool = Field(description="Whether it belongs to the demonstration fleet.")
+    simulated: bool = Field(description="Whether it was simulated, not measured.")
     method: str = Field(description="How the parameters were estimated.")
     model_revision: int = Field(description="Model revision in force; 0 is the baseline.")
     frame: str = Field(description="The axes of the result, and what holds them.")

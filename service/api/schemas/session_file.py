@@ -128,6 +128,7 @@ SESSION_FILE: JsonSchema = {
             "operator": {"type": "string", "description": "Who measured."},
             "notes": {"type": "string", "description": "Free text."},
             "stage": {"enum": ["as-found", "as-left"], "description": "Before or after the unit was worked on."},
+            "origin": {"enum": ["measured", "simulated"], "description": "Measured unless stated; one kind a unit."},
             "site": SITE,
             "stand": STAND,
             "mounting": {

@@ -66,7 +66,7 @@ class SessionSchema(SaidVerdict):
     verdict: Verdict = Field(description="The worst of the session's parameters.")
     reason: str = Field(description="Why the verdict is what it is, in one sentence.")
     is_reference: bool = Field(description="Whether later sessions are judged against this one.")
-    simulated: bool = Field(description="Whether it belongs to the demonstration fleet.")
+    simulated: bool = Field(description="Whether it was simulated, not measured.")
     revision: int = Field(description="Model revision that its calibration in force was made under; 0 is the baseline.")
     is_check: bool = Field(description="Whether it is only a check, which moves no due date unless it is a reference.")
     stage: str | None = Field(description="`as-found`, `as-left`, or null where neither was said.")

@@ -106,7 +106,7 @@ class UnitSummarySchema(SaidVerdict):
 
     serial: str = Field(description="Serial number.")
     unit_type: str = Field(description="Name of its type.")
-    simulated: bool = Field(description="Whether it belongs to the demonstration fleet.")
+    simulated: bool = Field(description="Whether its sessions were simulated, not measured.")
     sessions: int = Field(description="How many sessions are stored.")
     last_session: str | None = Field(description="Id of the latest session.")
     last_at: datetime | None = Field(description="When it was measured, UTC.")
@@ -142,7 +142,7 @@ class FleetSchema(BaseModel):
 
     units: int = Field(description="How many units there are.")
     verdicts: dict[Verdict, int] = Field(description="How many of them have each verdict.")
-    simulated: int = Field(description="How many of them belong to the demonstration fleet.")
+    simulated: int = Field(description="How many of them were simulated, not measured.")
     flags: int = Field(description="How many flags are open.")
     reserved: dict[Verdict, int] = Field(description="Of how many with each verdict it is said with a reservation.")
     references: int = Field(

@@ -19,7 +19,7 @@ MOST_ROW = 1_048_576
 """Of a spreadsheet."""
 LONGEST = 1000
 """Characters of a heading or a word."""
-ASKED_ANEW = ("unit", "started_at", "operator", "notes", "stage")
+ASKED_ANEW = ("unit", "started_at", "operator", "notes", "stage", "origin")
 """Of the session; everything else is the same next time."""
 
 

@@ -25,4 +25,4 @@ def statement_of(found: CertifiedSession) -> Statement:
         repr(found.history).encode(),
     )
     digest = sha256(b"".join(sha256(part).digest() for part in parts)).hexdigest()
-    return Statement(session.unit, session.id, session.revision, digest)
+    return Statement(session.unit, session.id, session.revision, digest, is_specimen=session.simulated)

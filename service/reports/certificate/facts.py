@@ -17,7 +17,9 @@ STEADY = 0.05
 
 
 def title_of(session: StoredSession) -> str:
-    """A recording in service checks a calibration; it is none."""
+    """A recording in service checks a calibration; it is none. What was simulated certifies nothing."""
+    if session.simulated:
+        return "Specimen, not a certificate"
     return "Check in service" if session.programme == IN_SERVICE else "Calibration certificate"
 
 

@@ -12,7 +12,8 @@ from service.views.certificate import CertifiedSession
 from service.words.signature import BOUND, STATES, moment_of
 
 UNKNOWN_COUNTRY = "ZZ"
-"""User-assigned in ISO 3166-1: nobody set the laboratory's country. PTB's rules refuse it, as they should a draft."""
+"""User-assigned in ISO 3166-1: nobody set the laboratory's country, or nothing was measured anywhere. PTB's rules
+refuse it, as they should a draft."""
 
 ROLES = {Meaning.REVIEWED: "reviewer", Meaning.APPROVED: "approver"}
 """Of whoever signed, by what their signature means."""
@@ -62,7 +63,7 @@ def _core(found: CertifiedSession, issue: Issue) -> Element:
     session = found.report.session
     measured = f"{session.started_at:%Y-%m-%d}"
     return DCC.coreData(
-        DCC.countryCodeISO3166_1(found.laboratory.country or UNKNOWN_COUNTRY),
+        DCC.countryCodeISO3166_1(UNKNOWN_COUNTRY if session.simulated else found.laboratory.country or UNKNOWN_COUNTRY),
         DCC.usedLangCodeISO639_1("en"),
         DCC.mandatoryLangCodeISO639_1("en"),
         DCC.uniqueIdentifier(issue.number),

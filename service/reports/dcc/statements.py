@@ -23,6 +23,10 @@ def statements(found: CertifiedSession) -> Iterator[Element]:
     """In the order of the paper."""
     session, decisions = found.report.session, found.report.decisions
     draft = draft_in_words(lacks(found.laboratory, found.customer, dated=found.source.started_at is not None))
+    if session.simulated:
+        yield _statement(
+            "Simulated", "SIMULATED: not a measurement of real hardware, and not a calibration certificate."
+        )
     if draft:
         yield _statement("Draft", draft)
     yield _verdict(session)
@@ -37,8 +41,6 @@ def statements(found: CertifiedSession) -> Iterator[Element]:
     yield _statement("Item", RELATES)
     yield _statement("Reproduction", WHOLE)
     yield _statement("What the simulation gets wrong", found.diagnosis.summary)
-    if session.simulated:
-        yield _statement("Simulated", "SIMULATED: not a measurement of real hardware.")
 
 
 def _reference(found: CertifiedSession) -> str:

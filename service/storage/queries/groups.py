@@ -12,6 +12,7 @@ from service.records.group import Group, GroupAnswer, Level, Member, Members
 from service.storage.group_tables import GroupDiagnosisRow, PendingGroupRow, SessionStatisticsRow
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
+from service.storage.queries.telling import tells_of_stand, tells_of_type
 from service.storage.tables import SessionRow, StandRow, UnitRow, UnitTypeRow
 
 MOST = 60
@@ -128,9 +129,10 @@ def _belongs(group: Group) -> ColumnElement[bool]:
         case Level.UNIT:
             return SessionRow.unit_id == group.key
         case Level.TYPE:
-            return SessionRow.unit_id.in_(select(UnitRow.id).where(UnitRow.unit_type_id == group.key))
+            units = select(UnitRow.id).where(UnitRow.unit_type_id == group.key, tells_of_type(group.key))
+            return SessionRow.unit_id.in_(units)
         case Level.STAND:
-            return SessionRow.stand_id == group.key
+            return and_(SessionRow.stand_id == group.key, tells_of_stand(group.key))
 
 
 def _members() -> Select[str, datetime, str, str, str, str, str, bool, str]:

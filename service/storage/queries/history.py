@@ -81,13 +81,14 @@ class History(Queries):
             found.setdefault(row.session_id, []).append(_parameter_value(row))
         return {session: tuple(values) for session, values in found.items()}
 
-    def references_of_type(self, name: str, but: str, most: int) -> tuple[ParameterValue, ...]:
-        """The parameters of the newest reference sessions of a type's units, without one unit."""
+    def references_of_type(self, name: str, but: str, most: int, *, simulated: bool) -> tuple[ParameterValue, ...]:
+        """The parameters of the newest reference sessions of a type's measured or simulated units, without one unit."""
         newest = (
             select(SessionRow.id, SessionRow.revision)
             .join(UnitRow, UnitRow.id == SessionRow.unit_id)
             .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
-            .where(UnitTypeRow.name == name, UnitRow.serial != but, SessionRow.is_reference, IS_ACCEPTED)
+            .where(UnitTypeRow.name == name, UnitRow.serial != but, UnitRow.simulated.is_(simulated))
+            .where(SessionRow.is_reference, IS_ACCEPTED)
             .order_by(SessionRow.started_at.desc(), SessionRow.id)
             .limit(most)
             .subquery()

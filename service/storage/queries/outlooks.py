@@ -14,6 +14,7 @@ from service.storage.outlook_document import outlook_from_dicts, outlook_to_dict
 from service.storage.outlook_tables import HistoryRow, OutlookRow
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
+from service.storage.queries.telling import tells_of_type
 from service.storage.tables import DecisionRow, SessionRow, UnitRow, UnitTypeRow
 
 MOST_UNITS = 60
@@ -145,7 +146,7 @@ class Outlooks(Queries):
             select(UnitTypeRow.name, UnitRow.lot, UnitRow.serial, OutlookRow.rates)
             .join(UnitRow, UnitRow.id == OutlookRow.unit_id)
             .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
-            .where(UnitTypeRow.id == unit_type)
+            .where(UnitTypeRow.id == unit_type, tells_of_type(unit_type))
             .order_by(UnitRow.serial)
         )
         return tuple(

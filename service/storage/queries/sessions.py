@@ -11,6 +11,7 @@ from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
 from service.records.decision import Decision, Verdict
 from service.records.diagnosis import DiagnosisState
+from service.records.received import DEMONSTRATION
 from service.records.session import StoredSession
 from service.records.session_list import SessionQuery
 from service.records.state import RecordState
@@ -19,6 +20,7 @@ from service.storage.queries.base import Queries, lists
 from service.storage.queries.wanted_sessions import KEYS, beyond, conditions, ordered
 from service.storage.reservation_document import reservations_from_list
 from service.storage.tables import (
+    AuditRow,
     CommonMotionRow,
     DecisionRow,
     DiagnosisRow,
@@ -55,11 +57,19 @@ class Sessions(Queries):
             raise NotFoundError(f"There is no session {id!r}.")
         return session_record(*found)
 
-    def all_simulated(self) -> bool:
-        """Whether there is a demonstration to look at, and nothing else."""
+    def only_demonstration(self) -> bool:
+        """Whether there is a demonstration to look at, and nothing that anybody uploaded."""
         is_real = select(UnitRow.id).where(UnitRow.simulated.is_(False)).limit(1)
         is_any = select(UnitRow.id).limit(1)
-        return self._session.scalar(is_real) is None and self._session.scalar(is_any) is not None
+        is_own = select(AuditRow.id).where(AuditRow.action == "upload", AuditRow.who != DEMONSTRATION).limit(1)
+        found = (self._session.scalar(query) is not None for query in (is_any, is_real, is_own))
+        return tuple(found) == (True, False, False)
+
+    def any_stands(self, unit: str) -> bool:
+        """Whether a unit has a session that counts or waits for somebody to say whether it does."""
+        states = (RecordState.ACCEPTED, RecordState.QUESTIONED)
+        own = select(SessionRow.id).join(UnitRow, UnitRow.id == SessionRow.unit_id).where(UnitRow.serial == unit)
+        return self._session.scalar(own.where(SessionRow.state.in_(states)).limit(1)) is not None
 
     def page(self, unit: str | None, offset: int, limit: int) -> tuple[StoredSession, ...]:
         """Sessions, newest measurement first, of one unit or of all."""

@@ -12,6 +12,7 @@ from service.records.stand import STILL, MotionOnStand, StandCondition, StandUse
 from service.storage.fleet_tables import StandConditionRow, StandTallyRow
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
+from service.storage.queries.telling import tells_of_stand
 from service.storage.stand_document import condition_from_dict, condition_to_dict
 from service.storage.tables import CommonMotionRow, ConditionRow, SessionRow, StandRow, UnitRow
 
@@ -81,7 +82,10 @@ class Stands(Queries):
                 & (CommonMotionRow.revision == SessionRow.revision)
                 & (CommonMotionRow.state == SEPARATED),
             )
-            .where(SessionRow.is_reference | CommonMotionRow.session_id.is_not(None))
+            .where(
+                SessionRow.is_reference | CommonMotionRow.session_id.is_not(None),
+                tells_of_stand(StandRow.id.expression),
+            )
             .order_by(SessionRow.started_at.desc(), SessionRow.id, CommonMotionRow.kind, CommonMotionRow.quantity)
             .limit(MOST)
         )

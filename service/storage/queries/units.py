@@ -1,6 +1,6 @@
 """Units and stands by name."""
 
-from sqlalchemy import select
+from sqlalchemy import select, update
 
 from service.errors import NotFoundError
 from service.records.paper import Customer
@@ -14,6 +14,15 @@ class Units(Queries):
     def exists(self, serial: str) -> bool:
         """Whether a session of this unit was ever stored."""
         return self._session.scalar(select(UnitRow.id).where(UnitRow.serial == serial)) is not None
+
+    def is_simulated(self, serial: str) -> bool | None:
+        """Whether a unit's sessions are simulated, as its first one was; None where there is no such unit."""
+        return self._session.scalar(select(UnitRow.simulated).where(UnitRow.serial == serial))
+
+    def set_simulated(self, serial: str, simulated: bool) -> None:
+        """Records what a unit's sessions are from now on."""
+        own = update(UnitRow).where(UnitRow.serial == serial, UnitRow.simulated.is_not(simulated))
+        self._session.execute(own.values(simulated=simulated))
 
     def set_lot(self, serial: str, lot: str | None) -> str | None:
         """Records a unit's production lot, and returns the one before."""

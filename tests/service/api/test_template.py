@@ -5,6 +5,7 @@ import httpx
 import pytest
 
 from tests.service.filled import filled
+from tests.service.sessions import session_bytes
 
 TEMPLATE = "/api/v1/session-template"
 SQLITE = pytest.mark.parametrize("databases", ["sqlite"], indirect=True)
@@ -79,3 +80,10 @@ def test_an_empty_template_says_what_is_missing_in_few_sentences(client: httpx.C
 
 def test_a_type_that_is_not_there_has_no_template(client: httpx.Client) -> None:
     assert client.get(TEMPLATE, params={"unit_type": "none"}).status_code == 404
+
+
+@SQLITE
+def test_a_template_made_after_a_simulated_session_is_for_a_measured_one(client: httpx.Client) -> None:
+    client.post("/api/v1/sessions", content=session_bytes(origin="simulated")).raise_for_status()
+    rows = sheet(client.get(TEMPLATE, params={"unit": "BA-017"}).content, "session")
+    assert "origin" not in dict(row[:2] for row in rows)

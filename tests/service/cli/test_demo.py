@@ -84,7 +84,7 @@ def test_the_files_are_the_same_every_time_and_say_that_they_are_simulated() -> 
         first, again = list(files_of(member)), list(files_of(member))
         assert first == again
         assert len({file.content for file in first}) == member.files
-        assert all("Simulated" in read_session(file.content).notes for file in first)
+        assert all(read_session(file.content).is_simulated for file in first)
 
 
 def test_dates_are_irregular_and_in_order_over_three_years() -> None:
@@ -133,7 +133,7 @@ def test_it_is_filled_once_and_its_units_say_that_they_are_simulated(served: Set
 
 def test_a_flight_shows_what_the_stand_has_not_seen_yet(empty: Storage) -> None:
     member = next(m for m in CAST if m.flown is not None)
-    receipts = [upload(empty, file.content, file.name, file.at, simulated=True) for file in files_of(member)]
+    receipts = [upload(empty, file.content, file.name, file.at) for file in files_of(member)]
     assert Verdict.FAIL not in {r.verdict for r in receipts[:-1]}
     assert receipts[-1].verdict is Verdict.FAIL
     assert receipts[-1].reason.startswith("A2 has changed since the calibration: bias +1")
@@ -145,7 +145,7 @@ def test_only_an_empty_database_or_an_unfinished_demonstration_is_filled(empty: 
     assert is_wanted(empty)
 
 
-def test_a_database_with_a_real_unit_is_left_alone(empty: Storage) -> None:
+def test_a_database_with_a_unit_of_somebody_else_is_left_alone(empty: Storage) -> None:
     first = next(files_of(CAST[0]))
     upload(empty, first.content, first.name, first.at)
     assert not is_wanted(empty)

@@ -12,6 +12,7 @@ from service.app import create_app
 from service.flows.receive import upload
 from service.identity.access import NEEDED, Route
 from service.records.identity import Role
+from service.records.received import DEMONSTRATION
 from service.settings import Settings
 from service.storage import Storage
 from tests.databases import one_engine
@@ -117,7 +118,7 @@ def test_figures_are_read_with_a_token_of_their_own_and_nothing_else(required: S
 
 @one_engine
 def test_a_demonstration_may_be_looked_at_and_nothing_else(required: Settings, storage: Storage) -> None:
-    upload(storage, session_bytes(), "a.json", NOW, simulated=True)
+    upload(storage, session_bytes(origin="simulated"), "a.json", NOW, who=DEMONSTRATION)
     with http_client(create_app(required)) as client:
         assert client.get("/units/BA-017").status_code == 200
         assert client.post("/api/v1/sessions", content=session_bytes(unit="BA-018")).status_code == 401

@@ -112,10 +112,11 @@ def test_an_accepted_cause_is_named_as_the_model(holding: Holding) -> None:
 
 
 def test_simulated_units_are_marked_on_every_page(storage: Storage, client: httpx.Client) -> None:
-    id = upload(storage, session_bytes(), "a.json", NOW, simulated=True).id
+    id = upload(storage, session_bytes(origin="simulated"), "a.json", NOW).id
     pages = pages_of(certificate(client, id))
     assert len(pages) > 1
-    assert all("SIMULATED" in page for page in pages)
+    assert all("SIMULATED" in page and "No. specimen-" in page for page in pages)
+    assert "Specimen, not a certificate" in pages[0]
 
 
 @pytest.mark.parametrize(
