@@ -59,6 +59,17 @@ COARSE_MEASURES = {
     ("gyroscope", "misalignment"): Measure("°", 1 / DEGREE),
 }
 """What to change to when the numbers of the fine measure would pass 9,999."""
+NOISE = {
+    ("accelerometer", "quantisation"): Measure("mm/s", 1e3),
+    ("accelerometer", "white-noise"): Measure("µg/√Hz", 1e6 / STANDARD_GRAVITY),
+    ("accelerometer", "bias-instability"): Measure("µg", 1e6 / STANDARD_GRAVITY),
+    ("accelerometer", "random-walk"): Measure("µg/√s", 1e6 / STANDARD_GRAVITY),
+    ("gyroscope", "quantisation"): ARCSEC,
+    ("gyroscope", "white-noise"): Measure("°/√h", 60 / DEGREE),
+    ("gyroscope", "bias-instability"): Measure("°/h", 3600 / DEGREE),
+    ("gyroscope", "random-walk"): Measure("°/h/√h", 3600 * 60 / DEGREE),
+}
+"""Of the terms of noise at rest, as data sheets give them."""
 PER_G = Measure("per g", STANDARD_GRAVITY)
 """Of scale factors."""
 PER_RATE = Measure("per °/s", DEGREE)

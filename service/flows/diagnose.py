@@ -15,6 +15,7 @@ from estimator.session import DIAGNOSED, CalibrationSession
 from service.flows.derive_again import Deriving
 from service.flows.earlier_records import as_evidence, kept_before
 from service.flows.flagging.diagnosis import flag_diagnosis
+from service.flows.keep_noise import keep_noise
 from service.flows.keep_statistics import keep_statistics
 from service.flows.question_session import question_diagnosed
 from service.flows.weigh import Weighed, weigh, weighing_of
@@ -69,6 +70,7 @@ def diagnose(storage: Storage, id: str, now: datetime, coverage_factor: float = 
         with storage.database.writing() as store:
             is_kept = _keep(store, way, task.session.unit, made, None if asked is None else asked.ticket)
         if is_kept:
+            keep_noise(storage, id, now)
             if made.state is not DiagnosisState.FAILED:
                 keep_statistics(storage, id, now)
             return made

@@ -92,7 +92,7 @@ def show_unit(
         "unit.html",
         unit_page(
             report,
-            recent_history(store, serial, HISTORY_LIMIT, raw=raw),
+            recent_history(store, serial, HISTORY_LIMIT, raw=raw, noise=True),
             now=now,
             raw=raw,
             flags=store.flags.page(FlagQuery(serial, limit=FLAG_LIMIT)),

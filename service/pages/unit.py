@@ -10,6 +10,7 @@ from service.charts.tracks import Track, TrackPoint, tolerance_text, tracks_of
 from service.pages.events import KINDS, Event, StageTable, events_of, stage_table
 from service.pages.flags import FlagCard, flag_cards
 from service.pages.group import GroupSection
+from service.pages.noise import NoisePart, noise_part, without_noise
 from service.pages.remarks import Remarks
 from service.pages.session_lines import SessionLine, session_lines
 from service.records.event import Note, Service
@@ -85,6 +86,8 @@ class UnitPage:
     """None before a session was judged."""
     raw: bool
     """Whether what the whole block did is left in."""
+    noise: NoisePart | None
+    """None where no session was sent as a raw log with rests."""
     group: GroupSection | None
     """What its sessions show together; None where that is not made of its records of now."""
     said: Remarks | None
@@ -110,6 +113,7 @@ def unit_page(
     """The page of a unit with its history, flags and notes, as found and as left, and when it must come back."""
     trends = () if outlook is None or raw else outlook.trends
     valid = tuple(note for note in notes if note.withdrawal is None)
+    history, terms = without_noise(history)
     groups = tracks_of(history, report.services)
     kinds = {point.kind for point in history}
     return UnitPage(
@@ -125,6 +129,7 @@ def unit_page(
         kinds=tuple(KINDS.items()),
         next=None if outlook is None else next_calibration(outlook, now),
         raw=raw,
+        noise=noise_part(terms, report.services, valid),
         group=group,
         said=said,
         follow=follow,

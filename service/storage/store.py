@@ -24,6 +24,7 @@ from service.storage.queries.jobs import Jobs
 from service.storage.queries.layouts import Layouts
 from service.storage.queries.log import Log
 from service.storage.queries.models import Models
+from service.storage.queries.noises import Noises
 from service.storage.queries.notes import Notes
 from service.storage.queries.notices import Notices
 from service.storage.queries.outlooks import Outlooks
@@ -69,6 +70,11 @@ class Store:
     def sessions(self) -> Sessions:
         """Uploaded sessions and their decisions."""
         return Sessions(self._session)
+
+    @cached_property
+    def noises(self) -> Noises:
+        """What the rests of sessions say of noise."""
+        return Noises(self._session)
 
     @cached_property
     def layouts(self) -> Layouts:

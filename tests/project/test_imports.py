@@ -36,7 +36,7 @@ ESTIMATOR_LAYERS = (
     {"rotations"},
     {"applied_vector", "coverage", "parameters", "reading", "rest_noise"},
     {"results", "static"},
-    {"forward", "long_logs", "writing"},
+    {"allan", "forward", "long_logs", "writing"},
     {"causes"},
     {"simulate", "calibration", "alignment", "parity"},
     {"correction", "diagnosis", "health", "programmes", "readiness"},

@@ -9,15 +9,18 @@ from service.api.schemas.fields import Bound, Text, Window
 from service.records.decision import Verdict
 from service.storage.queries.history import HistoryQuery
 
+Parameter = Literal[
+    "scale", "bias", "quadratic", "axis", "misalignment",
+    "quantisation", "white-noise", "bias-instability", "random-walk",
+]  # fmt: skip
+"""What a calibration gives, and the terms of noise at rest."""
 TableForm = Literal["json", "csv", "parquet", "arrow"]
 
 
 class HistoryAsked(BaseModel):
     """Which part of a unit's history is wanted, and in which form."""
 
-    parameter: Literal["scale", "bias", "quadratic", "axis", "misalignment"] | None = Field(
-        None, description="Only this parameter."
-    )
+    parameter: Parameter | None = Field(None, description="Only this parameter.")
     sensor: Text | None = Field(None, description="Only this sensor.")
     since: Bound | None = Field(None, description="Measured at or after this time.")
     until: Bound | None = Field(None, description="Measured before this time.")
@@ -48,6 +51,7 @@ class HistoryAsked(BaseModel):
             limit=self.limit,
             revision=self.revision,
             raw=self.raw,
+            noise=True,
         )
 
 
@@ -60,11 +64,17 @@ class HistoryPointSchema(BaseModel):
     at: datetime = Field(description="When it was measured, UTC.")
     sensor: str = Field(description="Name of the sensor.")
     kind: str = Field(description="`accelerometer` or `gyroscope`.")
-    parameter: str = Field(description="`scale`, `bias`, `quadratic`, `axis` or `misalignment`.")
+    parameter: str = Field(
+        description="`scale`, `bias`, `quadratic`, `axis`, `misalignment`, or a term of noise at rest."
+    )
     value: float | None = Field(description="SI; for the axis the angle from the reference axis as judged, rad.")
     u: float | None = Field(description="Standard uncertainty of the value.")
-    lower: float | None = Field(description="Value minus expanded uncertainty.")
-    upper: float | None = Field(description="Value plus expanded uncertainty.")
+    lower: float | None = Field(
+        description="Value minus expanded uncertainty; of a term of noise the end of its 95 % interval."
+    )
+    upper: float | None = Field(
+        description="Value plus expanded uncertainty; of a term of noise the end of its 95 % interval."
+    )
     reference: float | None = Field(description="The value that it is judged against.")
     deviation: float | None = Field(description="From the reference, as it was judged: relative for scale, else SI.")
     expanded: float | None = Field(description="U of the deviation, of both sessions.")

@@ -12,7 +12,7 @@ from service.records.history import HistoryPoint
 from service.records.tolerance_preview import LatestSession
 from service.storage.queries.accepted import IS_ACCEPTED, IS_BREAK
 from service.storage.queries.base import Queries
-from service.storage.queries.history_points import DECIDED, POINT, StoredPoint, point_record
+from service.storage.queries.history_points import DECIDED, IS_JUDGED, POINT, StoredPoint, point_record
 from service.storage.queries.services import service_record
 from service.storage.queries.sessions import decision_record
 from service.storage.tables import ConditionRow, DecisionRow, ParameterRow, ServiceRow, SessionRow, UnitRow
@@ -67,7 +67,7 @@ class FleetRows(Queries):
                 (ParameterRow.session_id == SessionRow.id) & (ParameterRow.revision == SessionRow.revision),
             )
             .join(UnitRow, UnitRow.id == ConditionRow.unit_id)
-            .where(UnitRow.serial.in_(serials))
+            .where(UnitRow.serial.in_(serials), IS_JUDGED)
         )
         return self._session.scalar(query) or 0
 
@@ -115,7 +115,7 @@ def _points() -> Select[*tuple[Any, ...]]:
         .join(SessionRow, SessionRow.id == ParameterRow.session_id)
         .join(UnitRow, UnitRow.id == SessionRow.unit_id)
         .outerjoin(DecisionRow, DECIDED)
-        .where(ParameterRow.revision == SessionRow.revision, IS_ACCEPTED)
+        .where(ParameterRow.revision == SessionRow.revision, IS_ACCEPTED, IS_JUDGED)
         .order_by(
             UnitRow.serial,
             ParameterRow.at,

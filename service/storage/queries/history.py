@@ -11,7 +11,7 @@ from service.records.history import HistoryPoint
 from service.records.session import ParameterValue, StoredSession
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
-from service.storage.queries.history_points import DECIDED, POINT, StoredPoint, point_record
+from service.storage.queries.history_points import DECIDED, IS_JUDGED, POINT, StoredPoint, point_record
 from service.storage.tables import CalibrationRow, DecisionRow, ParameterRow, SessionRow, UnitRow, UnitTypeRow
 
 
@@ -31,6 +31,8 @@ class HistoryQuery:
     """Whether offset and limit count from the newest point back."""
     raw: bool = False
     """Whether what the whole block did is left in."""
+    noise: bool = False
+    """Whether the terms of noise are wanted beside what is judged; one that is asked for by its name always is."""
 
 
 class History(Queries):
@@ -43,7 +45,7 @@ class History(Queries):
     def drop(self, record: StoredSession) -> None:
         """Takes out what a session gave under its model revision: a recording moves another calibration now."""
         own = (ParameterRow.session_id == record.id, ParameterRow.revision == record.revision)
-        self._session.execute(delete(ParameterRow).where(*own))
+        self._session.execute(delete(ParameterRow).where(*own, IS_JUDGED))
 
     def points(self, unit: int, wanted: HistoryQuery) -> tuple[HistoryPoint, ...]:
         """The wanted part of a unit's history, oldest first, in one query."""
@@ -53,6 +55,8 @@ class History(Queries):
             .outerjoin(DecisionRow, DECIDED)
             .where(ParameterRow.unit_id == unit, ParameterRow.revision == _revision(wanted.revision), IS_ACCEPTED)
         )
+        if wanted.parameter is None and not wanted.noise:
+            query = query.where(IS_JUDGED)
         if wanted.parameter is not None:
             query = query.where(ParameterRow.parameter == wanted.parameter)
         if wanted.sensor is not None:
@@ -74,7 +78,11 @@ class History(Queries):
         names = ("sensor", "sensor_index", "kind", "parameter", "value", "u", "axis_x", "axis_y", "axis_z")
         columns = (getattr(ParameterRow, name) for name in names)
         own = (SessionRow.id == ParameterRow.session_id) & (SessionRow.revision == ParameterRow.revision)
-        query = select(ParameterRow.session_id, *columns).join(SessionRow, own).where(ParameterRow.unit_id == unit)
+        query = (
+            select(ParameterRow.session_id, *columns)
+            .join(SessionRow, own)
+            .where(ParameterRow.unit_id == unit, IS_JUDGED)
+        )
         found: dict[str, list[ParameterValue]] = {}
         rows: Iterable[Any] = self._session.execute(query)
         for row in rows:
@@ -94,7 +102,7 @@ class History(Queries):
             .subquery()
         )
         own = (ParameterRow.session_id == newest.c.id) & (ParameterRow.revision == newest.c.revision)
-        rows = self._session.scalars(select(ParameterRow).join(newest, own))
+        rows = self._session.scalars(select(ParameterRow).join(newest, own).where(IS_JUDGED))
         return tuple(_parameter_value(row) for row in rows)
 
 

@@ -9,6 +9,7 @@ from datetime import datetime
 from math import hypot
 from typing import NamedTuple
 
+from estimator.allan.results import TERMS, interval_of
 from service.records.decision import Verdict
 from service.records.history import HistoryPoint
 from service.storage.tables import DecisionRow, ParameterRow, SessionRow
@@ -20,6 +21,8 @@ DECIDED = (
     & (DecisionRow.parameter == ParameterRow.parameter)
 )
 """The decision on a parameter, under the same model revision."""
+IS_JUDGED = ParameterRow.parameter.not_in(TERMS)
+"""Parameters that a calibration gives: the terms of noise stand beside them and are never judged."""
 
 
 class StoredPoint(NamedTuple):
@@ -80,7 +83,7 @@ def point_record(row: StoredPoint, *, raw: bool = False) -> HistoryPoint:
     """A stored parameter with what was decided of it, or, ``raw``, with what the whole block did left in."""
     seen = _Seen(row, raw)
     value, u = seen.value, seen.u
-    expanded = None if u is None or row.coverage_factor is None else row.coverage_factor * u
+    lower, upper = _band(row, value, u)
     return HistoryPoint(
         session=row.session,
         at=row.at,
@@ -89,8 +92,8 @@ def point_record(row: StoredPoint, *, raw: bool = False) -> HistoryPoint:
         parameter=row.parameter,
         value=value,
         u=u,
-        lower=None if value is None or expanded is None else value - expanded,
-        upper=None if value is None or expanded is None else value + expanded,
+        lower=lower,
+        upper=upper,
         reference=row.reference,
         deviation=seen.deviation,
         expanded=seen.expanded,
@@ -100,6 +103,17 @@ def point_record(row: StoredPoint, *, raw: bool = False) -> HistoryPoint:
         axis=_axis(row),
         revision=row.revision,
     )
+
+
+def _band(row: StoredPoint, value: float | None, u: float | None) -> tuple[float | None, float | None]:
+    """value ± U; of a term of noise where it lies with 95 %."""
+    if value is None or u is None:
+        return None, None
+    if row.parameter in TERMS:
+        return interval_of(value, u)
+    if row.coverage_factor is None:
+        return None, None
+    return value - row.coverage_factor * u, value + row.coverage_factor * u
 
 
 @dataclass(frozen=True)

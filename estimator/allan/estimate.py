@@ -1,0 +1,49 @@
+"""Rests → what every sensor's noise is, term by term, with the curve that it was read from."""
+
+import numpy as np
+
+from estimator.allan.fit import Fit, fit
+from estimator.allan.model import Model, model_of
+from estimator.allan.rests import Rests
+from estimator.allan.results import TERMS, BlockNoise, SensorNoise, Term
+from estimator.allan.variance import Variances, variances
+from estimator.session import Array, Sensor
+
+
+def allan_terms(rests: Rests) -> BlockNoise | None:
+    """Of every sensor, in order; None where no rest is long enough for a single τ, eight samples.
+
+    Nothing is decided of a sensor whose readings never change: its converter is coarser than its noise.
+    """
+    seen = variances(rests.readings, rests.interval)
+    if seen is None:
+        return None
+    model = model_of(seen)
+    sensors = tuple(_noise(sensor, seen, model, k) for k, sensor in enumerate(rests.sensors))
+    return BlockNoise(len(rests.readings), rests.longest, rests.lasted, sensors)
+
+
+def _noise(sensor: Sensor, seen: Variances, model: Model, k: int) -> SensorNoise:
+    value = seen.value[:, k]
+    found = fit(model, value) if np.all(value > 0) else None
+    squares = np.array([0.0, value[0] * seen.tau[0], 0.0, 0.0]) if found is None else found.square
+    expected = model.shapes @ squares
+    scatter = np.diag(model.covariance(squares))
+    freedom = 2 * expected**2 / np.where(scatter > 0, scatter, np.inf)
+    run = None if found is None else (float(seen.tau[found.first]), float(seen.tau[found.end - 1]))
+    terms = tuple(Term(name, None, None, None) for name in TERMS) if found is None else _terms(found)
+    return SensorNoise(sensor.name, sensor.kind, terms, seen.tau, np.sqrt(value), freedom, run)
+
+
+def _terms(found: Fit) -> tuple[Term, ...]:
+    return tuple(
+        _term(name, *row)
+        for name, *row in zip(TERMS, found.square, found.sigma, found.decided, found.most, strict=True)
+    )
+
+
+def _term(name: str, square: Array, sigma: Array, decided: Array, most: Array) -> Term:
+    if not decided:
+        return Term(name, None, None, float(most))
+    value = float(np.sqrt(square))
+    return Term(name, value, float(sigma) / (2 * value), None)
