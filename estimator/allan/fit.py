@@ -47,8 +47,9 @@ class Fit:
 
     @property
     def decided(self) -> Array:
-        """(4,) bool."""
-        return np.asarray((self.square > 0) & (self.square > DECIDED * self.sigma))
+        """(4,) bool; what falls as τ⁻² at later times only is no rounding from sample to sample."""
+        seen = np.array([self.first == 0, True, True, True])
+        return np.asarray(seen & (self.square > 0) & (self.square > DECIDED * self.sigma))
 
     @property
     def most(self) -> Array:

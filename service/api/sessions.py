@@ -9,6 +9,7 @@ from service.admission import PersonOf
 from service.api.received import REQUEST_BODY, FileOf
 from service.api.schemas.events import NewStage
 from service.api.schemas.fields import Bound, Revision, SessionId, Text, WindowOf
+from service.api.schemas.noise import NoiseDocument
 from service.api.schemas.papers import TraceabilitySchema
 from service.api.schemas.problem import errors
 from service.api.schemas.sessions import (
@@ -21,6 +22,7 @@ from service.api.schemas.sessions import (
     SessionSchema,
 )
 from service.dependencies import Now, Reading, ReceptionOf, StorageOf
+from service.errors import NotFoundError
 from service.flows.receive import receive
 from service.flows.receive_mapped import receive_mapped
 from service.flows.set_stage import set_stage
@@ -109,6 +111,16 @@ def read_session(id: SessionId, store: Reading) -> SessionReportSchema:
 def read_calibration(id: SessionId, store: Reading, revision: Revision = None) -> Response:
     """The calibration in force, imu-calibration/1, as it was computed, or the one of a model revision."""
     return Response(store.calibrations.json(id, revision), media_type="application/json")
+
+
+@router.get("/{id}/noise", responses=errors(404, 422))
+def read_noise(id: SessionId, store: Reading) -> NoiseDocument:
+    """The noise of its sensors at rest, imu-noise/1: Allan terms and curves; only raw logs tell it."""
+    store.sessions.get(id)
+    found = store.noises.get(id)
+    if found is None:
+        raise NotFoundError(f"Session {id} tells nothing of noise: it holds no rests, or was not looked at yet.")
+    return NoiseDocument.model_validate(found.to_dict())
 
 
 @router.put("/{id}/stage", responses=errors(400, 404, 422))

@@ -63,10 +63,11 @@ def _reference(storage: Storage, stored: StoredSession, session: CalibrationSess
 
 def thinned(path: Path) -> CalibrationSession:
     """A log that is too long to hold, as means over so many samples that it fits; without its labels."""
-    head = open_recording(path).head
+    recording = open_recording(path)
+    head = recording.head
     if head.sample_rate is None:
         return head
-    readings, step = _means(open_recording(path).chunks, MOST // len(head.sensors))
+    readings, step = _means(recording.chunks, MOST // len(head.sensors))
     bare = replace(head, position=None, time=None, beta=None, flipped=None, temperature=None, directions=None)
     return replace(bare, readings=readings, sample_rate=head.sample_rate / step)
 

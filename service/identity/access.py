@@ -56,6 +56,7 @@ POST /views/{{id}}/remove
 GET {API}/sessions
 GET {SESSION}
 GET {SESSION}/calibration
+GET {SESSION}/noise
 GET {SESSION}/file
 GET {SESSION}/states
 GET {SESSION}/notes

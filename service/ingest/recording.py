@@ -35,7 +35,8 @@ def _head(rows: Rows, filename: str) -> CalibrationSession:
     except UNREADABLE as error:
         raise refusal(filename, f"cannot be read as a table: {str(error)[:200]}", "table") from error
     first = first.with_columns(numbers(column) for column in first if column.dtype == pl.String)
-    return read_session(with_metadata(rows.metadata, columns_of(first, filename), filename), name=filename)
+    document = with_metadata(rows.metadata, columns_of(first, filename), filename)
+    return read_session(document, name=filename, part=True)
 
 
 def _frames(rows: Rows, names: list[str], filename: str) -> Iterator[pl.DataFrame]:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from itertools import groupby
 from math import exp, log, sqrt
 
-from scipy.special import ndtri
+from scipy.special import ndtri, stdtrit
 
 from estimator.allan.results import TERMS, freedom_of, interval_of
 from service.measures import NOISE, THIN, decimals, in_measure, number
@@ -57,9 +57,7 @@ def grown(points: Sequence[HistoryPoint]) -> tuple[str, ...]:
     newest = decided[-1].session
     courses = [list(own) for _, own in groupby(sorted(decided, key=_place), key=_place)]
     told = [own for own in courses if len(own) > 1 and own[-1].session == newest]
-    limit = -float(ndtri(LEVEL / max(len(told), 1)))
-    larger = [own for own in told if _is_larger(own, limit)]
-    return tuple(sentence for together in _by_term(larger) for sentence in _sentences(together, told))
+    return tuple(s for own in _by_term(told) for s in _sentences(_larger(own, LEVEL / len(told)), own))
 
 
 def _by_term(courses: Sequence[Course]) -> list[list[Course]]:
@@ -73,7 +71,7 @@ def _term(course: Course) -> tuple[str, str]:
 
 def _sentences(larger: Sequence[Course], told: Sequence[Course]) -> tuple[str, ...]:
     """One a sensor, or one of all: what makes every sensor noisier is hardly each of them."""
-    if len(larger) < SEVERAL or len(larger) < sum(_term(own) == _term(larger[0]) for own in told):
+    if len(larger) < max(SEVERAL, len(told)):
         return tuple(map(_sentence, larger))
     last, times = larger[0][-1], sorted(map(_times, larger))
     sensors, least, most = f"{last.kind}s", number(times[0], 2), number(times[-1], 2)
@@ -87,21 +85,34 @@ def _place(point: HistoryPoint) -> tuple[str, str]:
     return point.sensor, point.parameter
 
 
-def _is_larger(course: Sequence[HistoryPoint], limit: float) -> bool:
-    """Whether the last of a course exceeds the mean of those before by more than chance and than what is worth words.
+def _larger(courses: Sequence[Course], level: float) -> list[Course]:
+    """Of one term of all sensors of a kind: whose last size exceeds the mean of those before by more than chance and
+    than what is worth words.
 
-    In logarithms, whose variance is 1/(2ν), and between records what these scatter by beyond that.
+    In logarithms, whose variance is 1/(2ν), and between records what all sensors scatter by beyond that: its own
+    degrees of freedom give Student's t. Of a single record before nothing is known of that.
     """
-    *before, last = course
-    centre = _centre(before)
-    own = [_variance(p) for p in before]
-    beyond = 0.0
-    if len(before) > 1:
-        scatter = sum((log(p.value or 1.0) - centre) ** 2 for p in before) / (len(before) - 1)
-        beyond = max(0.0, scatter - sum(own) / len(own))
-    sigma = sqrt(_variance(last) + beyond + (sum(own) / len(own) + beyond) / len(before))
-    change = log(last.value or 1.0) - centre
-    return change > limit * sigma and change > log(WORTH)
+    freedom = sum(len(own) - 2 for own in courses)
+    squares = sum((log(p.value or 1.0) - _centre(own[:-1])) ** 2 for own in courses for p in own[:-1])
+    inner = sum((len(own) - 2) * _mean_variance(own) for own in courses)
+    beyond = max(0.0, squares - inner) / freedom if freedom else 0.0
+    limit = float(stdtrit(freedom, 1 - level)) if freedom else -float(ndtri(level))
+    return [own for own in courses if _change(own) > max(limit * _sigma(own, beyond), log(WORTH))]
+
+
+def _change(course: Course) -> float:
+    """Logarithm of the newest over what was usual."""
+    return log(course[-1].value or 1.0) - _centre(course[:-1])
+
+
+def _sigma(course: Course, beyond: float) -> float:
+    """One sigma of the change."""
+    return sqrt(_variance(course[-1]) + beyond + (_mean_variance(course) + beyond) / (len(course) - 1))
+
+
+def _mean_variance(course: Course) -> float:
+    """Of the logarithms before the newest."""
+    return sum(map(_variance, course[:-1])) / (len(course) - 1)
 
 
 def _centre(points: Sequence[HistoryPoint]) -> float:
@@ -123,4 +134,4 @@ def _sentence(course: Course) -> str:
 
 def _times(course: Course) -> float:
     """The newest over what was usual."""
-    return (course[-1].value or 0.0) / exp(_centre(course[:-1]))
+    return exp(_change(course))

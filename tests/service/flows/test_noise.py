@@ -87,5 +87,9 @@ def test_programs_ask_for_it_like_for_any_parameter(storage: Storage, client: ht
     kept(storage)
     asked = client.get("/api/v1/units/LOG-1/history", params={"parameter": "white-noise", "sensor": "A2"}).json()
     assert [point["parameter"] for point in asked["points"]] == ["white-noise"]
+    (session,) = {point["session"] for point in asked["points"]}
+    curves = client.get(f"/api/v1/sessions/{session}/noise").json()
+    assert (curves["format"], curves["rests"], len(curves["sensors"])) == ("imu-noise/1", 12, 3)
+    assert client.get("/api/v1/sessions/none/noise").status_code == 404
     table = client.get("/api/v1/units/LOG-1/history", params={"format": "csv"}).text
     assert "bias-instability" in table
