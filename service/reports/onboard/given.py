@@ -6,6 +6,7 @@ from datetime import datetime
 
 import numpy as np
 
+from estimator.allan import BlockNoise
 from estimator.nominal_vector import NominalVector
 from estimator.session import ACCELEROMETER, GYROSCOPE, Array
 
@@ -31,6 +32,8 @@ class Given:
     software: str
     vectors: dict[str, NominalVector]
     """By kind of sensor."""
+    noise: BlockNoise | None = None
+    """At rest; None where the session holds no rests."""
 
     @property
     def accelerometers(self) -> NominalVector | None:
@@ -41,6 +44,14 @@ class Given:
     def gyros(self) -> NominalVector | None:
         """None where the session calibrates none."""
         return self.vectors.get(GYROSCOPE)
+
+
+def noisiest(given: Given, kind: str, term: str) -> float | None:
+    """The largest size of a term of noise, SI; None where the session does not decide it of every sensor of a kind."""
+    sensors = () if given.noise is None else given.noise.sensors
+    sizes = [sensor.term(term).value for sensor in sensors if sensor.kind == kind]
+    decided = [size for size in sizes if size is not None]
+    return max(decided) if decided and len(decided) == len(sizes) else None
 
 
 def heading(given: Given, system: str) -> Iterator[str]:

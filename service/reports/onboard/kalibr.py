@@ -10,10 +10,18 @@ from collections.abc import Iterator
 import numpy as np
 import yaml
 
-from estimator.session import Array
-from service.reports.onboard.given import Given, commented, heading
+from estimator.session import ACCELEROMETER, GYROSCOPE, Array
+from service.reports.onboard.given import Given, commented, heading, noisiest, number
 
-NOISE = "noise densities and random walks are not part of a calibration: add them from a long record at rest"
+NOISE = "noise densities and random walks that are not here are not decided by this session: add them from a long rest"
+OF_REST = "noise densities and random walks are those of the noisiest sensor at rest, m/s^2 and rad/s per sqrt(Hz)"
+DENSITIES = (
+    ("accelerometer_noise_density", ACCELEROMETER, "white-noise"),
+    ("accelerometer_random_walk", ACCELEROMETER, "random-walk"),
+    ("gyroscope_noise_density", GYROSCOPE, "white-noise"),
+    ("gyroscope_random_walk", GYROSCOPE, "random-walk"),
+)
+"""Kalibr's names, and what they are of."""
 TURNED = "C_imu_block turns block axes into Kalibr's, in which the accelerometers' M is lower triangular"
 
 
@@ -28,12 +36,22 @@ def written(given: Given) -> str:
         gyros = {"M": lower.tolist(), "C_gyro_i": rotation.tolist(), "A": np.zeros((3, 3)).tolist()}
         found["gyroscopes"] = gyros | {"b": given.gyros.offset.tolist()}
     found["C_imu_block"] = turned.tolist()
+    found |= _densities(given)
     return "\n".join([*commented(_notes(given)), yaml.safe_dump({"imu0": found}, sort_keys=False, width=10_000)])
 
 
 def _notes(given: Given) -> Iterator[str]:
     yield from heading(given, "Kalibr")
-    yield from (TURNED, NOISE)
+    yield TURNED
+    if _densities(given):
+        yield OF_REST
+    if len(_densities(given)) < 2 * len(given.vectors):
+        yield NOISE
+
+
+def _densities(given: Given) -> dict[str, float]:
+    sizes = ((name, noisiest(given, kind, term)) for name, kind, term in DENSITIES if kind in given.vectors)
+    return {name: float(number(size)) for name, size in sizes if size is not None}
 
 
 def triangular(matrix: Array) -> tuple[Array, Array]:

@@ -16,6 +16,8 @@ def given_of(storage: Storage, id: str) -> Given:
     if one.found.left_out:
         why = "; ".join(f"{name}: {reason}" for name, reason in one.found.left_out)
         raise ConflictError(f"The driver's vector holds sensors that have no correction. {why}.")
+    with storage.database.reading() as store:
+        noise = store.noises.get(id)
     return Given(
         unit=one.stored.unit,
         session=one.stored.id,
@@ -24,4 +26,5 @@ def given_of(storage: Storage, id: str) -> Given:
         simulated=one.stored.simulated,
         software=f"imu-health {VERSION}",
         vectors={block.kind: nominal_vector(one.session, block) for block in one.found.blocks},
+        noise=noise,
     )

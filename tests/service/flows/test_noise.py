@@ -4,6 +4,7 @@ import json
 
 import httpx
 import pytest
+import yaml
 
 from estimator.allan.results import TERMS
 from service.flows.diagnose import diagnose
@@ -80,6 +81,16 @@ def test_the_page_says_what_became_noisier(storage: Storage, client: httpx.Clien
     assert "Noise at rest" in page
     assert ("White noise N is larger in all accelerometers: 1." in page) == said
     assert (" times what it was" in page) == said
+
+
+@one_engine
+def test_kalibr_is_given_what_the_rests_decide(storage: Storage, client: httpx.Client) -> None:
+    id = kept(storage)
+    text = client.get(f"/api/v1/sessions/{id}/export", params={"system": "kalibr"}).text
+    found = yaml.safe_load(text)["imu0"]
+    assert found["accelerometer_noise_density"] == pytest.approx(WHITE, rel=0.2)
+    assert "accelerometer_random_walk" not in found
+    assert "not decided by this session" in text
 
 
 @one_engine
