@@ -15,6 +15,7 @@ from service.background.beside import work_beside
 from service.background.deliver_messages import deliver_until
 from service.background.derive_pending import derive_pending
 from service.background.diagnose_waiting import Diagnosing, ask_for_missing
+from service.background.take_in_waiting import take_in_waiting
 from service.background.watch_fleet import watch_fleet
 from service.boundary import guard
 from service.boundary.heads import HeadAsGet
@@ -93,11 +94,16 @@ def _work(application: Application) -> Iterator[tuple[str, Callable[..., None], 
     storage, clock, hosts = application.storage, application.clock, application.settings.webhook_hosts
     metrics, k = application.metrics, application.settings.coverage_factor
     for number in range(application.settings.diagnosis_workers):
-        own = Diagnosing(application.settings, storage, clock, metrics, application.bell)
-        yield f"diagnoses {number}", work_beside, (own,)
+        yield f"diagnoses {number}", work_beside, (_claiming(application),)
     if application.settings.diagnosis_workers:
+        yield "uploads", take_in_waiting, (_claiming(application),)
         yield "missing diagnoses", ask_for_missing, (storage, clock, metrics, application.bell)
     yield "pending derivations", derive_pending, (storage, k, clock, metrics)
     yield "fleet", watch_fleet, (storage, clock, metrics)
     if hosts:
         yield "outbox", deliver_until, (storage, hosts, clock, metrics)
+
+
+def _claiming(own: Application) -> Diagnosing:
+    """Under a name of its own."""
+    return Diagnosing(own.settings, own.storage, own.clock, own.metrics, own.bell)

@@ -107,6 +107,12 @@ class Settings(BaseSettings):
         description="Largest upload of CSV or Parquet, bytes: beyond max_upload_bytes it must be a raw log, which is "
         "averaged while it is scanned.",
     )
+    job_upload_bytes: int = Field(
+        default=8 * 1024 * 1024,
+        ge=0,
+        description="Uploads that are larger are received and then worked on beside the requests, where the page or "
+        "the program that sends them asks for that, bytes.",
+    )
     max_attachment_bytes: int = Field(
         default=32 * 1024 * 1024, gt=0, description="Largest file that may be attached to a unit or session, bytes."
     )

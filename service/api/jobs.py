@@ -8,7 +8,7 @@ from service.admission import PersonOf
 from service.api.exports import BINARY, as_file
 from service.api.fleet import PDF, XLSX
 from service.api.schemas.fields import Number, Text
-from service.api.schemas.jobs import Cancelling, JobPage, JobSchema, NewRecalibration, NewReport
+from service.api.schemas.jobs import Cancelling, JobPage, JobSchema, NewRecalibration, NewReport, job_schema
 from service.api.schemas.problem import errors
 from service.dependencies import CREW, JobDeskOf, LanguageOf, Now, Reading, StorageOf
 from service.flows.ask_job import cancel_job, file_of
@@ -33,7 +33,7 @@ def list_jobs(
     """Long work that was asked for, the newest first."""
     account = person.login if mine else ""
     found = store.jobs.page(limit, before=before, account=account, subject=subject)
-    return JobPage(jobs=list(map(_schema, found)), before=found[-1].id if len(found) == limit else None)
+    return JobPage(jobs=list(map(job_schema, found)), before=found[-1].id if len(found) == limit else None)
 
 
 @router.post("/recalibration", status_code=202, responses={**ACCEPTED, **errors(400, 422, 503)})
@@ -57,7 +57,8 @@ def ask_for_report(
 @router.get("/{id}", responses=errors(404, 422))
 def read_job(id: Number, store: Reading) -> JobSchema:
     """How far one job has come."""
-    return _schema(store.jobs.get(id))
+    job = store.jobs.get(id)
+    return job_schema(job, () if job.refusal is None else store.arrivals.refusal(job.refusal).problems)
 
 
 @router.get(
@@ -76,13 +77,9 @@ def download_result(id: Number, store: Reading, storage: StorageOf) -> Response:
 @router.post("/{id}/cancel", responses=errors(400, 403, 404, 409, 422))
 def cancel(id: Number, asked: Cancelling, storage: StorageOf, person: PersonOf, now: Now) -> JobSchema:
     """Stop a job between two pieces of its work. What was done stays."""
-    return _schema(cancel_job(storage, id, person, person.signs(asked.by or CREW), now))
+    return job_schema(cancel_job(storage, id, person, person.signs(asked.by or CREW), now))
 
 
 def _accepted(response: Response, job: Job) -> JobSchema:
     response.headers["Location"] = f"/api/v1/jobs/{job.id}"
-    return _schema(job)
-
-
-def _schema(job: Job) -> JobSchema:
-    return JobSchema.model_validate(job)
+    return job_schema(job)

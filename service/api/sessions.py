@@ -3,12 +3,14 @@
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
-from fastapi.responses import FileResponse
+from fastapi.responses import FileResponse, JSONResponse
 
 from service.admission import PersonOf
+from service.api.later import LaterOf
 from service.api.received import REQUEST_BODY, FileOf
 from service.api.schemas.events import NewStage
 from service.api.schemas.fields import Bound, Revision, SessionId, Text, WindowOf
+from service.api.schemas.jobs import JobSchema
 from service.api.schemas.noise import NoiseDocument
 from service.api.schemas.papers import TraceabilitySchema
 from service.api.schemas.problem import errors
@@ -43,18 +45,27 @@ ANY_BYTES = {BYTES: {"schema": {"type": "string", "format": "binary"}}}
 @router.post(
     "",
     status_code=201,
-    responses={200: {"model": ReceiptSchema, "description": "Stored before."}, **errors(400, 404, 409, 413, 422, 507)},
+    response_model=ReceiptSchema,
+    responses={
+        200: {"model": ReceiptSchema, "description": "Stored before."},
+        202: {"model": JobSchema, "description": "Received: worked on beside the requests, as was asked for."},
+        **errors(400, 404, 409, 413, 422, 507),
+    },
     openapi_extra=REQUEST_BODY,
 )
 def upload_session(
-    request: Request, response: Response, file: FileOf, reception: ReceptionOf, now: Now
-) -> ReceiptSchema:
+    request: Request, response: Response, file: FileOf, reception: ReceptionOf, now: Now, later: LaterOf
+) -> ReceiptSchema | JSONResponse:
     """Upload a session file: it is checked, calibrated, judged, stored, diagnosed. The same content is stored once.
 
     A table of one's own layout comes with its `mapping`, as a part of the form.
 
     A corrected file names the session that it `supersedes`, by whom and why; unit and date may be others.
+
+    With `Prefer: respond-async` a large file is acknowledged as soon as it is safe on disk, with 202 and its job.
     """
+    if later.is_for(file, reception):
+        return later.accepted(file, reception)
     if file.mapping is None:
         receipt = receive(reception, file, now)
     else:

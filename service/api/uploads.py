@@ -6,14 +6,19 @@ from fastapi import APIRouter, Path, Query
 
 from service.api.schemas.fields import Limit, Text
 from service.api.schemas.problem import errors
-from service.api.schemas.uploads import UploadPage, UploadSchema, upload_schema
+from service.api.schemas.uploads import UploadPage, UploadSchema, job_upload_schema, upload_schema
 from service.dependencies import Reading
-from service.records.arrival import Arrival, ArrivalQuery, refusal_number
+from service.errors import NotFoundError
+from service.records.arrival import Arrival, ArrivalQuery, job_number, refusal_number
+from service.records.job import JobKind
+from service.storage.store import Store
 
 router = APIRouter(prefix="/uploads", tags=["sessions"])
 FileName = Annotated[Text | None, Query(alias="q", description="Part of the file's name.")]
 Refused = Annotated[bool, Query(description="Only those that were refused.")]
-UploadId = Annotated[Text, Path(description="A session's id, or `r` and the number of a refusal.")]
+UploadId = Annotated[
+    Text, Path(description="A session's id, or `r` and the number of a refusal, or `j` and that of a job.")
+]
 After = Annotated[
     Text | None, Query(description="The list goes on after this upload: `next_after` of the last answer.")
 ]
@@ -37,9 +42,19 @@ def list_uploads(
 @router.get("/{id}", responses=errors(404, 422))
 def read_upload(id: UploadId, store: Reading) -> UploadSchema:
     """What became of one file; of a refused one every fault with its place."""
-    refusal = refusal_number(id)
+    refusal, job = refusal_number(id), job_number(id)
+    if job is not None:
+        return _by_job(store, job)
     if refusal is not None:
         refused = store.arrivals.refusal(refusal)
         return upload_schema(Arrival(refused.at, None, refused))
     session = store.sessions.get(id)
     return upload_schema(Arrival(session.uploaded_at, session, None))
+
+
+def _by_job(store: Store, number: int) -> UploadSchema:
+    job = store.jobs.get(number)
+    if job.kind is not JobKind.UPLOAD:
+        raise NotFoundError(f"Job {number} takes in no upload.")
+    session = store.sessions.get(job.session) if job.session else None
+    return job_upload_schema(job, session, None if job.refusal is None else store.arrivals.refusal(job.refusal))

@@ -3,7 +3,7 @@ of its own, and given up where the program fails at it or no process outlives it
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import datetime, timedelta
 from threading import Event
 from typing import Generic, Protocol, TypeVar
 
@@ -49,6 +49,8 @@ class Work(Generic[T]):
     """Keeps that the program failed at it, or that no process outlived it."""
     most: int = MOST_ATTEMPTS
     """Tries at which the program may fail, or its process die."""
+    put_off: timedelta = PUT_OFF
+    """After a try that something passing hindered."""
 
 
 def work_next(own: Diagnosing, helper: Helper, stop: Event, work: Work[T]) -> bool:
@@ -106,7 +108,7 @@ def _leave(own: Diagnosing, work: Work[T], one: T, failure: Failure) -> None:
     _note(own, work, one, failure)
     with own.storage.database.writing() as store:
         if failure.is_foreseen:
-            work.queue(store).put_off(one, own.clock() + PUT_OFF)
+            work.queue(store).put_off(one, own.clock() + work.put_off)
         else:
             work.queue(store).give_back(one)
 

@@ -3,14 +3,19 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime
+from uuid import uuid4
 
 from service.background.bell import Bell
 from service.background.diagnose_waiting import CLAIM
 from service.background.guard import FORESEEN, Guard
 from service.background.work_job import skip_piece, work_piece
 from service.flows.ask_job import ask_job
+from service.flows.receive import Reception
+from service.flows.take_in import ask_upload, take_in
 from service.metrics import Metrics
+from service.records.identity import Person
 from service.records.job import Job, NewJob
+from service.records.received import SentFile
 from service.storage import Storage
 
 
@@ -30,6 +35,16 @@ class JobDesk:
         job = ask_job(storage, new, self.clock())
         if not self.workers:
             self._work_through(storage, job.id)
+        self.bell.ring()
+        with storage.database.reading() as store:
+            return store.jobs.get(job.id)
+
+    def take_in(self, reception: Reception, file: SentFile, person: Person) -> Job:
+        """The job that takes in a long file, as it stands now."""
+        storage = reception.storage
+        job = ask_upload(storage, file, person, uuid4().hex, self.clock())
+        if not self.workers:
+            take_in(reception, job.id, self.clock())
         self.bell.ring()
         with storage.database.reading() as store:
             return store.jobs.get(job.id)

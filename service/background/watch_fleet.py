@@ -11,6 +11,7 @@ from service.background.guard import Guard
 from service.background.pool_waiting import ask_for_outdated
 from service.background.relearn import relearn
 from service.flows.ask_job import drop_outlived
+from service.flows.take_in import sweep_waiting
 from service.metrics import Metrics
 from service.storage import Storage
 
@@ -58,4 +59,6 @@ def look(storage: Storage, clock: Callable[[], datetime], metrics: Metrics) -> b
         storage.files.sweep()
     with guard.alone("files of jobs", ""):
         drop_outlived(storage, clock())
+    with guard.alone("files that wait", ""):
+        sweep_waiting(storage, clock())
     return not guard.failed

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from http import HTTPStatus
 from time import sleep
-from typing import Any
+from typing import IO, Any
 
 import httpx
 
@@ -36,9 +36,13 @@ class Connection:
         answer: dict[str, Any] = self.answer("PUT", path, json=body).json()
         return answer
 
-    def send(self, name: str, content: bytes, stated: dict[str, str] | None = None) -> dict[str, Any]:
-        """Sends a session file with what is ``stated`` of it; RefusedError with its problems when it is unusable."""
-        response = self.answer("POST", "/sessions", files={"file": (name, content)}, data=stated or {})
+    def send(
+        self, name: str, content: bytes | IO[bytes], stated: dict[str, str] | None = None, *, later: bool = False
+    ) -> dict[str, Any]:
+        """Sends a session file with what is ``stated`` of it; RefusedError with its problems when it is unusable.
+        ``later``: a large one is answered with its job, once it was received."""
+        headers = {"Prefer": "respond-async"} if later else {}
+        response = self.answer("POST", "/sessions", files={"file": (name, content)}, data=stated or {}, headers=headers)
         answer: dict[str, Any] = response.json()
         return answer
 

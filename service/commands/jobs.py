@@ -1,24 +1,22 @@
 """`imu-health jobs`: long work of a running service: listed, asked for, followed and cancelled."""
 
 from enum import StrEnum
-from time import sleep
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from service.client import Client, connect
+from estimator.errors import Problem
+from service.client import connect
 from service.commands.console import DEFAULT_SERVER, AsJson, Out, Server, deliver, print_json, screen
 from service.commands.exits import say
+from service.commands.following import followed
 from service.commands.listing import AsLines, FormOf, Listing, table_of
-from service.records.job import OPEN, JobState
+from service.commands.speech import problems_said
+from service.records.job import KILOBYTE, JobKind, JobState
 from service.records.model import Scope
 
-LOOK_EVERY = 1.0
-"""Seconds between two looks at a job that is followed."""
 COLOURS = {JobState.DONE: "green", JobState.FAILED: "red", JobState.CANCELLED: "yellow"}
 jobs = typer.Typer(
     name="jobs",
@@ -63,7 +61,7 @@ def show_job(
 ) -> None:
     """Show how far a job has come; --out writes the file that it made."""
     with connect(server) as client:
-        job = _followed(client, id, quiet=as_json) if wait else client.get(f"/jobs/{id}").json()
+        job = followed(client, id, quiet=as_json) if wait else client.get(f"/jobs/{id}").json()
         if out is not None:
             deliver(client.get(f"/jobs/{id}/file").content, out)
     _tell(job, as_json=as_json)
@@ -105,20 +103,6 @@ def cancel_job(id: Id, by: By = "", server: Server = DEFAULT_SERVER, as_json: As
         _tell(client.post(f"/jobs/{id}/cancel", {"by": by}), as_json=as_json)
 
 
-def _followed(client: Client, id: int, *, quiet: bool) -> dict[str, Any]:
-    """The job once it has ended, with a bar on a terminal meanwhile."""
-    console = Console(stderr=True)
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console, transient=True, disable=quiet or not console.is_terminal) as bar:
-        task = bar.add_task(f"job {id}", total=None)
-        while True:
-            job: dict[str, Any] = client.get(f"/jobs/{id}").json()
-            bar.update(task, completed=job["done"], total=job["total"] if job["done"] else None)
-            if job["state"] not in OPEN:
-                return job
-            sleep(LOOK_EVERY)
-
-
 def _tell(job: dict[str, Any], *, as_json: bool) -> None:
     if as_json:
         print_json(job)
@@ -128,13 +112,26 @@ def _tell(job: dict[str, Any], *, as_json: bool) -> None:
         say(f"Held up, and tried again by itself: {job['held_up']}")
     for one in job["failures"]:
         say(f"{one['subject']}: {one['reason']}" if one["subject"] else one["reason"])
+    if job["problems"]:
+        problems = (Problem(one["field"], one["message"], one["row"]) for one in job["problems"])
+        say(f"{job['subject']}: {problems_said(problems)}")
+    if job["session"]:
+        say(f"Session {job['session']}")
 
 
 def _line(job: dict[str, Any]) -> str:
-    return f"Job {job['id']}  {_state(job)}  {escape(_what(job))}  {job['done']} of {job['total']}"
+    return f"Job {job['id']}  {_state(job)}  {escape(_what(job))}  {_done(job)}"
+
+
+def _done(job: dict[str, Any]) -> str:
+    if job["kind"] == JobKind.UPLOAD:
+        return f"{job['done'] / KILOBYTE:.1f} of {job['total'] / KILOBYTE:.1f} MB"
+    return f"{job['done']} of {job['total']}"
 
 
 def _what(job: dict[str, Any]) -> str:
+    if job["kind"] == JobKind.UPLOAD:
+        return f"upload of {job['subject']}"
     return f"{job['kind']} of {job['scope']} {job['subject']}" if job["scope"] else f"{job['kind']} of the fleet"
 
 
@@ -146,6 +143,6 @@ def _state(job: dict[str, Any]) -> str:
 def _table(found: list[dict[str, Any]]) -> Table:
     table = table_of("job", "state", "done", "what", "asked for", "by", right=("job",))
     for job in found:
-        done, asked = f"{job['done']} of {job['total']}", job["asked_at"][:16].replace("T", " ")
+        done, asked = _done(job), job["asked_at"][:16].replace("T", " ")
         table.add_row(str(job["id"]), _state(job), done, escape(_what(job)), asked, escape(job["who"]))
     return table

@@ -7,8 +7,9 @@ from typing import Annotated, Any
 import typer
 from rich.markup import escape
 
-from service.client import Client, connect
-from service.commands.console import DEFAULT_SERVER, AsJson, Files, Server, for_each, print_json, screen
+from service.client import connect
+from service.commands.console import DEFAULT_SERVER, AsJson, Files, Server, are_large, for_each, print_json, screen
+from service.commands.sending import Sending
 from service.commands.speech import said
 from service.records.decision import Verdict
 from service.words.conditions import Condition, condition_of
@@ -59,13 +60,15 @@ def upload_files(
     stated = {name: text for name, text in given.items() if text}
     show: Callable[[dict[str, Any]], None] = print_json if as_json else _print_line
     with connect(server) as client:
-        for_each(files, lambda file: _uploaded(client, file, stated, wait=wait), show, "uploading", quiet=as_json)
+        sending = Sending(client, stated, wait=wait, quiet=as_json)
+        for_each(files, lambda file: _uploaded(sending, file), show, "uploading", quiet=as_json or are_large(files))
 
 
-def _uploaded(client: Client, file: Path, stated: dict[str, str], *, wait: bool) -> dict[str, Any]:
-    """The answer with the verdict that the session has once it is diagnosed."""
-    answer = client.send(file.name, file.read_bytes(), stated)
-    if wait and client.is_diagnosed(answer["id"]):
+def _uploaded(sending: Sending, file: Path) -> dict[str, Any]:
+    """The answer with the verdict that the session has once it is diagnosed; the job of a large file where nobody waits
+    for it."""
+    answer, client = sending.sent(file), sending.client
+    if sending.wait and client.is_diagnosed(answer["id"]):
         session = client.get(f"/sessions/{answer['id']}").json()
         answer |= {name: session[name] for name in answer if name in session}
     return answer
@@ -73,6 +76,9 @@ def _uploaded(client: Client, file: Path, stated: dict[str, str], *, wait: bool)
 
 def _print_line(answer: dict[str, Any]) -> None:
     """``BA-017  3f9a0c5be1d24786aa10  Fit, but the zero of A2 …  …``"""
+    if "verdict" not in answer:
+        screen().print(f"[bold]{escape(answer['subject'])}[/] was received: job {answer['id']} works on it")
+        return
     verdict = coloured(answer["verdict"], answer["is_reference"], answer["said"])
     line = f"[bold]{escape(answer['unit'])}[/]  {answer['id']}  {verdict}  {escape(said(answer['reason']))}"
     screen().print(line, soft_wrap=True)

@@ -11,9 +11,11 @@ from service.storage import Storage
 from service.storage.files import Files
 from service.storage.made import drop_made, read_made
 from service.storage.store import Store
+from service.storage.waiting import drop_waiting
 
 MOST_OPEN = 100
 """Jobs that wait or are at work: more than a crew asks for in a day."""
+STORING = "The file is read and is being stored. Withdraw its session instead, once it is there."
 REPORTS = ("xlsx", "pdf")
 """Forms of a report that takes long."""
 
@@ -27,12 +29,17 @@ def ask_job(storage: Storage, new: NewJob, now: datetime) -> Job:
         known = store.jobs.like(new)
         if known is not None:
             return known
-        if store.jobs.open_count() >= MOST_OPEN:
-            raise BusyError(f"{MOST_OPEN} jobs wait already. Cancel one, or ask again later.")
+        require_room(store)
         job = store.jobs.add(new, _pieces(store, new), now)
         details = {"job": job.id, "scope": new.scope or "fleet", "form": new.form}
         store.audit.write(now, new.who, new.kind.value, new.subject or "fleet", details)
         return job
+
+
+def require_room(store: Store) -> None:
+    """BusyError where too many jobs wait already."""
+    if store.jobs.open_count() >= MOST_OPEN:
+        raise BusyError(f"{MOST_OPEN} jobs wait already. Cancel one, or ask again later.")
 
 
 def tell_job(store: Store, changed: ModelRevision, units: int, now: datetime) -> None:
@@ -66,11 +73,14 @@ def cancel_job(storage: Storage, id: int, person: Person, who: str, now: datetim
         if not may_cancel(job, person):
             raise ForbiddenError("Only whoever asked for a job, or an engineer, cancels it.")
         if not store.jobs.cancel(id, who, now):
-            raise ConflictError(f"Job {id} has ended already: it is {job.state}.")
+            raise ConflictError(STORING if job.is_open else f"Job {id} has ended already: it is {job.state}.")
         if job.kind is JobKind.MODEL:
             store.recomputations.cancel(job.revision, now)
         store.audit.write(now, who, "cancel job", job.subject or "fleet", {"job": id, "done": job.done})
-        return store.jobs.get(id)
+        cancelled = store.jobs.get(id)
+    if job.sent is not None:
+        drop_waiting(storage.files, job.sent)
+    return cancelled
 
 
 def file_of(files: Files, job: Job) -> bytes:

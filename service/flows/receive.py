@@ -10,6 +10,7 @@ from datetime import datetime
 
 from estimator.errors import SessionError
 from service.errors import RefusedError
+from service.flows.course import UNFOLLOWED, Course
 from service.flows.derive_again import Deriving, derive_again, foresee
 from service.flows.keep import Made, keep, made
 from service.flows.question_session import question
@@ -52,6 +53,8 @@ class Reception:
     """That sends the files."""
     is_dated_later: bool = False
     """Whether the unit's dates are worked out beside the requests."""
+    course: Course = UNFOLLOWED
+    """What is done at the steps of an upload."""
 
 
 def receive(reception: Reception, file: SentFile, now: datetime) -> Receipt:
@@ -85,6 +88,7 @@ def _stored_or_refused(reception: Reception, file: SentFile, now: datetime) -> R
             return upload(
                 reception.storage, file.content, file.filename, now, coverage_factor=k, who=reception.who,
                 replaces=file.replaces, is_dated_later=reception.is_dated_later, is_check=file.is_check,
+                course=reception.course,
             )  # fmt: skip
     except RefusedError as refusal:
         return refusal
@@ -102,6 +106,7 @@ def upload(
     outlook: bool = True,
     is_dated_later: bool = True,
     is_check: bool = False,
+    course: Course = UNFOLLOWED,
 ) -> Receipt:
     """Stores a session file with its calibration and verdict; the same content again gives the same receipt.
 
@@ -122,10 +127,13 @@ def upload(
     try:
         ready = _ready(storage, way, received, _calibrated(storage, check(where(content), received.filename, now)))
     except SessionError as fault:
-        raise refuse(storage, received, fault.problems) from fault
+        raise refuse(storage, received, fault.problems, course) from fault
+    course.keeping()
     storage.files.keep(content)
     with storage.database.writing() as store:
-        return _store(store, way, received, ready, replaces)
+        receipt = _store(store, way, received, ready, replaces)
+        course.stored(store, receipt)
+        return receipt
 
 
 def _known(storage: Storage, way: Deriving, known: StoredSession, replaces: Replaced | None) -> Receipt:

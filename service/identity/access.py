@@ -43,6 +43,7 @@ GET /ready
 GET /missing
 GET /jobs
 GET /jobs/{{id}}
+GET /jobs/{{id}}/outcome
 POST /jobs/report
 POST /jobs/{{id}}/cancel
 GET /help

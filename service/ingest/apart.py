@@ -24,6 +24,7 @@ from service.errors import BusyError
 from service.ingest import limits
 from service.ingest.exchange import DAMAGED, Array, plain_bytes, unpack
 from service.ingest.limits import Limits, refusal
+from service.ingest.scanned import Heard, listener
 
 SERVER = "service.ingest.fork_server"
 ROOT = str(Path(__file__).parents[2])
@@ -50,6 +51,8 @@ SIZE = struct.Struct(">Q")
 READY = b"r"
 END = b"end"
 """The line after the last part of an answer that comes in parts."""
+SCANNED = b"scanned "
+"""Begins a line that says how far a file was read."""
 FELL = (OSError, EOFError, *DAMAGED)
 """What a fork that ends before its answer is seen as."""
 
@@ -113,8 +116,18 @@ def _asked_again_if_ended(job: str, content: bytes | Path, filename: str, most: 
 def _asked(job: str, content: bytes | Path, filename: str, most: Limits) -> Any:
     with _server.fork() as child:
         child.settimeout(most.seconds * WAITING + GRACE)
-        _ask(child, {"job": job, "filename": filename, "limits": asdict(most)}, content)
-        return _answer(child, _line(child), most)
+        hears = listener()
+        _ask(child, {"job": job, "filename": filename, "limits": asdict(most), "tells": hears is not None}, content)
+        return _answer(child, _answer_line(child, hears), most)
+
+
+def _answer_line(child: socket.socket, hears: Heard | None) -> bytes:
+    """The line of the answer; those before it say how far the file was read."""
+    while (line := _line(child)).startswith(SCANNED):
+        done, times = map(int, line.removeprefix(SCANNED).split())
+        if hears is not None:
+            hears(done, times)
+    return line
 
 
 def _answer(child: socket.socket, line: bytes, most: Limits) -> Any:

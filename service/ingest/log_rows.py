@@ -14,6 +14,7 @@ import polars as pl
 from service.ingest.formats import PARQUET, may_be_log
 from service.ingest.limits import refusal
 from service.ingest.metadata import KEY
+from service.ingest.scanned import teller
 
 LONGEST_HEADER = 1024 * 1024
 """Bytes of # lines, and of the header, before the rows of a CSV file."""
@@ -75,10 +76,11 @@ class ParquetRows:
     def stretches(self, names: Sequence[str]) -> Iterator[pl.DataFrame]:
         """One slice after another, for which only the row groups are unpacked that it lies in."""
         table, at = pl.scan_parquet(self.path).select(names), 0
-        rows = max(CHUNK // len(self.names), 1)
+        rows, whole, size = max(CHUNK // len(self.names), 1), max(self.count(0), 1), self.path.stat().st_size
         while len(frame := table.slice(at, rows).collect()):
             yield frame
             at += len(frame)
+            teller().at(size * at // whole, size)
 
 
 def parquet_rows(path: Path, filename: str) -> ParquetRows:
@@ -117,8 +119,11 @@ class CsvRows:
 
     def stretches(self, names: Sequence[str]) -> Iterator[pl.DataFrame]:
         """One of the file after another; a column that should hold numbers and does not comes as texts."""
+        size, done = self.path.stat().st_size, self.begins
         for text in self._stretches():
             yield self._read(text, names)
+            done += len(text)
+            teller().at(done, size)
 
     def _read(self, text: bytes, names: Sequence[str]) -> pl.DataFrame:
         """Whole lines; numbers with blanks around them take the longer way, and what is wrong with others is kept."""

@@ -16,7 +16,9 @@ router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 @router.get("/uploads")
 def show_uploads(request: Request, store: Reading, asked: Annotated[ArrivalsAsked, Query()]) -> HTMLResponse:
     """Every file that came in, newest first, and what became of it."""
-    return render(request, "arrivals.html", arrivals_page(store.arrivals.page(arrivals_query(asked)), asked))
+    query = arrivals_query(asked)
+    jobs = () if asked.after or query.refused else store.jobs.open_uploads()
+    return render(request, "arrivals.html", arrivals_page(store.arrivals.page(query), asked, jobs))
 
 
 @router.get("/uploads/{id}")

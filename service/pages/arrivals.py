@@ -6,8 +6,10 @@ from dataclasses import dataclass
 from pydantic import BaseModel
 
 from service.measures import size_in_words
+from service.pages.jobs import JobLine, job_line
 from service.pages.list_view import Asked, address_of
 from service.records.arrival import Arrival, ArrivalQuery, Refusal, refusal_number
+from service.records.job import Job
 from service.words.conditions import Condition, condition_of, said_with
 
 PAGE_SIZE = 50
@@ -48,6 +50,8 @@ class ArrivalsPage:
     later: str
     """Address of the next page; empty where this is the last."""
     narrows: bool
+    jobs: tuple[JobLine, ...]
+    """Large files that are still being read."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +74,7 @@ def arrivals_query(asked: ArrivalsAsked) -> ArrivalQuery:
     )
 
 
-def arrivals_page(found: Sequence[Arrival], asked: ArrivalsAsked) -> ArrivalsPage:
+def arrivals_page(found: Sequence[Arrival], asked: ArrivalsAsked, jobs: Sequence[Job] = ()) -> ArrivalsPage:
     """One page of uploads."""
     shown, text, only = found[:PAGE_SIZE], asked.q.strip(), REFUSED if asked.only == REFUSED else ""
     after = {"q": text, "only": only, "after": shown[-1].name} if len(found) > PAGE_SIZE else {}
@@ -80,6 +84,7 @@ def arrivals_page(found: Sequence[Arrival], asked: ArrivalsAsked) -> ArrivalsPag
         rows=tuple(map(_row, shown)),
         later=address_of(PATH, after) if after else "",
         narrows=bool(text or only or asked.after),
+        jobs=tuple(map(job_line, jobs)),
     )
 
 

@@ -6,13 +6,15 @@ from fastapi import APIRouter, Form, Query, Request
 from fastapi.responses import HTMLResponse, RedirectResponse
 
 from service.admission import PersonOf
-from service.dependencies import JobDeskOf, LanguageOf, Now, Reading, StorageOf
+from service.dependencies import JobDeskOf, LanguageOf, Now, Reading, SettingsOf, StorageOf
 from service.flows.ask_job import cancel_job
 from service.pages.forms import NO_NUL, SEE_OTHER, By, Number
 from service.pages.jobs import PAGE_SIZE, job_page, jobs_page
 from service.pages.render import render
-from service.records.job import JobKind, NewJob
+from service.pages.upload import Outcome, job_outcome, outcome_of, upload_page
+from service.records.job import Job, JobKind, NewJob
 from service.records.model import Scope
+from service.storage.store import Store
 
 router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 
@@ -64,7 +66,24 @@ def ask_for_report(
 @router.get("/jobs/{id}")
 def show_job(request: Request, id: Number, store: Reading, desk: JobDeskOf, person: PersonOf, now: Now) -> HTMLResponse:
     """How far one job has come."""
-    return render(request, "job.html", job_page(store.jobs.get(id), person, now, desk.workers))
+    job = store.jobs.get(id)
+    problems = () if job.refusal is None else store.arrivals.refusal(job.refusal).problems
+    return render(request, "job.html", job_page(job, person, now, desk.workers, problems))
+
+
+@router.get("/jobs/{id}/outcome")
+def show_outcome(request: Request, store: Reading, settings: SettingsOf, id: Number) -> HTMLResponse:
+    """What became of an upload by now, as the card of the upload page."""
+    job = store.jobs.get(id)
+    return render(request, "outcome.html", upload_page((_outcome(store, job),), settings))
+
+
+def _outcome(store: Store, job: Job) -> Outcome:
+    if job.session:
+        return outcome_of(store.sessions.get(job.session), store.diagnoses.summary(job.session))
+    if job.refusal is not None:
+        return Outcome(job.subject, problems=store.arrivals.refusal(job.refusal).problems)
+    return job_outcome(job)
 
 
 @router.post("/jobs/{id}/cancel")

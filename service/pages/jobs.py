@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from datetime import datetime
 from urllib.parse import quote, urlencode
 
+from estimator.errors import Problem
 from service.flows.ask_job import may_cancel
 from service.measures import number
-from service.pages.follow import follow_seconds
+from service.pages.follow import SOONEST, follow_seconds
 from service.records.identity import Person
 from service.records.job import Job, JobFailure, JobKind, JobState
 from service.records.model import Scope
@@ -68,19 +69,27 @@ class JobPage:
     follow: int | None
     """Seconds after which the page looks again."""
     can_cancel: bool
+    problems: tuple[Problem, ...]
+    """Of an upload that was refused."""
 
 
 def jobs_page(found: Sequence[Job], person: Person, subject: str, *, mine: bool) -> JobsPage:
     """The newest first."""
-    lines = tuple(JobLine(job, title_of(job), STATES[job.state], progress_of(job)) for job in found)
+    lines = tuple(map(job_line, found))
     narrowed = ({"subject": subject} if subject else {}) | ({"mine": "yes"} if mine else {})
     earlier = f"/jobs?{urlencode(narrowed | {'before': found[-1].id})}" if len(found) == PAGE_SIZE else ""
     return JobsPage(lines, subject, mine, bool(person.login), earlier)
 
 
-def job_page(job: Job, person: Person, now: datetime, workers: int) -> JobPage:
+def job_line(job: Job) -> JobLine:
+    """One of a list."""
+    return JobLine(job, title_of(job), STATES[job.state], progress_of(job))
+
+
+def job_page(job: Job, person: Person, now: datetime, workers: int, problems: Sequence[Problem] = ()) -> JobPage:
     """One job as it stands."""
     follow = follow_seconds(job.asked_at, now, workers) if job.is_open else None
+    latest = SOONEST if job.kind is JobKind.UPLOAD else LATEST
     return JobPage(
         job=job,
         title=title_of(job),
@@ -93,8 +102,9 @@ def job_page(job: Job, person: Person, now: datetime, workers: int) -> JobPage:
         size="" if job.made is None else f"{number(job.made.size / KILO, 0)} kB",
         failures=job.failures,
         more=job.failed - len(job.failures),
-        follow=None if follow is None else min(follow, LATEST),
-        can_cancel=job.is_open and may_cancel(job, person),
+        follow=None if follow is None else min(follow, latest),
+        can_cancel=job.is_open and not job.is_storing and may_cancel(job, person),
+        problems=tuple(problems),
     )
 
 

@@ -6,9 +6,10 @@ from fastapi import APIRouter, Query, Request
 from fastapi.responses import HTMLResponse
 
 from service.admission import PersonOf
-from service.dependencies import Now, Reading, ReadingFleet, ReceptionOf, SettingsOf, StorageOf
+from service.dependencies import JobDeskOf, Now, Reading, ReadingFleet, ReceptionOf, SettingsOf, StorageOf
 from service.flows.correct_session import remedies_of
 from service.flows.receive import receive_all
+from service.flows.take_in import is_long
 from service.ingest import is_own_layout
 from service.judging.model_in_force import model_as_of
 from service.judging.standouts import fleet_standouts
@@ -23,7 +24,7 @@ from service.pages.render import render
 from service.pages.saved import saved
 from service.pages.session import session_page
 from service.pages.unit import unit_page
-from service.pages.upload import outcome_of, outcomes_of, table_outcome, upload_page
+from service.pages.upload import job_outcome, outcome_of, outcomes_of, table_outcome, upload_page
 from service.records.doubt import Remedies
 from service.records.group import Level
 from service.records.received import where
@@ -148,14 +149,24 @@ def show_upload(request: Request, store: Reading, settings: SettingsOf) -> HTMLR
 
 @router.post("/upload")
 def take_uploads(
-    request: Request, files: FormFiles, reception: ReceptionOf, settings: SettingsOf, now: Now
+    request: Request,
+    files: FormFiles,
+    reception: ReceptionOf,
+    settings: SettingsOf,
+    now: Now,
+    desk: JobDeskOf,
+    person: PersonOf,
 ) -> HTMLResponse:
-    """The form with the verdict of each file, or what is wrong with it; 422 when a file cannot be used."""
+    """The form with the verdict of each file, or what is wrong with it; 422 when a file cannot be used. Large files
+    are worked on by jobs."""
     tables = [file for file in files if is_own_layout(where(file.content), file.filename)]
-    sessions = [file for file in files if file not in tables]
+    whole = [file for file in files if file not in tables]
+    long = [file for file in whole if is_long(reception.storage, file, settings.job_upload_bytes)]
+    sessions = [file for file in whole if file not in long]
+    jobs = [job_outcome(desk.take_in(reception, file, person)) for file in long]
     found = receive_all(reception, sessions, now)
     with reception.storage.database.reading() as store:
-        outcomes = (*map(table_outcome, tables), *outcomes_of(sessions, found, store.diagnoses.summary))
+        outcomes = (*map(table_outcome, tables), *jobs, *outcomes_of(sessions, found, store.diagnoses.summary))
         names = type_names(store)
     page = upload_page(outcomes, settings, names)
     return render(request, "upload.html", page, 422 if page.refused else 200)

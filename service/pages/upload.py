@@ -8,12 +8,14 @@ from service.errors import RefusedError
 from service.pages.diagnosis_line import DiagnosisLine, diagnosis_line
 from service.pages.layout_form import carried
 from service.records.diagnosis import DiagnosisSummary
+from service.records.job import Job
 from service.records.received import SentFile
 from service.records.reservation import Reservations
 from service.records.session import Receipt, StoredSession
 from service.records.state import RecordState
 from service.settings import Settings
 from service.words.conditions import QUESTIONED, Condition, condition_of
+from service.words.jobs import ending_of, progress_of
 
 
 @dataclass(frozen=True)
@@ -31,6 +33,10 @@ class Outcome:
     """Of one's own layout, not read before its page says how."""
     content: str = ""
     """Of a table, as text; empty where it is too large for a page."""
+    job: Job | None = None
+    """That works on a large file."""
+    progress: str = ""
+    """How far it is."""
 
     @property
     def condition(self) -> Condition:
@@ -63,7 +69,7 @@ class UploadPage:
     @property
     def refused(self) -> int:
         """How many files could not be used."""
-        return sum(o.receipt is None and not o.is_table for o in self.outcomes)
+        return sum(o.receipt is None and not o.is_table and o.job is None for o in self.outcomes)
 
 
 def outcomes_of(
@@ -78,6 +84,11 @@ def outcomes_of(
 def table_outcome(file: SentFile) -> Outcome:
     """A table of one's own layout, with the bytes that its page asks about."""
     return Outcome(file.filename, is_table=True, content=carried(file))
+
+
+def job_outcome(job: Job) -> Outcome:
+    """A large file that a job works on, or that became nothing."""
+    return Outcome(job.subject, job=job, progress=progress_of(job) or ending_of(job))
 
 
 def _outcome(filename: str, one: Receipt | RefusedError, summary: Callable[[str], DiagnosisSummary | None]) -> Outcome:

@@ -10,11 +10,29 @@ REFUSED = "r"
 """Begins the name of a refusal, where a session's is its id."""
 
 
+UNDER_WAY = "j"
+"""Begins the name of an upload that a job works on."""
+
+
+def under_way(job: int) -> str:
+    """The name of an upload that a job works on."""
+    return f"{UNDER_WAY}{job}"
+
+
+def job_number(name: str) -> int | None:
+    """The number of the job that a name names; None of any other name."""
+    return _number(name, UNDER_WAY)
+
+
 def refusal_number(name: str) -> int | None:
     """The number of the refusal that a name names; None of any other name."""
-    number = name.removeprefix(REFUSED)
-    is_refusal = name.startswith(REFUSED) and number.isascii() and number.isdigit() and len(number) < 10
-    return int(number) if is_refusal else None
+    return _number(name, REFUSED)
+
+
+def _number(name: str, begins: str) -> int | None:
+    number = name.removeprefix(begins)
+    is_one = name.startswith(begins) and number.isascii() and number.isdigit() and len(number) < 10
+    return int(number) if is_one else None
 
 
 @dataclass(frozen=True)

@@ -1,10 +1,13 @@
 """Long work that somebody asked for: how far it has come, what it could not do, and what it made."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from enum import StrEnum
+from typing import Any
 
 from service.records.model import Scope
+from service.records.received import Replaced
 
 KEPT = timedelta(days=7)
 """That a report stays to be downloaded: a week's leave; it is made anew at any time."""
@@ -19,6 +22,8 @@ class JobKind(StrEnum):
     """The sessions that a change of a model concerns, computed again; several processes are at them."""
     REPORT = "report"
     """The fleet's condition as a workbook or on paper."""
+    UPLOAD = "upload"
+    """A long file that was received whole: read, calibrated, judged and stored."""
 
 
 class JobState(StrEnum):
@@ -33,6 +38,27 @@ class JobState(StrEnum):
 
 OPEN = (JobState.WAITING, JobState.RUNNING)
 """Nobody has ended it, nor it itself."""
+
+
+KILOBYTE = 1000
+"""Bytes: what has been read of a long file is counted in these."""
+
+
+@dataclass(frozen=True)
+class Sent:
+    """A file that was received whole and is still to be read, with what its sender said of it."""
+
+    place: str
+    """Its name among those that wait."""
+    sha256: str
+    size: int
+    """Bytes."""
+    account: str = ""
+    """As the audit trail names who sent it."""
+    is_check: bool = False
+    replaces: Replaced | None = None
+    mapping: Mapping[str, Any] | None = None
+    """How a table of one's own layout is read."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +79,8 @@ class NewJob:
     """Of a report."""
     revision: int = 0
     """Of the model that changed."""
+    sent: Sent | None = None
+    """The file that is taken in; ``subject`` is its name."""
 
 
 @dataclass(frozen=True)
@@ -117,6 +145,14 @@ class Job:
     held_up: str
     """Why it waits although it was begun; empty where it does not."""
     made: Made | None
+    sent: Sent | None = None
+    """The file that is taken in: of its ``total`` kilobytes ``done`` were read, after ``cursor`` times through all."""
+    is_storing: bool = False
+    """Whether that file is read and being stored, so that nobody cancels it any more."""
+    session: str = ""
+    """That it became; empty where it became none."""
+    refusal: int | None = None
+    """Number of its refusal, where it could not be used."""
 
     @property
     def is_open(self) -> bool:

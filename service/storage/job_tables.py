@@ -3,7 +3,7 @@
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Index, String
+from sqlalchemy import JSON, Index, String, false
 from sqlalchemy.orm import Mapped, mapped_column
 
 from service.storage.columns import IS_AT_WORK, only_where
@@ -47,3 +47,8 @@ class JobRow(Base):
     sha256: Mapped[str] = mapped_column(String(64))
     kept_until: Mapped[datetime | None]
     """Of the file that it made; None where there is none, or no longer."""
+    sent: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
+    """Of an upload: the file that waits, as `Sent`; its hash is in ``sha256``."""
+    is_storing: Mapped[bool] = mapped_column(server_default=false())
+    session: Mapped[str] = mapped_column(String(20), server_default="")
+    refusal: Mapped[int | None]

@@ -20,7 +20,7 @@ from service.storage.queries.fleet_rows import FleetRows
 from service.storage.queries.groups import Groups
 from service.storage.queries.history import History
 from service.storage.queries.identities import Identities
-from service.storage.queries.jobs import Jobs
+from service.storage.queries.jobs import Jobs, UploadJobs
 from service.storage.queries.layouts import Layouts
 from service.storage.queries.log import Log
 from service.storage.queries.models import Models
@@ -160,6 +160,11 @@ class Store:
     def jobs(self) -> Jobs:
         """Long work that somebody asked for."""
         return Jobs(self._session)
+
+    @cached_property
+    def upload_jobs(self) -> UploadJobs:
+        """Those of them that take in long files."""
+        return UploadJobs(self._session)
 
     @cached_property
     def services(self) -> Services:

@@ -1,7 +1,8 @@
 """Long work in words: what it is, how far it has come, and what it did."""
 
 from estimator.wording import counted
-from service.records.job import Job, JobKind, JobState
+from service.measures import number
+from service.records.job import KILOBYTE, Job, JobKind, JobState
 from service.records.model import Scope
 
 AT_FAULT = "The program failed at it, several times: the log says more. It keeps what it had."
@@ -20,6 +21,8 @@ def title_of(job: Job) -> str:
     """What is done, and to what."""
     if job.kind is JobKind.REPORT:
         return FLEET_REPORTS[job.form]
+    if job.kind is JobKind.UPLOAD:
+        return f"Upload of {job.subject}"
     if job.kind is JobKind.MODEL:
         return f"Accepted cause, revision {job.revision}: sessions computed again"
     match job.scope:
@@ -43,13 +46,29 @@ def left_in_words(left: int) -> str:
 
 def progress_of(job: Job) -> str:
     """How far it has come."""
+    if job.kind is JobKind.UPLOAD:
+        return _read_so_far(job)
     if job.kind is JobKind.REPORT:
         return "" if job.state is not JobState.DONE else "The report is made."
     return f"Units: {job.done} of {job.total}"
 
 
+def _read_so_far(job: Job) -> str:
+    """Of a file: megabytes, and how often it was gone through before."""
+    if not job.is_open:
+        return ""
+    if job.is_storing:
+        return "It is read; its session is calibrated and is being stored."
+    done, total = number(job.done / KILOBYTE, 1), number(job.total / KILOBYTE, 1)
+    if not job.cursor:
+        return f"Read: {done} of {total} MB."
+    return f"Read once more: {done} of {total} MB. A log is read several times, and was {counted(job.cursor, 'time')}."
+
+
 def outcome_of(job: Job) -> str:
     """What it did so far; empty of a report."""
+    if job.kind is JobKind.UPLOAD:
+        return _became(job)
     if job.kind is JobKind.REPORT:
         return ""
     if job.state is JobState.DONE and not job.recomputed and not job.failed:
@@ -58,8 +77,18 @@ def outcome_of(job: Job) -> str:
     return f"{counted(job.recomputed, 'session')} computed again, {other}."
 
 
+def _became(job: Job) -> str:
+    if job.session:
+        return "The file is stored as a session."
+    return "The file cannot be used. Nothing was stored; correct what is listed and upload it again." * bool(
+        job.refusal
+    )
+
+
 def ending_of(job: Job) -> str:
     """What its end means; empty while it goes on."""
+    if job.kind is JobKind.UPLOAD:
+        return "Cancelled: nothing was stored, and the file is gone." if job.state is JobState.CANCELLED else ""
     match job.state:
         case JobState.CANCELLED:
             return "Cancelled between two pieces: what was done until then stays, the rest keeps what it had."

@@ -1,12 +1,16 @@
 """Long work, as programs ask for it and follow it."""
 
+from collections.abc import Sequence
 from datetime import datetime
 from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from estimator.errors import Problem
 from service.api.schemas.fields import Text
-from service.records.job import JobKind, JobState
+from service.api.schemas.problem import Fault
+from service.records.arrival import under_way
+from service.records.job import Job, JobKind, JobState
 from service.records.model import Scope
 
 
@@ -59,21 +63,25 @@ class JobSchema(BaseModel):
     id: int = Field(description="Number of the job.")
     kind: JobKind = Field(description="What kind of work.")
     scope: Scope | None = Field(description="None for the whole fleet.")
-    subject: str = Field(description="Serial number or name; empty for the whole fleet.")
+    subject: str = Field(description="Serial number or name; of an upload the file's; empty for the whole fleet.")
     state: JobState = Field(description="How far it is.")
     who: str = Field(description="Who asked for it.")
     asked_at: datetime = Field(description="When it was asked for, UTC.")
     begun_at: datetime | None = Field(description="When it was begun, UTC; none while it waits.")
     ended_at: datetime | None = Field(description="When its last piece was begun, UTC; none while it is not ended.")
     cancelled_by: str = Field(description="Who cancelled it; empty where nobody did.")
-    done: int = Field(description="Pieces that are whole: of a recalibration, units.")
+    done: int = Field(description="Pieces that are whole: of a recalibration, units; of an upload, kilobytes read.")
     total: int = Field(description="Pieces in all.")
+    times: int = Field(description="Of an upload: how often all of it was read already; a log is read several times.")
     recomputed: int = Field(description="Sessions that have another calibration since.")
     verdicts: int = Field(description="Sessions that have another verdict since.")
     failed: int = Field(description="Pieces that could not be done.")
     failures: list[JobFailureSchema] = Field(description="The first hundred of them.")
     held_up: str = Field(description="Why it waits although it was begun; empty where it does not.")
     made: MadeSchema | None = Field(description="What it made, at `/jobs/{id}/file`.")
+    upload: str = Field(description="Of an upload: its id at `/uploads/{id}`, which tells what becomes of it.")
+    session: str = Field(description="Of an upload: the session that it became; empty while it is none.")
+    problems: list[Fault] = Field(description="Of an upload that was refused: every fault, where one job is read.")
 
 
 class JobPage(BaseModel):
@@ -81,3 +89,14 @@ class JobPage(BaseModel):
 
     jobs: list[JobSchema] = Field(description="The jobs of this page.")
     before: int | None = Field(description="Ask with it for the jobs before these; none where there are none.")
+
+
+def job_schema(job: Job, problems: Sequence[Problem] = ()) -> JobSchema:
+    """A job as the API tells of it, with the faults of the file that it refused."""
+    own = {
+        **vars(job),
+        "times": job.cursor if job.kind is JobKind.UPLOAD else 0,
+        "upload": under_way(job.id) if job.kind is JobKind.UPLOAD else "",
+        "problems": [Fault(field=one.field, row=one.row, message=one.message) for one in problems],
+    }
+    return JobSchema.model_validate(own, from_attributes=True)

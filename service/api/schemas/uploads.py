@@ -6,14 +6,15 @@ from pydantic import BaseModel, Field
 
 from service.api.schemas.problem import Fault
 from service.api.schemas.sessions import SessionSchema
-from service.records.arrival import Arrival, Refusal
+from service.records.arrival import Arrival, Refusal, under_way
+from service.records.job import Job
 from service.records.session import StoredSession
 
 
 class UploadSchema(BaseModel):
-    """One file that came in: either it was stored as a session, or it was refused and nothing of it was stored."""
+    """One file that came in: it was stored as a session, or refused and nothing of it stored, or a job works on it."""
 
-    id: str = Field(description="The session's id, or `r` and the number of the refusal.")
+    id: str = Field(description="The session's id, or `r` and the number of the refusal, or `j` and that of its job.")
     at: datetime = Field(description="When it came, UTC.")
     filename: str = Field(description="What the file was called.")
     sha256: str = Field(description="SHA-256 of its bytes.")
@@ -21,6 +22,20 @@ class UploadSchema(BaseModel):
     stored: bool = Field(description="Whether it became a session.")
     session: SessionSchema | None = Field(description="The session that it became.")
     problems: list[Fault] = Field(description="Why it was refused: every fault with its place.")
+    job: str = Field(default="", description="Address of the job that works, or worked, on it.")
+
+
+def job_upload_schema(job: Job, session: StoredSession | None, refusal: Refusal | None) -> UploadSchema:
+    """An upload that a job works on, with what it became where that is known."""
+    own = f"/api/v1/jobs/{job.id}"
+    if session is not None or refusal is not None:
+        came = Arrival(job.asked_at, session, refusal)
+        return upload_schema(came).model_copy(update={"job": own})
+    assert job.sent is not None
+    return UploadSchema(
+        id=under_way(job.id), at=job.asked_at, filename=job.subject, sha256=job.sent.sha256, size=job.sent.size,
+        stored=False, session=None, problems=[], job=own,
+    )  # fmt: skip
 
 
 class UploadPage(BaseModel):

@@ -58,7 +58,7 @@ function follow(card, pause = 1000) {
     } catch {
       // the server does not answer just now
     }
-    follow(next, Math.min(1.5 * pause, 60000));
+    follow(next, next.dataset.every ? 1000 * next.dataset.every : Math.min(1.5 * pause, 60000));
   }, pause);
 }
 

@@ -2,7 +2,8 @@
 files that they name are there already and never change."""
 
 import zipfile
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from datetime import datetime
 from hashlib import sha256
@@ -11,6 +12,7 @@ from pathlib import Path
 from sqlalchemy import Connection, Table, select
 
 from service.errors import ConflictError, ServiceError
+from service.records.job import JobKind
 from service.settings import VERSION
 from service.storage.backup.manifest import Manifest, TableContents, file_member, member_to_write, write_manifest
 from service.storage.backup.rows import lines_of, tables_of
@@ -20,6 +22,7 @@ from service.storage.files import LOST, Files
 from service.storage.folders import sync_folder
 from service.storage.parts import sweep, written_whole
 from service.storage.schema import stored_revision
+from service.storage.waiting import whole_file
 from service.storage.waits import PATIENT
 
 QUICK = 1
@@ -60,8 +63,9 @@ def _written(archive: zipfile.ZipFile, connection: Connection, files: Files, mad
     """Tables, then files, then what they are."""
     tables = tables_of(connection)
     contents = tuple(_write_table(archive, connection, table) for table in tables)
-    named = sorted(_named(connection, tables))
-    lost = {digest for digest in named if not _write_file(archive, files, digest)}
+    waiting = _waiting(connection, tables)
+    named = sorted(_named(connection, tables) | set(waiting))
+    lost = {digest for digest in named if not _write_file(archive, files, digest, waiting.get(digest, ()))}
     manifest = Manifest(
         version=VERSION,
         revision=made[0],
@@ -91,10 +95,20 @@ def _named(connection: Connection, tables: list[Table]) -> set[str]:
     return {digest for table in holding for digest in connection.scalars(select(table.columns.sha256))}
 
 
-def _write_file(archive: zipfile.ZipFile, files: Files, digest: str) -> bool:
+def _waiting(connection: Connection, tables: list[Table]) -> dict[str, list[str]]:
+    """Hashes of files that jobs are to take in, with the places where they lie until then."""
+    found = defaultdict[str, list[str]](list)
+    for jobs in (table for table in tables if table.name == "jobs" and "sent" in table.columns):
+        own = (jobs.columns.kind == JobKind.UPLOAD, jobs.columns.ended_at.is_(None))
+        for digest, sent in connection.execute(select(jobs.columns.sha256, jobs.columns.sent).where(*own)):
+            found[digest].append(sent["place"])
+    return found
+
+
+def _write_file(archive: zipfile.ZipFile, files: Files, digest: str, places: Sequence[str]) -> bool:
     """Whether the file was there as it was uploaded."""
     try:
-        content = files.content(digest)
+        content = whole_file(files, digest, places) if places else files.content(digest)
     except LOST:
         return False
     if isinstance(content, bytes):

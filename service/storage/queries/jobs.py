@@ -1,13 +1,15 @@
 """Long work: asked for, claimed by one process piece by piece, cancelled between two, ended once."""
 
+from dataclasses import asdict
 from datetime import datetime
 from typing import Any
 
 from sqlalchemy import ColumnElement, func, or_, select, update
 
 from service.errors import NotFoundError
-from service.records.job import Job, JobFailure, JobKind, JobState, Made, NewJob, Piece
+from service.records.job import Job, JobFailure, JobKind, JobState, Made, NewJob, Piece, Sent
 from service.records.model import Scope
+from service.records.received import Replaced
 from service.storage.job_tables import JobRow
 from service.storage.queries.base import Queries
 from service.storage.queries.recomputations import concerned
@@ -22,13 +24,18 @@ LONGEST_REASON = 500
 class Jobs(Queries):
     """Long work that somebody asked for."""
 
+    queued: tuple[JobKind, ...] = (JobKind.RECALIBRATION, JobKind.REPORT)
+    """What stands in this queue. The units of a changed model have one of their own."""
+
     def add(self, new: NewJob, total: int, now: datetime) -> Job:
         """Keeps what is asked for."""
+        sent = new.sent
         row = JobRow(
             kind=new.kind, scope=new.scope or "", subject=new.subject, form=new.form, language=new.language,
             revision=new.revision, who=new.who, account=new.account, state=JobState.WAITING, asked_at=now, turn_at=now,
             cancelled_by="", attempts=0, done=0, total=total, cursor=0, recomputed=0, verdicts=0, failed=0, failures=[],
-            held_up="", filename="", size=0, sha256="",
+            held_up="", filename="", size=0, sha256="" if sent is None else sent.sha256,
+            sent=None if sent is None else asdict(sent), is_storing=False, session="",
         )  # fmt: skip
         self._session.add(row)
         self._session.flush()
@@ -40,6 +47,21 @@ class Jobs(Queries):
         of_form = (JobRow.form == new.form, JobRow.language == new.language, JobRow.ended_at.is_(None))
         row = self._session.scalar(select(JobRow).where(*same, *of_form).order_by(JobRow.id).limit(1))
         return None if row is None else _record(row)
+
+    def sending(self, sha256: str) -> tuple[Job, ...]:
+        """Open jobs that take in a file of this content."""
+        same = (JobRow.kind == JobKind.UPLOAD, JobRow.sha256 == sha256, JobRow.ended_at.is_(None))
+        return tuple(map(_record, self._session.scalars(select(JobRow).where(*same).order_by(JobRow.id))))
+
+    def places(self) -> frozenset[str]:
+        """Of the files that open jobs take in."""
+        own = (JobRow.kind == JobKind.UPLOAD, JobRow.ended_at.is_(None))
+        return frozenset(sent["place"] for sent in self._session.scalars(select(JobRow.sent).where(*own)) if sent)
+
+    def open_uploads(self) -> tuple[Job, ...]:
+        """Files that were received and are not yet stored, the newest first."""
+        own = (JobRow.kind == JobKind.UPLOAD, JobRow.ended_at.is_(None))
+        return tuple(map(_record, self._session.scalars(select(JobRow).where(*own).order_by(JobRow.id.desc()))))
 
     def open_count(self) -> int:
         """How many jobs are still to be worked on."""
@@ -80,13 +102,13 @@ class Jobs(Queries):
         """Jobs that nobody is at, the one that has waited longest for its turn before all."""
         return tuple(
             self._session.scalars(
-                select(JobRow.id).where(*_is_free(now)).order_by(JobRow.turn_at, JobRow.id).limit(limit)
+                select(JobRow.id).where(*self._is_free(now)).order_by(JobRow.turn_at, JobRow.id).limit(limit)
             )
         )
 
     def claim(self, id: int, now: datetime, until: datetime) -> int | None:
         """How often its next piece was begun since a claim ended with a word; None where another is at it."""
-        own = update(JobRow).where(JobRow.id == id, *_is_free(now))
+        own = update(JobRow).where(JobRow.id == id, *self._is_free(now))
         begun = {"state": JobState.RUNNING, "begun_at": func.coalesce(JobRow.begun_at, now), "turn_at": now}
         claimed = own.values(claimed_until=until, attempts=JobRow.attempts + 1, **begun)
         return self._session.scalar(claimed.returning(JobRow.attempts))
@@ -149,11 +171,31 @@ class Jobs(Queries):
 
     def fail(self, id: int, failure: JobFailure, now: datetime) -> bool:
         """It cannot be done."""
-        return self.end(id, JobState.FAILED, now, failed=1, failures=[vars(failure)])
+        told = {"subject": failure.subject, "reason": failure.reason[:LONGEST_REASON]}
+        return self.end(id, JobState.FAILED, now, failed=1, failures=[told], is_storing=False)
 
     def cancel(self, id: int, who: str, now: datetime) -> bool:
-        """Nobody begins its next piece; whether it was still open."""
+        """Nobody begins its next piece; whether it was still open, and no file being stored."""
+        free = select(JobRow.id).where(JobRow.id == id, JobRow.is_storing.is_(False)).with_for_update()
+        if self._session.scalar(free) is None:
+            return False
         return self.end(id, JobState.CANCELLED, now, cancelled_by=who)
+
+    def read_on(self, id: int, kilobytes: int, times: int) -> bool:
+        """So much of a file was read, after so many times through all of it; whether that is still wanted."""
+        return self._put_if_open(id, done=kilobytes, cursor=times)
+
+    def begin_storing(self, id: int) -> bool:
+        """From now on nobody cancels it; whether it is still wanted."""
+        return self._put_if_open(id, is_storing=True)
+
+    def take_in(self, id: int, session: str, now: datetime) -> bool:
+        """Its file is this session; whether it was still open."""
+        return self.end(id, JobState.DONE, now, session=session, done=JobRow.total, is_storing=False)
+
+    def refuse(self, id: int, refusal: int, now: datetime) -> bool:
+        """Its file cannot be used; whether it was still open."""
+        return self.end(id, JobState.FAILED, now, refusal=refusal, is_storing=False)
 
     def outlived(self, now: datetime) -> tuple[int, ...]:
         """Jobs whose file has been kept for its time."""
@@ -166,11 +208,19 @@ class Jobs(Queries):
     def _put(self, id: int, **values: Any) -> None:
         self._session.execute(update(JobRow).where(JobRow.id == id).values(**values))
 
+    def _put_if_open(self, id: int, **values: Any) -> bool:
+        own = update(JobRow).where(JobRow.id == id, JobRow.ended_at.is_(None)).values(**values)
+        return self._session.scalar(own.returning(JobRow.id)) is not None
 
-def _is_free(now: datetime) -> tuple[ColumnElement[bool], ...]:
-    """The units of a changed model stand in a queue of their own."""
-    until = JobRow.claimed_until
-    return JobRow.ended_at.is_(None), JobRow.kind != JobKind.MODEL, or_(until.is_(None), until <= now)
+    def _is_free(self, now: datetime) -> tuple[ColumnElement[bool], ...]:
+        until = JobRow.claimed_until
+        return JobRow.ended_at.is_(None), JobRow.kind.in_(self.queued), or_(until.is_(None), until <= now)
+
+
+class UploadJobs(Jobs):
+    """Long files, which are worked on apart from the rest."""
+
+    queued = (JobKind.UPLOAD,)
 
 
 def _record(row: JobRow) -> Job:
@@ -183,4 +233,11 @@ def _record(row: JobRow) -> Job:
         done=row.done, total=row.total, cursor=row.cursor, recomputed=row.recomputed, verdicts=row.verdicts,
         failed=row.failed, failures=tuple(JobFailure(**one) for one in row.failures), held_up=row.held_up,
         made=None if kept is None else Made(row.filename, row.size, row.sha256, kept),
+        sent=None if row.sent is None else _sent(row.sent), is_storing=row.is_storing, session=row.session,
+        refusal=row.refusal,
     )  # fmt: skip
+
+
+def _sent(kept: dict[str, Any]) -> Sent:
+    replaces = kept["replaces"]
+    return Sent(**{**kept, "replaces": None if replaces is None else Replaced(**replaces)})

@@ -12,7 +12,10 @@ from service.storage.tables import RefusalRow
 class Log(Queries):
     """Refused uploads."""
 
-    def refusal(self, at: datetime, filename: str, sha256: str, size: int, problems: Sequence[Problem]) -> None:
-        """Records an upload that could not be used."""
+    def refusal(self, at: datetime, filename: str, sha256: str, size: int, problems: Sequence[Problem]) -> int:
+        """Records an upload that could not be used, and returns its number."""
         listed = [asdict(problem) for problem in problems]
-        self._session.add(RefusalRow(at=at, filename=filename, sha256=sha256, size=size, problems=listed))
+        row = RefusalRow(at=at, filename=filename, sha256=sha256, size=size, problems=listed)
+        self._session.add(row)
+        self._session.flush()
+        return row.id

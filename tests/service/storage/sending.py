@@ -1,9 +1,16 @@
-"""The ways in which a file comes to what stores it: as bytes where they are few, else landed on the disk."""
+"""The ways in which a file comes to what stores it: as bytes where they are few, else landed on the disk, and then at
+once or by a job."""
 
 from collections.abc import Callable
 from datetime import datetime
+from uuid import uuid4
 
-from service.flows.receive import upload
+from service.background.diagnose_waiting import CLAIM
+from service.flows.receive import Reception, upload
+from service.flows.take_in import ask_upload, take_in
+from service.metrics import Metrics
+from service.records.identity import EVERYBODY
+from service.records.received import SentFile
 from service.storage import Storage
 
 Way = Callable[[Storage, bytes, datetime], None]
@@ -24,4 +31,21 @@ def landed(storage: Storage, content: bytes, now: datetime) -> None:
         upload(storage, landing.landed(), "a.json", now)
 
 
-WAYS: dict[str, Way] = {"as bytes": as_bytes, "landed": landed}
+def by_a_job(storage: Storage, content: bytes, now: datetime) -> None:
+    """As a long one whose sender does not wait: it is acknowledged before it is read."""
+    with storage.files.arriving() as place:
+        landing = place.new()
+        landing.take(content)
+        landing.write()
+        ask_upload(storage, SentFile("a.json", landing.landed()), EVERYBODY, uuid4().hex, now)
+
+
+def go_on(storage: Storage, now: datetime) -> None:
+    """What a service does that is started again: jobs that are open are taken up."""
+    with storage.database.reading() as store:
+        waiting = store.upload_jobs.waiting(now + CLAIM, 100)
+    for id in waiting:
+        take_in(Reception(storage, 2.0, Metrics(), lambda: None), id, now)
+
+
+WAYS: dict[str, Way] = {"as bytes": as_bytes, "landed": landed, "by a job": by_a_job}

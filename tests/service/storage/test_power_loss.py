@@ -14,10 +14,11 @@ import pytest
 from service.settings import Settings
 from service.storage import Database, Files, Storage
 from service.storage.schema import upgrade
+from service.storage.waiting import FOLDER as WAITING
 from tests.service.sessions import session_bytes
 from tests.service.storage.disk import TRACED, Call, Disk, calls, moments
 from tests.service.storage.intact import SENSORS, faults
-from tests.service.storage.sending import WAYS
+from tests.service.storage.sending import WAYS, go_on
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 SESSION = session_bytes(m=SENSORS)
@@ -27,11 +28,12 @@ from datetime import UTC, datetime
 from pathlib import Path
 from service.settings import Settings
 from service.storage import Database, Files, Storage
-from tests.service.storage.sending import WAYS
+from tests.service.storage.sending import WAYS, go_on
 settings = Settings(data_folder=Path(sys.argv[1]))
 storage = Storage(Database(settings.database), Files(settings.files))
 WAYS[sys.argv[2]](storage, sys.stdin.buffer.read(), datetime.now(UTC))
 os.write(1, b"acknowledged")
+go_on(storage, datetime.now(UTC))
 os._exit(0)
 """
 
@@ -71,7 +73,7 @@ def test_all_is_synced_before_the_answer_file_before_row(recorded: Recorded) -> 
     calls_before = recorded.calls[: recorded.answered]
     synced = [Path(call.path) for call in calls_before if call.name in ("fsync", "fdatasync")]
     parts = [n for n, path in enumerate(synced) if path.name.startswith(".part-")]
-    folders = [n for n, path in enumerate(synced) if path.name == "files"]
+    folders = [n for n, path in enumerate(synced) if path.name in ("files", WAITING)]
     rows = [n for n, path in enumerate(synced) if path.name.endswith("-wal")]
     assert parts[-1] < folders[-1] < rows[-1]
 
@@ -86,8 +88,11 @@ def test_whenever_the_power_is_cut_nothing_acknowledged_is_lost(
         place.mkdir()
         disk.write_to(place, names_kept=names_kept)
         settings = Settings(data_folder=place)
-        assert faults(settings, [SESSION] if number >= end else [], [SESSION]) == [], (number, done[number - 1])
         database = Database(settings.database)
-        WAYS[recorded.way](Storage(database, Files(settings.files)), SESSION, NOW)
+        storage = Storage(database, Files(settings.files))
+        go_on(storage, NOW)
+        assert faults(settings, [SESSION] if number >= end else [], [SESSION]) == [], (number, done[number - 1])
+        WAYS[recorded.way](storage, SESSION, NOW)
+        go_on(storage, NOW)
         database.close()
         assert faults(settings, [SESSION], [SESSION]) == []

@@ -7,6 +7,7 @@ from sqlalchemy import select
 
 from service.storage import Database
 from service.storage.tables import Base
+from service.storage.waiting import FOLDER
 
 
 def rows(url: str) -> dict[str, list[tuple[Any, ...]]]:
@@ -22,5 +23,6 @@ def rows(url: str) -> dict[str, list[tuple[Any, ...]]]:
 
 
 def files(folder: Path) -> dict[str, bytes]:
-    """Every uploaded file."""
-    return {path.name: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    """Every uploaded file; what was received and not yet read is none."""
+    found = (path for path in folder.rglob("*") if path.is_file() and path.parent.name != FOLDER)
+    return {path.name: path.read_bytes() for path in found}

@@ -1,0 +1,92 @@
+"""Work beside the requests: long files that were received whole, one after another, in a thread of their own. The file
+is read by a process of its own as in a request, so that diagnoses and other jobs go on meanwhile."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from datetime import datetime, timedelta
+from threading import Event, Thread
+
+from service.background.claimed import Work, work_next
+from service.background.diagnose_waiting import Diagnosing
+from service.background.guard import FORESEEN, Failure, Guard, ending_here
+from service.background.helper import Helper, Still, StoppingError
+from service.flows.receive import Reception
+from service.flows.take_in import give_up, take_in
+from service.storage import Storage
+
+LOOK_EVERY = 2.0
+"""Seconds between two looks at what other services left; what this one takes in rings."""
+RETRY = 60.0
+"""Seconds after a look that failed, as when the database is away."""
+PUT_OFF = timedelta(minutes=1)
+"""After a try that something passing hindered: somebody waits for the verdict."""
+WORD_EVERY = 5.0
+"""Seconds between two words that somebody is still at it."""
+WORK = "uploads"
+"""As the log and the figures name it."""
+AT_FAULT = (
+    "Nothing was stored: the program failed at this file, several times. Upload it again; where it fails again, the "
+    "log says why."
+)
+
+
+def take_in_waiting(own: Diagnosing, stop: Event) -> None:
+    """Takes in what waits until ``stop`` is set."""
+    idle, work = Helper(own.settings), uploads_of(own)
+    while not stop.is_set():
+        rung, guard = own.bell.rung, Guard(own.metrics)
+        with guard.alone(WORK, ""):
+            while not stop.is_set() and work_next(own, idle, stop, work):
+                rung = own.bell.rung
+        own.bell.wait(rung, RETRY if guard.failed else LOOK_EVERY)
+
+
+def uploads_of(own: Diagnosing) -> Work[int]:
+    """The queue of long files, and what takes one in."""
+    reception = Reception(
+        own.storage, own.settings.coverage_factor, own.metrics, own.bell.ring, is_dated_later=True
+    )  # fmt: skip
+
+    def make(_: Helper, id: int, now: datetime, still: Still) -> Failure | None:
+        return _taken_in(lambda tick: take_in(reception, id, now, tick), id, still)
+
+    return Work(WORK, queue=lambda store: store.upload_jobs, make=make, give_up=_give_up, put_off=PUT_OFF)
+
+
+def _give_up(storage: Storage, id: int, now: datetime) -> None:
+    give_up(storage, id, AT_FAULT, now)
+
+
+def _taken_in(work: Callable[[Callable[[], None]], None], id: int, still: Still) -> Failure | None:
+    stopping = False
+
+    def tick() -> None:
+        nonlocal stopping
+        if not still():
+            stopping = True
+            raise StoppingError(f"Upload {id} was interrupted.")
+
+    with ending_here(WORK, str(id)) as met, _said_now_and_then(still):
+        work(tick)
+    if stopping:
+        raise StoppingError(f"Upload {id} was interrupted.")
+    return met.failure
+
+
+@contextmanager
+def _said_now_and_then(still: Still) -> Iterator[None]:
+    """Keeps the claim also while a file is read in one piece."""
+    done = Event()
+
+    def say() -> None:
+        while not done.wait(WORD_EVERY):
+            with suppress(*FORESEEN):
+                still()
+
+    teller = Thread(target=say, name="claim of an upload", daemon=True)
+    teller.start()
+    try:
+        yield
+    finally:
+        done.set()
+        teller.join()
