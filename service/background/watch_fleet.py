@@ -14,6 +14,7 @@ from service.flows.ask_job import drop_outlived
 from service.flows.take_in import sweep_waiting
 from service.metrics import Metrics
 from service.storage import Storage
+from service.storage.aside import drop_stale
 
 
 @dataclass(frozen=True)
@@ -61,4 +62,5 @@ def look(storage: Storage, clock: Callable[[], datetime], metrics: Metrics) -> b
         drop_outlived(storage, clock())
     with guard.alone("files that wait", ""):
         sweep_waiting(storage, clock())
+        drop_stale(storage.files, clock())
     return not guard.failed

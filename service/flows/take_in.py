@@ -171,7 +171,7 @@ def _taken_in(reception: Reception, job: Job, sent: Sent, at: _Following) -> Non
             receipt = mapped or receive(own, file, came)
     except RefusedError as fault:
         if _is_open(storage, job.id):  # its mapping was refused before the file was read
-            received = Received(sent.size, sent.sha256, job.subject, came, job.who, simulated=False)
+            received = Received(sent.size, sent.sha256, job.subject, came, job.who)
             refuse(acting, received, fault.problems, course)
     else:
         with storage.database.writing() as store:  # no session was stored where it was there already

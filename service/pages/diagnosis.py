@@ -76,6 +76,10 @@ class EvidenceView:
     notes: tuple[str, ...]
 
 
+FOLLOW = 3
+"""Seconds: the page itself waits for a while."""
+
+
 @dataclass(frozen=True)
 class DiagnosisPage:
     """Everything the page shows."""
@@ -84,7 +88,8 @@ class DiagnosisPage:
     tone: str
     headline: str
     what_to_do: str
-    pending: bool
+    follow: int | None
+    """Seconds after which the page looks again while it is pending."""
     evidence: EvidenceView | None
     revisions: tuple[RevisionView, ...]
     scopes: tuple[tuple[str, str], ...]
@@ -99,7 +104,7 @@ def diagnosis_page(report: DiagnosisReport) -> DiagnosisPage:
         tone="none",
         headline=PENDING,
         what_to_do=WAIT,
-        pending=True,
+        follow=FOLLOW,
         evidence=None,
         revisions=tuple(_revision(r, session, report.revisions) for r in report.revisions if r.withdraws is None),
         scopes=_scopes(session),
@@ -115,7 +120,7 @@ def _made(pending: DiagnosisPage, report: DiagnosisReport, made: StoredDiagnosis
         tone=TONES[made.state] if found is None else _tone(made.state, found),
         headline=HEADLINES[made.state] if found is None else headline(found),
         what_to_do=made.summary if found is None else what_to_do(found),
-        pending=False,
+        follow=None,
         evidence=None if found is None else _evidence(report, made, found),
         made=f"Made by estimator {made.estimator_version}",
     )

@@ -10,8 +10,7 @@ from estimator.reading.keys import COLUMNS
 from estimator.session import ACCELEROMETER, GYROSCOPE, PROGRAMMES
 from service.ingest.layout.decoding import ENCODINGS
 from service.measures import number
-from service.pages.layout_form import LayoutForm, carried, moment
-from service.records.received import SentFile
+from service.pages.layout_form import Carried, LayoutForm, moment
 from service.views.layout_preview import Preview, felt_length, first_rows, is_sensor
 from service.words.session_keys import COLUMN_HINTS
 
@@ -102,9 +101,7 @@ class LayoutPage:
     """Everything the page shows."""
 
     filename: str
-    content: str
-    """Base64; empty where the file is too large to carry and is chosen again."""
-    carried: bool
+    carried: Carried
     mapping: str
     remembered: bool
     rows: str
@@ -139,7 +136,7 @@ class LayoutPage:
     """Whether it was to be stored, but not as it was shown before."""
 
 
-def layout_page(file: SentFile, found: Preview, form: LayoutForm, types: Sequence[str]) -> LayoutPage:
+def layout_page(carried: Carried, found: Preview, form: LayoutForm, types: Sequence[str]) -> LayoutPage:
     """The page under the mapping at hand."""
     mapping, session = found.mapping, found.mapping["session"]
     day, clock, offset = moment(session)
@@ -148,12 +145,10 @@ def layout_page(file: SentFile, found: Preview, form: LayoutForm, types: Sequenc
     columns = tuple(_columns(found))
     filled = tuple(column for column in columns if not column.empty)
     shown = tuple(column for column in filled if column.meaning or column.place < MOST_SHOWN)
-    content = carried(file)
     dated = _dated(found.problems, day)
     return LayoutPage(
-        filename=file.filename,
-        content=content,
-        carried=bool(content),
+        filename=form.file.filename,
+        carried=carried,
         mapping=json.dumps(mapping, ensure_ascii=False),
         remembered=found.remembered,
         rows=f"{found.seen['rows']:,}",

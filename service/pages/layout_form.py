@@ -10,17 +10,21 @@ from math import cos, pi, radians, sin
 from typing import Annotated, Any
 
 from fastapi import Depends, Request
+from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import UploadFile
 
 from estimator.errors import Problem
-from service.dependencies import PlaceOf, SettingsOf, limited
+from service.admission import PersonOf
+from service.dependencies import Now, PlaceOf, SettingsOf, StorageOf, limited
 from service.errors import RefusedError
 from service.ingest.layout.understand import run_words, split_unit
 from service.records.received import SentFile, held
+from service.storage.aside import aside, set_aside
+from service.storage.files import Files
 from service.views.layout_preview import is_sensor
 
 MOST_CARRIED = 4 * 1024 * 1024
-"""Bytes of a file that a page itself carries until it is confirmed; a larger one is chosen again."""
+"""Bytes of a file that a page itself carries until it is confirmed; a larger one is set aside for who sent it."""
 MOST_FIELDS = 5000
 """Of the form: two for each of 300 columns, a few for each sensor."""
 INFLATION = 1.4
@@ -47,6 +51,8 @@ class LayoutForm:
     fields: Mapping[str, str]
     mapping: dict[str, Any] | None
     """As the page before showed it; None at first."""
+    owner: str = ""
+    """Login of who makes it; empty where nobody signs in."""
 
     @property
     def unit(self) -> str:
@@ -69,7 +75,9 @@ class LayoutForm:
         return self.unit != self.fields.get("was_unit", "")
 
 
-async def _form(request: Request, settings: SettingsOf, _: PlaceOf) -> LayoutForm:
+async def _form(
+    request: Request, settings: SettingsOf, storage: StorageOf, person: PersonOf, now: Now, _: PlaceOf
+) -> LayoutForm:
     most = int(settings.max_upload_bytes * INFLATION)
     body = limited(request, most, is_form=True)
     async with body.form(max_files=1, max_fields=MOST_FIELDS, max_part_size=most) as form:
@@ -79,12 +87,27 @@ async def _form(request: Request, settings: SettingsOf, _: PlaceOf) -> LayoutFor
         name = file.filename if isinstance(file, UploadFile) and file.filename else fields.get("filename", "table")
     if not content and isinstance(text, str):
         content = _bytes(text)
-    return LayoutForm(SentFile(name, content), fields, _mapping(fields.get("mapping", "")))
+    if not content and fields.get("aside"):
+        kept = await run_in_threadpool(aside, storage.files, person.login, fields["aside"], now)
+        content = kept or b""
+    return LayoutForm(SentFile(name, content), fields, _mapping(fields.get("mapping", "")), person.login)
 
 
-def carried(file: SentFile) -> str:
-    """The bytes as text for a page to bring back; empty where they are too many."""
-    return base64.b64encode(held(file.content)).decode() if len(file.content) <= MOST_CARRIED else ""
+@dataclass(frozen=True)
+class Carried:
+    """How a table comes back with its page: one of the two is there."""
+
+    content: str = ""
+    """Its bytes as text, where they are few."""
+    aside: str = ""
+    """The hash under which it was set aside."""
+
+
+def carried(files: Files, owner: str, file: SentFile, now: datetime) -> Carried:
+    """The bytes as text for a page to bring back; many are set aside."""
+    if len(file.content) <= MOST_CARRIED:
+        return Carried(base64.b64encode(held(file.content)).decode())
+    return Carried(aside=set_aside(files, owner, file.content, now))
 
 
 LayoutFormOf = Annotated[LayoutForm, Depends(_form)]

@@ -12,14 +12,15 @@ from service.flows.receive_mapped import receive_mapped
 from service.ingest.layout.mapping import ASKED_ANEW
 from service.pages.forms import SEE_OTHER
 from service.pages.layout import layout_page
-from service.pages.layout_form import LayoutForm, LayoutFormOf, corrected, filled_in
+from service.pages.layout_form import LayoutForm, LayoutFormOf, carried, corrected, filled_in
 from service.pages.render import render
 from service.records.received import held
 from service.storage import Storage
+from service.storage.aside import drop_aside
 from service.views.layout_preview import Preview, facts_of, preview
 from service.views.pattern import type_names
 
-NO_FILE = "The table did not come with the form: choose it again."
+NO_FILE = "The table did not come with the form, or is kept no longer: upload it again."
 STORE, CHECK = "store", "check"
 """Buttons of the form that keep the session; a check moves no date."""
 
@@ -31,17 +32,19 @@ def show_layout(request: Request, form: LayoutFormOf, reception: ReceptionOf, no
     """The page, with what was corrected; or, confirmed and without a fault, the stored session."""
     if not form.file.content:
         raise RefusedError(NO_FILE, (Problem("file", "is missing from the form"),))
-    found = _found(reception.storage, form)
+    files, found = reception.storage.files, _found(reception.storage, form)
+    back = carried(files, form.owner, form.file, now)
     with reception.storage.database.reading() as store:
         types = type_names(store)
-    page = layout_page(form.file, found, form, types)
+    page = layout_page(back, found, form, types)
     done = form.fields.get("do")
     if done in (STORE, CHECK) and page.can_store and found.mapping == form.mapping:
         try:
             receipt = receive_mapped(reception, replace(form.file, is_check=done == CHECK), found.mapping, now)
         except RefusedError as fault:
             failed = Preview(**{**vars(found), "problems": fault.problems, "session": None})
-            return render(request, "layout.html", layout_page(form.file, failed, form, types), fault.status)
+            return render(request, "layout.html", layout_page(back, failed, form, types), fault.status)
+        drop_aside(files, form.owner, back.aside)
         return RedirectResponse(f"/sessions/{receipt.id}", SEE_OTHER)
     return render(request, "layout.html", page)
 

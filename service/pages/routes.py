@@ -18,6 +18,7 @@ from service.pages.fleet_view import FleetAsked, FleetView
 from service.pages.follow import SOONEST, follow_seconds
 from service.pages.forms import Key
 from service.pages.group import MOST_FOUND, found_line, group_section
+from service.pages.layout_form import carried
 from service.pages.received import FormFiles
 from service.pages.remarks import remarks
 from service.pages.render import render
@@ -101,7 +102,7 @@ def show_unit(
             pair=found_and_left(store, report.unit_type, report.sessions, report.services, settings.coverage_factor),
             outlook=dated(report.outlook, now),
             group=group_section(store, Level.UNIT, serial),
-            follow=SOONEST if is_coming and settings.diagnosis_workers else None,
+            follow=SOONEST if report.waiting or (is_coming and settings.diagnosis_workers) else None,
             said=remarks(serial, "", (), report.said.files, settings.max_attachment_bytes),
         ),
     )
@@ -165,8 +166,10 @@ def take_uploads(
     sessions = [file for file in whole if file not in long]
     jobs = [job_outcome(desk.take_in(reception, file, person)) for file in long]
     found = receive_all(reception, sessions, now)
+    kept = reception.storage.files
+    asked = [table_outcome(file, carried(kept, person.login, file, now)) for file in tables]
     with reception.storage.database.reading() as store:
-        outcomes = (*map(table_outcome, tables), *jobs, *outcomes_of(sessions, found, store.diagnoses.summary))
+        outcomes = (*asked, *jobs, *outcomes_of(sessions, found, store.diagnoses.summary))
         names = type_names(store)
     page = upload_page(outcomes, settings, names)
     return render(request, "upload.html", page, 422 if page.refused else 200)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 from estimator.errors import Problem
 from service.errors import RefusedError
 from service.pages.diagnosis_line import DiagnosisLine, diagnosis_line
-from service.pages.layout_form import carried
+from service.pages.layout_form import Carried
 from service.records.diagnosis import DiagnosisSummary
 from service.records.job import Job
 from service.records.received import SentFile
@@ -31,8 +31,8 @@ class Outcome:
     """Whether the diagnosis is still being made."""
     is_table: bool = False
     """Of one's own layout, not read before its page says how."""
-    content: str = ""
-    """Of a table, as text; empty where it is too large for a page."""
+    carried: Carried | None = None
+    """A table, for the page that asks about it."""
     job: Job | None = None
     """That works on a large file."""
     progress: str = ""
@@ -81,9 +81,9 @@ def outcomes_of(
     return tuple(_outcome(file.filename, one, summary) for file, one in zip(files, found, strict=True))
 
 
-def table_outcome(file: SentFile) -> Outcome:
-    """A table of one's own layout, with the bytes that its page asks about."""
-    return Outcome(file.filename, is_table=True, content=carried(file))
+def table_outcome(file: SentFile, carried: Carried) -> Outcome:
+    """A table of one's own layout, as its page gets it."""
+    return Outcome(file.filename, is_table=True, carried=carried)
 
 
 def job_outcome(job: Job) -> Outcome:

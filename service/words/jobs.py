@@ -62,7 +62,8 @@ def _read_so_far(job: Job) -> str:
     done, total = number(job.done / KILOBYTE, 1), number(job.total / KILOBYTE, 1)
     if not job.cursor:
         return f"Read: {done} of {total} MB."
-    return f"Read once more: {done} of {total} MB. A log is read several times, and was {counted(job.cursor, 'time')}."
+    times = counted(job.cursor, "time")
+    return f"Read again: {done} of {total} MB; all of it was read {times} already. A log takes several."
 
 
 def outcome_of(job: Job) -> str:

@@ -1,5 +1,19 @@
-// A part of a page that is still being worked on looks again by itself, and the whole page once it has ended.
-// Without this script the page loads anew now and then. What somebody is writing beside it stays.
+// A part of a page that is still being worked on looks again by itself, and the whole page once it has ended. Where
+// somebody is writing beside it, the page says that it has ended, and stays. Without this script it loads anew now and
+// then.
+function isWritten(field) {
+  if (field.type === "checkbox" || field.type === "radio") return field.checked !== field.defaultChecked;
+  return field.type !== "hidden" && field.value !== field.defaultValue;
+}
+
+function end(part) {
+  if (![...document.querySelectorAll("input, textarea")].some(isWritten)) return location.reload();
+  const link = document.createElement("a");
+  link.href = location.href;
+  link.textContent = part.dataset.ended;
+  part.replaceChildren(link);
+}
+
 function follow(part) {
   setTimeout(async () => {
     let next = part;
@@ -7,7 +21,7 @@ function follow(part) {
       const answer = await fetch(location.href, { headers: { Accept: "text/html" } });
       if (answer.ok) {
         const found = new DOMParser().parseFromString(await answer.text(), "text/html").querySelector("[data-follow]");
-        if (!found) return location.reload();
+        if (!found) return end(part);
         part.replaceWith(found);
         next = found;
       }

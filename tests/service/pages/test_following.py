@@ -1,5 +1,6 @@
 """What is still being examined is said, and the page follows by itself."""
 
+import re
 from datetime import UTC, datetime, timedelta
 
 import httpx
@@ -61,3 +62,20 @@ def test_session_and_card_follow_until_the_diagnosis_is_there(settings: Settings
     assert all("Still being examined" in text for text in (page, card))
     assert "Nothing wrong found" in later
     assert "data-follow" not in later
+
+
+PENDING = {"session": f"/sessions/{ID}", "diagnosis": f"/sessions/{ID}/diagnosis", "unit": "/units/BA-017"}
+
+
+@pytest.mark.parametrize("page", PENDING)
+def test_a_part_of_the_page_follows_with_scripts_and_the_page_without(settings: Settings, page: str) -> None:
+    with stores(settings) as storage:
+        upload(storage, CONTENT, "a.json", NOW)
+        with storage.database.writing() as store:
+            store.pending.claim(Claim(ID, "somebody else", NOW + CLAIM), NOW)
+            store.pending_outlooks.claim("BA-017", NOW, NOW + CLAIM)
+        with http_client(create_app(settings.model_copy(update={"diagnosis_workers": 1}), lambda: NOW)) as client:
+            text = shown(client, PENDING[page])
+    assert re.search(r'<script type="module" src="[^"]*follow', text)
+    assert re.search(r'<noscript><meta http-equiv="refresh" content="\d+"></noscript>', text)
+    assert text.count(" data-follow=") == text.count('http-equiv="refresh"') == 1

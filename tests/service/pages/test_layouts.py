@@ -1,14 +1,19 @@
 """The page of a table of one's own layout: understood, corrected, looked at, and stored only as it was shown."""
 
 import re
+from datetime import UTC, datetime, timedelta
 from html import unescape
 from typing import Any
 
 import httpx
+import pytest
 
+from service.storage import Storage
+from service.storage.aside import FOLDER, KEPT, MOST, aside, drop_stale, set_aside
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - the hook
 from tests.service import tables
 
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 TABLE = tables.text_table(tables.own_document()).encode("cp1251")
 ADDRESS = "/upload/layout"
 SAID = {
@@ -119,12 +124,6 @@ def test_a_table_of_megabytes_comes_back_with_the_page(client: httpx.Client) -> 
     assert sent(client, fields, **SAID, do="look").status_code == 200
 
 
-def test_a_file_too_large_for_the_page_is_chosen_again(client: httpx.Client) -> None:
-    page = first_page(client, remarked(2))
-    assert 'type="file"' in page
-    assert sent(client, shown(page), do="look").status_code == 422
-
-
 def test_a_damaged_form_is_said(client: httpx.Client) -> None:
     fields = shown(first_page(client))
     assert sent(client, fields, mapping="[").status_code == 422
@@ -135,3 +134,42 @@ def test_headings_are_text_on_the_page(client: httpx.Client) -> None:
     page = first_page(client, b'<script>alert(1)</script>;"A1, mV"\n1;2\n3;4\n')
     assert "<script>alert" not in page
     assert "&lt;script&gt;alert" in page
+
+
+def test_a_large_table_is_chosen_once(client: httpx.Client, storage: Storage) -> None:
+    card = shown(client.post("/upload", files={"files": ("own.csv", remarked(2))}).text)
+    own = {"filename": card["filename"], "aside": card["aside"]}
+    fields = shown(sent(client, shown(sent(client, own).text), **{**SAID, "do": "look"}).text)
+    assert "content" not in card | fields
+    assert client.get("/api/v1/sessions").json()["sessions"] == []
+    assert sent(client, fields, do="store").status_code == 303
+    assert list((storage.files.folder / FOLDER).glob("*")) == []
+
+
+def test_what_is_set_aside_is_its_owners_alone(client: httpx.Client, storage: Storage) -> None:
+    digest = set_aside(storage.files, "a.silva", TABLE, NOW)
+    answer = sent(client, {"filename": "own.csv", "aside": digest})
+    assert (answer.status_code, "upload it again" in answer.text) == (422, True)
+    assert [aside(storage.files, who, digest, NOW) for who in ("a.silva", "k.ito")] == [TABLE, None]
+
+
+def test_it_is_kept_for_half_a_day_after_it_was_looked_at(storage: Storage) -> None:
+    digest = set_aside(storage.files, "", TABLE, NOW)
+    later = NOW + KEPT - timedelta(minutes=1)
+    assert aside(storage.files, "", digest, later) == TABLE
+    drop_stale(storage.files, later + KEPT - timedelta(minutes=1))
+    assert aside(storage.files, "", digest, later + KEPT) is None
+    drop_stale(storage.files, later + KEPT)
+    assert list((storage.files.folder / FOLDER).glob("*")) == []
+
+
+def test_the_oldest_give_way(storage: Storage, monkeypatch: pytest.MonkeyPatch) -> None:
+    def kept(tables: list[tuple[str, bytes]]) -> list[bool]:
+        digests = [
+            set_aside(storage.files, who, text, NOW + timedelta(seconds=k)) for k, (who, text) in enumerate(tables)
+        ]
+        return [aside(storage.files, who, one, NOW) is not None for (who, _), one in zip(tables, digests, strict=True)]
+
+    assert kept([("a", b"%d" % k) for k in range(MOST + 1)]) == [False] + [True] * MOST
+    monkeypatch.setattr("service.storage.aside.MOST_BYTES", 2000)
+    assert kept([(who, who.encode() * 900) for who in "bcd"]) == [False, True, True]

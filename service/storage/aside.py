@@ -1,0 +1,108 @@
+"""Large tables of people's own layouts, set aside while it is said how they are read: under who sent them and their
+hash, for a while, and so many at most. Nothing of them is stored before that is confirmed."""
+
+import os
+from datetime import datetime, timedelta
+from hashlib import sha256
+from pathlib import Path
+
+from service.records.received import Content, Landed
+from service.storage.faults import disk_faults
+from service.storage.files import Files, content_hash
+from service.storage.folders import make_folder
+from service.storage.parts import written_whole
+
+FOLDER = "aside"
+"""Beside the folders of the uploads, whose names are two hexadecimal digits."""
+KEPT = timedelta(hours=12)
+"""After it was last looked at: a mapping that is begun is ended on the same day."""
+MOST = 10
+"""Of one account: the oldest gives way to another."""
+MOST_BYTES = 1024**3
+"""Of all together."""
+OWNER_DIGITS = 16
+"""Of the hash of a login, which may hold any character."""
+
+
+def set_aside(files: Files, owner: str, content: Content, now: datetime) -> str:
+    """Keeps a table for an account, and returns the hash by which it is found again."""
+    digest = content_hash(content)
+    target = _path(files, owner, digest)
+    with disk_faults():
+        make_folder(target.parent)
+        if isinstance(content, Landed):
+            os.replace(content.path, target)
+        else:
+            with written_whole(target) as file:
+                file.write(content)
+        _touch(target, now)
+    _make_room(files, owner, now)
+    return digest
+
+
+def aside(files: Files, owner: str, digest: str, now: datetime) -> bytes | None:
+    """A table that was set aside for an account; None where its time is over, or it gave way to others."""
+    path = _path(files, owner, digest)
+    if path not in _fresh(files, now):
+        return None
+    try:
+        content = path.read_bytes()
+    except OSError:
+        return None
+    if content_hash(content) != digest:
+        return None
+    with disk_faults():
+        _touch(path, now)
+    return content
+
+
+def drop_aside(files: Files, owner: str, digest: str) -> None:
+    """It is stored, or not wanted any more."""
+    with disk_faults():
+        _path(files, owner, digest).unlink(missing_ok=True)
+
+
+def drop_stale(files: Files, now: datetime) -> None:
+    """Removes what was kept for its time."""
+    fresh = _fresh(files, now)
+    with disk_faults():
+        for path in _all(files):
+            if path not in fresh:
+                path.unlink(missing_ok=True)
+
+
+def _make_room(files: Files, owner: str, now: datetime) -> None:
+    """The newest stay: so many of the owner, and so many bytes of all."""
+    drop_stale(files, now)
+    own, size = 0, 0
+    with disk_faults():
+        for path in sorted(_all(files), key=_age, reverse=True):
+            own += path.name.startswith(_prefix(owner))
+            size += path.stat().st_size
+            if size > MOST_BYTES or (own > MOST and path.name.startswith(_prefix(owner))):
+                path.unlink(missing_ok=True)
+
+
+def _all(files: Files) -> list[Path]:
+    return [path for path in (files.folder / FOLDER).glob("*") if not path.name.startswith(".")]
+
+
+def _fresh(files: Files, now: datetime) -> set[Path]:
+    return {path for path in _all(files) if _age(path) > (now - KEPT).timestamp()}
+
+
+def _age(path: Path) -> float:
+    return path.stat().st_mtime
+
+
+def _touch(path: Path, now: datetime) -> None:
+    os.utime(path, (now.timestamp(), now.timestamp()))
+
+
+def _prefix(owner: str) -> str:
+    return f"{sha256(owner.encode()).hexdigest()[:OWNER_DIGITS]}-"
+
+
+def _path(files: Files, owner: str, digest: str) -> Path:
+    """Made from hashes alone, whatever a form brings."""
+    return files.folder / FOLDER / f"{_prefix(owner)}{sha256(digest.encode()).hexdigest()}"
