@@ -12,7 +12,7 @@ import typer
 from estimator.causes import CATALOGUE, Cause, find
 from estimator.errors import SessionError
 from estimator.hiding import Hidden, UnhideableError, hide, hide_any
-from estimator.session import TWO_AXIS_STAND, CalibrationSession
+from estimator.session import CALIBRATIONS, GYROSCOPE, TWO_AXIS_STAND, CalibrationSession
 from service.commands.exits import UNUSABLE, say
 
 ANY = "random"
@@ -57,7 +57,8 @@ class Wish:
     cause: Cause | None
     """None for any."""
     strength: float
-    sensor: int | None
+    sensor: str | None
+    """Name of the one to have it; None where the seed draws one."""
     answer: Path | None
 
 
@@ -73,26 +74,28 @@ def read_wish(
     if cause != ANY and known is None:
         names = ", ".join(c.identifier for c in CATALOGUE)
         raise typer.BadParameter(f"--hide {cause}: no such cause; give {ANY} or one of {names}")
-    if sensor is not None and not re.fullmatch(r"A[1-9]\d?", sensor):
+    if sensor is not None and not re.fullmatch(r"[AG][1-9]\d?", sensor):
         raise typer.BadParameter(f"--sensor {sensor}: name one of the block, for instance A2")
     if cause == "lever-arm":
         refuse("lever-arm is of a turntable; give --programme rotation-alignment --lever-arm A2=4,-1.5")
-    if programme != TWO_AXIS_STAND:
+    if programme not in CALIBRATIONS:
         refuse(f"{programme} shows none of the causes that can be hidden; {TWO_AXIS_STAND} does")
     if known is not None and strength is not None and not known.units:
         refuse(f"{known.identifier} is there or not, and has no strength; leave --strength out")
-    return Wish(known, strength or USUAL, None if sensor is None else int(sensor[1:]) - 1, answer)
+    return Wish(known, strength or USUAL, sensor, answer)
 
 
 def hidden_in(sessions: list[CalibrationSession], wish: Wish, seed: int) -> tuple[CalibrationSession, Hidden]:
     """The last session with what is wished for in it; exit code 2 with a sentence where that cannot be."""
     rng = np.random.default_rng([seed, OWN_STREAM])
-    if wish.sensor is not None and wish.sensor >= len(sessions[-1].sensors):
-        refuse(f"--sensor A{wish.sensor + 1} is not there; the block has A1 to A{len(sessions[-1].sensors)}")
+    names = [one.name for one in sessions[-1].sensors]
+    if wish.sensor is not None and wish.sensor not in names:
+        refuse(f"--sensor {wish.sensor} is not there; the block has {names[0]} to {names[-1]}")
+    sensor = None if wish.sensor is None else names.index(wish.sensor)
     try:
         if wish.cause is None:
-            return hide_any(sessions, rng, strength=wish.strength, sensor=wish.sensor)
-        return hide(sessions, wish.cause, rng, strength=wish.strength, sensor=wish.sensor)
+            return hide_any(sessions, rng, strength=wish.strength, sensor=sensor)
+        return hide(sessions, wish.cause, rng, strength=wish.strength, sensor=sensor)
     except UnhideableError as fault:
         lacking = "" if wish.cause is None else _remedy(wish.cause, sessions)
         refuse(f"{fault}{lacking}")
@@ -102,6 +105,10 @@ def hidden_in(sessions: list[CalibrationSession], wish: Wish, seed: int) -> tupl
 
 def _remedy(cause: Cause, sessions: list[CalibrationSession]) -> str:
     """``; give --warming 3`` where an option would provide what lacks."""
+    if "gravity" in cause.needs and sessions[-1].stand is not None:
+        return "; give --programme arbitrary-orientations"
+    if cause.kind == GYROSCOPE and all(sensor.kind != GYROSCOPE for sensor in sessions[-1].sensors):
+        return "; give --block gyroscope"
     has = {"temperature": sessions[-1].temperature is not None, "history": len(sessions) > 1}
     needs = cause.needs | ({"history"} if cause.between and cause.units else frozenset())
     ways = [way for need, way in REMEDY.items() if need in needs and not has[need]]
@@ -131,11 +138,17 @@ def _answer(hidden: Hidden, file: Path, session: CalibrationSession) -> dict[str
         "sensors": [session.sensors[i].name for i in hidden.sensors],
         "rows": [row + 1 for row in hidden.rows],
         "amplitude": list(hidden.amplitude),
-        "units": list(known.units),
+        "units": [_unit(unit, hidden, session) for unit in known.units],
         "shape": [v + (unit == "row") for v, unit in zip(hidden.nonlinear, known.nonlinear_units, strict=False)],
         "shape_units": list(known.nonlinear_units),
         "strength": hidden.strength,
     }
+
+
+def _unit(unit: str, hidden: Hidden, session: CalibrationSession) -> str:
+    """Of an amplitude at the input, which of a gyro is a rate."""
+    on_gyro = any(session.sensors[i].kind == GYROSCOPE for i in hidden.sensors)
+    return "rad/s" if on_gyro and unit == "m/s²" else unit
 
 
 def warmed(schedule: CalibrationSession, by: float) -> CalibrationSession:

@@ -17,6 +17,8 @@ from estimator.parameters import SensorParameters
 from estimator.results import ARCSEC
 from estimator.session import (
     ACCELEROMETER,
+    ARBITRARY_ORIENTATIONS,
+    GYROSCOPE,
     IN_SERVICE,
     RATE_TABLE,
     ROTATION_ALIGNMENT,
@@ -27,6 +29,7 @@ from estimator.session import (
 )
 from estimator.simulate import StandDraw, draw_stand, scattered, simulate
 from estimator.writing import session_document
+from service.commands.block_noise import USUAL_NOISE, noise_of
 from service.commands.console import AsJson, print_json
 from service.commands.hiding import (
     Answer,
@@ -40,9 +43,9 @@ from service.commands.hiding import (
     warmed,
     write_answer,
 )
-from service.demo.blocks import ACCELEROMETER_SCALE, MICRO_G, norms, schedule_of
+from service.demo.blocks import norms_of, schedule_of
 from service.demo.changes import ELEMENT, MICRO, Change, step_of
-from service.demo.other_programmes import alignment, rate_table, recording, turntable_truth
+from service.demo.other_programmes import alignment, orientations, rate_table, recording, turntable_truth
 
 FIRST_SESSION = datetime(2026, 1, 12, 9, 0, tzinfo=UTC)
 """Fixed, so that the same seed gives the same files wherever the clock is past them."""
@@ -52,13 +55,13 @@ MOST_AFTER = 4
 """Sessions that are dated from the first date on; those of a longer series end with them."""
 FLIGHT_AFTER = timedelta(days=30)
 """From a calibration to the recording in service that follows it."""
-KNOWN = (TWO_AXIS_STAND, IN_SERVICE, ROTATION_ALIGNMENT, RATE_TABLE)
+KNOWN = (TWO_AXIS_STAND, ARBITRARY_ORIENTATIONS, IN_SERVICE, ROTATION_ALIGNMENT, RATE_TABLE)
 """Programmes that can be simulated."""
 ON_TURNTABLE = (ROTATION_ALIGNMENT, RATE_TABLE)
 """Programmes of a turntable, which has no two-axis stand's geometry."""
 STAND_ERRORS = ("theta_x", "theta_y", "alpha")
 """That stay the same over a session and are told with the truth."""
-DRIFT = re.compile(r"A(?P<sensor>\d+)\.(?P<parameter>\w+)=(?P<amount>[-+]?\d+(\.\d*)?)")
+DRIFT = re.compile(r"[AG](?P<sensor>\d+)\.(?P<parameter>\w+)=(?P<amount>[-+]?\d+(\.\d*)?)")
 """SENSOR.PARAMETER=AMOUNT."""
 LEVER = re.compile(r"A(?P<sensor>[1-3])=(?P<x>[-+]?\d+(\.\d*)?),(?P<y>[-+]?\d+(\.\d*)?)")
 """SENSOR=X,Y."""
@@ -112,17 +115,26 @@ def simulate_files(
     *,
     out: Annotated[Path, typer.Option(help="Folder to write the session files to.")] = Path(),
     unit: Annotated[str, typer.Option(help="Serial number of the unit.")] = "SIM-001",
-    sensors: Annotated[int, typer.Option("--sensors", "-m", min=3, max=48, help="Accelerometers on the cone.")] = 6,
-    alpha: Annotated[float, typer.Option(min=1, max=89, help="Elevation of the head's axis, degrees.")] = 40.0,
+    sensors: Annotated[int, typer.Option("--sensors", "-m", min=3, max=48, help="Sensors on the cone.")] = 6,
+    block: Annotated[
+        str, typer.Option(help=f"What they are, {ACCELEROMETER} or {GYROSCOPE}: on a stand, gyros count pulses.")
+    ] = ACCELEROMETER,
+    alpha: Annotated[
+        float,
+        typer.Option(min=1, max=89, help="Elevation of the head's axis, degrees; of gyros χ, to the Earth's axis."),
+    ] = 40.0,
     positions: Annotated[int, typer.Option("--positions", "-n", min=3, max=360, help="Positions a run.")] = 24,
     sessions: Annotated[int, typer.Option(min=1, max=500, help="Sessions, two months apart.")] = 1,
     seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same files.")] = 1,
-    noise: Annotated[float, typer.Option(min=0, help="One sigma of an averaged reading, µg.")] = 2.5,
+    noise: Annotated[
+        float | None,
+        typer.Option(min=0, help="One sigma of an averaged reading, µg; of gyros pulses.", show_default="2.5; 0.3"),
+    ] = None,
     drift: Annotated[
         list[str] | None,
         typer.Option(
             help="Change from each session to the next, SENSOR.PARAMETER=AMOUNT: "
-            "scale in ppm, bias in µg, quadratic in µg/g², axis in arcsec. May be repeated.",
+            "scale in ppm, bias in µg (of gyros °/h), quadratic in µg/g², axis in arcsec. May be repeated.",
             show_default=False,
         ),
     ] = None,
@@ -138,7 +150,8 @@ def simulate_files(
     """Write session files of a simulated block: six accelerometers on a two-axis stand unless told otherwise.
 
     `in-service` is a flight of the block that the same seed puts on the stand, a month after each of its sessions;
-    its drift shows from the first on. `rotation-alignment` and `rate-table` are of three accelerometers and three
+    its drift shows from the first on. `arbitrary-orientations` is of accelerometers and as many rate gyros, held still
+    in so many positions. `rotation-alignment` and `rate-table` are of three accelerometers and three
     gyros on a turntable; there only the bias drifts, of A1 and A2, the axes x and y. --json prints the truth.
 
     --hide puts a cause of the catalogue into the last session, for `imu-health diagnose` to find. Neither the file nor
@@ -148,8 +161,11 @@ def simulate_files(
     changes = tuple(read_drift(text) for text in drift or ())
     if programme not in KNOWN:
         raise typer.BadParameter(f"--programme is {programme}; give one of {', '.join(KNOWN)}")
-    if any(change.sensor >= sensors for change in changes):
-        raise typer.BadParameter(f"--drift names a sensor that is not there; the block has A1 to A{sensors}")
+    letter = "G" if block == GYROSCOPE else "A"
+    if any(change.sensor >= sensors for change in changes) or any(text[0] != letter for text in drift or ()):
+        raise typer.BadParameter(
+            f"--drift names a sensor that is not there; the block has {letter}1 to {letter}{sensors}"
+        )
     if programme in ON_TURNTABLE and any(c.parameter != "bias" or c.sensor > 1 for c in changes):
         raise typer.BadParameter(f"--drift: {programme} shows A1.bias and A2.bias only, the zeros of x and y")
     levers = read_levers(lever_arm or [])
@@ -157,9 +173,16 @@ def simulate_files(
         raise typer.BadParameter(f"--lever-arm: {programme} does not show it; {ROTATION_ALIGNMENT} does")
     if warming and programme != TWO_AXIS_STAND:
         raise typer.BadParameter(f"--warming: {programme} records no temperature; {TWO_AXIS_STAND} does")
+    if block not in USUAL_NOISE or (block == GYROSCOPE and programme != TWO_AXIS_STAND):
+        raise typer.BadParameter(f"--block {block}: {programme} is simulated of {ACCELEROMETER}s, {TWO_AXIS_STAND} of "
+                                 f"{GYROSCOPE}s too")  # fmt: skip
     wish = read_wish(hide, strength, sensor, answer, programme)
-    schedule = warmed(replace(schedule_of(ACCELEROMETER, sensors, "SIM", alpha, positions), unit=unit), warming)
     rng = np.random.default_rng(seed)
+    if programme == ARBITRARY_ORIENTATIONS:
+        schedule = orientations(unit, sensors, positions, rng)
+    else:
+        schedule = warmed(replace(schedule_of(block, sensors, "SIM", alpha, positions), unit=unit), warming)
+    noise = USUAL_NOISE[block] if noise is None else noise
     made = (
         _turned(unit, programme, changes, sessions, rng, levers=levers)
         if programme in ON_TURNTABLE
@@ -213,18 +236,18 @@ def _simulated(
 ) -> Iterator[Simulated]:
     """The unit's sessions in order, or a flight after each of them, when the next drift has come."""
     count = len(schedule.sensors)
-    norm = norms(ACCELEROMETER, count)
+    norm = norms_of(schedule.sensors)
     start = scattered(schedule.sensors, norm, rng)
     for number in range(sessions):
         at = _measured(number, sessions)
-        truth = start.stepped((number + in_service) * step_of(changes, count, ACCELEROMETER), norm)
+        truth = start.stepped((number + in_service) * step_of(changes, count, schedule.block), norm)
         if in_service:
             flight = recording(schedule.unit, schedule.sensors, truth, rng)
             yield Simulated(_dated(flight, at + FLIGHT_AFTER), truth, None)
             continue
         dated = _dated(schedule, at)
-        draw = draw_stand(dated, rng)
-        session = simulate(dated, truth, rng, noise=noise * MICRO_G * ACCELEROMETER_SCALE, draw=draw)
+        draw = draw_stand(dated, rng) if schedule.stand is not None else None
+        session = simulate(dated, truth, rng, noise=noise_of(schedule, noise), draw=draw)
         yield Simulated(session, truth, draw)
 
 

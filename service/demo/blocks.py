@@ -66,6 +66,11 @@ def sigma_of(kind: str) -> StandErrors:
     return replace(STAND_SIGMA, latitude=0.0, meridian=0.0, count_time=0.0)
 
 
+def norms_of(sensors: tuple[Sensor, ...]) -> Array:
+    """(m,) the same of a block of both kinds."""
+    return np.array([norms(sensor.kind, 1)[0] for sensor in sensors])
+
+
 def norms(kind: str, sensors: int) -> Array:
     """(m,) length of the applied vector, m/s² or rad/s."""
     return np.full(sensors, gravity(SITE) if kind == ACCELEROMETER else EARTH_RATE)

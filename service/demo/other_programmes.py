@@ -15,8 +15,9 @@ from estimator.alignment.simulate import (
 from estimator.parameters import SensorParameters
 from estimator.parity.flight import AEROBATIC, Weather, fly
 from estimator.results import ARCSEC
-from estimator.session import Array, CalibrationSession, Sensor
-from service.demo.blocks import MICRO_G, SITE
+from estimator.session import ACCELEROMETER, GYROSCOPE, Array, CalibrationSession, Sensor
+from estimator.simulate import orientation_schedule
+from service.demo.blocks import MICRO_G, SITE, sensors_of
 
 STOPS = Programme(dwell=200.0, row=1.0)
 """Seconds: 200 at rest a stop, one a row."""
@@ -34,6 +35,9 @@ FLIGHT_SECONDS, FLIGHT_RATE = 240.0, 10.0
 """Four minutes; readings a second."""
 FLIGHT = Weather(noise=5 * MICRO_G, vibration=0.2)
 """Noise of a reading, m/s², and vibration."""
+
+RATE_NOISE = 3e-4
+"""rad/s: a micromechanical gyro over some seconds, 0.017 °/s; the Earth's rate is a quarter of it."""
 
 
 def turntable_truth(zeros: Array, drifts: Array, rng: np.random.Generator) -> Truth:
@@ -75,3 +79,13 @@ def recording(
         unit_name=unit,
     )
     return replace(flown, readings=np.round(flown.readings, 7))
+
+
+def orientations(unit: str, count: int, positions: int, rng: np.random.Generator) -> CalibrationSession:
+    """A block of accelerometers and as many rate gyros along the same axes, still to be held in so many positions."""
+    accelerometers = sensors_of(ACCELEROMETER, count)
+    gyros = [
+        replace(s, name=f"G{i}", kind=GYROSCOPE, nominal_scale=1.0, reading_unit="rad/s", bias_repeatability=0.0)
+        for i, s in enumerate(accelerometers, 1)
+    ]
+    return orientation_schedule((*accelerometers, *gyros), SITE, rng.standard_normal((positions, 3)), unit_name=unit)

@@ -20,6 +20,10 @@ from tests.service.cli.conftest import Run
         ("stand-drift", []),
         ("flip-misalignment", []),
         ("sign-reversed", ["--sensor", "A4"]),
+        ("saturation", ["--sensor", "A4", "--seed", "2"]),
+        ("excess-noise", ["--sensor", "G2", "--block", "gyroscope"]),
+        ("meridian-error", ["--block", "gyroscope"]),
+        ("g-sensitivity", ["--programme", "arbitrary-orientations"]),
     ],
 )
 def test_the_diagnosis_names_what_is_hidden(run: Run, tmp_path: Path, cause: str, options: list[str]) -> None:
@@ -85,8 +89,11 @@ def test_the_same_seed_hides_the_same_and_nothing_but_the_answer_tells_it(run: R
         (["--hide", "bias-temperature"], "needs temperature, which is not there; give --warming 3"),
         (["--hide", "sensor-drift"], "needs history, which is not there; give --sessions 2"),
         (["--hide", "vibration-rectification"], "needs vibration"),
-        (["--hide", "meridian-error"], "is of a gyroscope"),
-        (["--hide", "excess-noise"], "has no amplitude"),
+        (["--hide", "meridian-error"], "is of a gyroscope, and the block has none; give --block gyroscope"),
+        (["--hide", "latitude-entry", "--block", "gyroscope"], "needs history, which is not there; give --sessions 2"),
+        (["--hide", "g-sensitivity", "--block", "gyroscope"], "give --programme arbitrary-orientations"),
+        (["--hide", "excess-noise", "--strength", "1e9"], "would not reach 1e+09 standard errors"),
+        (["--hide", "saturation", "--strength", "1e9"], "would not reach 1e+09 standard errors"),
         (["--hide", "axis-wobble", "--sensor", "A2"], "common to all sensors"),
         (["--hide", "hysteresis", "--strength", "1e6"], "would not reach 1e+06 standard errors"),
         (["--hide", "hysteresis", "--sensor", "A7"], "the block has A1 to A6"),
@@ -105,7 +112,14 @@ def test_what_cannot_be_hidden_is_refused_with_the_reason(
 
 
 @pytest.mark.parametrize(
-    "options", [["--hide", "gremlins"], ["--strength", "5"], ["--hide", "hysteresis", "--sensor", "2"]]
+    "options",
+    [
+        ["--hide", "gremlins"],
+        ["--strength", "5"],
+        ["--hide", "hysteresis", "--sensor", "2"],
+        ["--block", "gyroscope", "--programme", "in-service"],
+        ["--block", "gyroscope", "--drift", "A1.bias=3"],
+    ],
 )
 def test_options_that_make_no_sense_are_an_error_of_use(run: Run, tmp_path: Path, options: list[str]) -> None:
     assert run("simulate", "--out", tmp_path / "none", *options).code == 1
