@@ -55,7 +55,7 @@ class TolerancePreview:
     """Of them, those whose latest session was judged by them; a reference is judged by nothing."""
     references: int
     recordings: int
-    """Units whose latest session is a recording in service: it is compared anew with its file, and is not looked at."""
+    """Units whose latest session is a recording in service that was compared with no calibration."""
     beyond: int
     """Units that were not looked at, because there are so many."""
     changes: tuple[VerdictChange, ...]

@@ -21,6 +21,7 @@ def notes_of(found: TolerancePreview) -> Iterator[str]:
     if found.references:
         yield f"{counted(found.references, 'unit')} not counted: the latest session is a reference, judged by nothing."
     if found.recordings:
-        yield f"{counted(found.recordings, 'unit')} not counted: the latest session is a recording in service."
+        units = counted(found.recordings, "unit")
+        yield f"{units} not counted: the latest session is a recording in service without a calibration beside it."
     if found.beyond:
         yield f"{counted(found.beyond, 'unit')} not looked at: only the worst ones are."

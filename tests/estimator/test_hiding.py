@@ -1,5 +1,5 @@
-"""What has no plain amplitude is hidden as strong as asked, and the diagnosis names it at every seed that is tried: noise
-beyond the stated one, readings that are clipped, and what gyros alone see."""
+"""What has no plain amplitude is hidden as strong as asked, and the diagnosis names it at every seed that is tried:
+noise beyond the stated one, readings that are clipped, and what gyros alone see."""
 
 from dataclasses import replace
 

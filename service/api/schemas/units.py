@@ -61,7 +61,9 @@ class TolerancePreviewSchema(BaseModel):
     units: int = Field(description="Units of the type with a session that counts.")
     judged: int = Field(description="Those whose latest session was judged by the other tolerances.")
     references: int = Field(description="Those whose latest session is judged against nothing.")
-    recordings: int = Field(description="Those whose latest session is a recording in service, which is left out.")
+    recordings: int = Field(
+        description="Those whose latest session is a recording in service that no calibration stands beside."
+    )
     beyond: int = Field(description="Those that were not looked at, because there are so many.")
     changes: list[VerdictChangeSchema] = Field(description="Units that would have another verdict, the worst first.")
 

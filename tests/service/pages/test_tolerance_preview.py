@@ -6,6 +6,7 @@ from lxml import html
 
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
+from tests.service.recordings import recording_bytes
 from tests.service.sessions import session_bytes
 
 TYPE = "/unit-types/accelerometer × 6, V"
@@ -52,3 +53,27 @@ def test_the_same_ones_change_nothing(typed: httpx.Client) -> None:
     same = {"tolerances": kind["tolerances"], "gyro_tolerances": kind["gyro_tolerances"]}
     found = typed.post(f"/api/v1{TYPE}/preview", json=same).json()
     assert found == {"units": 3, "judged": 2, "references": 1, "recordings": 0, "beyond": 0, "changes": []}
+
+
+def test_a_recording_in_service_is_judged_as_its_upload_would_be(holding: Holding) -> None:
+    flown = recording_bytes(a3_moved=400.0)
+    client, other = holding(session_bytes(), flown), holding(session_bytes())
+    kind = client.get(f"/api/v1{TYPE}").json()
+    wide = {"tolerances": kind["tolerances"] | {"bias": 600e-6 * 9.80665}, "gyro_tolerances": None}
+    found = client.post(f"/api/v1{TYPE}/preview", json=wide).json()
+    other.put(f"/api/v1{TYPE}", json=wide).raise_for_status()
+    stored = other.post("/api/v1/sessions", content=flown).json()
+    (change,) = found["changes"]
+    assert (found["judged"], found["recordings"], change["before"]) == (1, 0, "fail")
+    assert (change["after"], change["reason"]) == (stored["verdict"], stored["reason"])
+
+
+def test_a_recording_whose_calibration_was_withdrawn_is_counted_apart(holding: Holding) -> None:
+    client = holding(session_bytes(), recording_bytes())
+    own = next(
+        one["id"] for one in client.get("/api/v1/sessions").json()["sessions"] if one["programme"] != "in-service"
+    )
+    client.post(f"/api/v1/sessions/{own}/withdraw", json={"by": "K. Ito", "why": "wrong"}).raise_for_status()
+    same = {"tolerances": client.get(f"/api/v1{TYPE}").json()["tolerances"], "gyro_tolerances": None}
+    found = client.post(f"/api/v1{TYPE}/preview", json=same).json()
+    assert (found["judged"], found["references"], found["recordings"]) == (0, 0, 1)
