@@ -13,6 +13,7 @@ from service.background.helper import Helper, Still, StoppingError
 from service.flows.receive import Reception
 from service.flows.take_in import give_up, take_in
 from service.storage import Storage
+from service.words.jobs import FILE_AT_FAULT
 
 LOOK_EVERY = 2.0
 """Seconds between two looks at what other services left; what this one takes in rings."""
@@ -24,10 +25,6 @@ WORD_EVERY = 5.0
 """Seconds between two words that somebody is still at it."""
 WORK = "uploads"
 """As the log and the figures name it."""
-AT_FAULT = (
-    "Nothing was stored: the program failed at this file, several times. Upload it again; where it fails again, the "
-    "log says why."
-)
 
 
 def take_in_waiting(own: Diagnosing, stop: Event) -> None:
@@ -54,7 +51,7 @@ def uploads_of(own: Diagnosing) -> Work[int]:
 
 
 def _give_up(storage: Storage, id: int, now: datetime) -> None:
-    give_up(storage, id, AT_FAULT, now)
+    give_up(storage, id, FILE_AT_FAULT, now)
 
 
 def _taken_in(work: Callable[[Callable[[], None]], None], id: int, still: Still) -> Failure | None:

@@ -18,7 +18,6 @@ from estimator.results import ARCSEC
 from estimator.session import (
     ACCELEROMETER,
     ARBITRARY_ORIENTATIONS,
-    GYROSCOPE,
     IN_SERVICE,
     RATE_TABLE,
     ROTATION_ALIGNMENT,
@@ -29,7 +28,6 @@ from estimator.session import (
 )
 from estimator.simulate import StandDraw, draw_stand, scattered, simulate
 from estimator.writing import session_document
-from service.commands.block_noise import USUAL_NOISE, noise_of
 from service.commands.console import AsJson, print_json
 from service.commands.hiding import (
     Answer,
@@ -43,6 +41,7 @@ from service.commands.hiding import (
     warmed,
     write_answer,
 )
+from service.commands.simulated_block import Alpha, Block, Noise, check_block, noise_of
 from service.demo.blocks import norms_of, schedule_of
 from service.demo.changes import ELEMENT, MICRO, Change, step_of
 from service.demo.other_programmes import alignment, orientations, rate_table, recording, turntable_truth
@@ -67,6 +66,14 @@ LEVER = re.compile(r"A(?P<sensor>[1-3])=(?P<x>[-+]?\d+(\.\d*)?),(?P<y>[-+]?\d+(\
 """SENSOR=X,Y."""
 CENTIMETRE = 0.01
 """m."""
+Drifts = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="Change from each session to the next, SENSOR.PARAMETER=AMOUNT: "
+        "scale in ppm, bias in µg (of gyros °/h), quadratic in µg/g², axis in arcsec. May be repeated.",
+        show_default=False,
+    ),
+]
 Levers = Annotated[
     list[str] | None,
     typer.Option(
@@ -116,28 +123,13 @@ def simulate_files(
     out: Annotated[Path, typer.Option(help="Folder to write the session files to.")] = Path(),
     unit: Annotated[str, typer.Option(help="Serial number of the unit.")] = "SIM-001",
     sensors: Annotated[int, typer.Option("--sensors", "-m", min=3, max=48, help="Sensors on the cone.")] = 6,
-    block: Annotated[
-        str, typer.Option(help=f"What they are, {ACCELEROMETER} or {GYROSCOPE}: on a stand, gyros count pulses.")
-    ] = ACCELEROMETER,
-    alpha: Annotated[
-        float,
-        typer.Option(min=1, max=89, help="Elevation of the head's axis, degrees; of gyros χ, to the Earth's axis."),
-    ] = 40.0,
+    block: Block = ACCELEROMETER,
+    alpha: Alpha = 40.0,
     positions: Annotated[int, typer.Option("--positions", "-n", min=3, max=360, help="Positions a run.")] = 24,
     sessions: Annotated[int, typer.Option(min=1, max=500, help="Sessions, two months apart.")] = 1,
     seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same files.")] = 1,
-    noise: Annotated[
-        float | None,
-        typer.Option(min=0, help="One sigma of an averaged reading, µg; of gyros pulses.", show_default="2.5; 0.3"),
-    ] = None,
-    drift: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Change from each session to the next, SENSOR.PARAMETER=AMOUNT: "
-            "scale in ppm, bias in µg (of gyros °/h), quadratic in µg/g², axis in arcsec. May be repeated.",
-            show_default=False,
-        ),
-    ] = None,
+    noise: Noise = None,
+    drift: Drifts = None,
     lever_arm: Levers = None,
     programme: Annotated[str, typer.Option(help=f"One of {', '.join(KNOWN)}.")] = TWO_AXIS_STAND,
     warming: Warming = 0.0,
@@ -151,8 +143,8 @@ def simulate_files(
 
     `in-service` is a flight of the block that the same seed puts on the stand, a month after each of its sessions;
     its drift shows from the first on. `arbitrary-orientations` is of accelerometers and as many rate gyros, held still
-    in so many positions. `rotation-alignment` and `rate-table` are of three accelerometers and three
-    gyros on a turntable; there only the bias drifts, of A1 and A2, the axes x and y. --json prints the truth.
+    in so many positions. `rotation-alignment` and `rate-table` are of three accelerometers and three gyros on a
+    turntable; there only the bias drifts, of A1 and A2, the axes x and y. --json prints the truth.
 
     --hide puts a cause of the catalogue into the last session, for `imu-health diagnose` to find. Neither the file nor
     --json tells it; --answer does, and with the same options and seed it can be had later. Every file says that it is
@@ -161,11 +153,11 @@ def simulate_files(
     changes = tuple(read_drift(text) for text in drift or ())
     if programme not in KNOWN:
         raise typer.BadParameter(f"--programme is {programme}; give one of {', '.join(KNOWN)}")
-    letter = "G" if block == GYROSCOPE else "A"
+    check_block(block, programme)
+    letter = block[0].upper()
     if any(change.sensor >= sensors for change in changes) or any(text[0] != letter for text in drift or ()):
-        raise typer.BadParameter(
-            f"--drift names a sensor that is not there; the block has {letter}1 to {letter}{sensors}"
-        )
+        named = f"{letter}1 to {letter}{sensors}"
+        raise typer.BadParameter(f"--drift names a sensor that is not there; the block has {named}")
     if programme in ON_TURNTABLE and any(c.parameter != "bias" or c.sensor > 1 for c in changes):
         raise typer.BadParameter(f"--drift: {programme} shows A1.bias and A2.bias only, the zeros of x and y")
     levers = read_levers(lever_arm or [])
@@ -173,16 +165,12 @@ def simulate_files(
         raise typer.BadParameter(f"--lever-arm: {programme} does not show it; {ROTATION_ALIGNMENT} does")
     if warming and programme != TWO_AXIS_STAND:
         raise typer.BadParameter(f"--warming: {programme} records no temperature; {TWO_AXIS_STAND} does")
-    if block not in USUAL_NOISE or (block == GYROSCOPE and programme != TWO_AXIS_STAND):
-        raise typer.BadParameter(f"--block {block}: {programme} is simulated of {ACCELEROMETER}s, {TWO_AXIS_STAND} of "
-                                 f"{GYROSCOPE}s too")  # fmt: skip
     wish = read_wish(hide, strength, sensor, answer, programme)
     rng = np.random.default_rng(seed)
     if programme == ARBITRARY_ORIENTATIONS:
         schedule = orientations(unit, sensors, positions, rng)
     else:
         schedule = warmed(replace(schedule_of(block, sensors, "SIM", alpha, positions), unit=unit), warming)
-    noise = USUAL_NOISE[block] if noise is None else noise
     made = (
         _turned(unit, programme, changes, sessions, rng, levers=levers)
         if programme in ON_TURNTABLE
@@ -229,7 +217,7 @@ def _simulated(
     schedule: CalibrationSession,
     changes: tuple[Change, ...],
     sessions: int,
-    noise: float,
+    noise: float | None,
     rng: np.random.Generator,
     *,
     in_service: bool,

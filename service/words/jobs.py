@@ -6,6 +6,10 @@ from service.records.job import KILOBYTE, Job, JobKind, JobState
 from service.records.model import Scope
 
 AT_FAULT = "The program failed at it, several times: the log says more. It keeps what it had."
+FILE_AT_FAULT = (
+    "Nothing was stored: the program failed at this file, several times. Upload it again; where it fails again, the "
+    "log says why."
+)
 FLEET_REPORTS = {"xlsx": "Fleet report as a workbook", "pdf": "Fleet report on paper (PDF)"}
 WHOLE_FLEET = "All units computed again"
 STATES = {

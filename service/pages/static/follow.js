@@ -10,7 +10,7 @@ function end(part) {
   if (![...document.querySelectorAll("input, textarea")].some(isWritten)) return location.reload();
   const link = document.createElement("a");
   link.href = location.href;
-  link.textContent = part.dataset.ended;
+  link.textContent = part.dataset.saidEnded;
   part.replaceChildren(link);
 }
 
