@@ -83,7 +83,10 @@ def jobs_page(found: Sequence[Job], person: Person, subject: str, *, mine: bool)
 
 def job_line(job: Job) -> JobLine:
     """One of a list."""
-    return JobLine(job, title_of(job), STATES[job.state], progress_of(job))
+    said = progress_of(job)
+    if job.kind is JobKind.UPLOAD and not job.is_open:
+        said = outcome_of(job) or ending_of(job)
+    return JobLine(job, title_of(job), STATES[job.state], said)
 
 
 def job_page(job: Job, person: Person, now: datetime, workers: int, problems: Sequence[Problem] = ()) -> JobPage:

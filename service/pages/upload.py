@@ -61,6 +61,9 @@ class UploadPage:
 
     outcomes: tuple[Outcome, ...]
     limit: str
+    """Of files at a time."""
+    log_limit: str
+    """Of a raw log that is averaged while it is read."""
     follows: bool
     """Whether cards look again whether their diagnosis is made."""
     unit_types: tuple[str, ...] = ()
@@ -107,4 +110,10 @@ def outcome_of(session: StoredSession, made: DiagnosisSummary | None) -> Outcome
 def upload_page(outcomes: Sequence[Outcome], settings: Settings, unit_types: Sequence[str] = ()) -> UploadPage:
     """The page before (no outcomes) or after an upload."""
     follows = settings.diagnosis_workers > 0
-    return UploadPage(tuple(outcomes), f"{settings.max_upload_bytes / 2**20:g} MiB", follows, tuple(unit_types))
+    most, log = _limit(settings.max_upload_bytes), _limit(settings.max_log_bytes)
+    return UploadPage(tuple(outcomes), most, log, follows, tuple(unit_types))
+
+
+def _limit(size: int) -> str:
+    """``64 MiB``, ``2 GiB``."""
+    return f"{size / 2**30:.4g} GiB" if size >= 2**30 else f"{size / 2**20:.4g} MiB"

@@ -52,7 +52,7 @@ function follow(card, pause = 1000) {
       const found = new DOMParser().parseFromString(await answer.text(), "text/html").querySelector(".outcome");
       if (answer.ok && found) {
         if (found.textContent !== card.textContent) card.replaceWith(found);
-        next = found.isConnected ? found : card;
+        next = found.ownerDocument === document ? found : card;
         if (!found.dataset.follow) return;
       }
     } catch {

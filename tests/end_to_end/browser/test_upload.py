@@ -1,6 +1,7 @@
 """Uploading in the browser: the verdict, or every problem with its row."""
 
 import json
+from itertools import chain, repeat
 from pathlib import Path
 
 import pytest
@@ -81,3 +82,17 @@ def test_a_phone_shows_what_is_wrong_without_scrolling_sideways(chromium: Browse
         box = message.bounding_box()
         assert box is not None
         assert box["x"] + box["width"] <= 390
+
+
+def test_a_card_that_looks_the_same_for_a_while_is_replaced_at_last(chromium: Browser, site: Site, good: Path) -> None:
+    card = '<article class="outcome" data-follow="/later" data-every="0.1">Reading</article>'
+    answer = f'<div id="outcomes">{card}</div>'
+    looks = chain([card, card], repeat('<article class="outcome">Stored at last</article>'))
+    with opened(chromium) as (_, page):
+        page.goto(f"{site.url}/upload")
+        page.route(
+            "**/upload", lambda route: route.fulfill(body=f'<div id="outcomes">{card}</div>', content_type="text/html")
+        )
+        page.route("**/later", lambda route: route.fulfill(body=next(looks), content_type="text/html"))
+        page.set_input_files("#files", good)
+        page.get_by_text("Stored at last").wait_for()
