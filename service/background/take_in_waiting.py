@@ -21,6 +21,9 @@ RETRY = 60.0
 """Seconds after a look that failed, as when the database is away."""
 PUT_OFF = timedelta(minutes=1)
 """After a try that something passing hindered: somebody waits for the verdict."""
+MOST_TRIES = 10
+"""At which the program may fail, or its service be ended: a file that is read for minutes outlives some restarts, and
+what was acknowledged is not given up for them."""
 WORD_EVERY = 5.0
 """Seconds between two words that somebody is still at it."""
 WORK = "uploads"
@@ -47,7 +50,9 @@ def uploads_of(own: Diagnosing) -> Work[int]:
     def make(_: Helper, id: int, now: datetime, still: Still) -> Failure | None:
         return _taken_in(lambda tick: take_in(reception, id, now, tick), id, still)
 
-    return Work(WORK, queue=lambda store: store.upload_jobs, make=make, give_up=_give_up, put_off=PUT_OFF)
+    return Work(
+        WORK, queue=lambda store: store.upload_jobs, make=make, give_up=_give_up, most=MOST_TRIES, put_off=PUT_OFF
+    )
 
 
 def _give_up(storage: Storage, id: int, now: datetime) -> None:

@@ -90,9 +90,7 @@ def test_a_card_that_looks_the_same_for_a_while_is_replaced_at_last(chromium: Br
     looks = chain([card, card], repeat('<article class="outcome">Stored at last</article>'))
     with opened(chromium) as (_, page):
         page.goto(f"{site.url}/upload")
-        page.route(
-            "**/upload", lambda route: route.fulfill(body=f'<div id="outcomes">{card}</div>', content_type="text/html")
-        )
+        page.route("**/upload", lambda route: route.fulfill(body=answer, content_type="text/html"))
         page.route("**/later", lambda route: route.fulfill(body=next(looks), content_type="text/html"))
         page.set_input_files("#files", good)
         page.get_by_text("Stored at last").wait_for()

@@ -10,9 +10,9 @@ import pytest
 
 from service.background.bell import Bell
 from service.background.claimed import work_next
-from service.background.diagnose_waiting import MOST_ATTEMPTS, Diagnosing
+from service.background.diagnose_waiting import Diagnosing
 from service.background.helper import Helper
-from service.background.take_in_waiting import uploads_of
+from service.background.take_in_waiting import MOST_TRIES, uploads_of
 from service.errors import AwayError, BusyError, ConflictError, NotFoundError
 from service.flows import ask_job
 from service.flows import take_in as flow
@@ -181,7 +181,7 @@ def test_one_at_which_the_program_fails_is_given_up(
     job, work = asked(storage), uploads(storage, settings)
     with monkeypatch.context() as patch:
         patch.setattr(Files, "keep", fails)
-        assert [work() for _ in range(MOST_ATTEMPTS + 2)] == [True] * (MOST_ATTEMPTS + 1) + [False]
+        assert [work() for _ in range(MOST_TRIES + 2)] == [True] * (MOST_TRIES + 1) + [False]
     assert (read(storage, job.id).state, waiting(storage)) == (JobState.FAILED, [])
 
 

@@ -18,7 +18,12 @@ from service.app import create_app
 from service.errors import ConflictError, DamagedError, ServiceError
 from service.flows.identity.links import make_link
 from service.flows.identity.sign_in import sign_in
-from service.records.identity import Role
+from service.flows.receive import Reception
+from service.flows.take_in import ask_upload, take_in
+from service.metrics import Metrics
+from service.records.identity import EVERYBODY, Role
+from service.records.job import JobState
+from service.records.received import SentFile
 from service.settings import Settings
 from service.storage import Database, Files, Storage
 from service.storage.backup import restore, verified, write_backup
@@ -29,6 +34,7 @@ from tests.service.identity.staff import PASSWORD, staffed, with_password
 from tests.service.sessions import FAILED, session_bytes
 from tests.service.storage.whole import files, rows
 from tests.serving import http_client
+from tests.stock import stores
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 
@@ -290,3 +296,19 @@ def test_nobody_is_signed_in_after_a_restore_and_tokens_are_told(
 def _backup(settings: Settings, folder: Path, name: str) -> Path:
     write_backup(settings.database, Files(settings.files), folder / f"{name}.backup", NOW)
     return folder / f"{name}.backup"
+
+
+@one_engine
+def test_a_large_file_that_waits_to_be_read_is_restored_with_its_job(
+    settings: Settings, databases: Databases, tmp_path: Path
+) -> None:
+    with stores(settings) as storage:
+        ask_upload(storage, SentFile("a.json", session_bytes()), EVERYBODY, "one", NOW)
+        manifest = write_backup(settings.database, storage.files, tmp_path / "b.zip", NOW)
+    other = Settings(database_url=databases.empty(), data_folder=tmp_path / "other")
+    restore(tmp_path / "b.zip", other.database, other.files, NOW)
+    with stores(other) as storage:
+        take_in(Reception(storage, 2.0, Metrics(), lambda: None), 1, NOW)
+        with storage.database.reading() as store:
+            assert store.jobs.get(1).state is JobState.DONE
+    assert (len(manifest.files), manifest.lost) == (1, ())
