@@ -7,6 +7,8 @@ DOCS := .venv/.docs
 BENCH := .venv/.bench
 # Sessions are small matrices: several threads of BLAS only get in each other's way.
 export OPENBLAS_NUM_THREADS ?= 1
+# Without its bytecode every process that is started compiles all of imu-health anew, and pytest all tests.
+unexport PYTHONDONTWRITEBYTECODE
 
 # Tests wait now and then, for a browser or a process: one worker more than cores keeps these at work.
 WORKERS ?= $(shell n=$$(nproc 2>/dev/null || echo 2); echo $$((n < 7 ? n + 1 : 8)))

@@ -16,6 +16,7 @@ from service.identity import passwords
 from service.settings import Settings
 from service.storage import Storage
 from tests.databases import ENGINES, Databases, PostgresDatabases, postgres_databases, sqlite_databases
+from tests.memory import write_into_memory
 from tests.serving import http_client
 from tests.stock import Fill, Stock, stores
 
@@ -29,6 +30,12 @@ Holding = Callable[..., httpx.Client]
 SettingsFilled = Callable[[Fill], Settings]
 Filled = Callable[[Callable[[Storage], object]], Storage]
 StockOf = Callable[[Databases], Stock]
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """The first process chooses for all workers."""
+    if not hasattr(config, "workerinput"):
+        write_into_memory()
 
 
 def pytest_collection_finish() -> None:

@@ -17,9 +17,14 @@ Process = subprocess.Popen[str]
 
 
 @contextmanager
-def service(folder: Path, seconds: float) -> Iterator[tuple[Process, str]]:
+def service(folder: Path, seconds: float, diagnosing: int = 0) -> Iterator[tuple[Process, str]]:
     """A service as a process of its own, and its address."""
-    environment = {"PATH": "/usr/bin:/bin", "PYTHONPATH": str(ROOT), "IMU_HEALTH_STOP_SECONDS": str(seconds)}
+    environment = {
+        "PATH": "/usr/bin:/bin",
+        "PYTHONPATH": str(ROOT),
+        "IMU_HEALTH_STOP_SECONDS": str(seconds),
+        "IMU_HEALTH_DIAGNOSIS_WORKERS": str(diagnosing),
+    }
     command = [COMMAND, "serve", "--port", "0", "--data-folder", folder]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as process:
         try:
@@ -65,7 +70,7 @@ def test_the_end_comes_in_time_whatever_is_at_hand(tmp_path: Path) -> None:
 
 
 def test_without_anything_at_hand_the_end_comes_at_once(tmp_path: Path) -> None:
-    with service(tmp_path, seconds=3000) as (process, address):
+    with service(tmp_path, seconds=3000, diagnosing=1) as (process, address):
         assert httpx.get(f"{address}/healthz").status_code == 200
         process.send_signal(signal.SIGTERM)
         process.wait(timeout=20)

@@ -79,12 +79,11 @@ def bad_file(tmp_path: Path) -> Path:
 
 @contextmanager
 def started(*command: object, **environment: str) -> Iterator[str]:
-    """The address that a starting service prints; the service is stopped as Ctrl-C stops it, and stops cleanly."""
+    """The address that a starting service prints; the service is stopped as Ctrl-C stops it, and stops cleanly. It
+    makes no diagnoses on its own, unless it is told to."""
+    own = {"PATH": f"{COMMAND.parent}:/usr/bin:/bin", "PYTHONPATH": str(ROOT), "IMU_HEALTH_DIAGNOSIS_WORKERS": "0"}
     with subprocess.Popen(
-        list(map(str, command)),
-        stdout=subprocess.PIPE,
-        text=True,
-        env={"PATH": f"{COMMAND.parent}:/usr/bin:/bin", "PYTHONPATH": str(ROOT), **environment},
+        list(map(str, command)), stdout=subprocess.PIPE, text=True, env={**own, **environment}
     ) as process:
         try:
             assert process.stdout is not None

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
-from pathlib import Path
 
 import httpx
 import pytest
@@ -13,13 +12,13 @@ from tests.service.cli.conftest import ENTRYPOINT, started
 from tests.service.sessions import session_bytes
 
 
-@pytest.fixture
-def replicas(postgresql: PostgresDatabases, tmp_path: Path) -> Iterator[tuple[str, str]]:
+@pytest.fixture(scope="module")
+def replicas(postgresql: PostgresDatabases, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, str]]:
     """Their addresses; the schema is there, as it is when a second one joins."""
     shared = {
         "IMU_HEALTH_PORT": "0",
         "IMU_HEALTH_DATABASE_URL": postgresql.migrated(),
-        "IMU_HEALTH_DATA_FOLDER": str(tmp_path),
+        "IMU_HEALTH_DATA_FOLDER": str(tmp_path_factory.mktemp("shared")),
     }
     with ExitStack() as opened:
         one, other = (opened.enter_context(started("/bin/sh", ENTRYPOINT, **shared)) for _ in range(2))
@@ -43,5 +42,6 @@ def test_the_same_session_sent_to_both_at_once_is_stored_once(replicas: tuple[st
     with ThreadPoolExecutor(2) as both:
         answers = list(both.map(send, replicas))
     assert sorted(answer.status_code for answer in answers) == [200, 201]
-    assert len({answer.json()["id"] for answer in answers}) == 1
-    assert len(httpx.get(f"{replicas[0]}/api/v1/sessions").json()["sessions"]) == 1
+    (stored,) = {answer.json()["id"] for answer in answers}
+    listed = httpx.get(f"{replicas[0]}/api/v1/sessions").json()["sessions"]
+    assert [session["id"] for session in listed].count(stored) == 1

@@ -12,7 +12,8 @@ from tests.service.cli.conftest import COMMAND, ENTRYPOINT, Run, started
 
 
 def test_without_demo_the_database_stays_empty(tmp_path: Path) -> None:
-    with started(COMMAND, "serve", "--port", 0, "--data-folder", tmp_path) as address:
+    command = (COMMAND, "serve", "--port", 0, "--data-folder", tmp_path)
+    with started(*command, IMU_HEALTH_DIAGNOSIS_WORKERS="1") as address:
         assert httpx.get(f"{address}/api/v1/fleet").json()["units"] == 0
 
 
