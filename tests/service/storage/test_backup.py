@@ -1,10 +1,12 @@
 """A backup holds everything, goes into either engine, and is there whole or not at all."""
 
+import json
 import os
 import signal
 import subprocess
 import sys
 import zipfile
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from datetime import UTC, datetime
@@ -37,6 +39,7 @@ from tests.serving import http_client
 from tests.stock import stores
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
+Killed = Callable[..., bool]
 
 
 def fill(settings: Settings) -> None:
@@ -201,34 +204,54 @@ def test_a_restore_that_fails_leaves_a_database_without_a_schema(
     database.close()
 
 
-KILLED = """
-import os, signal, sys
+FORKS = """
+import json, multiprocessing, os, signal, sys
 from datetime import UTC, datetime
 from pathlib import Path
 from service.storage import Files
 from service.storage.backup import restore, write_backup
-left = int(sys.argv[1])
-def look(frame, event, argument):
-    global left
-    if event == "call" and frame.f_code.co_filename.endswith(PLACES):
-        left -= 1
-        if not left:
-            os.kill(os.getpid(), signal.SIGKILL)
 PLACES = ("backup/write.py", "backup/restore.py", "backup/rows.py", "storage/files.py", "storage/parts.py")
-sys.setprofile(look)
-if sys.argv[2] == "backup":
-    write_backup(sys.argv[3], Files(Path(sys.argv[4])), Path(sys.argv[5]), datetime.now(UTC))
-else:
-    restore(Path(sys.argv[5]), sys.argv[3], Path(sys.argv[4]), datetime.now(UTC))
+
+def work(call, what, url, folder, backup):
+    left = call
+    def look(frame, event, argument):
+        nonlocal left
+        if event == "call" and frame.f_code.co_filename.endswith(PLACES):
+            left -= 1
+            if not left:
+                os.kill(os.getpid(), signal.SIGKILL)
+    sys.setprofile(look)
+    if what == "backup":
+        write_backup(url, Files(Path(folder)), Path(backup), datetime.now(UTC))
+    else:
+        restore(Path(backup), url, Path(folder), datetime.now(UTC))
+
+fork = multiprocessing.get_context("fork")
+for line in sys.stdin:
+    process = fork.Process(target=work, args=json.loads(line))
+    process.start()
+    process.join()
+    print(process.exitcode, flush=True)
 """
-"""Ends itself as `kill -9` does, at the n-th call of a function of the backup."""
+"""A process for every line, which ends itself as `kill -9` does, at the n-th call of a function of the backup."""
 
 
-def killed_at(call: int, *what: object) -> bool:
-    """Whether it was killed before it was done."""
-    done = subprocess.run([sys.executable, "-c", KILLED, str(call), *map(str, what)], check=False)
-    assert done.returncode in (0, -signal.SIGKILL)
-    return done.returncode != 0
+@pytest.fixture(scope="module")
+def killed_at() -> Iterator[Killed]:
+    """Whether a backup or a restore is killed at a call, or done before."""
+    command = [sys.executable, "-c", FORKS]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as forks:
+        asked, told = forks.stdin, forks.stdout
+        assert asked is not None
+        assert told is not None
+
+        def killed(call: int, what: str, *where: object) -> bool:
+            print(json.dumps([call, what, *map(str, where)]), file=asked, flush=True)
+            code = int(told.readline())
+            assert code in (0, -signal.SIGKILL)
+            return code != 0
+
+        yield killed
 
 
 CALLS = (2, 1000, 1950)
@@ -236,7 +259,9 @@ CALLS = (2, 1000, 1950)
 
 
 @pytest.mark.parametrize("call", CALLS)
-def test_a_backup_that_is_killed_leaves_nothing_that_looks_whole(full: Settings, tmp_path: Path, call: int) -> None:
+def test_a_backup_that_is_killed_leaves_nothing_that_looks_whole(
+    full: Settings, killed_at: Killed, tmp_path: Path, call: int
+) -> None:
     target = tmp_path / "all.backup"
     assert killed_at(call, "backup", full.database, full.files, target) != target.exists()
     for rest in tmp_path.glob(".part-*"):
@@ -247,7 +272,7 @@ def test_a_backup_that_is_killed_leaves_nothing_that_looks_whole(full: Settings,
 
 @pytest.mark.parametrize("call", CALLS)
 def test_a_restore_that_is_killed_leaves_no_schema_and_can_be_started_again(
-    full: Settings, databases: Databases, tmp_path: Path, call: int
+    full: Settings, databases: Databases, killed_at: Killed, tmp_path: Path, call: int
 ) -> None:
     url, backup, folder = databases.empty(), backup_of(full, tmp_path), tmp_path / "new" / "files"
     if killed_at(call, "restore", url, folder, backup):

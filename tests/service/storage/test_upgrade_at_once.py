@@ -11,37 +11,30 @@ from service.storage import Database
 from service.storage.schema import upgrade
 from tests.databases import Databases
 
-TOGETHER = 4
 SCRIPT = """
-import sys
+import multiprocessing, sys
 from service.storage.schema import upgrade
-print("ready", flush=True)
-sys.stdin.readline()
-upgrade(sys.argv[1])
+
+def work(url, together):
+    together.wait()
+    upgrade(url)
+
+fork = multiprocessing.get_context("fork")
+together = fork.Barrier(4)
+processes = [fork.Process(target=work, args=(sys.argv[1], together)) for _ in range(4)]
+for process in processes:
+    process.start()
+for process in processes:
+    process.join()
+    print(process.exitcode)
 """
 
 
 def test_processes_that_upgrade_an_empty_database_together_all_succeed(databases: Databases) -> None:
     url = databases.empty()
-    processes = [
-        subprocess.Popen(
-            [sys.executable, "-c", SCRIPT, url],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
-        for _ in range(TOGETHER)
-    ]
-    for process in processes:
-        assert process.stdout is not None
-        assert process.stdout.readline() == "ready\n"
-    for process in processes:
-        assert process.stdin is not None
-        process.stdin.write("go\n")
-        process.stdin.flush()
-    left = [process.communicate(timeout=120)[1] for process in processes]
-    assert ([process.returncode for process in processes], left) == ([0] * TOGETHER, [""] * TOGETHER)
+    command = [sys.executable, "-c", SCRIPT, url]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
+    assert (done.stdout.split(), done.stderr) == (["0"] * 4, "")
     database = Database(url)
     database.require_ready()
     database.close()
