@@ -2,14 +2,14 @@
 
 Its page read the file and the unit's reference anew each time. Lines from before keep none, and their pages still do.
 
-Revision: 0028, after 0024
+Revision: 0027, after 0026
 """
 
 import sqlalchemy as sa
 from alembic import op
 
-revision = "0028"
-down_revision = "0024"
+revision = "0027"
+down_revision = "0026"
 branch_labels = None
 depends_on = None
 
