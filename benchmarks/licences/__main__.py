@@ -9,7 +9,8 @@ PAGE = ROOT / "docs" / "security" / "licences.md"
 HEAD = """# What we depend on
 
 Made by `python -m benchmarks.licences` from `requirements.lock` and what the packages say of themselves. The tests' own
-tools are among them; what `make docs` adds (`requirements-docs.lock`: zensical and what it needs) is MIT and BSD.
+tools are among them; what `make docs` adds (`requirements-docs.lock`: zensical and what it needs) is MIT and BSD,
+and so is what `make bench` adds (`requirements-bench.lock`: imucal and pandas).
 
 | package | version | licence |
 | --- | --- | --- |
