@@ -12,7 +12,7 @@ from estimator.causes.sensor import CubicNonlinearity
 from estimator.diagnosis.residuals.flipped_run import with_its_flip
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.groups import SessionStatistics, statistics_of
-from estimator.groups.candidates import ALIKE, lasting_causes
+from estimator.groups.candidates import lasting_causes
 from estimator.groups.session_statistics import contradicted
 from tests.estimator.groups.cases import measured, world
 
@@ -79,11 +79,12 @@ def test_one_sensor_alone_is_never_believed_more_than_stated(energy: float, clai
     assert contradicted(with_its_flip(averaged(SESSION)), scatter, freedom) == claims
 
 
-@pytest.mark.parametrize("cause", sorted(ALIKE))
-def test_courses_of_time_and_temperature_are_the_same_on_every_sensor(cause: str) -> None:
+ALIKE = [c for c in lasting_causes() if isinstance(c, SensorCause) and c.alike]
+
+
+@pytest.mark.parametrize("known", ALIKE, ids=[c.identifier for c in ALIKE])
+def test_courses_of_time_temperature_and_angle_are_the_same_on_every_sensor(known: SensorCause) -> None:
     setting = with_its_flip(averaged(SESSION)).setting
-    (known,) = (c for c in lasting_causes() if c.identifier == cause)
-    assert isinstance(known, SensorCause)
     grid: list[tuple[float, ...]] = [(600.0,)] if known.nonlinear_units else [()]
     each = [known.terms(setting, i, grid) for i in range(6)]
     assert all(np.array_equal(one, each[0]) for one in each)
