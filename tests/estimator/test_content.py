@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from estimator import CalibrationSession
-from estimator.content import LARGEST, remembered
+from estimator.content import LARGEST, once, remembered
 from tests.estimator.calibration.cases import CASES
 
 
@@ -46,3 +46,16 @@ def test_large_sessions_are_not_kept() -> None:
     large = replace(session, readings=np.zeros((LARGEST + 1, 1)))
     notes_of(large), notes_of(large)
     assert len(asked) == 2
+
+
+def test_an_object_is_asked_once_while_it_lives() -> None:
+    asked: list[tuple[str, int]] = []
+
+    @once
+    def noted(session: CalibrationSession, number: int) -> int:
+        asked.append((session.notes, number))
+        return number
+
+    (session,) = CASES[0].simulated(1)
+    assert [noted(session, 1), noted(session, 1), noted(session, 2), noted(replace(session), 1)] == [1, 1, 2, 1]
+    assert len(asked) == 3
