@@ -43,9 +43,8 @@ def take_in_waiting(own: Diagnosing, stop: Event) -> None:
 
 def uploads_of(own: Diagnosing) -> Work[int]:
     """The queue of long files, and what takes one in."""
-    reception = Reception(
-        own.storage, own.settings.coverage_factor, own.metrics, own.bell.ring, is_dated_later=True
-    )  # fmt: skip
+    k = own.settings.coverage_factor
+    reception = Reception(own.storage, k, own.metrics, own.bell.ring, is_dated_later=True)
 
     def make(_: Helper, id: int, now: datetime, still: Still) -> Failure | None:
         return _taken_in(lambda tick: take_in(reception, id, now, tick), id, still)
