@@ -26,7 +26,7 @@ def light_forecasts() -> Iterator[None]:
 @pytest.fixture
 def flagged(holding: Holding) -> httpx.Client:
     """A unit whose second session has A3 out of tolerance."""
-    return holding(*FAILED)
+    return holding(*FAILED, diagnosed=True)
 
 
 @pytest.fixture

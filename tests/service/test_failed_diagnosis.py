@@ -21,12 +21,12 @@ from service.background.bell import Bell
 from service.background.diagnose_waiting import CLAIM, MOST_ATTEMPTS, Diagnosing, diagnose_next
 from service.background.guard import AT_FAULT
 from service.background.helper import Helper
-from service.flows.receive import upload
 from service.metrics import Metrics
 from service.records.diagnosis import DiagnosisState
 from service.records.pending import Claim
 from service.settings import Settings
 from service.storage import Storage
+from tests.conftest import SettingsHolding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.diagnosed import warm
 from tests.service.pages.test_http import HTML
@@ -41,10 +41,14 @@ SPOIL = text("UPDATE calibrations SET document = :document WHERE session_id = :i
 
 
 @pytest.fixture
+def settings(settings_holding: SettingsHolding) -> Settings:
+    """Of a service that holds two sessions of a unit."""
+    return settings_holding(REFERENCE, LATER)
+
+
+@pytest.fixture
 def spoilt(storage: Storage) -> Storage:
     """Stores that hold a session that is not diagnosed yet, and a reference whose calibration is damaged."""
-    for content in (REFERENCE, LATER):
-        upload(storage, content, "warm.json", NOW)
     with storage.database.engine.begin() as connection:
         connection.execute(SPOIL, {"document": zlib.compress(b"{}"), "id": session_id(REFERENCE)})
     return storage
@@ -94,8 +98,6 @@ def test_this_version_fails_once_for_whoever_reads_and_counts_it(shown: httpx.Cl
 @pytest.fixture
 def forgetful(storage: Storage, settings: Settings) -> Iterator[httpx.Client]:
     """HTTP to a service in which only a diagnosis fails: what the reference tells of flags is damaged."""
-    for content in (REFERENCE, LATER):
-        upload(storage, content, "warm.json", NOW)
     with storage.database.engine.begin() as connection:
         connection.execute(text("UPDATE sessions SET tells = '{}' WHERE id = :id"), {"id": session_id(REFERENCE)})
     with http_client(create_app(settings)) as client:
@@ -126,7 +128,6 @@ def test_nothing_is_accepted_of_it_and_the_same_is_said(
 def test_what_rests_on_a_diagnosis_that_somebody_is_making_is_asked_for_again(
     storage: Storage, settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    upload(storage, REFERENCE, "warm.json", NOW)
     id = session_id(REFERENCE)
     with storage.database.writing() as store:
         store.pending.claim(Claim(id, "somebody else", datetime.now(UTC) + CLAIM), NOW)

@@ -39,7 +39,7 @@ def stored(storage: Storage, **changes: object) -> str:
 @pytest.fixture
 def warm(settings_holding: SettingsHolding) -> Iterator[Storage]:
     """Stores that hold the session with its diagnosis."""
-    with stores(settings_holding(CONTENT)) as found:
+    with stores(settings_holding(CONTENT, diagnosed=True)) as found:
         yield found
 
 

@@ -24,6 +24,7 @@ from service.records.model import NewModel, Scope
 from service.settings import VERSION
 from service.storage import Storage
 from service.storage.queries.statistics import GIVEN_UP, MOST_ATTEMPTS
+from tests.conftest import Filled
 from tests.databases import one_engine
 from tests.service.grouped import GROUP, cubic_session
 from tests.service.records import step, way
@@ -58,18 +59,33 @@ def holds(storage: Storage) -> bool:
         return current(store, store.groups.find(Level.UNIT, UNIT)) is not None
 
 
-def test_twelve_sessions_name_what_none_of_them_shows(storage: Storage) -> None:
+def twelve(storage: Storage) -> None:
     fill(storage, *GROUP)
-    alone = [find_causes(read_upload(content, "a.json")).findings for content in GROUP]
-    found = told(refreshed(storage))
-    assert alone == [()] * 12
+
+
+def twelve_with_the_last_diagnosed(storage: Storage) -> None:
+    twelve(storage)
+    diagnose(storage, session_id(GROUP[-1]), NOW)
+
+
+def four_looked_at(storage: Storage) -> None:
+    fill(storage, *GROUP[:4])
+    refreshed(storage)
+
+
+def test_twelve_sessions_name_what_none_of_them_shows(filled: Filled) -> None:
+    found = told(refreshed(filled(twelve)))
     assert [(f["cause"], f["sensors"]) for f in found["findings"]] == [("cubic-nonlinearity", ["A2"])]
     assert (found["sessions"], len(found["findings"][0]["sessions"]), found["left_out"]) == (12, 12, 0)
 
 
+def test_none_of_the_twelve_shows_anything_alone() -> None:
+    assert [find_causes(read_upload(content, "a.json")).findings for content in GROUP] == [()] * 12
+
+
 @one_engine
-def test_the_twelfth_is_diagnosed_by_the_evidence_of_all(storage: Storage) -> None:
-    fill(storage, *GROUP)
+def test_the_twelfth_is_diagnosed_by_the_evidence_of_all(filled: Filled) -> None:
+    storage = filled(twelve)
     diagnose(storage, session_id(GROUP[0]), NOW)  # its record is kept, and so it counts beyond the ten before
     made = diagnose(storage, session_id(GROUP[-1]), NOW)
     assert made.found is not None
@@ -80,16 +96,14 @@ def test_the_twelfth_is_diagnosed_by_the_evidence_of_all(storage: Storage) -> No
 
 
 @one_engine
-def test_a_flag_is_raised_by_all_sessions_together_and_not_by_the_one_that_was_diagnosed_so(storage: Storage) -> None:
-    fill(storage, *GROUP)
-    diagnose(storage, session_id(GROUP[-1]), NOW)
-    with storage.database.reading() as store:
+def test_a_flag_is_raised_by_all_sessions_together_and_not_by_the_one_that_was_diagnosed_so(filled: Filled) -> None:
+    with filled(twelve_with_the_last_diagnosed).database.reading() as store:
         assert not [flag for flag in store.flags.open_of(store.units.key(UNIT)) if flag.matter is Matter.CAUSE]
 
 
 @one_engine
-def test_what_all_sessions_show_is_not_accepted_from_one(storage: Storage) -> None:
-    fill(storage, *GROUP)
+def test_what_all_sessions_show_is_not_accepted_from_one(filled: Filled) -> None:
+    storage = filled(twelve_with_the_last_diagnosed)
     made = diagnose(storage, session_id(GROUP[-1]), NOW)
     with pytest.raises(RefusedError):
         accept_model(storage, made, NewModel("cubic-nonlinearity", Scope.UNIT, "K. Ito", ""), NOW)
@@ -110,8 +124,8 @@ def test_to_a_stand_come_its_units_elsewhere_before_its_last_session(storage: St
     assert (told(refreshed(storage, Level.STAND, "ODG-1"))["sessions"], told(refreshed(storage))["sessions"]) == (3, 4)
 
 
-def test_a_session_that_is_withdrawn_leaves_and_comes_back_when_it_is_accepted(storage: Storage) -> None:
-    fill(storage, *GROUP[:4])
+def test_a_session_that_is_withdrawn_leaves_and_comes_back_when_it_is_accepted(filled: Filled) -> None:
+    storage = filled(four_looked_at)
     before, last = refreshed(storage), session_id(GROUP[3])
     withdraw_session(storage, way(storage), last, step())
     assert not holds(storage)
@@ -120,8 +134,8 @@ def test_a_session_that_is_withdrawn_leaves_and_comes_back_when_it_is_accepted(s
     assert told(refreshed(storage)) == told(before)
 
 
-def test_a_unit_is_pooled_since_its_last_service(storage: Storage) -> None:
-    fill(storage, *GROUP[:4])
+def test_a_unit_is_pooled_since_its_last_service(filled: Filled) -> None:
+    storage = filled(four_looked_at)
     record_service(storage, UNIT, NewService("repair", datetime(2023, 2, 15, tzinfo=UTC)), NOW)
     assert told(refreshed(storage))["first"].startswith("2023-03")
 

@@ -6,17 +6,28 @@ from lxml import html
 
 from service.pages import flags, flags_view
 from service.pages.flags_view import FlagsAsked, FlagsView
+from tests.conftest import Holding
 from tests.service.sessions import session_bytes
 
 SAID = {"by": "K. Ito", "why": "all seen"}
 
 
+SESSIONS = tuple(
+    session_bytes(seed=month, month=month, unit=unit, a3_moved=moved)
+    for unit in ("BA-1", "BA-2", "BB-1")
+    for month, moved in ((1, 0.0), (4, 200.0))
+)
+
+
+@pytest.fixture
+def client(holding: Holding) -> httpx.Client:
+    """Three units, each with a flag: out of tolerance."""
+    return holding(*SESSIONS)
+
+
 @pytest.fixture
 def flagged(client: httpx.Client) -> list[int]:
-    """Three units, each with a flag: out of tolerance."""
-    for unit in ("BA-1", "BA-2", "BB-1"):
-        for month, moved in ((1, 0.0), (4, 200.0)):
-            client.post("/api/v1/sessions", content=session_bytes(seed=month, month=month, unit=unit, a3_moved=moved))
+    """The flags' numbers."""
     return sorted(flag["id"] for flag in client.get("/api/v1/flags").json()["flags"])
 
 

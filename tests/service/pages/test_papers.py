@@ -31,7 +31,7 @@ def test_the_customer_is_named_on_the_unit_s_page(flagged: httpx.Client) -> None
 
 
 def test_a_broken_chain_stands_above_the_parameters(holding: Holding) -> None:
-    client = holding(*FAILED)
+    client = holding(*FAILED, diagnosed=True)
     address = f"/sessions/{session_id(FAILED[-1])}"
     assert "Traceability is interrupted" not in client.get(address).text
     state_all(client, valid_until="2026-01-31")

@@ -44,7 +44,7 @@ ID = session_id(FAILING)
 @pytest.fixture
 def failed(holding: Holding) -> httpx.Client:
     """A service that holds a reference and the failing session."""
-    return holding(session_bytes(), FAILING)
+    return holding(session_bytes(), FAILING, diagnosed=True)
 
 
 def test_it_states_input_verdict_rule_and_model(failed: httpx.Client) -> None:

@@ -73,7 +73,7 @@ def test_the_xml_names_what_it_replaces(flagged: httpx.Client) -> None:
 
 
 def test_another_laboratory_is_another_certificate(settings_holding: SettingsHolding) -> None:
-    settings = settings_holding(*FAILED)
+    settings = settings_holding(*FAILED, diagnosed=True)
     for name in ("North", "South"):
         with named(settings, laboratory_name=name) as client:
             assert name in text_of(paper(client))
@@ -82,7 +82,7 @@ def test_another_laboratory_is_another_certificate(settings_holding: SettingsHol
 
 
 def test_the_numbers_cannot_be_changed(settings_holding: SettingsHolding) -> None:
-    settings = settings_holding(*FAILED)
+    settings = settings_holding(*FAILED, diagnosed=True)
     with named(settings) as client:
         paper(client)
     engine = open_engine(settings.database)

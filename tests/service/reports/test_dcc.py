@@ -60,7 +60,7 @@ def test_every_element_is_where_the_schema_wants_it(client: httpx.Client, name: 
 @pytest.fixture
 def failed(holding: Holding) -> httpx.Client:
     """A service that holds a reference and a session out of tolerance."""
-    return holding(*FAILED)
+    return holding(*FAILED, diagnosed=True)
 
 
 def test_numbers_are_the_calibration_s_in_si(failed: httpx.Client) -> None:

@@ -34,7 +34,7 @@ both = pytest.mark.parametrize("databases", ENGINES, indirect=True)
 @pytest.fixture
 def settings(settings_holding: SettingsHolding) -> Settings:
     """Of a laboratory with a session out of tolerance."""
-    return settings_holding(*FAILED)
+    return settings_holding(*FAILED, diagnosed=True)
 
 
 @pytest.fixture
