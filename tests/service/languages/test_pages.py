@@ -34,6 +34,7 @@ NAMES = frozenset(
         *(
             "imu",
             "health",
+            "nice",
             "estimator",
             "OpenAPI",
             "API",
