@@ -201,7 +201,8 @@ def foresee(store: Store, way: Deriving, serial: str, new: Counted, calibration:
     if place.is_reference or place.reference is None:
         return None
     by = _Judging(way, serial, known, {}, store.unit_types.of_unit_through_time(serial))
-    return Foreseen(place.basis, by.unit_type(new.id), _calibration(by, place))
+    judged, against = _calibration(by, place), known.calibration(place.reference.id)
+    return Foreseen(place.basis, by.unit_type(new.id), judged, place.reference, against)
 
 
 def _calibration(by: _Judging, place: Place) -> Judged:

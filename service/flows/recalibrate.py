@@ -173,11 +173,11 @@ def _put_in_force(
     new = [one for one in made if before[one.session.id].revision < one.model.revision]
     if not new:
         return ()
-    store.derivations.put_revisions({one.session.id: one.model.revision for one in new})
+    revisions = {one.session.id: one.model.revision for one in new}
+    store.derivations.put_revisions(revisions)
     records = [(replace(before[one.session.id], revision=one.model.revision), one.made) for one in new]
     keep(store, unit, records, way.at)
-    for one in new:
-        store.noises.carry(one.session.id, one.model.revision)
+    store.noises.carry(revisions)
     touched = [one.session.id for one in made]
     known = known_unit(store, unit, {one.session.id: one.made.calibration for one in new})
     derive_again(store, way, serial, min(one.session.started_at for one in new), touched, known=known)

@@ -23,6 +23,15 @@ class Foreseen:
     """What it was judged by, as its place says."""
     unit_type: UnitType
     judged: Judged
+    reference: Counted
+    """Which it was judged against."""
+    against: Calibration
+    """That of the reference, which never changes under one revision."""
+
+    def is_against(self, records: UnitRecords) -> bool:
+        """Whether the reference still speaks for the same calibration."""
+        own = (self.reference.id, self.reference.revision)
+        return any((one.id, one.revision) == own for one in records.counted)
 
 
 @dataclass(frozen=True)
@@ -77,4 +86,7 @@ def known_unit(
     store: Store, unit: int, made: dict[str, Calibration] | None = None, foreseen: Foreseen | None = None
 ) -> KnownUnit:
     """A unit as its rows are now, with calibrations that were stored just before."""
-    return KnownUnit(store, unit, store.derivations.records(unit), made or {}, foreseen=foreseen)
+    known = KnownUnit(store, unit, store.derivations.records(unit), made or {}, foreseen=foreseen)
+    if foreseen is not None and foreseen.is_against(known.records):
+        known.read[foreseen.reference.id] = foreseen.against
+    return known

@@ -2,6 +2,7 @@
 
 import json
 import zlib
+from collections.abc import Mapping
 from datetime import datetime
 
 from sqlalchemy import select
@@ -42,16 +43,16 @@ class Noises(Queries):
         ]  # fmt: skip
         self.insert_many(ParameterRow, rows)
 
-    def carry(self, session: str, revision: int) -> None:
-        """Writes its terms under another model revision too: noise is the same under all."""
+    def carry(self, revisions: Mapping[str, int]) -> None:
+        """Writes the terms of sessions under another model revision too: noise is the same under all."""
         row = ParameterRow
-        known = select(row).where(row.session_id == session, row.parameter.in_(TERMS)).order_by(row.revision)
-        newest = {(one.sensor, one.parameter): one for one in self._session.scalars(known)}
+        own = (row.session_id.in_(tuple(revisions)), row.parameter.in_(TERMS))
+        known = self._session.scalars(select(row).where(*own).order_by(row.revision))
+        newest = {(one.session_id, one.sensor, one.parameter): one for one in known}
         columns = [column.name for column in row.__table__.columns]
         rows = [
-            {**{name: getattr(one, name) for name in columns}, "revision": revision}
+            {**{name: getattr(one, name) for name in columns}, "revision": revisions[one.session_id]}
             for one in newest.values()
-            if one.revision != revision
+            if one.revision != revisions[one.session_id]
         ]
-        if rows:
-            self.insert_many(row, rows)
+        self.insert_many(row, rows)

@@ -17,12 +17,15 @@ class Units(Queries):
 
     def is_simulated(self, serial: str) -> bool | None:
         """Whether a unit's sessions are simulated, as its first one was; None where there is no such unit."""
+        if ("simulated", serial) in self._session.info:
+            return bool(self._session.info["simulated", serial])
         return self._session.scalar(select(UnitRow.simulated).where(UnitRow.serial == serial))
 
     def set_simulated(self, serial: str, simulated: bool) -> None:
         """Records what a unit's sessions are from now on."""
         own = update(UnitRow).where(UnitRow.serial == serial, UnitRow.simulated.is_not(simulated))
         self._session.execute(own.values(simulated=simulated))
+        self._session.info.pop(("simulated", serial), None)
 
     def set_lot(self, serial: str, lot: str | None) -> str | None:
         """Records a unit's production lot, and returns the one before."""
@@ -63,13 +66,16 @@ class Units(Queries):
     def held(self, serial: str) -> int | None:
         """The key of a unit that is there, with the unit held until the transaction ends: its sessions are judged one
         after another."""
-        known: int | None = self._session.info.get(("held", serial))
-        if known is None:
-            known = self._session.scalar(select(UnitRow.id).where(UnitRow.serial == serial).with_for_update())
-        if known is not None:
-            self._session.info["held", serial] = known
-            self.remember_unit(serial, known)
-        return known
+        notes = self._session.info
+        if ("held", serial) not in notes:
+            query = select(UnitRow.id, UnitRow.simulated).where(UnitRow.serial == serial).with_for_update()
+            found = self._session.execute(query).one_or_none()
+            if found is None:
+                return None
+            notes["held", serial], notes["simulated", serial] = found
+            self.remember_unit(serial, found[0])
+        key: int = notes["held", serial]
+        return key
 
     def hold(self, serial: str) -> int:
         """The same of a unit that must be there."""

@@ -51,8 +51,8 @@ def test_a_term_that_the_rests_do_not_reach_has_no_number(storage: Storage) -> N
 def test_another_model_revision_has_the_same_noise(storage: Storage) -> None:
     id = kept(storage)
     with storage.database.writing() as store:
-        store.noises.carry(id, 7)
-        store.noises.carry(id, 7)
+        store.noises.carry({id: 7})
+        store.noises.carry({id: 7})
         again = store.history.points(store.units.key("LOG-1"), HistoryQuery(parameter="white-noise"))
     assert len(again) == 3
     with storage.database.reading() as store:
