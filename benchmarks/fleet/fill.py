@@ -91,7 +91,7 @@ def _life(number: int, sessions: int) -> Iterator[tuple[datetime, bytes]]:
         moved = [replace(s, bias=s.bias + MICRO_G * r * years) for s, r in zip(sensors, rates, strict=True)]
         document = accelerometer_block(6, seed=1000 * number + k, unit=serial(number), sensors=moved, positions=24)
         at = START + number * timedelta(hours=3) + k * every
-        own = {"started_at": at.isoformat(), "stand": {**document.get("stand", {}), "name": STANDS[(number + k) % 3]}}
+        own = {"started_at": at.isoformat(), "stand": {**document.get("stand", {}), "id": STANDS[(number + k) % 3]}}
         yield at + timedelta(hours=1), json.dumps(document | own).encode()
 
 
