@@ -11,7 +11,7 @@ MEMORY = Path("/dev/shm")
 LAST = -1000
 """Processes that share memory remove their own folder a little earlier."""
 ENOUGH = 6 * 2**30
-"""Bytes free. A worker that ran all tests of the storage filled half a GiB, and there are eight workers at most."""
+"""Bytes free. A third of the service's tests, in one process, filled half a GiB; there are eight workers at most."""
 
 
 def write_into_memory() -> None:
