@@ -76,7 +76,7 @@ def held(part: Any) -> Hashable:
     """A session or a part of one as what can be compared: arrays by their bits."""
     if isinstance(part, np.ndarray):
         return part.dtype.str, part.shape, part.tobytes()
-    if isinstance(part, tuple):
+    if isinstance(part, tuple | list):
         return tuple(map(held, part))
     names = FIELDS.get(type(part))
     if names is not None:
