@@ -36,6 +36,8 @@ SLOWER = 4
 """Times that a phone's processor is slower than this one."""
 PAINT = "performance.getEntriesByName('first-contentful-paint')"
 """Of a page; empty before it."""
+SOON = 20.0
+"""Milliseconds between two looks at whether it is there."""
 HERE, THERE = "on this machine", "far away, on a phone"
 
 NOTE = """
@@ -114,7 +116,8 @@ def look(browser: Browser, url: str, is_far: bool) -> Visit:
             wire.send("Network.emulateNetworkConditions", FAR)
             wire.send("Emulation.setCPUThrottlingRate", {"rate": SLOWER})
         page.goto(url, timeout=120_000)
-        page.wait_for_function(f"{PAINT}.length")
+        while not page.evaluate(f"{PAINT}.length"):  # a page forbids the waiting that evaluates within it
+            page.wait_for_timeout(SOON)
         first = page.evaluate(f"{PAINT}[0].startTime") / 1000
         draw_all(page)
         page.wait_for_load_state("networkidle")

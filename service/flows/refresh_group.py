@@ -9,6 +9,7 @@ from dataclasses import replace
 from datetime import datetime
 from hashlib import sha256
 
+from estimator.calibration.calibrate import averaged
 from estimator.errors import SessionError
 from estimator.groups import SessionStatistics, diagnose_statistics
 from estimator.session import CalibrationSession
@@ -138,8 +139,11 @@ def _named(record: SessionStatistics, member: Member) -> SessionStatistics:
 
 
 def _sessions(files: Files, members: Sequence[Member]) -> list[CalibrationSession]:
-    """The sessions themselves; none where one is lost: then no measurement is proposed and no term learned."""
+    """The sessions themselves, raw logs as their averaged positions, since all of them are held at once; none where one
+    is lost: then no measurement is proposed and no term learned."""
     try:
-        return [replace(read_upload(files.content(m.sha256), m.filename), unit_type=m.unit_type) for m in members]
+        return [
+            replace(averaged(read_upload(files.content(m.sha256), m.filename)), unit_type=m.unit_type) for m in members
+        ]
     except (*LOST, SessionError):
         return []
