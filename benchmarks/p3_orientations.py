@@ -27,12 +27,12 @@ from estimator.session import Array
 SETS = ((4, 12), (4, 36), (4, 100), (6, 12), (6, 36), (6, 100))
 ACCURACY = 1e-5
 NOTE = """
-P3 reaches its target against the same likelihood, but for twelve orientations of four sensors, where it lies at it:
-of twelve, a calibration is one search of four linearisations, in which an orientation costs next to nothing beside
-the calls. Starts that tell the same of the ellipsoid are searched once. Against the published descent the target is
-reached only where it needs hundreds of passes: a pass takes it half a millisecond to 1.5, so that after 50 to 150 of
-them a hundredth of its time is a fraction of a millisecond, less than one linearisation with its report. The descent
-fits less, a functional of triples without directions or covariance.
+P3 reaches its target against the same likelihood, but for twelve orientations of four sensors, where it misses it by
+a tenth: of twelve, a calibration is one search of four linearisations, in which an orientation costs next to nothing
+beside the calls. Starts that tell the same of the ellipsoid are searched once. Against the published descent the
+target is reached only where it needs hundreds of passes: a pass takes it half a millisecond to 1.5, so that after 50
+to 150 of them a hundredth of its time is a fraction of a millisecond, less than one linearisation with its report.
+The descent fits less, a functional of triples without directions or covariance.
 """
 
 
