@@ -56,7 +56,7 @@ def _table(found: list[Point]) -> Table:
         right=("off reference", "tolerance"),
     )
     for point in found:
-        condition = coloured(point.verdict, point.is_reference)
+        condition = "" if point.parameter in TERMS else coloured(point.verdict, point.is_reference)
         day, sensor = f"{point.at:%Y-%m-%d}", escape(point.sensor)
         table.add_row(day, sensor, point.parameter, *_numbers(point), condition)
     return table

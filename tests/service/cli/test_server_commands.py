@@ -9,7 +9,7 @@ import polars as pl
 import pytest
 
 from service.settings import Settings
-from tests.builders import accelerometer_block
+from tests.builders import accelerometer_block, raw_log
 from tests.databases import Databases
 from tests.service import tables
 from tests.service.cli.conftest import Run, write
@@ -98,6 +98,15 @@ def test_some_of_the_fleet_are_shown(run: Run, address: str, two_sessions: list[
     assert [unit["serial"] for unit in run("fleet", "--stand", "S9", "--server", address).documents] == ["BA-100"]
     shown = run("fleet", "--stand", "S9", "--format", "table", "--server", address).out
     assert shown.startswith("1 of 2 units")
+
+
+def test_noise_at_rest_is_shown_with_its_interval_and_no_verdict(run: Run, address: str, tmp_path: Path) -> None:
+    ran = run("upload", write(tmp_path, "log.json", raw_log(still=300)), "--server", address, "--json")
+    httpx.get(f"{address}/api/v1/sessions/{ran.documents[0]['id']}/diagnosis", timeout=60)
+    shown = run("history", "LOG-1", "--parameter", "white-noise", "--format", "table", "--server", address).out
+    lines = [line for line in shown.splitlines() if "white-noise" in line]
+    assert lines
+    assert all(" to " in line and "Undecided" not in line and "Reference" not in line for line in lines)
 
 
 def test_a_history_is_shown_beside_its_reference(run: Run, address: str, two_sessions: list[Path]) -> None:
