@@ -78,7 +78,7 @@ def _make_room(files: Files, owner: str, now: datetime) -> None:
     with disk_faults():
         for path in sorted(_all(files), key=_age, reverse=True):
             own += path.name.startswith(_prefix(owner))
-            size += path.stat().st_size
+            size += _seen(path)[1]
             if size > MOST_BYTES or (own > MOST and path.name.startswith(_prefix(owner))):
                 path.unlink(missing_ok=True)
 
@@ -92,7 +92,16 @@ def _fresh(files: Files, now: datetime) -> set[Path]:
 
 
 def _age(path: Path) -> float:
-    return path.stat().st_mtime
+    return _seen(path)[0]
+
+
+def _seen(path: Path) -> tuple[float, int]:
+    """When it was last looked at and how many bytes it has; nothing where another request has just removed it."""
+    try:
+        found = path.stat()
+    except FileNotFoundError:
+        return 0.0, 0
+    return found.st_mtime, found.st_size
 
 
 def _touch(path: Path, now: datetime) -> None:
