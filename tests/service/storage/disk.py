@@ -108,7 +108,7 @@ def calls(trace: str, within: str) -> Iterator[Call]:
         process, _, rest = line.partition(" ")
         rest = rest.strip()
         if rest.endswith("<unfinished ...>"):
-            halves[process] = rest.removesuffix("<unfinished ...>")
+            halves[process] = rest.removesuffix("<unfinished ...>").rstrip()
             continue
         resumed = re.match(r"<\.\.\. \w+ resumed>(.*)$", rest)
         found = CALL.match(halves.pop(process, "") + resumed[1] if resumed else rest)
