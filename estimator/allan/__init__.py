@@ -15,6 +15,7 @@ model      the four terms, and the covariance of the estimates that they imply
 fit        the sizes of greatest quasi-likelihood, each with its effective degrees of freedom, and where they hold
 rests      a raw log → the stretches in which the block was at rest
 estimate   the whole, for every sensor of a session
+growth     records of a unit → which terms became larger
 """
 
 from typing import TYPE_CHECKING

@@ -2,15 +2,15 @@
 
 from collections.abc import Sequence
 from itertools import groupby
-from math import exp, log, sqrt
 
-from scipy.special import ndtri, stdtrit
+import numpy as np
 
-from estimator.allan.results import TERMS, freedom_of, interval_of
+from estimator.allan.growth import Course, Growth, growth
+from estimator.allan.results import TERMS, interval_of
 from service.measures import NOISE, THIN, decimals, in_measure, number
 from service.records.history import HistoryPoint
 
-Course = Sequence[HistoryPoint]
+Points = Sequence[HistoryPoint]
 """One term of one sensor, oldest first."""
 NAMES = {
     "white-noise": "White noise N",
@@ -30,8 +30,6 @@ SEVERAL = 3
 """Sensors of a kind, from which on all of them together are told in one sentence."""
 LEVEL = 0.01
 """Chance that a unit whose noise is the same is said to have become noisier, over all its sensors and terms."""
-WORTH = 1.25
-"""Growth below which nothing is said: data sheets leave more room, and temperature makes as much."""
 
 
 def size_in_words(kind: str, name: str, value: float | None, sigma: float | None) -> str:
@@ -57,23 +55,28 @@ def grown(points: Sequence[HistoryPoint]) -> tuple[str, ...]:
     newest = decided[-1].session
     courses = [list(own) for _, own in groupby(sorted(decided, key=_place), key=_place)]
     told = [own for own in courses if len(own) > 1 and own[-1].session == newest]
-    return tuple(s for own in _by_term(told) for s in _sentences(_larger(own, LEVEL / len(told)), own))
+    return tuple(s for own in _by_term(told) for s in _sentences(own, growth(_sizes(own), LEVEL / len(told))))
 
 
-def _by_term(courses: Sequence[Course]) -> list[list[Course]]:
+def _sizes(courses: Sequence[Points]) -> list[Course]:
+    return [Course(np.array([p.value for p in own]), np.array([p.u for p in own])) for own in courses]
+
+
+def _by_term(courses: Sequence[Points]) -> list[list[Points]]:
     """Those of one term of one kind of sensor together."""
     return [list(own) for _, own in groupby(sorted(courses, key=_term), key=_term)]
 
 
-def _term(course: Course) -> tuple[str, str]:
+def _term(course: Points) -> tuple[str, str]:
     return course[0].kind, course[0].parameter
 
 
-def _sentences(larger: Sequence[Course], told: Sequence[Course]) -> tuple[str, ...]:
+def _sentences(courses: Sequence[Points], found: Sequence[Growth]) -> tuple[str, ...]:
     """One a sensor, or one of all: what makes every sensor noisier is hardly each of them."""
-    if len(larger) < max(SEVERAL, len(told)):
-        return tuple(map(_sentence, larger))
-    last, times = larger[0][-1], sorted(map(_times, larger))
+    larger = [(own[-1], one) for own, one in zip(courses, found, strict=True) if one.is_larger]
+    if len(larger) < max(SEVERAL, len(courses)):
+        return tuple(_sentence(last, one) for last, one in larger)
+    last, times = larger[0][0], sorted(one.times for _, one in larger)
     sensors, least, most = f"{last.kind}s", number(times[0], 2), number(times[-1], 2)
     return (
         f"{NAMES[last.parameter]} is larger in all {sensors}: {least} to {most} times what it was. Look at the bench "
@@ -85,53 +88,9 @@ def _place(point: HistoryPoint) -> tuple[str, str]:
     return point.sensor, point.parameter
 
 
-def _larger(courses: Sequence[Course], level: float) -> list[Course]:
-    """Of one term of all sensors of a kind: whose last size exceeds the mean of those before by more than chance and
-    than what is worth words.
-
-    In logarithms, whose variance is 1/(2ν), and between records what all sensors scatter by beyond that: its own
-    degrees of freedom give Student's t. Of a single record before nothing is known of that.
-    """
-    freedom = sum(len(own) - 2 for own in courses)
-    squares = sum((log(p.value or 1.0) - _centre(own[:-1])) ** 2 for own in courses for p in own[:-1])
-    inner = sum((len(own) - 2) * _mean_variance(own) for own in courses)
-    beyond = max(0.0, squares - inner) / freedom if freedom else 0.0
-    limit = float(stdtrit(freedom, 1 - level)) if freedom else -float(ndtri(level))
-    return [own for own in courses if _change(own) > max(limit * _sigma(own, beyond), log(WORTH))]
-
-
-def _change(course: Course) -> float:
-    """Logarithm of the newest over what was usual."""
-    return log(course[-1].value or 1.0) - _centre(course[:-1])
-
-
-def _sigma(course: Course, beyond: float) -> float:
-    """One sigma of the change."""
-    return sqrt(_variance(course[-1]) + beyond + (_mean_variance(course) + beyond) / (len(course) - 1))
-
-
-def _mean_variance(course: Course) -> float:
-    """Of the logarithms before the newest."""
-    return sum(map(_variance, course[:-1])) / (len(course) - 1)
-
-
-def _centre(points: Sequence[HistoryPoint]) -> float:
-    return sum(log(p.value or 1.0) for p in points) / len(points)
-
-
-def _variance(point: HistoryPoint) -> float:
-    return 1 / (2 * freedom_of(point.value or 1.0, point.u or 1.0))
-
-
-def _sentence(course: Course) -> str:
-    *before, last = course
-    measure, usual = NOISE[last.kind, last.parameter], exp(_centre(before))
+def _sentence(last: HistoryPoint, found: Growth) -> str:
+    measure = NOISE[last.kind, last.parameter]
     return (
-        f"{NAMES[last.parameter]} of {last.sensor} is {number(_times(course), 2)} times what it was: "
-        f"{term_in_words(last)}, before {number(in_measure(usual, measure))}{THIN}{measure.label}."
+        f"{NAMES[last.parameter]} of {last.sensor} is {number(found.times, 2)} times what it was: "
+        f"{term_in_words(last)}, before {number(in_measure(found.usual, measure))}{THIN}{measure.label}."
     )
-
-
-def _times(course: Course) -> float:
-    """The newest over what was usual."""
-    return exp(_change(course))
