@@ -158,18 +158,22 @@ def odds(mixed: Mixture, z: Array, tails: Array = NORMAL) -> Odds:
 
 def _chance(mixed: Mixture, shape: tuple[int, ...], b: float, tails: Array) -> float:
     """p over all laws of errors."""
-    normal = _normal_chance(mixed, shape, b) if tails[0] > FELT else 0.0
+    normal = _law_chance(mixed, shape, b, np.inf) if tails[0] > FELT else 0.0
     if tails[0] > 0.5 and normal > COMMON:
         return normal
     heavy = [(float(tails[i]), float(FREEDOMS[i])) for i in np.flatnonzero(tails > FELT) if np.isfinite(FREEDOMS[i])]
-    rest = sum(weight * _by_tails(mixed, shape, b, freedom) for weight, freedom in heavy)
+    rest = sum(weight * _law_chance(mixed, shape, b, freedom) for weight, freedom in heavy)
     return min(float(tails[0]) * normal + rest, 1.0)
 
 
-def _normal_chance(mixed: Mixture, shape: tuple[int, ...], b: float) -> float:
-    """p where errors are normal."""
-    rough = _by_chance(mixed, shape, b, FEW)
-    return rough if rough > PLAIN else _by_chance(mixed, shape, b, DRAWS)
+def _law_chance(mixed: Mixture, shape: tuple[int, ...], b: float, freedom: float) -> float:
+    """p where errors are of one law, from as many draws as it needs."""
+    rough = _by_law(mixed, shape, b, freedom, FEW)
+    return rough if rough > PLAIN else _by_law(mixed, shape, b, freedom, DRAWS)
+
+
+def _by_law(mixed: Mixture, shape: tuple[int, ...], b: float, freedom: float, draws: int) -> float:
+    return _by_chance(mixed, shape, b, draws) if np.isinf(freedom) else _by_tails(mixed, shape, b, freedom, draws)
 
 
 def _by_chance(mixed: Mixture, shape: tuple[int, ...], b: float, draws: int) -> float:
@@ -182,10 +186,10 @@ def _by_chance(mixed: Mixture, shape: tuple[int, ...], b: float, draws: int) -> 
     return min(float(np.sum(2 / (1 + np.exp(np.minimum(beyond, 700.0))))) / draws, bound) if beyond.size else bound
 
 
-def _by_tails(mixed: Mixture, shape: tuple[int, ...], b: float, freedom: float) -> float:
+def _by_tails(mixed: Mixture, shape: tuple[int, ...], b: float, freedom: float, draws: int) -> float:
     """p where they are Student's."""
     rng = np.random.default_rng(SEED)
-    runs = DRAWS // 3
+    runs = draws // 3
     plain, wild = drawn(freedom, (runs, *shape), rng), drawn(freedom, (runs, *shape), rng)
     flat = wild.reshape(runs, -1)
     flat[np.arange(runs), rng.integers(flat.shape[1], size=runs)] *= WILD
