@@ -123,10 +123,11 @@ def _hazard(length: Array, prior: Prior, k: int) -> Array:
 def _looked_up(tables: tuple[Array, ...], length: Array) -> list[Array]:
     """(N, h) of each table (h, 41) over `DISTANCES`, linear between them, at (N, h) lengths from 0 to 1 T."""
     steps = len(DISTANCES) - 1
-    below = np.minimum((length * steps).astype(int), steps - 1)
-    beyond = length * steps - below
-    place = below + np.arange(length.shape[1]) * steps
-    return [table[:, :-1].ravel()[place] + beyond * np.diff(table).ravel()[place] for table in tables]
+    beyond = length * steps
+    place = np.minimum(beyond.astype(int), steps - 1)
+    beyond -= place
+    place += np.arange(length.shape[1]) * steps
+    return [np.take(table[:, :-1], place) + beyond * np.take(np.diff(table), place) for table in tables]
 
 
 @lru_cache(maxsize=2)
