@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from estimator.applied_vector import EARTH_RATE, elevation, magnitude, stand_vector, to_block
 from estimator.arrays import tangents, unit
@@ -133,6 +134,19 @@ def simulate(
     -------
     The session with readings; pulse gyros are counted in whole pulses.
     """
+    return whole_pulses(uncounted(schedule, truth, rng, noise=noise, draw=draw, state_noise=state_noise))
+
+
+def uncounted(
+    schedule: CalibrationSession,
+    truth: SensorParameters,
+    rng: np.random.Generator,
+    *,
+    noise: Array | float,
+    draw: StandDraw | None = None,
+    state_noise: bool = True,
+) -> CalibrationSession:
+    """The session of `simulate` before its pulses are counted: what is added to its readings is counted with them."""
     shape = schedule.readings.shape
     if schedule.programme == TWO_AXIS_STAND:
         drawn = draw or draw_stand(schedule, rng)
@@ -142,15 +156,16 @@ def simulate(
     repeatability = np.array([s.bias_repeatability for s in schedule.sensors])
     clean = response(truth, n) + truth.scale * repeatability * rng.standard_normal(shape)
     sigma = np.broadcast_to(np.asarray(noise, dtype=float), shape)
-    readings = counted(clean, schedule, lasted, sigma * rng.standard_normal(shape), rng)
+    readings = put_out(clean, schedule, lasted, sigma * rng.standard_normal(shape), rng)
     offset = np.array([s.nominal_offset or 0.0 for s in schedule.sensors])
     stated = sigma if state_noise else np.full(shape, np.nan)
     known = schedule.directions if schedule.direction_sigma is not None else None
     return replace(schedule, readings=readings + offset, standard_errors=np.array(stated), directions=known)
 
 
-def counted(clean: Array, schedule: CalibrationSession, lasted: float, error: Array, rng: np.random.Generator) -> Array:
-    """(R, m) readings from noiseless ones and their errors (R, m): pulse gyros in whole pulses, the rest as they are.
+def put_out(clean: Array, schedule: CalibrationSession, lasted: float, error: Array, rng: np.random.Generator) -> Array:
+    """(R, m) readings from noiseless ones and their errors (R, m): of pulse gyros how far the counter comes, the rest
+    as they are.
 
     A counter that runs on begins anywhere between two pulses.
 
@@ -160,8 +175,19 @@ def counted(clean: Array, schedule: CalibrationSession, lasted: float, error: Ar
     if schedule.count_time is None:
         return clean + error
     begun = 0.0 if schedule.counter == RESET else rng.uniform(-0.5, 0.5, clean.shape)
-    pulses = np.round(clean * (schedule.count_time + lasted) + error + begun)
-    return np.where([s.kind != ACCELEROMETER for s in schedule.sensors], pulses, clean + error)
+    pulses = clean * (schedule.count_time + lasted) + error + begun
+    return np.where(counts_pulses(schedule), pulses, clean + error)
+
+
+def counts_pulses(session: CalibrationSession) -> NDArray[np.bool_]:
+    """(m,) the sensors whose pulses the session counts."""
+    return np.array([session.count_time is not None and s.kind != ACCELEROMETER for s in session.sensors])
+
+
+def whole_pulses(session: CalibrationSession) -> CalibrationSession:
+    """The session as a counter gives it: pulses whole, all other readings as they are."""
+    pulses = counts_pulses(session)
+    return replace(session, readings=np.where(pulses, np.round(session.readings), session.readings))
 
 
 def orientation_vectors(schedule: CalibrationSession, rng: np.random.Generator) -> Array:

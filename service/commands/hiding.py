@@ -3,6 +3,7 @@
 import json
 import re
 from dataclasses import dataclass, replace
+from math import ceil
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
@@ -11,7 +12,7 @@ import typer
 
 from estimator.causes import CATALOGUE, Cause, find
 from estimator.errors import SessionError
-from estimator.hiding import Hidden, UnhideableError, hide, hide_any
+from estimator.hiding import Hidden, TooWeakError, UnhideableError, hide, hide_any
 from estimator.session import CALIBRATIONS, GYROSCOPE, TWO_AXIS_STAND, CalibrationSession
 from service.commands.exits import UNUSABLE, say
 
@@ -37,7 +38,11 @@ NamedCause = Annotated[
 ]
 Strength = Annotated[
     float | None,
-    typer.Option(min=1, help="Of what is hidden, in standard errors of a reading.", show_default=f"{USUAL:g}"),
+    typer.Option(
+        min=1,
+        help="Of what is hidden, in standard errors of a reading.",
+        show_default=f"{USUAL:g}, or the least that can be",
+    ),
 ]
 OnSensor = Annotated[
     str | None, typer.Option("--sensor", help="The sensor to have it, such as A2.", show_default="drawn by the seed")
@@ -57,6 +62,8 @@ class Wish:
     cause: Cause | None
     """None for any."""
     strength: float
+    exact: bool
+    """Whether that strength was asked for."""
     sensor: str | None
     """Name of the one to have it; None where the seed draws one."""
     answer: Path | None
@@ -82,11 +89,12 @@ def read_wish(
         refuse(f"{programme} shows none of the causes that can be hidden; {TWO_AXIS_STAND} does")
     if known is not None and strength is not None and not known.units:
         refuse(f"{known.identifier} is there or not, and has no strength; leave --strength out")
-    return Wish(known, strength or USUAL, sensor, answer)
+    return Wish(known, strength or USUAL, strength is not None, sensor, answer)
 
 
 def hidden_in(sessions: list[CalibrationSession], wish: Wish, seed: int) -> tuple[CalibrationSession, Hidden]:
-    """The last session with what is wished for in it; exit code 2 with a sentence where that cannot be."""
+    """The last session, its pulses not counted yet, with what is wished for in it; exit code 2 with a sentence where
+    that cannot be."""
     rng = np.random.default_rng([seed, OWN_STREAM])
     names = [one.name for one in sessions[-1].sensors]
     if wish.sensor is not None and wish.sensor not in names:
@@ -94,8 +102,10 @@ def hidden_in(sessions: list[CalibrationSession], wish: Wish, seed: int) -> tupl
     sensor = None if wish.sensor is None else names.index(wish.sensor)
     try:
         if wish.cause is None:
-            return hide_any(sessions, rng, strength=wish.strength, sensor=sensor)
-        return hide(sessions, wish.cause, rng, strength=wish.strength, sensor=sensor)
+            return hide_any(sessions, rng, strength=wish.strength, sensor=sensor, exact=wish.exact)
+        return hide(sessions, wish.cause, rng, strength=wish.strength, sensor=sensor, exact=wish.exact)
+    except TooWeakError as fault:
+        refuse(f"{fault}; give --strength {ceil(fault.least)}, or more --positions")
     except UnhideableError as fault:
         lacking = "" if wish.cause is None else _remedy(wish.cause, sessions)
         refuse(f"{fault}{lacking}")

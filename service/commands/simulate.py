@@ -26,7 +26,7 @@ from estimator.session import (
     Array,
     CalibrationSession,
 )
-from estimator.simulate import StandDraw, draw_stand, scattered, simulate
+from estimator.simulate import StandDraw, draw_stand, scattered, uncounted, whole_pulses
 from estimator.writing import session_document
 from service.commands.console import AsJson, print_json
 from service.commands.hiding import (
@@ -88,6 +88,7 @@ class Simulated:
     """One simulated session and everything that is true of it."""
 
     session: CalibrationSession
+    """Its pulses are not counted yet."""
     truth: SensorParameters | Truth
     draw: StandDraw | None
     """None without a stand."""
@@ -184,14 +185,14 @@ def _write(made: Iterator[Simulated], wish: Wish | None, seed: int, start: str, 
     """The sessions as files that begin with ``start``; nothing is written of what cannot be hidden."""
     if wish is not None:
         *before, last = made
-        session, hidden = hidden_in([one.session for one in (*before, last)], wish, seed)
+        session, hidden = hidden_in([*(whole_pulses(one.session) for one in before), last.session], wish, seed)
         made = iter((*before, replace(last, session=session)))
     for number, simulated in enumerate(made, 1):
         programme = simulated.session.programme
         what = "" if programme == TWO_AXIS_STAND else f"{programme}-"
         file = Path(f"{start}-{what}{number:03d}.json")
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(json.dumps(session_document(simulated.session)), encoding="utf-8")
+        file.write_text(json.dumps(session_document(whole_pulses(simulated.session))), encoding="utf-8")
         if as_json:
             print_json(_truth(file, simulated))
         else:
@@ -235,7 +236,7 @@ def _simulated(
             continue
         dated = _dated(schedule, at)
         draw = draw_stand(dated, rng) if schedule.stand is not None else None
-        session = simulate(dated, truth, rng, noise=noise_of(schedule, noise), draw=draw)
+        session = uncounted(dated, truth, rng, noise=noise_of(schedule, noise), draw=draw)
         yield Simulated(session, truth, draw)
 
 

@@ -53,7 +53,7 @@ SILENT = (
     "service/storage/schema.py",
     "estimator/__init__.py",
     "estimator/alignment/simulate.py",
-    "estimator/hiding.py",
+    "estimator/hiding",
     "estimator/on_demand.py",
     "estimator/published",
 )

@@ -11,10 +11,11 @@ from estimator.applied_vector import EARTH_RATE, gravity
 from estimator.causes.catalogue import cause
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.hiding import FEWEST_CUT, Hidden, UnhideableError, hide, hide_any
+from estimator.hiding import Hidden, TooWeakError, UnhideableError, hide, hide_any, with_input
+from estimator.hiding.clipping import FEWEST_CUT
 from estimator.results import ARCSEC
 from estimator.session import ACCELEROMETER, GYROSCOPE, CalibrationSession, Sensor, Site, Stand, StandErrors
-from estimator.simulate import cone, orientation_schedule, scattered, simulate, stand_schedule
+from estimator.simulate import cone, orientation_schedule, scattered, simulate, stand_schedule, uncounted, whole_pulses
 
 SITE = Site(latitude=float(np.radians(55.81)), height=160.0)
 SIGMA = StandErrors(theta_x=ARCSEC / 3, theta_y=ARCSEC / 3, alpha=ARCSEC, beta=ARCSEC, latitude=ARCSEC, meridian=ARCSEC)
@@ -24,7 +25,7 @@ NORM = {ACCELEROMETER: gravity(SITE), GYROSCOPE: EARTH_RATE}
 PULSES = 1 / (0.6 * ARCSEC)
 """A rad."""
 WANDER = 6.5e-8
-"""rad/s: a third of 0.04 °/h, from position to position; more than a pulse's rounding, as it is of any such gyro."""
+"""rad/s: a third of 0.04 °/h, from position to position; two pulses."""
 
 
 def sensors(kind: str, count: int, scale: float) -> tuple[Sensor, ...]:
@@ -33,19 +34,20 @@ def sensors(kind: str, count: int, scale: float) -> tuple[Sensor, ...]:
 
 
 def measured(schedule: CalibrationSession, noise, seed: int, count: int = 1) -> list[CalibrationSession]:
-    """Sessions of one unit."""
+    """Sessions of one unit, the pulses of the last not counted yet."""
     rng = np.random.default_rng([seed, 7])
     norm = np.array([NORM[one.kind] for one in schedule.sensors])
     truth = scattered(schedule.sensors, norm, rng)
-    return [simulate(schedule, truth, rng, noise=noise) for _ in range(count)]
+    before = [simulate(schedule, truth, rng, noise=noise) for _ in range(count - 1)]
+    return [*before, uncounted(schedule, truth, rng, noise=noise)]
 
 
-def on_stand(kind: str, seed: int, count: int = 1) -> list[CalibrationSession]:
-    """Six accelerometers, or six pulse gyros."""
+def on_stand(kind: str, seed: int, count: int = 1, wander: float = WANDER) -> list[CalibrationSession]:
+    """Six accelerometers, or six pulse gyros whose zeros wander."""
     gyro, angle = kind == GYROSCOPE, float(np.radians(40))
     stand = Stand("S", alpha=None if gyro else angle, chi=angle if gyro else None, sigma=SIGMA)
     own = [
-        replace(one, bias_repeatability=WANDER if gyro else 0.0) for one in sensors(kind, 6, PULSES if gyro else 0.12)
+        replace(one, bias_repeatability=wander if gyro else 0.0) for one in sensors(kind, 6, PULSES if gyro else 0.12)
     ]
     schedule = stand_schedule(own, stand, SITE, 24, period=120.0, count_time=100.0 if gyro else None)
     return measured(schedule, 0.3 if gyro else 3e-6, seed, count)
@@ -59,7 +61,7 @@ def in_orientations(seed: int) -> list[CalibrationSession]:
 
 
 def hidden_in(sessions: list[CalibrationSession], name: str, seed: int) -> tuple[CalibrationSession, Hidden]:
-    return hide(sessions, cause(name), np.random.default_rng([seed, 9]), strength=12.0)
+    return hide(sessions, cause(name), np.random.default_rng([seed, 9]), strength=12.0, exact=False)
 
 
 CASES = {
@@ -69,6 +71,7 @@ CASES = {
     "clipped gyro": ("saturation", lambda seed: on_stand(GYROSCOPE, seed)),
     "clipped in orientations": ("saturation", in_orientations),
     "meridian": ("meridian-error", lambda seed: on_stand(GYROSCOPE, seed)),
+    "meridian, less than a pulse": ("meridian-error", lambda seed: on_stand(GYROSCOPE, seed, wander=0.0)),
     "latitude": ("latitude-entry", lambda seed: on_stand(GYROSCOPE, seed, 2)),
     "gravity": ("g-sensitivity", in_orientations),
 }
@@ -85,16 +88,60 @@ def test_the_diagnosis_names_it_at_every_seed(case: str) -> None:
         assert [(f["cause"], set(f["sensors"])) for f in findings[:1]] == [(name, named)], seed
 
 
-def test_a_clipped_sensor_reads_one_and_the_same_at_its_limit() -> None:
+def test_part_of_a_pulse_is_neither_lost_nor_made_whole() -> None:
+    [session] = on_stand(GYROSCOPE, 1, wander=0.0)
+    setting, plain = baseline_of(whole_pulses(session)).setting, whole_pulses(session).readings
+    part = np.full(plain.shape, 0.3) / setting.parameters.scale / 100.0
+    gained = with_input(session, setting, part).readings - plain
+    assert set(np.unique(gained)) == {0.0, 1.0}
+    assert abs(gained.mean() - 0.3) < 4 * np.sqrt(0.3 * 0.7 / gained.size)
+
+
+def test_nothing_is_added_to_pulses_that_are_counted() -> None:
+    counted = whole_pulses(on_stand(GYROSCOPE, 1)[0])
+    with pytest.raises(ValueError, match="counted already"):
+        hide([counted], cause("meridian-error"), np.random.default_rng(1), strength=12.0)
+
+
+@pytest.mark.parametrize("kind", [ACCELEROMETER, GYROSCOPE])
+def test_a_clipped_sensor_stands_at_its_limit_twice_at_every_end(kind: str) -> None:
+    [plain] = on_stand(kind, 1)
+    sides = set()
+    for seed in range(8):
+        session, hidden = hidden_in([plain], "saturation", seed)
+        (i,), (_, side) = hidden.sensors, hidden.nonlinear
+        own = session.readings[:, i]
+        ends = [sign * own for sign in (1.0, -1.0) if side in (0.0, sign)]
+        assert all((end == end.max()).sum() >= FEWEST_CUT for end in ends)
+        assert len({end.max() for end in ends}) == 1
+        sides.add(side)
+    assert sides == {0.0, 1.0, -1.0}
+
+
+@pytest.mark.parametrize(("kind", "strength"), [(ACCELEROMETER, 9000.0), (GYROSCOPE, 60.0)])
+def test_clipping_is_as_strong_as_asked(kind: str, strength: float) -> None:
+    """Of a gyro to half a pulse of the limit, a fifth of the noise of a reading."""
+    [plain] = on_stand(kind, 2)
+    for seed in range(4):
+        _, hidden = hide([plain], cause("saturation"), np.random.default_rng(seed), strength=strength)
+        assert hidden.strength == pytest.approx(strength, abs=1.0)
+
+
+def test_where_clipping_cannot_be_as_weak_the_least_is_told_and_can_be_had() -> None:
     [plain] = on_stand(ACCELEROMETER, 1)
-    session, hidden = hidden_in([plain], "saturation", 1)
-    [i] = hidden.sensors
-    changed = session.readings != plain.readings
-    at_limit = session.readings[changed[:, i], i]
-    assert changed.sum() == changed[:, i].sum() >= FEWEST_CUT
-    assert len(np.unique(np.abs(at_limit - at_limit.mean()).round(15))) <= 2
-    assert hidden.strength is not None
-    assert hidden.strength >= 12
+    with pytest.raises(TooWeakError, match="two positions") as fault:
+        hide([plain], cause("saturation"), np.random.default_rng(1), strength=12.0)
+    least = fault.value.least
+    assert least > 1000
+    _, hidden = hide([plain], cause("saturation"), np.random.default_rng(1), strength=least)
+    assert hidden.strength == pytest.approx(least)
+
+
+def test_the_limit_that_is_hidden_is_the_limit_found() -> None:
+    [plain] = on_stand(ACCELEROMETER, 3)
+    session, hidden = hidden_in([plain], "saturation", 3)
+    found = diagnose(session).findings[0]
+    assert all(abs(a - hidden.amplitude[0]) < 4 * s for a, s in zip(found.amplitude, found.sigma, strict=True))
 
 
 def test_noise_is_as_strong_as_asked() -> None:

@@ -1,6 +1,7 @@
 """`imu-health simulate --hide`: what is hidden is found by the diagnosis, told by the answer file alone, or refused."""
 
 import json
+import re
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -52,6 +53,14 @@ def test_the_size_that_the_answer_tells_is_the_size_found(run: Run, tmp_path: Pa
     assert abs(told["amplitude"][0]) > 20 * found["sigma"][0]
 
 
+def test_what_cannot_be_as_weak_can_be_had_as_the_refusal_says(run: Run, tmp_path: Path) -> None:
+    wish = ("simulate", "--out", tmp_path, "--hide", "saturation", "--sensor", "A3", "--strength")
+    [least] = re.findall(r"give --strength (\d+)", run(*wish, 12).err)
+    answer = tmp_path / "answer.json"
+    assert run(*wish, least, "--answer", answer).code == 0
+    assert json.loads(answer.read_text())["strength"] == pytest.approx(int(least), rel=1e-4)
+
+
 def test_the_answer_counts_rows_as_the_diagnosis_does(run: Run, tmp_path: Path) -> None:
     answer = tmp_path / "answer.json"
     ran = run("simulate", "--out", tmp_path, "--hide", "reading-outlier", "--answer", answer)
@@ -94,6 +103,7 @@ def test_the_same_seed_hides_the_same_and_nothing_but_the_answer_tells_it(run: R
         (["--hide", "g-sensitivity", "--block", "gyroscope"], "give --programme arbitrary-orientations"),
         (["--hide", "excess-noise", "--strength", "1e9"], "would not reach 1e+09 standard errors"),
         (["--hide", "saturation", "--strength", "1e9"], "would not reach 1e+09 standard errors"),
+        (["--hide", "saturation", "--strength", "12"], "two positions at least"),
         (["--hide", "axis-wobble", "--sensor", "A2"], "common to all sensors"),
         (["--hide", "hysteresis", "--strength", "1e6"], "would not reach 1e+06 standard errors"),
         (["--hide", "hysteresis", "--sensor", "A7"], "the block has A1 to A6"),

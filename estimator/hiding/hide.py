@@ -5,17 +5,19 @@ in standard errors (`estimator.diagnosis.residuals.whitened`). Where several amp
 are drawn, each amplitude by what one unit of it leaves. A cause that shows against earlier sessions is as strong as it
 stands out from them; every other one as it stands out within its session.
 
-Two causes have no trace that grows with their amplitude. Clipping: the limit is lowered until what it cuts off is as
-strong. Noise has no mean; where A are the traces of one in each reading of a sensor, noise of standard deviation k
-gains on average tr(k²AᵀA) − ln det(1 + k²AᵀA) of twice the log-likelihood. Of a mean effect that is the square of its
-strength, and so it is taken as that of the noise.
+Two causes have no trace that grows with their amplitude. Clipping: `clipping` beside this file. Noise has no mean;
+where A are the traces of one in each reading of a sensor, noise of standard deviation k gains on average
+tr(k²AᵀA) − ln det(1 + k²AᵀA) of twice the log-likelihood. Of a mean effect that is the square of its strength, and so
+it is taken as that of the noise.
+
+Pulses are counted after an effect is added. Added to counts, what is less than half a pulse would be lost, and what is
+more would become whole pulses, the same for sensors that turn through the same angles: another effect.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import brentq
 
 from estimator.causes.catalogue import CATALOGUE
 from estimator.causes.contract import Cause, Correction, Setting, Shape, Signature
@@ -24,40 +26,16 @@ from estimator.diagnosis.diagnose import unsearched
 from estimator.diagnosis.residuals.fitted import baseline_of
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.signatures.traces import INVISIBLE
-from estimator.session import ACCELEROMETER, Array, CalibrationSession
+from estimator.hiding.clipping import clipped
+from estimator.hiding.hidden import Hidden, UnhideableError, amplitude_reaching
+from estimator.session import Array, CalibrationSession
+from estimator.simulate import counts_pulses, whole_pulses
 
 LARGEST = 0.02
 """Change of a reading, in parts of the applied vector, that is still a flaw and no other device: 1° of an axis. Beyond
 it the linear signature is no longer what the effect would do."""
-DEEPEST = 0.3
-"""Share of the largest reading that clipping takes at most: a range so much too small is seen by eye."""
-FEWEST_CUT = 2
-"""Readings that are clipped at least, on one side: one alone is a reading that does not belong to the rest."""
 RAREST = 1e6
 """Standard errors of one reading that noise may have at most."""
-FINEST = 1e-9
-"""Share of the input from which on an amplitude is sought: nothing is seen of less."""
-
-
-class UnhideableError(ValueError):
-    """This session cannot hold the cause, or not as strongly; the text says why."""
-
-
-@dataclass(frozen=True)
-class Hidden:
-    """What was hidden."""
-
-    cause: str
-    sensors: tuple[int, ...] = ()
-    """Counted from 0; empty for what is common to all."""
-    rows: tuple[int, ...] = ()
-    """Counted from 0; empty but for rows exchanged."""
-    amplitude: tuple[float, ...] = ()
-    """SI, as `units` of the cause; empty for an error of the record."""
-    nonlinear: tuple[float, ...] = ()
-    """As `nonlinear_units` of the cause."""
-    strength: float | None = None
-    """Standard errors; None for an error of the record, which is there or not."""
 
 
 def hide(
@@ -67,16 +45,19 @@ def hide(
     *,
     strength: float,
     sensor: int | None = None,
+    exact: bool = True,
 ) -> tuple[CalibrationSession, Hidden]:
     """The last of a unit's sessions with a cause in its readings or its record.
 
     Parameters
     ----------
     sessions : of one unit, oldest first; the earlier ones are what a cause that shows between sessions stands against.
+        The last of pulse gyros is given before its pulses are counted (`estimator.simulate.uncounted`).
     cause : of the catalogue.
     rng : draws the sensor where none is named, and whatever else is open.
     strength : standard errors, of an effect; what is wrong in a record is there or not.
     sensor : the one to have it, counted from 0.
+    exact : refuse where the cause can be hidden only more strongly; else it is hidden as weakly as it can be.
 
     Returns
     -------
@@ -84,27 +65,34 @@ def hide(
 
     Raises
     ------
-    UnhideableError : the sessions cannot hold the cause there, or not as strongly.
+    UnhideableError : the sessions cannot hold the cause there, or not as strongly, or not as weakly.
+    ValueError : pulses are counted already.
     ScheduleError : a session cannot be calibrated.
     """
-    session = sessions[-1]
+    *earlier, session = sessions
+    whole = whole_pulses(session)
     if isinstance(cause, Correction):
-        return in_record(session, cause, rng, sensor)
+        return in_record(whole, cause, rng, sensor)
     if isinstance(cause, ExcessNoise):
         return with_noise(session, cause, rng, strength, sensor)
     assert isinstance(cause, Signature)
     if cause.clips:
-        return clipped(session, cause, rng, strength, sensor)
-    setting = baseline_of(session).setting
-    refuse_lacking(cause, setting, alone=len(sessions) == 1)
-    shape, amplitude = drawn_effect(sessions if cause.between else [session], cause, rng, strength, sensor)
+        return clipped(whole, cause, rng, strength=strength, sensor=sensor, exact=exact)
+    setting = baseline_of(whole).setting
+    refuse_lacking(cause, setting, alone=not earlier)
+    shape, amplitude = drawn_effect([*earlier, whole] if cause.between else [whole], cause, rng, strength, sensor)
     told, _ = cause.reported(setting, shape, amplitude, np.zeros_like(amplitude))
     hidden = Hidden(cause.identifier, shape.sensors, (), tuple(told.tolist()), shape.nonlinear, strength)
     return with_input(session, setting, shape.columns @ amplitude), hidden
 
 
 def hide_any(
-    sessions: Sequence[CalibrationSession], rng: np.random.Generator, *, strength: float, sensor: int | None = None
+    sessions: Sequence[CalibrationSession],
+    rng: np.random.Generator,
+    *,
+    strength: float,
+    sensor: int | None = None,
+    exact: bool = True,
 ) -> tuple[CalibrationSession, Hidden]:
     """The last of a unit's sessions with an effect of the catalogue that ``rng`` draws from those that it can hold.
 
@@ -113,7 +101,7 @@ def hide_any(
     effects = [c for c in CATALOGUE if isinstance(c, Signature | ExcessNoise)]
     for k in rng.permutation(len(effects)).tolist():
         try:
-            return hide(sessions, effects[k], rng, strength=strength, sensor=sensor)
+            return hide(sessions, effects[k], rng, strength=strength, sensor=sensor, exact=exact)
         except UnhideableError:
             continue
     raise UnhideableError(f"no effect of the catalogue can be hidden here at {strength:g} standard errors")
@@ -128,8 +116,8 @@ def largest_of(setting: Setting) -> Array:
 def with_noise(
     session: CalibrationSession, cause: Cause, rng: np.random.Generator, strength: float, sensor: int | None
 ) -> tuple[CalibrationSession, Hidden]:
-    """The session with more noise in every reading of a sensor than is stated."""
-    seen = WhitenedResiduals.of(baseline_of(session))
+    """The session, its pulses not counted yet, with more noise in every reading of a sensor than is stated."""
+    seen = WhitenedResiduals.of(baseline_of(whole_pulses(session)))
     R, m = session.readings.shape
     i = int(rng.integers(m)) if sensor is None else sensor
     columns = np.zeros((R, m, R))
@@ -141,86 +129,23 @@ def with_noise(
         return float(np.sqrt(np.sum(k**2 * grown - np.log1p(k**2 * grown))))
 
     most = largest_of(seen.baseline.setting)[i]
-    k = _reaching(reached, strength, float(min(most, RAREST / np.sqrt(grown.max()))), cause)
+    k = amplitude_reaching(reached, strength, float(min(most, RAREST / np.sqrt(grown.max()))), cause)
     added = np.zeros((R, m))
     added[:, i] = k * rng.standard_normal(R)
     return with_input(session, seen.baseline.setting, added), Hidden(cause.identifier, (i,), (), (k,), (), strength)
 
 
-def clipped(
-    session: CalibrationSession, cause: Cause, rng: np.random.Generator, strength: float, sensor: int | None
-) -> tuple[CalibrationSession, Hidden]:
-    """The session with a sensor that reads no more than a limit, on both sides or on one; it is stronger than was
-    wished where otherwise one reading alone would be clipped."""
-    seen = WhitenedResiduals.of(baseline_of(session))
-    sensors = rng.permutation(session.readings.shape[1]) if sensor is None else [sensor]
-    for i in sensors:
-        for side in rng.permutation((0.0, 1.0, -1.0)):
-            try:
-                return _clipped_on(session, seen, (int(i), float(side), cause), strength)
-            except UnhideableError:
-                continue
-    raise UnhideableError(f"{cause.identifier} would not reach {strength:g} standard errors with {DEEPEST:.0%} cut off")
-
-
-def _clipped_on(
-    session: CalibrationSession, seen: WhitenedResiduals, where: tuple[int, float, Cause], strength: float
-) -> tuple[CalibrationSession, Hidden]:
-    """Readings beyond the limit are one and the same to the last digit, as a converter gives them."""
-    i, side, cause = where
-    to_reading, zero = _reading_of(session, seen, i)
-    felt = session.readings[:, i] / to_reading - zero
-    size, sign = (np.abs(felt), np.sign(felt)) if side == 0 else (side * felt, np.full_like(felt, side))
-    largest = float(size.max())
-
-    def reached(depth: float) -> float:
-        off = np.zeros_like(session.readings)
-        off[:, i] = -sign * np.maximum(size - (largest - depth), 0.0)
-        return float(np.linalg.norm(seen.trace(off[..., None])))
-
-    depth = _reaching(reached, strength, DEEPEST * largest, cause)
-    depth = max(depth, largest - _level_of_few(felt, side) + depth)
-    limit, readings = largest - depth, session.readings.copy()
-    at_limit = to_reading * (sign * limit + zero)
-    readings[:, i] = np.where(
-        size > limit, at_limit if session.count_time is None else np.round(at_limit), session.readings[:, i]
-    )
-    return replace(session, readings=readings), Hidden(
-        cause.identifier, (i,), (), (limit,), (limit, side), reached(depth)
-    )
-
-
-def _reading_of(session: CalibrationSession, seen: WhitenedResiduals, i: int) -> tuple[float, float]:
-    """What a reading of sensor i is of its input with its bias, reading units per m/s² (rad/s); and that bias."""
-    own = seen.baseline.setting.parameters
-    counted = session.count_time is not None and session.sensors[i].kind != ACCELEROMETER
-    return float(own.scale[i]) * (session.count_time or 1.0 if counted else 1.0), float(own.bias[i])
-
-
-def _level_of_few(felt: Array, side: float) -> float:
-    """The highest level that as many of (R,) readings reach on a side as are clipped at least, m/s² (rad/s)."""
-    sides = (side,) if side else (1.0, -1.0)
-    return max(float(np.sort(one * felt)[-FEWEST_CUT]) for one in sides)
-
-
-def _reaching(reached: Callable[[float], float], strength: float, most: float, cause: Cause) -> float:
-    """The amplitude up to ``most`` at which a growing function reaches a strength, sought on a logarithmic scale."""
-    if most <= 0 or reached(most) < strength:
-        raise UnhideableError(
-            f"{cause.identifier} would not reach {strength:g} standard errors with {most:.3g} {cause.units[0]}"
-        )
-    least = np.log(FINEST * most)
-    return float(np.exp(brentq(lambda x: reached(np.exp(x)) - strength, least, np.log(most), xtol=1e-6)))
-
-
 def with_input(session: CalibrationSession, setting: Setting, added: Array) -> CalibrationSession:
-    """The session with (R, m) more at its sensors' input, m/s² (rad/s); pulse gyros still count whole pulses."""
-    change = setting.parameters.scale * added
-    if session.count_time is None:
-        return replace(session, readings=session.readings + change)
-    gyro = np.array([s.kind != ACCELEROMETER for s in session.sensors])
-    counts = np.round(session.readings + change * session.count_time)
-    return replace(session, readings=np.where(gyro, counts, session.readings + change))
+    """The session with (R, m) more at its sensors' input, m/s² (rad/s), its pulses counted then.
+
+    ValueError where they are counted already.
+    """
+    pulses = counts_pulses(session)
+    counts = session.readings[:, pulses]
+    if counts.size and np.array_equal(counts, np.round(counts)):
+        raise ValueError("pulses are counted already: an effect of part of one would be lost or made whole")
+    period = np.where(pulses, session.count_time or 1.0, 1.0)
+    return whole_pulses(replace(session, readings=session.readings + setting.parameters.scale * added * period))
 
 
 def refuse_lacking(cause: Cause, setting: Setting, *, alone: bool) -> None:
