@@ -150,13 +150,13 @@ def _answer(hidden: Hidden, file: Path, session: CalibrationSession) -> dict[str
         "amplitude": list(hidden.amplitude),
         "units": [_unit(unit, hidden, session) for unit in known.units],
         "shape": [v + (unit == "row") for v, unit in zip(hidden.nonlinear, known.nonlinear_units, strict=False)],
-        "shape_units": list(known.nonlinear_units),
+        "shape_units": [_unit(unit, hidden, session) for unit in known.nonlinear_units],
         "strength": hidden.strength,
     }
 
 
 def _unit(unit: str, hidden: Hidden, session: CalibrationSession) -> str:
-    """Of an amplitude at the input, which of a gyro is a rate."""
+    """Of a size at the input, which of a gyro is a rate."""
     on_gyro = any(session.sensors[i].kind == GYROSCOPE for i in hidden.sensors)
     return "rad/s" if on_gyro and unit == "m/s²" else unit
 

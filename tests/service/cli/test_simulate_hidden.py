@@ -61,6 +61,13 @@ def test_what_cannot_be_as_weak_can_be_had_as_the_refusal_says(run: Run, tmp_pat
     assert json.loads(answer.read_text())["strength"] == pytest.approx(int(least), rel=1e-4)
 
 
+def test_the_limit_of_a_gyro_is_told_as_a_rate(run: Run, tmp_path: Path) -> None:
+    answer = tmp_path / "answer.json"
+    run("simulate", "--out", tmp_path, "--block", "gyroscope", "--hide", "saturation", "--answer", answer)
+    told = json.loads(answer.read_text())
+    assert (told["units"], told["shape_units"]) == (["rad/s"], ["rad/s", "side"])
+
+
 def test_the_answer_counts_rows_as_the_diagnosis_does(run: Run, tmp_path: Path) -> None:
     answer = tmp_path / "answer.json"
     ran = run("simulate", "--out", tmp_path, "--hide", "reading-outlier", "--answer", answer)
