@@ -57,9 +57,10 @@ class Range:
 
     @cached_property
     def highest(self) -> float:
-        """The highest limit that `FEWEST_CUT` readings reach at every end, m/s² (rad/s)."""
+        """The highest limit that `FEWEST_CUT` readings reach at every end, m/s² (rad/s), not by their noise alone."""
+        fitted = self.input - self.seen.baseline.residual[:, self.sensor]
         sides = (self.side,) if self.side else (1.0, -1.0)
-        return min(float(np.sort(one * self.input)[-FEWEST_CUT]) for one in sides)
+        return min(float(np.sort(np.minimum(one * self.input, one * fitted))[-FEWEST_CUT]) for one in sides)
 
     @cached_property
     def least(self) -> float:
