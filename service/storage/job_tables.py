@@ -6,7 +6,7 @@ from typing import Any
 from sqlalchemy import JSON, Index, String, false
 from sqlalchemy.orm import Mapped, mapped_column
 
-from service.storage.columns import IS_AT_WORK, only_where
+from service.storage.columns import BYTES, IS_AT_WORK, only_where
 from service.storage.tables import Base
 
 
@@ -43,7 +43,7 @@ class JobRow(Base):
     failures: Mapped[list[Any]]
     held_up: Mapped[str]
     filename: Mapped[str]
-    size: Mapped[int]
+    size: Mapped[int] = mapped_column(BYTES)
     sha256: Mapped[str] = mapped_column(String(64))
     kept_until: Mapped[datetime | None]
     """Of the file that it made; None where there is none, or no longer."""

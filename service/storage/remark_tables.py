@@ -5,6 +5,7 @@ from datetime import datetime
 from sqlalchemy import ForeignKey, String
 from sqlalchemy.orm import Mapped, mapped_column
 
+from service.storage.columns import BYTES
 from service.storage.tables import Base
 
 
@@ -41,7 +42,7 @@ class AttachmentRow(Base):
     session_id: Mapped[str | None] = mapped_column(ForeignKey("sessions.id"), index=True)
     sha256: Mapped[str] = mapped_column(String(64))
     filename: Mapped[str]
-    size: Mapped[int]
+    size: Mapped[int] = mapped_column(BYTES)
     text: Mapped[str]
     who: Mapped[str]
     at: Mapped[datetime]

@@ -30,7 +30,7 @@ from typing import Any
 from sqlalchemy import JSON, ForeignKey, Index, LargeBinary, MetaData, String, UniqueConstraint, false
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
-from service.storage.columns import IS_OPEN, IS_QUESTIONED, IS_WAITING, UtcDateTime, only_where
+from service.storage.columns import BYTES, IS_OPEN, IS_QUESTIONED, IS_WAITING, UtcDateTime, only_where
 
 
 class Base(DeclarativeBase):
@@ -112,7 +112,7 @@ class SessionRow(Base):
     unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"))
     stand_id: Mapped[int | None] = mapped_column(ForeignKey("stands.id"))
     filename: Mapped[str]
-    size: Mapped[int]
+    size: Mapped[int] = mapped_column(BYTES)
     block: Mapped[str] = mapped_column(String(20))
     programme: Mapped[str] = mapped_column(String(40))
     operator: Mapped[str]
@@ -368,7 +368,7 @@ class RefusalRow(Base):
     at: Mapped[datetime] = mapped_column(index=True)
     filename: Mapped[str]
     sha256: Mapped[str] = mapped_column(String(64))
-    size: Mapped[int]
+    size: Mapped[int] = mapped_column(BYTES)
     problems: Mapped[list[Any]]
 
 
