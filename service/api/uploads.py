@@ -28,14 +28,17 @@ After = Annotated[
 def list_uploads(
     store: Reading, text: FileName = None, refused: Refused = False, after: After = None, limit: Limit = 100
 ) -> UploadPage:
-    """Every file that came in, newest first, and what became of it."""
+    """Every file that came in, newest first, and what became of it; those that a job still works on apart."""
     refusal = refusal_number(after or "")
     session = after if refusal is None else None
     wanted = ArrivalQuery(text, refused, after_session=session, after_refusal=refusal, limit=limit + 1)
-    found = store.arrivals.page(wanted)
+    jobs = () if after or refused else store.jobs.open_uploads(text)
+    found = store.arrivals.page(wanted)  # after the jobs: a file that ends meanwhile is in both, not in neither
     shown = found[:limit]
     return UploadPage(
-        uploads=[upload_schema(one) for one in shown], next_after=shown[-1].name if len(found) > limit else None
+        under_way=[job_upload_schema(job, None, None) for job in jobs],
+        uploads=[upload_schema(one) for one in shown],
+        next_after=shown[-1].name if len(found) > limit else None,
     )
 
 

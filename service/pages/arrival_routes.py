@@ -17,7 +17,7 @@ router = APIRouter(include_in_schema=False, default_response_class=HTMLResponse)
 def show_uploads(request: Request, store: Reading, asked: Annotated[ArrivalsAsked, Query()]) -> HTMLResponse:
     """Every file that came in, newest first, and what became of it."""
     query = arrivals_query(asked)
-    jobs = () if asked.after or query.refused else store.jobs.open_uploads()
+    jobs = () if asked.after or query.refused else store.jobs.open_uploads(query.text)
     return render(request, "arrivals.html", arrivals_page(store.arrivals.page(query), asked, jobs))
 
 

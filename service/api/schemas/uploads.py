@@ -41,7 +41,11 @@ def job_upload_schema(job: Job, session: StoredSession | None, refusal: Refusal 
 class UploadPage(BaseModel):
     """Uploads, newest first."""
 
-    uploads: list[UploadSchema] = Field(description="What came in.")
+    under_way: list[UploadSchema] = Field(
+        description="What came in and a job still works on: all of it where the list begins, none where it goes on, or "
+        "where `refused` ones are asked for."
+    )
+    uploads: list[UploadSchema] = Field(description="What came in and was stored or refused.")
     next_after: str | None = Field(description="The list goes on with `after` this; null at its end.")
 
 

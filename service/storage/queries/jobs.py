@@ -58,10 +58,12 @@ class Jobs(Queries):
         own = (JobRow.kind == JobKind.UPLOAD, JobRow.ended_at.is_(None))
         return frozenset(sent["place"] for sent in self._session.scalars(select(JobRow.sent).where(*own)) if sent)
 
-    def open_uploads(self) -> tuple[Job, ...]:
-        """Files that were received and are not yet stored, the newest first."""
-        own = (JobRow.kind == JobKind.UPLOAD, JobRow.ended_at.is_(None))
-        return tuple(map(_record, self._session.scalars(select(JobRow).where(*own).order_by(JobRow.id.desc()))))
+    def open_uploads(self, text: str | None = None) -> tuple[Job, ...]:
+        """Files that were received and are not yet stored, the newest first; ``text`` is part of their names."""
+        query = select(JobRow).where(JobRow.kind == JobKind.UPLOAD, JobRow.ended_at.is_(None))
+        if text:
+            query = query.where(JobRow.subject.icontains(text, autoescape=True))
+        return tuple(map(_record, self._session.scalars(query.order_by(JobRow.id.desc()))))
 
     def open_count(self) -> int:
         """How many jobs are still to be worked on."""

@@ -100,6 +100,15 @@ def test_what_still_waits_is_found_among_the_uploads(client: httpx.Client, waiti
     assert "nothing was stored, and the file is gone" in cancelled
 
 
+def test_what_still_waits_is_listed_apart_where_the_list_begins(client: httpx.Client, waiting: None) -> None:
+    told, stored = client.get("/api/v1/uploads/j1").json(), client.post(SESSIONS, content=session_bytes(seed=2)).json()
+    listed = client.get("/api/v1/uploads").json()
+    assert (listed["under_way"], [one["id"] for one in listed["uploads"]]) == ([told], [stored["id"]])
+    asked = ({"q": "A.J"}, {"q": "b.j"}, {"refused": True}, {"after": stored["id"]})
+    narrowed = [client.get("/api/v1/uploads", params=one).json()["under_way"] for one in asked]
+    assert narrowed == [[told], [], [], []]
+
+
 def test_a_job_of_another_kind_is_no_upload(client: httpx.Client) -> None:
     assert client.post("/api/v1/jobs/report", json={"format": "xlsx"}).status_code == 202
     assert client.get("/api/v1/uploads/j1").status_code == 404
