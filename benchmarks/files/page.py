@@ -2,14 +2,19 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import timedelta
 
 from benchmarks.files.long import LongLog, table
 from benchmarks.files.service import Cost
 from estimator.long_logs.log import MOST_RESTS
 from service.ingest import LONG
 from service.ingest.apart import PACE
+from service.pages.layout_form import MOST_CARRIED
+from service.records.job import KEPT as KEPT_MADE
 from service.settings import Settings
+from service.storage.aside import KEPT, MOST, MOST_BYTES
 from service.storage.landing import IN_MEMORY
+from service.storage.waiting import UNASKED
 
 LIMITS = (
     "max_upload_bytes", "max_log_bytes", "max_rows", "max_columns", "max_cells", "max_log_cells", "max_nesting",
@@ -72,6 +77,7 @@ Where more cells are allowed, more memory must be: about 60 bytes a cell. Readin
 {PACE // 10**6} MB of a file.
 
 {_long(long)}
+{_places()}
 ## Measured
 
 Against a running service: peak memory over idle of the service, its readers and what diagnoses together (proportional
@@ -115,6 +121,31 @@ of three in turn on the same machine; the memory is the reading process's over i
 A CSV is parsed twice, once for its labels: where a rest is trimmed is not known before its end. Of Parquet hardly
 anything is parsed, so that there the checks of every cell and the sums take nearly all of the time: the wish of 1.5
 times a bare scan is met for neither.
+"""
+
+
+def _places() -> str:
+    hour = timedelta(hours=1)
+    return f"""## Where files lie
+
+All of them lie on one disk, in the folder `files` of the data folder:
+
+| folder in it | what | how long | in a backup |
+| --- | --- | --- | --- |
+| `00` to `ff` | uploads and attached files, under their hash | for good | yes |
+| `arriving` | what comes just now, beyond {IN_MEMORY // 1024} KiB | until its request ends | no |
+| `waiting` | large files that were acknowledged and that a [job](../how-to/long-work.md#a-large-log) is to read, each \
+under a random name | until the job ends: then stored under its hash, or gone | yes, under its hash, so that after a \
+restore the job goes on |
+| `aside` | tables of a layout of their own of more than {MOST_CARRIED // MEBIBYTE} MiB, while their sender says on a \
+page how they are read; under a hash of the account and one of the bytes | until stored, at most {KEPT // hour} hours \
+after that page was last shown; {MOST} of an account and {MOST_BYTES // MEBIBYTE // 1024} GiB of all, the oldest give \
+way | no: send it again |
+| `made` | reports that jobs made, under the job's number | {KEPT_MADE.days} days | no: ask for it again |
+
+What waits or is set aside is given out by no address. Only the account that set a table aside goes on with it, and it
+is stored when that confirms. What a service that was killed left behind goes with the hourly look: what is half
+written, what was set aside too long ago, and of `waiting` what no open job names, {UNASKED // hour} hour after it came.
 """
 
 
