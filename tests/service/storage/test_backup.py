@@ -20,7 +20,8 @@ from service.app import create_app
 from service.errors import ConflictError, DamagedError, ServiceError
 from service.flows.identity.links import make_link
 from service.flows.identity.sign_in import sign_in
-from service.flows.receive import Reception
+from service.flows.keep_noise import keep_noise
+from service.flows.receive import Reception, upload
 from service.flows.take_in import ask_upload, take_in
 from service.metrics import Metrics
 from service.records.identity import EVERYBODY, Role
@@ -30,6 +31,7 @@ from service.settings import Settings
 from service.storage import Database, Files, Storage
 from service.storage.backup import restore, verified, write_backup
 from service.storage.schema import upgrade
+from tests.builders import raw_log
 from tests.conftest import SettingsFilled
 from tests.databases import ENGINES, Databases, one_engine
 from tests.service.identity.staff import PASSWORD, staffed, with_password
@@ -79,6 +81,20 @@ def test_a_backup_restores_everything_into_either_engine(full: Settings, other: 
     restore(backup_of(full, tmp_path), url, tmp_path / "new" / "files", NOW)
     assert rows(url) == rows(full.database)
     assert files(tmp_path / "new") == files(full.files) != {}
+
+
+def test_noise_at_rest_is_restored_into_either_engine(
+    storage: Storage, settings: Settings, other: Databases, tmp_path: Path
+) -> None:
+    id = upload(storage, json.dumps(raw_log(orientations=8)).encode(), "log.json", NOW).id
+    keep_noise(storage, id, NOW)
+    new = Settings(database_url=other.empty(), data_folder=tmp_path / "new")
+    restore(backup_of(settings, tmp_path), new.database, new.files, NOW)
+    assert rows(new.database)["session_noise"] == rows(settings.database)["session_noise"] != []
+    with stores(new) as restored, restored.database.reading() as store:
+        found = store.noises.get(id)
+    assert found is not None
+    assert (found.rests, [sensor.name for sensor in found.sensors]) == (8, ["A1", "A2", "A3"])
 
 
 def test_a_restored_service_goes_on(full: Settings, other: Databases, tmp_path: Path) -> None:
