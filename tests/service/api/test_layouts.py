@@ -6,6 +6,7 @@ from typing import Any
 import httpx
 
 from service.ingest.layout.envelope import is_wrapped
+from tests.databases import one_engine
 from tests.service import tables
 
 TABLE = tables.text_table(tables.own_document()).encode("cp1251")
@@ -93,6 +94,18 @@ def test_a_layout_is_known_again_and_asks_for_unit_and_date_alone(client: httpx.
     assert found["remembered"]
     assert [problem["field"] for problem in found["problems"]] == ["unit"]
     assert "started_at" not in found["mapping"]["session"]
+
+
+@one_engine
+def test_the_next_table_of_a_simulated_unit_must_say_that_it_is_simulated_too(client: httpx.Client) -> None:
+    first = stored(client, whole_mapping(client, origin="simulated")).json()
+    assert client.get(first["url"]).json()["simulated"]
+    proposed = previewed(client, unit="BA-017")["mapping"]
+    silent = {**proposed, "session": proposed["session"] | {"started_at": "2026-04-01T09:00:00Z"}}
+    refused = stored(client, silent)
+    assert [problem["field"] for problem in refused.json()["problems"]] == ["origin"]
+    said = {**silent, "session": silent["session"] | {"origin": "simulated"}}
+    assert stored(client, said).status_code == 201
 
 
 def test_what_the_unit_said_last_is_offered(client: httpx.Client) -> None:

@@ -87,3 +87,18 @@ def test_a_template_made_after_a_simulated_session_is_for_a_measured_one(client:
     client.post("/api/v1/sessions", content=session_bytes(origin="simulated")).raise_for_status()
     rows = sheet(client.get(TEMPLATE, params={"unit": "BA-017"}).content, "session")
     assert "origin" not in dict(row[:2] for row in rows)
+
+
+@SQLITE
+@pytest.mark.parametrize(("lang", "unit", "origin"), [
+    ("en", "unit", {"origin": "simulated"}), ("ru", "прибор", {"происхождение": "имитация"}),
+])  # fmt: skip
+def test_a_template_filled_in_for_a_simulated_unit_must_say_that_it_is_simulated(
+    client: httpx.Client, lang: str, unit: str, origin: dict[str, str]
+) -> None:
+    client.post("/api/v1/sessions", content=session_bytes(origin="simulated")).raise_for_status()
+    empty = client.get(TEMPLATE, params={"unit": "BA-017", "lang": lang}).content
+    asked = {unit: "BA-017"}
+    silent, said = (client.post("/api/v1/sessions", content=filled(empty, asked | more)) for more in ({}, origin))
+    assert [problem["field"] for problem in silent.json()["problems"]] == ["origin"]
+    assert (said.status_code, client.get(said.json()["url"]).json()["simulated"]) == (201, True)

@@ -13,6 +13,7 @@ from scipy.io import savemat
 from estimator.errors import FormatError, SessionError
 from estimator.reading import read_session
 from service.ingest import read_upload
+from service.ingest.digest import content_digest
 from service.ingest.xlsx import letters_of
 from tests import builders
 from tests.estimator.test_reading_csv import csv_of, same
@@ -98,6 +99,13 @@ WRITERS = {
 def test_every_format_gives_the_same_session(kind, build):
     document = rounded(build())
     assert same(read_upload(WRITERS[kind](document), f"x.{kind}"), read_session(document))
+
+
+@pytest.mark.parametrize("kind", WRITERS)
+def test_a_simulated_session_is_one_in_every_format(kind):
+    document = rounded(builders.accelerometer_block(3)) | {"origin": "simulated"}
+    session = read_upload(WRITERS[kind](document), f"x.{kind}")
+    assert (session.is_simulated, content_digest(session)) == (True, content_digest(read_session(document)))
 
 
 @pytest.mark.parametrize("kind", WRITERS)
