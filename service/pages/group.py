@@ -82,9 +82,7 @@ def whose(group: Group) -> str:
 
 def group_section(store: Store, level: Level, name: str) -> GroupSection:
     """What the sessions of a unit, a unit type or a stand show together, where it is made of its records of now."""
-    key = store.units.key(name) if level is Level.UNIT else store.groups.find(level, name).key
-    group = Group(level, key, name)
-    answer, is_asked = store.groups.known(group)
+    group, answer, is_asked = store.groups.known(level, name)
     if answer is None or answer.is_of_another(VERSION):
         return GroupSection(group, None, "")
     if is_asked and (level is not Level.UNIT or not rests_on_now(store, group, answer)):

@@ -106,3 +106,12 @@ class StandCondition:
     """Of every quantity."""
     unreadable: tuple[str, ...]
     """Sessions that are left out, because what is stored of their common motion cannot be used."""
+
+
+@dataclass(frozen=True)
+class KnownStand:
+    """How much a stand is used, and how it is."""
+
+    use: StandUse
+    condition: StandCondition | None
+    """As it was last made; None where no session tells of it."""

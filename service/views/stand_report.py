@@ -1,6 +1,5 @@
 """Everything that is known of stands: what units show of them, their certificates, flags, sessions and units."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from service.judging.model_in_force import in_force
@@ -14,7 +13,6 @@ from service.records.stand import StandCondition, StandUse
 from service.records.unit import UnitSummary
 from service.storage.queries.flags import FlagQuery
 from service.storage.store import Store
-from service.views.stands import stand_conditions
 
 MOST = 25
 """Flags, sessions and units that the page of one stand lists: a screen of each; the lists themselves have all."""
@@ -48,33 +46,28 @@ class StandReport:
 
 
 def every_stand(store: Store) -> tuple[StandLine, ...]:
-    """All stands, by name, in four queries."""
+    """All stands, by name, in three queries."""
     certificates, flags = store.stand_certificates.every(), store.flags.open_about(*AT_FAULT)
-    conditions = stand_conditions(store)
     return tuple(
         StandLine(
-            use=use,
-            condition=_condition(conditions, use.stand),
-            certificates=certificates.get(use.stand, ()),
-            flags=sum(flag.place == use.stand for flag in flags),
+            use=known.use,
+            condition=known.condition,
+            certificates=certificates.get(known.use.stand, ()),
+            flags=sum(flag.place == known.use.stand for flag in flags),
         )
-        for use in store.stands.uses()
+        for known in store.stands.every()
     )
 
 
 def stand_report(store: Store, name: str) -> StandReport:
     """One stand; NotFoundError where there is none of that name."""
-    use = store.stands.use(name)
+    known = store.stands.one(name)
     flags = store.flags.page(FlagQuery(unresolved=True, stand=name, limit=MOST + 1))
     at_fault = sum(flag.matter in AT_FAULT for flag in flags)
     return StandReport(
-        line=StandLine(use, store.stands.condition(name), store.stand_certificates.of_stand(name), at_fault),
+        line=StandLine(known.use, known.condition, store.stand_certificates.of_stand(name), at_fault),
         flags=flags,
         units=store.fleet.units(FleetQuery(stand=name, order=Order.LAST, backwards=True, limit=MOST + 1)),
         sessions=store.sessions.wanted(SessionQuery(stand=name, limit=MOST + 1)),
         models=in_force(store.models.of_subject(Scope.STAND, name)),
     )
-
-
-def _condition(conditions: Sequence[StandCondition], name: str) -> StandCondition | None:
-    return next((one for one in conditions if one.stand == name), None)

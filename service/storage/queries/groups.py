@@ -81,13 +81,16 @@ class Groups(Queries):
         row = self._session.get(GroupDiagnosisRow, (group.level.value, group.key))
         return None if row is None else _answer(row)
 
-    def known(self, group: Group) -> tuple[GroupAnswer | None, bool]:
-        """What is stored of a group, and whether it is asked for again since; in one query."""
-        row, asked = GroupDiagnosisRow, PendingGroupRow
+    def known(self, level: Level, name: str) -> tuple[Group, GroupAnswer | None, bool]:
+        """A group by its name, what is stored of it, and whether it is asked for again since; in one query."""
+        row, asked, number = GroupDiagnosisRow, PendingGroupRow, KEYS[level]
         again = select(asked.id).where(asked.level == row.level, asked.group_id == row.group_id).exists()
-        own = (row.level == group.level.value, row.group_id == group.key)
-        found = self._session.execute(select(row, again).where(*own)).one_or_none()
-        return (None, False) if found is None else (_answer(found[0]), found[1])
+        stored = and_(row.level == level.value, row.group_id == number)
+        query = select(number, row, again).select_from(number.class_).outerjoin(row, stored)
+        found = self._session.execute(query.where(CALLED[level] == name)).one_or_none()
+        if found is None:
+            raise NotFoundError(f"There is no {WORDS[level]} {name!r}.")
+        return Group(level, found[0], name), None if found[1] is None else _answer(found[1]), found[2]
 
     def put(self, group: Group, answer: GroupAnswer) -> None:
         """Stores what was found of a group in place of what was."""

@@ -8,7 +8,7 @@ from sqlalchemy import Integer, Select, cast, delete, func, select
 
 from estimator.health.common_motion import SEPARATED
 from service.errors import NotFoundError
-from service.records.stand import STILL, MotionOnStand, StandCondition, StandUse
+from service.records.stand import STILL, KnownStand, MotionOnStand, StandCondition, StandUse
 from service.storage.fleet_tables import StandConditionRow, StandTallyRow
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
@@ -33,26 +33,21 @@ class Stands(Queries):
         )
         return tuple(self._session.scalars(query.order_by(UnitRow.serial)))
 
-    def uses(self) -> tuple[StandUse, ...]:
-        """How much each stand is used, by name, in one query."""
-        return tuple(StandUse(*row) for row in self._session.execute(_uses().order_by(StandRow.name)))
+    def every(self) -> tuple[KnownStand, ...]:
+        """How much each stand is used and its own health, by name, in one query."""
+        return tuple(_known(*row) for row in self._session.execute(_stands().order_by(StandRow.name)))
 
-    def use(self, stand: str) -> StandUse:
-        """How much one stand is used; NotFoundError where there is none of that name."""
-        found = self._session.execute(_uses().where(StandRow.name == stand)).one_or_none()
+    def one(self, stand: str) -> KnownStand:
+        """The same of one stand; NotFoundError where there is none of that name."""
+        found = self._session.execute(_stands().where(StandRow.name == stand)).one_or_none()
         if found is None:
             raise NotFoundError(f"There is no stand {stand!r}: no session was measured on one of that name.")
-        return StandUse(*found)
+        return _known(*found)
 
     def conditions(self) -> tuple[StandCondition, ...]:
         """Every stand's own health as it was last made, by name."""
-        rows = self._session.scalars(_conditions().order_by(StandRow.name))
-        return tuple(map(condition_from_dict, rows))
-
-    def condition(self, stand: str) -> StandCondition | None:
-        """Of one stand; None where no session tells of it."""
-        document = self._session.scalar(_conditions().where(StandRow.name == stand))
-        return None if document is None else condition_from_dict(document)
+        query = select(StandConditionRow.document).join(StandRow, StandRow.id == StandConditionRow.stand_id)
+        return tuple(map(condition_from_dict, self._session.scalars(query.order_by(StandRow.name))))
 
     def put_conditions(self, found: Sequence[StandCondition], at: datetime) -> None:
         """Rewrites what is known of all stands."""
@@ -95,17 +90,20 @@ class Stands(Queries):
         return tuple(reversed(found))
 
 
-def _uses() -> Select[str, int, int, datetime | None]:
-    """As the fields of `StandUse`."""
+def _stands() -> Select[dict[str, Any] | None, str, int, int, datetime | None]:
+    """The document of its own health, then the fields of `StandUse`."""
     last = select(func.max(SessionRow.started_at)).where(SessionRow.stand_id == StandRow.id, IS_ACCEPTED)
     counts = (func.coalesce(StandTallyRow.sessions, 0), func.coalesce(StandTallyRow.units, 0))
-    return select(StandRow.name, *counts, last.scalar_subquery()).outerjoin(
-        StandTallyRow, StandTallyRow.stand_id == StandRow.id
+    return (
+        select(StandConditionRow.document, StandRow.name, *counts, last.scalar_subquery())
+        .select_from(StandRow)
+        .outerjoin(StandTallyRow, StandTallyRow.stand_id == StandRow.id)
+        .outerjoin(StandConditionRow, StandConditionRow.stand_id == StandRow.id)
     )
 
 
-def _conditions() -> Select[dict[str, Any]]:
-    return select(StandConditionRow.document).join(StandRow, StandRow.id == StandConditionRow.stand_id)
+def _known(document: dict[str, Any] | None, *use: Any) -> KnownStand:
+    return KnownStand(StandUse(*use), None if document is None else condition_from_dict(document))
 
 
 def _motions(
