@@ -31,21 +31,34 @@ VARIABLE = re.compile(r"var\(--([\w-]+)\)")
 """How a specification names a colour of the pages' style."""
 MEASURED, PRINTED = "Liberation Sans", "Libertinus Serif"
 """The font that charts are laid out with, a little wider, and the one that they are printed in."""
-KEPT = 128
-"""Drawings that are kept: a certificate is looked at, signed and sent, and drawing it anew takes most of the time; some
-20 kB each."""
+KEPT = 512
+"""Drawings that are kept: a certificate is looked at, signed and sent, and drawing it anew takes most of the time. The
+25 that are printed at once have up to 450; some 20 kB each."""
+KEPT_KINDS = 64
+"""Kinds of panels that are kept translated: those of one certificate differ in their data alone."""
 
 
 def picture(charts: ChartSet, panel: Panel, width: int) -> str:
     """One panel as SVG, ``width`` pixels wide."""
     coloured = VARIABLE.sub(lambda found: PALETTE[found[1]], json.dumps(charts.spec))
     spec: dict[str, Any] = json.loads(coloured)
-    spec |= {"datasets": {**spec.get("datasets", {}), **panel.datasets}, "width": width}
+    datasets = {**spec.pop("datasets", {}), **panel.datasets}
+    spec["width"] = width
     spec["config"]["font"] = MEASURED
-    return _drawn(json.dumps(spec)).replace(MEASURED, PRINTED)
+    return _drawn(json.dumps(spec), json.dumps(datasets)).replace(MEASURED, PRINTED)
 
 
 @lru_cache(maxsize=KEPT)
-def _drawn(spec: str) -> str:
-    drawn: str = vl_convert.vegalite_to_svg(spec)
+def _drawn(spec: str, datasets: str) -> str:
+    vega, values = json.loads(_translated(spec)), json.loads(datasets)
+    for source in vega["data"]:
+        if source["name"] in values:
+            source["values"] = values[source["name"]]
+    drawn: str = vl_convert.vega_to_svg(json.dumps(vega))
     return drawn
+
+
+@lru_cache(maxsize=KEPT_KINDS)
+def _translated(spec: str) -> str:
+    """As Vega, without data."""
+    return json.dumps(vl_convert.vegalite_to_vega(spec))
