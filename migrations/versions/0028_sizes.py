@@ -14,19 +14,21 @@ branch_labels = None
 depends_on = None
 
 TABLES = ("sessions", "refusals", "attachments", "jobs")
+LARGEST = 2**31 - 1
+"""That 32 bits hold."""
 
 
 def upgrade() -> None:
     """Every size of a file gets 64 bits."""
-    _retype(sa.BigInteger(), sa.Integer())
+    _retype(sa.Integer(), sa.BigInteger(), "size")
 
 
 def downgrade() -> None:
-    """The database refuses it, and changes nothing, while it holds a size that no longer fits."""
-    _retype(sa.Integer(), sa.BigInteger())
+    """A size that no longer fits becomes the largest that does; the files stay as they are."""
+    _retype(sa.BigInteger(), sa.Integer(), f"LEAST(size, {LARGEST})")
 
 
-def _retype(to: sa.Integer, since: sa.Integer) -> None:
+def _retype(since: sa.Integer, to: sa.Integer, using: str) -> None:
     if op.get_context().dialect.name == "postgresql":
         for table in TABLES:
-            op.alter_column(table, "size", type_=to, existing_type=since)
+            op.alter_column(table, "size", existing_type=since, type_=to, postgresql_using=using)

@@ -11,6 +11,7 @@ from service.records.arrival import ArrivalQuery
 from service.records.received import Landed
 from service.storage import Storage
 from service.storage.files import content_hash
+from service.storage.schema import downgrade, upgrade
 from tests.service.sessions import session_bytes
 
 NOW = datetime(2026, 11, 21, tzinfo=UTC)
@@ -31,3 +32,15 @@ def test_sessions_and_refusals_keep_sizes_beyond_32_bits(storage: Storage, tmp_p
     with storage.database.reading() as store:
         found = store.arrivals.page(ArrivalQuery(limit=3))
     assert [file.size for one in found for file in (one.session, one.refusal) if file is not None] == [LONG, LONG]
+
+
+@pytest.mark.parametrize("databases", ["postgresql"], indirect=True)
+def test_a_schema_without_room_for_it_keeps_the_largest_size_that_it_can(
+    store_url: str, storage: Storage, tmp_path: Path
+) -> None:
+    id = upload(storage, as_long(session_bytes(), tmp_path), "a.json", NOW).id
+    storage.database.close()
+    downgrade(store_url, "0027")
+    upgrade(store_url)
+    with storage.database.reading() as store:
+        assert store.sessions.get(id).size == 2**31 - 1
