@@ -14,7 +14,7 @@ from service.records.paper import NOT_STATED
 from service.reports.together import hand_out_together
 
 MOST = 25
-"""Certificates of one document: each takes about a third of a second, most of it to draw its charts a first time."""
+"""Certificates of one document: each takes about a fifth of a second, most of it to draw its charts a first time."""
 
 router = APIRouter(prefix="/certificates", tags=["handing on"])
 

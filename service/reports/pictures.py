@@ -2,12 +2,14 @@
 
 import json
 import re
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any
 
 import vl_convert
 
 from service.charts import ChartSet, Panel
+from service.reports.kept_drawings import KeptDrawings
 
 PALETTE = {
     "card": "#ffffff",
@@ -31,9 +33,9 @@ VARIABLE = re.compile(r"var\(--([\w-]+)\)")
 """How a specification names a colour of the pages' style."""
 MEASURED, PRINTED = "Liberation Sans", "Libertinus Serif"
 """The font that charts are laid out with, a little wider, and the one that they are printed in."""
-KEPT = 512
-"""Drawings that are kept: a certificate is looked at, signed and sent, and drawing it anew takes most of the time. The
-25 that are printed at once have up to 450; some 20 kB each."""
+KEPT = KeptDrawings(16 * 1024 * 1024)
+"""A certificate is looked at, signed and sent, and drawing it anew takes most of the time. The 25 that are printed at
+once have up to 450 drawings of some 2 kB each; one of 4,000 readings has 110 kB."""
 KEPT_KINDS = 64
 """Kinds of panels that are kept translated: those of one certificate differ in their data alone."""
 
@@ -45,20 +47,20 @@ def picture(charts: ChartSet, panel: Panel, width: int) -> str:
     datasets = {**spec.pop("datasets", {}), **panel.datasets}
     spec["width"] = width
     spec["config"]["font"] = MEASURED
-    return _drawn(json.dumps(spec), json.dumps(datasets)).replace(MEASURED, PRINTED)
+    kind = json.dumps(spec)
+    return KEPT.drawn(json.dumps([kind, datasets]), lambda: _drawn(kind, datasets)).replace(MEASURED, PRINTED)
 
 
-@lru_cache(maxsize=KEPT)
-def _drawn(spec: str, datasets: str) -> str:
-    vega, values = json.loads(_translated(spec)), json.loads(datasets)
+def _drawn(kind: str, datasets: Mapping[str, Any]) -> str:
+    vega = json.loads(_translated(kind))
     for source in vega["data"]:
-        if source["name"] in values:
-            source["values"] = values[source["name"]]
+        if source["name"] in datasets:
+            source["values"] = datasets[source["name"]]
     drawn: str = vl_convert.vega_to_svg(json.dumps(vega))
     return drawn
 
 
 @lru_cache(maxsize=KEPT_KINDS)
-def _translated(spec: str) -> str:
+def _translated(kind: str) -> str:
     """As Vega, without data."""
-    return json.dumps(vl_convert.vegalite_to_vega(spec))
+    return json.dumps(vl_convert.vegalite_to_vega(kind))

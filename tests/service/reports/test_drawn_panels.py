@@ -7,10 +7,10 @@ import vl_convert
 
 from estimator.calibration import calibrate
 from estimator.reading import read_session
-from service.api.printing import MOST
 from service.charts.residuals import residual_charts
-from service.reports.certificate.drawings import MOST_HISTORIES, MOST_RESIDUALS, WIDTH
-from service.reports.pictures import KEPT, MEASURED, PALETTE, PRINTED, VARIABLE, picture
+from service.reports.certificate.drawings import WIDTH
+from service.reports.kept_drawings import KeptDrawings
+from service.reports.pictures import MEASURED, PALETTE, PRINTED, VARIABLE, picture
 from tests import builders
 
 CLIP = re.compile(r"clip\d+")
@@ -29,5 +29,12 @@ def test_a_panel_is_drawn_with_its_own_data_as_its_whole_specification_says() ->
     assert len(set(drawn)) == 3
 
 
-def test_all_that_is_printed_at_once_is_kept() -> None:
-    assert KEPT >= MOST * (MOST_HISTORIES + MOST_RESIDUALS)
+def test_what_was_drawn_is_kept_until_too_much_newer_is() -> None:
+    kept, drawn = KeptDrawings(60), list[str]()
+
+    def ask(name: str) -> None:
+        assert kept.drawn(name, lambda: drawn.append(name) or f"<svg>{name}</svg>") == f"<svg>{name}</svg>"
+
+    for name in ("first", "second", "first", "third", "first", "second"):
+        ask(name)
+    assert drawn == ["first", "second", "third", "second"]
