@@ -48,7 +48,7 @@ def log_sum(values: Array) -> Array:
 
 
 def log_bayes(U: Array, F: Array, first: Array) -> Array:
-    """(…, H) ln B, mean over κ; ``U`` (…, H, w), ``F`` (…, H, w, w), ``first`` (H, w, w) F₁.
+    """(…, H) ln B, mean over κ; ``U`` (…, H, w), ``F`` (…, H, w, w), ``first`` (…, H, w, w) F₁.
 
     0 where nothing is seen.
     """
@@ -97,12 +97,13 @@ def log_since(U: Array, F: Array) -> Array:
     ``U`` (n, H, w) and ``F`` (n, H, w, w) of sessions. F₁ is that of the first session after the beginning.
     """
     n = len(U)
+    starts = beginnings(n)
+    if not starts:
+        return np.full((0, U.shape[1]), -np.inf)
     after_U, after_F = (np.cumsum(x[::-1], axis=0)[::-1] for x in (U, F))
-    found = []
-    for j, k in enumerate(beginnings(n)):
-        value = log_bayes(after_U[k], after_F[k], first_seen(F[k:]))
-        found.append(value - np.log((j + 1) * (j + 2)))
-    return np.array(found) if found else np.full((0, U.shape[1]), -np.inf)
+    first = np.stack([first_seen(F[k:]) for k in starts])
+    j = np.arange(len(starts))[:, None]
+    return log_bayes(after_U[starts], after_F[starts], first) - np.log((j + 1) * (j + 2))
 
 
 def first_seen(F: Array) -> Array:

@@ -66,7 +66,7 @@ def _joint(selection: Selection, model: Model, k: int) -> tuple[Array, Array]:
     if any(j == k and columns_in(part, p) is not None for j, p in model.absorbed):
         return own_U, own_F
     where, joint = joint_columns(part, model, k)
-    own_U[where], own_F[np.ix_(where, where)] = U[joint], F[np.ix_(joint, joint)]
+    own_U[where], own_F[np.ix_(where, where)] = U[joint], F(*np.ix_(joint, joint))
     return own_U, own_F
 
 

@@ -82,11 +82,11 @@ class Layout:
         """Of sessions, oldest first."""
         wide, known, parts = level != UNIT, {}, []
         numbers: dict[int, dict[Hypothesis, int]] = {}
-        alike: dict[tuple[object, ...], Part] = {}
+        alike: dict[tuple[str, str, str], Part] = {}
         for s in sessions:
-            key = s.blocks, s.unit, s.unit_type, s.stand
-            if key in alike:
-                parts.append(replace(alike[key], statistics=s))
+            before = alike.get((s.unit, s.unit_type, s.stand))
+            if before is not None and before.statistics.blocks == s.blocks:
+                parts.append(replace(before, statistics=s))
                 continue
             own, sums = _places(s, wide)
             found: dict[int, list[tuple[int, Array]]] = {}
@@ -102,7 +102,7 @@ class Layout:
                     {w: np.array([c for _, c in rows]) for w, rows in found.items()},
                 )
             )
-            alike[key] = parts[-1]
+            alike[s.unit, s.unit_type, s.stand] = parts[-1]
         hypotheses = {w: tuple(table) for w, table in numbers.items()}
         return cls(hypotheses, log_priors(hypotheses, list(known), level), tuple(parts))
 

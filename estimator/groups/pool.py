@@ -5,7 +5,7 @@ U|A = U − F_cA·â and F|A = F − F_cA·F_AA⁻¹·F_Ac over the pool. One th
 in each session by itself, as is what acts in one session only.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
@@ -17,6 +17,10 @@ from estimator.session import Array
 
 Place = tuple[int, int]
 """A hypothesis: its width and its number among those."""
+
+Among = Callable[[Array, Array], Array]
+"""Information of a session among columns, 1/SI²: of ``rows`` and ``columns``, int, that broadcast. Only what is asked for
+is unpacked."""
 
 
 @dataclass(frozen=True)
@@ -84,21 +88,26 @@ class Pool:
         return [slice(int(a), int(b)) for a, b in pairwise(ends)]
 
 
-def extended(part: Part, scale: float) -> tuple[Array, Array, Array]:
-    """(E,) U, (E,) U as it enters the evidence, (E, E) F, in 1/SI, of a session with its sums over sensors."""
+def extended(part: Part, scale: float) -> tuple[Array, Array, Among]:
+    """(E,) U, (E,) U as it enters the evidence, and F, in 1/SI, of a session with its sums over sensors."""
     s = part.statistics
     U = s.score * s.size / scale
     shrink = np.repeat(s.shrink, [b.width for b in s.blocks])
+    if not part.sums:
+        return U, U * shrink, lambda rows, columns: s.among(rows, columns) * s.size[rows] * s.size[columns] / scale
     F = s.information * s.size[:, None] * s.size / scale
-    if part.sums:
-        add = np.zeros((len(part.sums), len(U)))
-        for row, members in zip(add, part.sums, strict=True):
-            row[list(members)] = 1.0
-        mean = np.concatenate([shrink, [float(shrink[list(m)].mean()) for m in part.sums]])
-        across = add @ F
-        F = np.block([[F, across.T], [across, across @ add.T]])
-        U, shrink = np.concatenate([U, add @ U]), mean
-    return U, U * shrink, F
+    add = np.zeros((len(part.sums), len(U)))
+    for row, members in zip(add, part.sums, strict=True):
+        row[list(members)] = 1.0
+    mean = np.concatenate([shrink, [float(shrink[list(m)].mean()) for m in part.sums]])
+    across = add @ F
+    U, F = np.concatenate([U, add @ U]), np.block([[F, across.T], [across, across @ add.T]])
+    return U, U * mean, among(F)
+
+
+def among(F: Array) -> Among:
+    """An information (E, E), 1/SI², that is known as a whole."""
+    return lambda rows, columns: np.asarray(F[rows, columns])
 
 
 def columns_in(part: Part, place: Place) -> Array | None:
@@ -108,9 +117,10 @@ def columns_in(part: Part, place: Place) -> Array | None:
     return part.columns[width][own[0]] if len(own) else None
 
 
-def without(U: Array, E: Array, F: Array, columns: Sequence[int]) -> tuple[Array, Array, Array]:
+def without(U: Array, E: Array, tells: Among, columns: Sequence[int]) -> tuple[Array, Array, Array]:
     """U (E,), evidence (E,) and F (E, E) given some columns left free."""
-    own = list(columns)
+    own, every = list(columns), range(len(U))
+    F = tells(*np.ix_(every, every))
     gain = F[:, own] @ inverse(F[np.ix_(own, own)])
     left = F - gain @ F[own]
     gone = np.diagonal(left) < 1e-4 * np.diagonal(F)
@@ -132,19 +142,20 @@ def pooled(layout: Layout, model: Model = Model(), scale: Array | None = None) -
         U, E, F = extended(part, float(scale[k]))
         free = [c for j, place in model.absorbed if j == k and (c := columns_in(part, place)) is not None]
         if free:
-            U, E, F = without(U, E, F, np.unique(np.concatenate(free)).tolist())
+            U, E, left = without(U, E, F, np.unique(np.concatenate(free)).tolist())
+            F = among(left)
         where, joint = joint_columns(part, model, k)
         joint_U[where] += U[joint]
-        joint_F[np.ix_(where, where)] += F[np.ix_(joint, joint)]
+        joint_F[np.ix_(where, where)] += F(*np.ix_(joint, joint))
         for w, numbers in part.hypotheses.items():
             c = part.columns[w]
             all_U, all_E, all_F, cross = empty[w]
             all_U[k, numbers], all_E[k, numbers] = U[c], E[c]
-            all_F[k, numbers] = F[c[:, :, None], c[:, None, :]]
+            all_F[k, numbers] = F(c[:, :, None], c[:, None, :])
             if joint:
-                cross[k][numbers[:, None, None], np.arange(w)[None, :, None], np.array(where)[None, None, :]] = F[
+                cross[k][numbers[:, None, None], np.arange(w)[None, :, None], np.array(where)[None, None, :]] = F(
                     c[:, :, None], np.array(joint)[None, None, :]
-                ]
+                )
     covariance = inverse(joint_F)
     amplitude = covariance @ joint_U
     moments = {}

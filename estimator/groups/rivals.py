@@ -96,7 +96,9 @@ def _given(selection: Selection, base: Pool, session: int) -> Array:
     U, E, F = extended(part, float(selection.scale[session]))
     places = [p for j, p in model.absorbed if j == session] + [s.place for s in model.shared if session >= s.since]
     free = [c for p in places if (c := columns_in(part, p)) is not None]
-    return without(U, E, F, np.unique(np.concatenate(free)).tolist())[2] if free else F
+    if free:
+        return without(U, E, F, np.unique(np.concatenate(free)).tolist())[2]
+    return F(*np.ix_(range(len(U)), range(len(U))))
 
 
 def _left(amplitude: Array, own: Array, both: Array, other: Array) -> float:

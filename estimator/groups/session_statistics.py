@@ -27,7 +27,7 @@ from estimator.diagnosis.signatures.scatter import equivalent_chi2
 from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.groups.candidates import columns_of
 from estimator.groups.scores import Scores, eigen_scores
-from estimator.groups.statistics import Block, SessionStatistics, quantised
+from estimator.groups.statistics import Block, SessionStatistics, quantised, shared
 from estimator.session import Array, CalibrationSession
 
 PLAIN = 1e-3
@@ -108,7 +108,7 @@ def kept(session: CalibrationSession, baseline: Baseline, words: tuple[str, ...]
         stand="" if session.stand is None else session.stand.id,
         started_at=session.started_at or "",
         sensors=tuple(s.name for s in session.sensors),
-        blocks=seen.blocks,
+        blocks=shared(seen.blocks),
         size=size,
         score=seen.score / np.where(size > 0, size, 1.0),
         correlation=quantised(seen.information, size),

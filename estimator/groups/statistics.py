@@ -24,6 +24,8 @@ HARMONIC = "harmonic"
 """Nameless structure: a wave of β."""
 STEPS = 32767
 """Of a correlation from 0 to 1: what two bytes hold."""
+LISTS = 64
+"""Lists of candidates that are shared: one for every build of a unit, and for what its sessions recorded."""
 
 
 @dataclass(frozen=True)
@@ -86,10 +88,13 @@ class SessionStatistics:
     @property
     def information(self) -> Array:
         """(D, D) F in units of ``size``, dimensionless."""
-        D = len(self.size)
-        full, low = np.zeros((D, D)), lower(D)
-        full[low] = self.correlation / STEPS
-        return np.asarray(full + np.tril(full, -1).T)
+        every = np.arange(len(self.size))
+        return self.among(every[:, None], every)
+
+    def among(self, rows: Array, columns: Array) -> Array:
+        """The same at some ``rows`` and ``columns``, int, of one shape or such as broadcast to one."""
+        low, high = np.minimum(rows, columns), np.maximum(rows, columns)
+        return np.asarray(self.correlation[high * (high + 1) // 2 + low] / STEPS)
 
     def to_dict(self) -> dict[str, Any]:
         """``imu-session-statistics/2``; arrays are packed."""
@@ -116,7 +121,7 @@ class SessionStatistics:
             stand=stored["stand"],
             started_at=stored["started_at"],
             sensors=tuple(stored["sensors"]),
-            blocks=tuple(Block(*b) for b in stored["blocks"]),
+            blocks=shared(tuple(Block(*b) for b in stored["blocks"])),
             put_right=tuple(stored["put_right"]),
             **{name: _unpacked(stored[name], kind) for name, kind in PACKED.items()},
         )
@@ -142,6 +147,12 @@ def quantised(information: Array, size: Array) -> Array:
     scale = np.where(size > 0, size, np.inf)
     relative = information / scale[:, None] / scale
     return np.round(relative[lower(len(size))] * STEPS).astype(np.int16)
+
+
+@lru_cache(maxsize=LISTS)
+def shared(blocks: tuple[Block, ...]) -> tuple[Block, ...]:
+    """One list of candidates for all sessions that have the same, so that these are told at a glance."""
+    return blocks
 
 
 @lru_cache(maxsize=2)
