@@ -3,10 +3,11 @@
 Whoever reads a session again has the same one: the next diagnosis of a unit asks for its earlier sessions anew.
 """
 
+from collections import OrderedDict
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field, fields
 from functools import lru_cache
-from typing import Any, TypeVar, TypeVarTuple
+from typing import Any, Protocol, TypeVar, TypeVarTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -68,6 +69,41 @@ def once(function: Callable[[Owner, *Rest], Result]) -> Callable[[Owner, *Rest],
         if rest not in own:
             own[rest] = function(owner, *rest)
         return own[rest]
+
+    return asked
+
+
+class OfSession(Hashable, Protocol):
+    """What was worked out of a session; it never changes, and is told from others by identity."""
+
+    @property
+    def session(self) -> CalibrationSession: ...
+
+
+Worked = TypeVar("Worked", bound=OfSession)
+
+
+def each_remembered(
+    function: Callable[[list[Worked], *Rest], list[Result]],
+) -> Callable[[list[Worked], *Rest], list[Result]]:
+    """The same function of several, whose results do not depend on one another: what it was asked before, of the same
+    and with the same rest, is not worked out again where the session is not large.
+
+    Its results are shared, so that nobody may change them.
+    """
+    known: OrderedDict[Hashable, Result] = OrderedDict()
+
+    def asked(each: list[Worked], *rest: *Rest) -> list[Result]:
+        found = {one: known[one, *rest] for one in each if (one, *rest) in known}
+        missing = [one for one in each if one not in found]
+        found |= zip(missing, function(missing, *rest) if missing else [], strict=True)
+        for one, result in found.items():
+            if one.session.readings.size <= LARGEST:
+                known.pop((one, *rest), None)
+                known[one, *rest] = result
+        while len(known) > REMEMBERED:
+            known.popitem(last=False)
+        return [found[one] for one in each]
 
     return asked
 

@@ -168,7 +168,7 @@ class Cause(ABC):
     """What is wrong, for a maintenance engineer; ``{sensors}`` is filled in."""
     advice: ClassVar[str]
     needs: ClassVar[frozenset[str]] = frozenset()
-    """Of `NEEDS`."""
+    """Of `NEEDS`: of time, temperature and vibration it looks at nothing that it does not need."""
     nonlinear_units: ClassVar[tuple[str, ...]] = ()
     kind: ClassVar[str | None] = None
     """Kind of sensor it acts on; None for both."""

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from estimator.content import each_remembered
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import near
 from estimator.diagnosis.residuals.flipped_run import about_its_flip
@@ -23,15 +24,21 @@ def baselines(now: Baseline, history: Sequence[Baseline]) -> tuple[Baseline, lis
     single run leaves a direction open) would else stay at different values, far enough from one another for the second
     order to show as a change of what is observed.
     """
-    baseline = about_its_flip(now)
-    earlier = [about_its_flip(h) for h in history]
+    baseline, earlier = about_its_flip(now), about_their_flips(list(history))
     if now.session.programme == TWO_AXIS_STAND and earlier:
         best = min([baseline, *earlier], key=lambda b: float(np.trace(b.covariance)))
         baseline, *earlier = fitted_near([baseline, *earlier], best)
     return baseline, in_the_frame_of(baseline, earlier)
 
 
-def fitted_near(sessions: Sequence[Baseline], best: Baseline) -> list[Baseline]:
+@each_remembered
+def about_their_flips(history: list[Baseline]) -> list[Baseline]:
+    """Earlier sessions, each about the turn of its own flipped run."""
+    return [about_its_flip(h) for h in history]
+
+
+@each_remembered
+def fitted_near(sessions: list[Baseline], best: Baseline) -> list[Baseline]:
     """Baselines fitted anew from the parameters of the ``best``, turned as the block was turned between them."""
     p, found = best.parameters, list(sessions)
     moving = [k for k, one in enumerate(found) if one is not best and one.setting.kinds == best.setting.kinds]

@@ -1,12 +1,14 @@
 """The signature with the strongest evidence given the other findings, and the evidence of several together."""
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from estimator.content import held, once
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.search_state import LEVEL, NEW_DIRECTION, Found, SearchState
-from estimator.diagnosis.signatures.scores import rescored, scores
+from estimator.diagnosis.signatures.scores import Scores, rescored, scores
 from estimator.diagnosis.signatures.traces import Scored, Traces
 from estimator.session import Array
 
@@ -28,13 +30,36 @@ def strongest(state: SearchState, traces: Sequence[Traces], without: Found | Non
     if without is not None and without.best.sensors:
         traces = [t.at(without.best.sensors) for t in traces]
     closed = {s.sensor for s in state.autocorrelated if s.plain}
-    found = scores(state.residuals, traces, state.attributed(without))
+    found = scores_given(state, traces, without)
     order = [(k, e) for k, e in found.ranked() if found.sensor[k] not in closed and found.group(k) not in state.refuted]
     for best in (found.scored(k) for k, _ in order[:TRIED]):
         p_family = family_p_value(best, families)
         if p_family < LEVEL:
             return Found(best, p_family, tuple((found.scored(k), e) for k, e in order))
     return None
+
+
+def scores_given(state: SearchState, traces: Sequence[Traces], without: Found | None) -> Scores:
+    """The scores given the other findings. The search comes back to the same findings: those of all that is looked for
+    are kept."""
+    attributed = state.attributed(without)
+    if isinstance(traces, tuple):
+        return _known(state.residuals, traces, Known(held(attributed), attributed))
+    return scores(state.residuals, traces, attributed)
+
+
+@dataclass(frozen=True)
+class Known:
+    """Orthonormal traces, equal to any other of the same bits."""
+
+    key: Hashable
+    attributed: Array = field(compare=False)
+    """(n, f) dimensionless."""
+
+
+@once
+def _known(residuals: WhitenedResiduals, traces: tuple[Traces, ...], attributed: Known) -> Scores:
+    return scores(residuals, traces, attributed.attributed)
 
 
 def on_other_sensors(state: SearchState, best: Found, traces: Sequence[Traces]) -> list[Found]:

@@ -1,18 +1,24 @@
 """The traces of every cause: as lasting since the history, as new since then, or with the sensor's change left open."""
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Hashable, Iterable, Sequence
+from dataclasses import fields, replace
 
 import numpy as np
 
 from estimator.causes.contract import SensorCause, Setting, Shape, Signature
-from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.content import held, once
+from estimator.diagnosis.residuals.whitened import ParameterChange, WhitenedResiduals
 from estimator.diagnosis.signatures.products import Products
 from estimator.diagnosis.signatures.traces import INVISIBLE, Traces
 from estimator.session import Array
 
 MANY = 16
 """Sensors from which on effects are not tried both as lasting and as new: their traces would take gigabytes."""
+
+RECORDED = frozenset({"time", "temperature", "vibration"})
+"""What differs between sessions of one schedule, of what a cause may need."""
+NOT_SEEN = RECORDED | {"parameters"}
+"""Of a setting, what does not tell earlier sessions from one another: all are seen at the parameters of now."""
 
 
 def traces_of(residuals: WhitenedResiduals, causes: Iterable[Signature]) -> list[Traces]:
@@ -101,18 +107,31 @@ def absorbed_before(
     if change is None or cause.nameless or not shapes[0].sensors or "row" in cause.nonlinear_units:
         return None
     absorbed = np.zeros((len(change.deviation), 1))
-    for earlier in change.earlier:
-        setting = earlier.setting
+    for setting, absorbs in alike(change, RECORDED if columns_of else RECORDED & cause.needs):
         if setting.beta is None or not cause.available(setting):
             return None
         if columns_of is None and isinstance(cause, SensorCause):
-            each = [of_one_sensor(earlier.absorbs[:, :, i], terms) for i, terms in cause.terms_of(setting, shapes)]
+            each = [of_one_sensor(absorbs[:, :, i], terms) for i, terms in cause.terms_of(setting, shapes)]
             absorbed = absorbed + np.concatenate(each, axis=1)
         else:
             columns = (columns_of or cause.all_columns)(setting, shapes)
             rows = columns.shape[0] * columns.shape[1]
-            absorbed = absorbed + earlier.absorbs.reshape(-1, rows) @ columns.reshape(rows, -1)
+            absorbed = absorbed + absorbs.reshape(-1, rows) @ columns.reshape(rows, -1)
     return absorbed
+
+
+@once
+def alike(change: ParameterChange, recorded: frozenset[str]) -> tuple[tuple[Setting, Array], ...]:
+    """Settings of the history that differ for a cause that looks at nothing ``recorded`` but this, each with what all
+    sessions in it absorb: (P, R, m) per m/s² (rad/s). A signature at one's parameters depends on nothing else."""
+    found: dict[Hashable, tuple[Setting, Array]] = {}
+    for earlier in change.earlier:
+        setting = earlier.setting
+        seen = [getattr(setting, one.name) for one in fields(setting) if one.name not in NOT_SEEN - recorded]
+        key = held(seen)
+        absorbed = found[key][1] + earlier.absorbs if key in found else earlier.absorbs
+        found[key] = setting, absorbed
+    return tuple(found.values())
 
 
 def of_one_sensor(absorbs: Array, terms: Array) -> Array:

@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from itertools import groupby
 
 import numpy as np
-from scipy.special import chdtrc
+from scipy.special import chdtrc, erfc
 
 from estimator.arrays import eigh
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
@@ -72,19 +72,18 @@ class Fit:
     """(S, q, q) amplitudes of orthonormal directions of each signature; zero where one does not count."""
 
     @classmethod
-    def of(cls, products: Products, shown: Array, faint: float) -> "Fit":
-        """``shown`` (S, q) bool: columns that count; ``faint``: share of the strongest direction that one must have."""
+    def of(cls, products: Products, shown: Array, faint: float, beside: Array | None = None) -> "Fit":
+        """``shown`` (S, q) bool: columns that count; ``faint``: share of the strongest direction that one must have;
+        ``beside`` (S,) int: of which signatures all columns but the first are the same, those of one number."""
         whole, along = products.square.sum(axis=0), products.along.sum(axis=0)
         norms = np.sqrt(np.maximum(np.diagonal(whole, axis1=1, axis2=2), 0.0))
         unit = np.where(shown, 1 / np.where(shown & (norms > 0), norms, 1.0), 0.0)
         alike = whole * unit[:, :, None] * unit[:, None, :]
-        size, turn = (alike[:, 0], np.ones_like(alike)) if alike.shape[-1] == 1 else eigh(alike)
-        live = (size > faint**2 * size[:, -1:]) & shown.any(axis=1, keepdims=True)
-        inverse = np.where(live, 1 / np.sqrt(np.where(live, size, 1.0)), 0.0)
-        directions = unit[:, :, None] * turn * inverse[:, None, :]
+        turn, live = whitening(alike, shown, faint, beside)
+        directions = unit[:, :, None] * turn
         length = (along[:, None, :] @ directions)[:, 0]
         value = (directions @ length[..., None])[..., 0]
-        return cls(products, value, (length**2).sum(axis=1), live.sum(axis=1), directions)
+        return cls(products, value, (length**2).sum(axis=1), live, directions)
 
     def at(self, chosen: Array) -> "Fit":
         """Some of the signatures, (S,) bool."""
@@ -100,7 +99,7 @@ class Fit:
             left = self.at(unknown).left_of_sensors(projected)
             energy[unknown], freedom[unknown] = scatter_beside(baseline, sensor[unknown], *left)
         statistic = equivalent_chi2(self.power, self.freedom, energy, freedom)
-        return statistic, np.where(self.freedom > 0, chdtrc(np.maximum(self.freedom, 1), statistic), 1.0)
+        return statistic, np.where(self.freedom > 0, tail_of(np.maximum(self.freedom, 1), statistic), 1.0)
 
     def left_of_sensors(self, projected: Projected) -> tuple[Array, Array]:
         """(S, m) energy, dimensionless, and (S, m) degrees of freedom that each signature leaves of every sensor."""
@@ -109,6 +108,56 @@ class Fit:
         fitted = (np.swapaxes(moved, 1, 2) @ (square @ moved - 2 * own.along[:m, ..., None]))[..., 0, 0]
         used = (self.directions * (square @ self.directions)).sum(axis=(-2, -1))
         return np.maximum(projected.energy + fitted.T, 0.0), projected.freedom - used.T
+
+
+def whitening(alike: Array, shown: Array, faint: float, beside: Array | None) -> tuple[Array, Array]:
+    """(S, q, q) orthonormal directions of columns with the products ``alike`` (S, q, q), dimensionless, zero where one
+    does not count, and (S,) int how many do. The rest as in `Fit.of`."""
+    if beside is None:
+        return eigen_whitening(alike, shown, faint)
+    turn, live = np.zeros_like(alike), np.full(len(alike), alike.shape[-1])
+    clear = np.zeros(len(alike), dtype=bool)
+    for number in np.unique(beside):
+        own = beside == number
+        turn[own], clear[own] = whitened_beside(alike[own], faint)
+    turn[~clear], live[~clear] = eigen_whitening(alike[~clear], shown[~clear], faint)
+    return turn, live
+
+
+def eigen_whitening(alike: Array, shown: Array, faint: float) -> tuple[Array, Array]:
+    """The same by the eigenvectors of each."""
+    size, turn = (alike[:, 0], np.ones_like(alike)) if alike.shape[-1] == 1 else eigh(alike)
+    live = (size > faint**2 * size[:, -1:]) & shown.any(axis=1, keepdims=True)
+    inverse = np.where(live, 1 / np.sqrt(np.where(live, size, 1.0)), 0.0)
+    return turn * inverse[:, None, :], live.sum(axis=1)
+
+
+def whitened_beside(alike: Array, faint: float) -> tuple[Array, Array]:
+    """(S, q, q) orthonormal directions of S first columns beside others, the same for all and projected out once; and
+    (S,) bool whether surely all of them count: no eigenvalue is below the inverse's trace, inverted, nor above q.
+    """
+    S, q, _ = alike.shape
+    size, turn = np.linalg.eigh(alike[0, 1:, 1:])
+    root = turn / np.sqrt(np.maximum(size, ALIKE**2))
+    along = alike[:, 0, 1:] @ root @ root.T
+    left = np.maximum(1.0 - (along * alike[:, 0, 1:]).sum(axis=1), ALIKE**2)
+    found = np.zeros((S, q, q))
+    found[:, 0, 0] = 1 / np.sqrt(left)
+    found[:, 1:, 0] = -along / np.sqrt(left)[:, None]
+    found[:, 1:, 1:] = root
+    return found, (alike[:, 0, 0] > 0) & (1 > faint**2 * q * (found**2).sum(axis=(1, 2)))
+
+
+def open_beside(raw: Array) -> bool:
+    """Whether signatures are one amplitude beside columns left open; ``raw`` (S, q) as in `Traces`."""
+    return raw.shape[1] > 1 and bool((raw[:, 0] > 0).any()) and not raw[:, 1:].any()
+
+
+def tail_of(freedom: Array, statistic: Array) -> Array:
+    """(S,) p-values of χ² (S,) with degrees of ``freedom`` (S,) int; of one degree it is the normal distribution's."""
+    found, one = np.empty(len(statistic)), freedom == 1
+    found[one], found[~one] = erfc(np.sqrt(statistic[one] / 2)), chdtrc(freedom[~one], statistic[~one])
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,7 +242,7 @@ def _scored(projected: Projected, traces: Sequence[Traces], chosen: Sequence[int
     products = projected(Products.together([t.products for t in own]), [t.columns for t in own])
     norms = np.sqrt(np.maximum(np.diagonal(products.square.sum(axis=0), axis1=1, axis2=2), 0.0))
     shown = norms > np.maximum(INVISIBLE * raw, 1e-300)
-    fit = Fit.of(products, shown, FAINT)
+    fit = Fit.of(products, shown, FAINT, sensor if open_beside(raw) else None)
     statistic, p_value = fit.tested(projected, sensor)
     kept = (shown & (raw > 0)).any(axis=1)
     asked = np.flatnonzero(kept & (p_value < WORTH))
