@@ -47,7 +47,8 @@ def limit(state: SearchState, cause: Cause, traces: Traces | None) -> Limit:
         lacking = missing(state, cause) or "a sensor it acts on"
         return Limit(cause.identifier, None, cause.units, f"the session lacks {lacking}")
     norms = np.linalg.norm(traces.columns, axis=1)
-    visible = (norms > INVISIBLE * traces.raw) & (traces.raw > 0)
+    raw = traces.raw[:, : norms.shape[1]]
+    visible = (norms > INVISIBLE * raw) & (raw > 0)
     places = int(visible.any(axis=1).sum())
     if places == 0:
         return Limit(cause.identifier, None, cause.units, "the calibration absorbs it completely")

@@ -127,14 +127,16 @@ def without_folds(baseline: Baseline) -> tuple[Rest, ...]:
 
 
 def shapes_of(every: Sequence[Traces], found: Found) -> Iterator[tuple[Shape, float]]:
-    """The shapes among which a finding is chosen again, each with the ln of the number that share its cause's prior."""
+    """The shapes among which a finding is chosen again, each with the ln of the number that share its cause's prior;
+    as lasting and as new it is the same in the rows of the session, and taken once."""
     yield found.best.shape, float(np.log(max(found.best.places, 1)))
     leaders = {s.group for s, _ in found.ranking[:LEADERS]}
+    fewest: dict[Shape, int] = {}
     for traces in every:
-        q = len(traces.cause.units)
         for shape in traces.shapes:
             if (traces.cause.identifier, shape.sensors) in leaders and not traces.cause.between:
-                yield shape.first(q), float(np.log(max(traces.places, 1)))
+                fewest[shape] = min(fewest.get(shape, traces.places), traces.places)
+    yield from ((shape, float(np.log(max(places, 1)))) for shape, places in fewest.items())
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ import numpy as np
 from estimator.causes.contract import SensorCause, Setting, Shape, Signature
 from estimator.content import held, once
 from estimator.diagnosis.residuals.whitened import ParameterChange, WhitenedResiduals
-from estimator.diagnosis.signatures.products import Products
+from estimator.diagnosis.signatures.products import Beside, Products
 from estimator.diagnosis.signatures.traces import INVISIBLE, Traces
 from estimator.session import Array
 
@@ -146,14 +146,8 @@ def with_open_change(residuals: WhitenedResiduals, traces: Traces) -> Traces:
     an amount that only a diagnosis of every earlier session would tell.
     """
     assert residuals.change is not None
-    (S, n, q), P = traces.columns.shape, len(residuals.change.deviation)
-    rows = np.zeros((n, S, q + 5))
-    rows[..., :q] = traces.columns.swapaxes(0, 1)
-    rows[n - P :, :, q:] = residuals.change.inverse_root.reshape(P, -1, 5)[:, traces.sensor]
-    columns = rows.swapaxes(0, 1)
-    wide = np.zeros((S, *traces.shapes[0].columns.shape[:2], q + 5))
-    wide[..., :q] = [s.columns for s in traces.shapes]
-    shapes = tuple(Shape(s.sensors, own, s.nonlinear) for s, own in zip(traces.shapes, wide, strict=True))
-    raw = np.concatenate([traces.raw, np.zeros((S, 5))], axis=-1)
-    products = traces.products.continued(columns[:, n - P :], residuals.z[n - P :])
-    return replace(traces, shapes=shapes, columns=columns, raw=raw, products=products)
+    N, P = residuals.rows, len(residuals.change.deviation)
+    beside = Beside(residuals.change.inverse_root.reshape(P, -1, 5).swapaxes(0, 1), traces.sensor)
+    raw = np.concatenate([traces.raw, np.zeros((len(traces.raw), 5))], axis=-1)
+    change = np.concatenate([traces.columns[:, N:], beside.each], axis=-1)
+    return replace(traces, raw=raw, products=traces.products.continued(change, residuals.z[N:]), beside=beside)

@@ -8,12 +8,15 @@ trace, z the residuals and A the orthonormal basis of the findings' traces. The 
 
     X̂'X̂ = G − c'C − C'c + c'Dc,      X̂'ẑ = b − C'a − c'(A'ẑ)
 
-G and b are the same in the whole search; only C is taken anew, where all signatures of a kind are one product.
+and over all parts ΣG − c'c and Σb − c'a, since ΣC = c, ΣD = 1 and ΣA'ẑ = 0. G and b are the same in the whole search;
+only C is taken anew, where all signatures of a kind are one product. The parts are worked out only of those signatures
+of which somebody asks for them.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import repeat
 
 import numpy as np
 
@@ -27,6 +30,35 @@ def inner(residuals: WhitenedResiduals, left: Array, right: Array) -> Array:
     own = left[: R * m].reshape(R, m, -1).transpose(1, 2, 0) @ right[: R * m].reshape(R, m, -1).transpose(1, 0, 2)
     rest = [left[rows].T @ right[rows] for rows in (slice(R * m, residuals.rows), slice(residuals.rows, None))]
     return np.concatenate([own, np.stack(rest)])
+
+
+@dataclass(frozen=True, eq=False)
+class Beside:
+    """Columns beside those of S traces, the same for many of them, which show in the last P rows only."""
+
+    columns: Array
+    """(m, P, w) standard errors per unit."""
+    number: Array
+    """(S,) int, which of the m each trace has."""
+
+    @property
+    def rows(self) -> int:
+        """P."""
+        return self.columns.shape[1]
+
+    @property
+    def width(self) -> int:
+        """w."""
+        return self.columns.shape[2]
+
+    @property
+    def each(self) -> Array:
+        """(S, P, w) standard errors per unit: those of every trace."""
+        return np.asarray(self.columns[self.number])
+
+    def at(self, chosen: Array | Sequence[int]) -> "Beside":
+        """Those beside some of the traces, by number or (S,) bool."""
+        return Beside(self.columns, self.number[chosen])
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +81,16 @@ class Products:
         rows = columns.swapaxes(0, 1).reshape(n, S * q)
         along = inner(residuals, residuals.z[:, None], rows).reshape(m + 2, S, q)
         return cls(np.concatenate(square), along)
+
+    @cached_property
+    def whole(self) -> tuple[Array, Array]:
+        """(S, q, q) X'X and (S, q) X'z over all parts."""
+        return self.square.sum(axis=0), self.along.sum(axis=0)
+
+    @property
+    def parts(self) -> "Products":
+        """Themselves."""
+        return self
 
     @classmethod
     def together(cls, parts: Sequence["Products"]) -> "Products":
@@ -102,15 +144,70 @@ class Projected:
         known = self.residuals.row_freedom[: self.residuals.baseline.residual.size].reshape(-1, m).sum(axis=0)
         return np.asarray(known - np.trace(self.square[:m], axis1=1, axis2=2))
 
-    def __call__(self, products: Products, columns: Sequence[Array]) -> Products:
+    def shared(self, columns: Array, beside: Beside | None) -> Array:
+        """(K, f, S, q + w) A'X of traces, ``columns`` (S, n, q), standard errors per unit."""
+        A, (S, n, q) = self.attributed, columns.shape
+        own = inner(self.residuals, A, columns.swapaxes(0, 1).reshape(n, S * q))
+        own = own.reshape(len(own), A.shape[1], S, q)
+        if beside is None:
+            return own
+        found = np.zeros((*own.shape[:3], q + beside.width))
+        found[..., :q] = own
+        found[-1, ..., q:] = (A[n - beside.rows :].T @ beside.columns)[beside.number].swapaxes(0, 1)
+        return found
+
+    @cached_property
+    def explained(self) -> Array:
+        """(f,) standard errors: A'z, the residuals along the findings."""
+        return np.asarray(self.attributed.T @ self.residuals.z)
+
+    @cached_property
+    def rest(self) -> Array:
+        """(K, f) standard errors: A'ẑ, in each part."""
+        return inner(self.residuals, self.attributed, self.z[:, None])[..., 0]
+
+    def __call__(
+        self, products: Sequence[Products], columns: Sequence[Array], beside: Sequence[Beside | None] | None = None
+    ) -> "Left":
         """What the findings leave of the products of traces, ``columns`` (S, n, q) each, standard errors per unit."""
-        A, (K, S, q) = self.attributed, products.along.shape
-        if not A.shape[1]:
-            return products
-        each = [inner(self.residuals, A, x.swapaxes(0, 1).reshape(len(A), -1)) for x in columns]
-        C = np.concatenate(each, axis=-1).reshape(K, A.shape[1], S, q)
-        c, a = C.sum(axis=0), A.T @ self.residuals.z
-        left = inner(self.residuals, A, self.z[:, None])[..., 0]
-        cross = np.einsum("fsp,kfsq->kspq", c, C - 0.5 * np.einsum("kfg,gsq->kfsq", self.square, c))
-        along = products.along - np.einsum("kfsq,f->ksq", C, a) - np.einsum("fsq,kf->ksq", c, left)
-        return Products(products.square - cross - np.swapaxes(cross, -1, -2), along)
+        each = [self.shared(x, b) for x, b in zip(columns, beside or repeat(None))]
+        return Left(self, tuple(products), np.concatenate(each, axis=2))
+
+
+@dataclass(frozen=True, eq=False)
+class Left:
+    """What the findings leave of the products of S traces of q amplitudes, worked out as far as it is asked for."""
+
+    projected: Projected
+    before: tuple[Products, ...]
+    """Of the traces, some of them each."""
+    shared: Array
+    """(K, f, S, q) standard errors per unit amplitude: C."""
+
+    @cached_property
+    def whole(self) -> tuple[Array, Array]:
+        """(S, q, q) X̂'X̂ and (S, q) X̂'ẑ over all parts."""
+        square, along = (np.concatenate(x) for x in zip(*(p.whole for p in self.before), strict=True))
+        c = self.shared.sum(axis=0)
+        across = c.transpose(1, 2, 0)
+        return square - across @ np.swapaxes(across, 1, 2), along - across @ self.projected.explained
+
+    @cached_property
+    def parts(self) -> Products:
+        """The same in every part."""
+        before = self.before[0] if len(self.before) == 1 else Products.together(self.before)
+        if not self.shared.shape[1]:
+            return before
+        C, p = self.shared, self.projected
+        c = C.sum(axis=0)
+        cross = np.einsum("fsp,kfsq->kspq", c, C - 0.5 * np.einsum("kfg,gsq->kfsq", p.square, c))
+        along = before.along - np.einsum("kfsq,f->ksq", C, p.explained) - np.einsum("fsq,kf->ksq", c, p.rest)
+        return Products(before.square - cross - np.swapaxes(cross, -1, -2), along)
+
+    def at(self, chosen: Array) -> "Left":
+        """Of some of the traces, by rising number or (S,) bool."""
+        ends = np.cumsum([0, *(p.along.shape[1] for p in self.before)])
+        number = np.arange(ends[-1])[chosen]
+        of = np.searchsorted(ends, number, side="right") - 1
+        before = [p.at(number[of == k] - ends[k]) for k, p in enumerate(self.before)]
+        return Left(self.projected, tuple(before), self.shared[:, :, number])

@@ -22,7 +22,7 @@ from scipy.special import chdtrc, erfc
 
 from estimator.arrays import eigh
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.signatures.products import Products, Projected
+from estimator.diagnosis.signatures.products import Left, Products, Projected
 from estimator.diagnosis.signatures.scatter import equivalent_chi2, in_unknown_noise, scatter_beside
 from estimator.diagnosis.signatures.traces import INVISIBLE, Group, Scored, Traces
 from estimator.session import Array
@@ -60,7 +60,7 @@ ones that contain them, so that alternatives stay few (docs/diagnosis/study.md, 
 class Fit:
     """S signatures of q amplitudes, each fitted alone to what the findings leave. K parts of the rows."""
 
-    products: Products
+    products: Products | Left
     """Of what the findings leave."""
     value: Array
     """(S, q) amplitudes, in the causes' SI units."""
@@ -72,10 +72,10 @@ class Fit:
     """(S, q, q) amplitudes of orthonormal directions of each signature; zero where one does not count."""
 
     @classmethod
-    def of(cls, products: Products, shown: Array, faint: float, beside: Array | None = None) -> "Fit":
+    def of(cls, products: Products | Left, shown: Array, faint: float, beside: Array | None = None) -> "Fit":
         """``shown`` (S, q) bool: columns that count; ``faint``: share of the strongest direction that one must have;
         ``beside`` (S,) int: of which signatures all columns but the first are the same, those of one number."""
-        whole, along = products.square.sum(axis=0), products.along.sum(axis=0)
+        whole, along = products.whole
         norms = np.sqrt(np.maximum(np.diagonal(whole, axis1=1, axis2=2), 0.0))
         unit = np.where(shown, 1 / np.where(shown & (norms > 0), norms, 1.0), 0.0)
         alike = whole * unit[:, :, None] * unit[:, None, :]
@@ -103,7 +103,7 @@ class Fit:
 
     def left_of_sensors(self, projected: Projected) -> tuple[Array, Array]:
         """(S, m) energy, dimensionless, and (S, m) degrees of freedom that each signature leaves of every sensor."""
-        m, own = len(projected.energy), self.products
+        m, own = len(projected.energy), self.products.parts
         square, moved = own.square[:m], self.value[..., None]
         fitted = (np.swapaxes(moved, 1, 2) @ (square @ moved - 2 * own.along[:m, ..., None]))[..., 0, 0]
         used = (self.directions * (square @ self.directions)).sum(axis=(-2, -1))
@@ -183,11 +183,12 @@ class Scores:
     def scored(self, k: int) -> Scored:
         """One of them."""
         traces, s = self.traces[self.cause[k]], int(self.shape[k])
+        shape, trace = traces.whole(s)
         return Scored(
             traces.cause,
-            traces.shapes[s],
+            shape,
             traces.lasting[s],
-            traces.columns[s],
+            trace,
             float(self.statistic[k]),
             int(self.freedom[k]),
             float(self.log_evidence[k]),
@@ -239,8 +240,8 @@ def _scored(projected: Projected, traces: Sequence[Traces], chosen: Sequence[int
     cause = np.repeat(chosen, [len(t.shapes) for t in own])
     shape, sensor = np.concatenate([np.arange(len(t.shapes)) for t in own]), np.concatenate([t.sensor for t in own])
     raw = np.concatenate([t.raw for t in own])
-    products = projected(Products.together([t.products for t in own]), [t.columns for t in own])
-    norms = np.sqrt(np.maximum(np.diagonal(products.square.sum(axis=0), axis1=1, axis2=2), 0.0))
+    products = projected([t.products for t in own], [t.columns for t in own], [t.beside for t in own])
+    norms = np.sqrt(np.maximum(np.diagonal(products.whole[0], axis1=1, axis2=2), 0.0))
     shown = norms > np.maximum(INVISIBLE * raw, 1e-300)
     fit = Fit.of(products, shown, FAINT, sensor if open_beside(raw) else None)
     statistic, p_value = fit.tested(projected, sensor)
@@ -278,9 +279,10 @@ def shows_itself(projected: Projected, traces: Sequence[Traces], fit: Fit, raw: 
     """
     if projected.residuals.change is None or not len(sensor):
         return np.ones(len(sensor), dtype=bool)
-    within = Products(fit.products.square[:-1], fit.products.along[:-1])
+    left = fit.products.parts
+    within = Products(left.square[:-1], left.along[:-1])
     own = np.where(raw > 0, fit.value, 0.0)
-    seen = (own[:, None, :] @ within.square.sum(axis=0) @ own[..., None])[:, 0, 0]
+    seen = (own[:, None, :] @ within.whole[0] @ own[..., None])[:, 0, 0]
     exempt = np.array([t.cause.between or t.cause.nameless for t in traces])
     exempt |= (raw > 0).all(axis=1) & (seen < TOO_FAINT**2)
     places = np.array([max(t.places, 1) for t in traces])
@@ -291,7 +293,7 @@ def shows_itself(projected: Projected, traces: Sequence[Traces], fit: Fit, raw: 
 def tail(projected: Projected, sensor: int, basis: Array) -> float:
     """p-value of what a signature blamed on a sensor (−1 for none) explains through ``basis`` (n, q), orthonormal and
     orthogonal to the findings."""
-    own = projected(Products.of(projected.residuals, basis[None]), [basis[None]])
+    own = projected([Products.of(projected.residuals, basis[None])], [basis[None]])
     fit = Fit.of(own, np.ones((1, basis.shape[1]), dtype=bool), ALIKE)
     return float(fit.tested(projected, np.array([sensor]))[1][0])
 
@@ -311,7 +313,7 @@ def within_reason(projected: Projected, traces: Traces, chosen: Array, amplitude
         return kept
     norm = setting.norm if traces.common else setting.norm[traces.sensor[chosen], None]
     columns = np.stack([s.columns[:, list(s.sensors) or slice(None)] for s in shapes])
-    size = np.abs((columns @ amplitude[:, None, :, None])[..., 0]).max(axis=1)
+    size = np.abs((columns @ amplitude[:, None, : columns.shape[-1], None])[..., 0]).max(axis=1)
     return np.asarray(kept & (size < LARGEST * norm).all(axis=1))
 
 

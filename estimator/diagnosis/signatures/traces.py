@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from estimator.causes.contract import Setting, Shape, Signature
-from estimator.diagnosis.signatures.products import Products
+from estimator.diagnosis.signatures.products import Beside, Products
 from estimator.session import Array
 
 INVISIBLE = 1e-3
@@ -30,12 +30,14 @@ class Traces:
     columns: Array
     """(S, n, q) standard errors per unit amplitude."""
     raw: Array
-    """(S, q) norm of every column before the baseline absorbed its share, standard errors; 0 where a column is no
+    """(S, width) norm of every column before the baseline absorbed its share, standard errors; 0 where a column is no
     amplitude of the cause but a parameter change left open."""
     places: int
     """Number of shapes that are visible at all: what the cause's prior is shared among."""
     products: Products
-    """Of the columns with one another and with the residuals."""
+    """Of the columns, those beside them included, with one another and with the residuals."""
+    beside: Beside | None = None
+    """Columns that are no amplitudes of the cause, but left open; None where there are none."""
 
     @property
     def common(self) -> bool:
@@ -44,8 +46,19 @@ class Traces:
 
     @property
     def width(self) -> int:
-        """q, number of amplitudes."""
-        return self.columns.shape[-1]
+        """Number of amplitudes, and of columns beside them."""
+        return self.columns.shape[-1] + (0 if self.beside is None else self.beside.width)
+
+    def whole(self, k: int) -> tuple[Shape, Array]:
+        """One shape and its trace (n, width), standard errors per unit; what is beside acts on no reading."""
+        shape, columns = self.shapes[k], self.columns[k]
+        if self.beside is None:
+            return shape, columns
+        rows = np.zeros((len(columns), self.beside.width))
+        rows[len(columns) - self.beside.rows :] = self.beside.columns[self.beside.number[k]]
+        silent = np.zeros((*shape.columns.shape[:2], self.beside.width))
+        wide = replace(shape, columns=np.concatenate([shape.columns, silent], axis=-1))
+        return wide, np.concatenate([columns, rows], axis=1)
 
     def at(self, sensors: tuple[int, ...]) -> "Traces":
         """The shapes on some sensors, and those of no sensor; the prior is still shared among all."""
@@ -63,7 +76,8 @@ class Traces:
         """Some of the shapes, by number; the prior is still shared among all."""
         shapes, lasting = tuple(self.shapes[k] for k in own), tuple(self.lasting[k] for k in own)
         columns, products = self.columns.swapaxes(0, 1)[:, own].swapaxes(0, 1), self.products.at(own)
-        return replace(self, shapes=shapes, lasting=lasting, columns=columns, raw=self.raw[own], products=products)
+        some = replace(self, shapes=shapes, lasting=lasting, columns=columns, raw=self.raw[own], products=products)
+        return some if self.beside is None else replace(some, beside=self.beside.at(own))
 
     @cached_property
     def sensor(self) -> Array:

@@ -58,7 +58,7 @@ def candidate(
     traces = [
         t
         for t in state.traces
-        if t.cause.identifier == identifier and (t.columns.shape[-1] > len(t.cause.units)) == open_change
+        if t.cause.identifier == identifier and (t.width > len(t.cause.units)) == open_change
     ]
     own = [s for s in score(state.residuals, traces, state.attributed()) if s.sensors == sensors]
     best = max(own, key=lambda s: s.log_evidence)

@@ -35,7 +35,7 @@ def moved(traces: Traces) -> np.ndarray:
 def test_a_sensor_s_cause_is_tried_as_lasting_as_new_and_with_its_change_left_open() -> None:
     lasting, new, open_change = hypotheses("bias-temperature")
     assert (set(lasting.lasting), set(new.lasting)) == ({True}, {False})
-    assert open_change.columns.shape[-1] == lasting.columns.shape[-1] + 5
+    assert open_change.width == lasting.width + 5
 
 
 def test_what_lasted_moves_less_than_what_is_new() -> None:
@@ -47,7 +47,7 @@ def test_an_open_change_spans_every_change_of_its_sensor_and_of_no_other() -> No
     *_, open_change = hypotheses("bias-temperature")
     step = np.zeros(30)
     step[5 * 2 : 5 * 2 + 5] = 1e-5
-    own = open_change.columns[2, RESIDUALS.rows :, 1:]
+    own = open_change.whole(2)[1][RESIDUALS.rows :, 1:]
     assert np.allclose(own @ np.full(5, 1e-5), CHANGE.inverse_root @ step)
 
 

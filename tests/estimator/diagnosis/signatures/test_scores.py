@@ -80,7 +80,8 @@ def test_what_the_findings_leave_is_what_projecting_every_row_would_leave(stated
     attributed, _ = np.linalg.qr(first.columns[2])
     projected = Projected.of(residuals, attributed)
     left = second.columns - attributed @ (attributed.T @ second.columns)
-    found, expected = projected(second.products, [second.columns]), Products.of(residuals, left)
+    whole, expected = projected([second.products], [second.columns]), Products.of(residuals, left)
+    found = whole.parts
     assert np.allclose(found.square, expected.square, rtol=0, atol=1e-12 * second.products.square.max())
     assert np.allclose(
         found.along.sum(axis=0), left.swapaxes(1, 2) @ projected.z, rtol=0, atol=1e-9 * found.along.max()
