@@ -19,8 +19,7 @@ Place = tuple[int, int]
 """A hypothesis: its width and its number among those."""
 
 Among = Callable[[Array, Array], Array]
-"""Information of a session among columns, 1/SI²: of ``rows`` and ``columns``, int, that broadcast. Only what is asked for
-is unpacked."""
+"""Information of a session, 1/SI², of ``rows`` and ``columns``, int, that broadcast: only what is asked is unpacked."""
 
 
 @dataclass(frozen=True)

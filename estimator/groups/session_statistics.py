@@ -128,8 +128,9 @@ def seen_in(baseline: Baseline) -> Seen:
     residuals = WhitenedResiduals.of(baseline)
     found = list(columns_of(baseline))
     columns = np.concatenate([c for _, c in found], axis=-1)
-    raw, trace = np.linalg.norm(residuals.whitened(columns), axis=0), residuals.trace(columns)
-    shown = np.linalg.norm(trace, axis=0) > INVISIBLE * raw
+    white = residuals.whitened(columns)
+    trace = residuals.left_of(white)
+    shown = np.linalg.norm(trace, axis=0) > INVISIBLE * np.linalg.norm(white, axis=0)
     reach = (np.abs(columns) / baseline.setting.norm[None, :, None]).max(axis=(0, 1))
     return Seen(residuals, tuple(b for b, _ in found), trace * shown, residuals.z, reach, residuals.row_freedom)
 

@@ -1,12 +1,19 @@
 """What is worked out once for a session's content."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from estimator import CalibrationSession
-from estimator.content import LARGEST, once, remembered
+from estimator.content import LARGEST, REMEMBERED, each_remembered, once, remembered
 from tests.estimator.calibration.cases import CASES
+
+
+@dataclass(frozen=True, eq=False)
+class Worked:
+    """Something worked out of a session."""
+
+    session: CalibrationSession
 
 
 def counted() -> tuple[list[str], object]:
@@ -59,3 +66,33 @@ def test_an_object_is_asked_once_while_it_lives() -> None:
     (session,) = CASES[0].simulated(1)
     assert [noted(session, 1), noted(session, 1), noted(session, 2), noted(replace(session), 1)] == [1, 1, 2, 1]
     assert len(asked) == 3
+
+
+def test_of_several_only_what_was_not_asked_before_is_worked_out() -> None:
+    asked: list[tuple[str, int]] = []
+
+    @each_remembered
+    def fitted(each: list[Worked], near: int) -> list[str]:
+        asked.extend((one.session.notes, near) for one in each)
+        return [one.session.notes for one in each]
+
+    first, second, third = (Worked(replace(CASES[0].simulated(1)[0], notes=name)) for name in "abc")
+    assert fitted([first, second], 1) == ["a", "b"]
+    assert fitted([third, second], 1) == ["c", "b"]
+    assert asked == [("a", 1), ("b", 1), ("c", 1)]
+    fitted([first], 2)
+    assert asked[-1] == ("a", 2)
+
+
+def test_of_several_only_the_last_are_remembered() -> None:
+    asked: list[int] = []
+
+    @each_remembered
+    def number(each: list[Worked], k: int) -> list[int]:
+        asked.append(k)
+        return [k] * len(each)
+
+    one = Worked(CASES[0].simulated(1)[0])
+    for k in (*range(REMEMBERED + 1), REMEMBERED, 0):
+        number([one], k)
+    assert asked == [*range(REMEMBERED + 1), 0]

@@ -9,7 +9,7 @@ from estimator.causes.contract import SensorCause, Setting, Shape, Signature
 from estimator.content import held, once
 from estimator.diagnosis.residuals.whitened import ParameterChange, WhitenedResiduals
 from estimator.diagnosis.signatures.products import Beside, Products
-from estimator.diagnosis.signatures.traces import INVISIBLE, Traces
+from estimator.diagnosis.signatures.traces import INVISIBLE, Traces, sensors_of
 from estimator.session import Array
 
 MANY = 16
@@ -60,14 +60,14 @@ def _traces(
     if lasting and residuals.change is not None:
         trace[residuals.rows :, lengths(trace[: residuals.rows]) <= INVISIBLE * raw] = 0.0
     columns, raw = trace.reshape(len(trace), len(shapes), -1).swapaxes(0, 1), raw.reshape(len(shapes), -1)
-    products = Products.of(residuals, columns)
-    return Traces(cause, shapes, (lasting,) * len(shapes), columns, raw, visible(trace, raw), products)
+    products, whence = Products.of(residuals, columns), ((lasting,) * len(shapes), sensors_of(shapes))
+    return Traces(cause, shapes, *whence, columns, raw, visible(products, raw), products)
 
 
-def visible(trace: Array, raw: Array) -> int:
-    """Number of shapes that show, from their traces (n, S·q) and their length before, raw (S, q), standard errors."""
-    shown = (lengths(trace).reshape(raw.shape) > INVISIBLE * raw) & (raw > 0)
-    return int(shown.any(axis=-1).sum())
+def visible(products: Products, raw: Array) -> int:
+    """Number of shapes that show, by products of their traces and their length before, raw (S, q), standard errors."""
+    square = np.diagonal(products.whole[0], axis1=1, axis2=2)
+    return int(((square > (INVISIBLE * raw) ** 2) & (raw > 0)).any(axis=-1).sum())
 
 
 def as_new(residuals: WhitenedResiduals, lasting: Traces, white: Array) -> Traces:
@@ -78,13 +78,9 @@ def as_new(residuals: WhitenedResiduals, lasting: Traces, white: Array) -> Trace
     rows = lasting.columns.swapaxes(0, 1).copy()
     rows[N:] = (residuals.change.inverse_root @ (residuals.response @ white)).reshape(n - N, S, q)
     columns = rows.swapaxes(0, 1)
-    return replace(
-        lasting,
-        lasting=(False,) * S,
-        columns=columns,
-        places=visible(rows.reshape(n, S * q), lasting.raw),
-        products=lasting.products.continued(columns[:, N:], z[N:]),
-    )
+    products = lasting.products.continued(columns[:, N:], z[N:])
+    places = visible(products, lasting.raw)
+    return replace(lasting, lasting=(False,) * S, columns=columns, places=places, products=products)
 
 
 def lengths(rows: Array) -> Array:

@@ -16,7 +16,6 @@ of which somebody asks for them.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import repeat
 
 import numpy as np
 
@@ -170,7 +169,7 @@ class Projected:
         self, products: Sequence[Products], columns: Sequence[Array], beside: Sequence[Beside | None] | None = None
     ) -> "Left":
         """What the findings leave of the products of traces, ``columns`` (S, n, q) each, standard errors per unit."""
-        each = [self.shared(x, b) for x, b in zip(columns, beside or repeat(None))]
+        each = [self.shared(x, b) for x, b in zip(columns, beside or [None] * len(columns), strict=True)]
         return Left(self, tuple(products), np.concatenate(each, axis=2))
 
 
@@ -209,5 +208,5 @@ class Left:
         ends = np.cumsum([0, *(p.along.shape[1] for p in self.before)])
         number = np.arange(ends[-1])[chosen]
         of = np.searchsorted(ends, number, side="right") - 1
-        before = [p.at(number[of == k] - ends[k]) for k, p in enumerate(self.before)]
+        before = [self.before[k].at(number[of == k] - ends[k]) for k in np.unique(of)]
         return Left(self.projected, tuple(before), self.shared[:, :, number])

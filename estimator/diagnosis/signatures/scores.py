@@ -20,11 +20,11 @@ from itertools import groupby
 import numpy as np
 from scipy.special import chdtrc, erfc
 
-from estimator.arrays import eigh
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.diagnosis.signatures.directions import ALIKE, whitening
 from estimator.diagnosis.signatures.products import Left, Products, Projected
 from estimator.diagnosis.signatures.scatter import equivalent_chi2, in_unknown_noise, scatter_beside
-from estimator.diagnosis.signatures.traces import INVISIBLE, Group, Scored, Traces
+from estimator.diagnosis.signatures.traces import INVISIBLE, Group, Scored, Traces, sensors_of
 from estimator.session import Array
 
 FAINT = 0.02
@@ -46,10 +46,6 @@ catalogue of some forty. What is only seen because the sensor changed since the 
 
 TOO_FAINT = 4.0
 """Standard errors that an effect of the size fitted leaves in the session's own rows below which it need not show."""
-
-ALIKE = 1e-6
-"""Share of its length that must lie outside the others' span for a column to count where none is to be left out: the
-square lies well above rounding."""
 
 OCCAM = 0.7
 """ln evidence that every amplitude beyond the first costs, a factor of two: it balances simple causes against richer
@@ -108,44 +104,6 @@ class Fit:
         fitted = (np.swapaxes(moved, 1, 2) @ (square @ moved - 2 * own.along[:m, ..., None]))[..., 0, 0]
         used = (self.directions * (square @ self.directions)).sum(axis=(-2, -1))
         return np.maximum(projected.energy + fitted.T, 0.0), projected.freedom - used.T
-
-
-def whitening(alike: Array, shown: Array, faint: float, beside: Array | None) -> tuple[Array, Array]:
-    """(S, q, q) orthonormal directions of columns with the products ``alike`` (S, q, q), dimensionless, zero where one
-    does not count, and (S,) int how many do. The rest as in `Fit.of`."""
-    if beside is None:
-        return eigen_whitening(alike, shown, faint)
-    turn, live = np.zeros_like(alike), np.full(len(alike), alike.shape[-1])
-    clear = np.zeros(len(alike), dtype=bool)
-    for number in np.unique(beside):
-        own = beside == number
-        turn[own], clear[own] = whitened_beside(alike[own], faint)
-    turn[~clear], live[~clear] = eigen_whitening(alike[~clear], shown[~clear], faint)
-    return turn, live
-
-
-def eigen_whitening(alike: Array, shown: Array, faint: float) -> tuple[Array, Array]:
-    """The same by the eigenvectors of each."""
-    size, turn = (alike[:, 0], np.ones_like(alike)) if alike.shape[-1] == 1 else eigh(alike)
-    live = (size > faint**2 * size[:, -1:]) & shown.any(axis=1, keepdims=True)
-    inverse = np.where(live, 1 / np.sqrt(np.where(live, size, 1.0)), 0.0)
-    return turn * inverse[:, None, :], live.sum(axis=1)
-
-
-def whitened_beside(alike: Array, faint: float) -> tuple[Array, Array]:
-    """(S, q, q) orthonormal directions of S first columns beside others, the same for all and projected out once; and
-    (S,) bool whether surely all of them count: no eigenvalue is below the inverse's trace, inverted, nor above q.
-    """
-    S, q, _ = alike.shape
-    size, turn = np.linalg.eigh(alike[0, 1:, 1:])
-    root = turn / np.sqrt(np.maximum(size, ALIKE**2))
-    along = alike[:, 0, 1:] @ root @ root.T
-    left = np.maximum(1.0 - (along * alike[:, 0, 1:]).sum(axis=1), ALIKE**2)
-    found = np.zeros((S, q, q))
-    found[:, 0, 0] = 1 / np.sqrt(left)
-    found[:, 1:, 0] = -along / np.sqrt(left)[:, None]
-    found[:, 1:, 1:] = root
-    return found, (alike[:, 0, 0] > 0) & (1 > faint**2 * q * (found**2).sum(axis=(1, 2)))
 
 
 def open_beside(raw: Array) -> bool:
@@ -263,7 +221,8 @@ def rescored(residuals: WhitenedResiduals, scored: Scored, attributed: Array) ->
     raw = np.linalg.norm(residuals.whitened(scored.shape.columns), axis=0)
     columns = scored.trace[None]
     products = Products.of(residuals, columns)
-    alone = Traces(scored.cause, (scored.shape,), (scored.lasting,), columns, raw[None], scored.places, products)
+    whence = (scored.lasting,), sensors_of([scored.shape])
+    alone = Traces(scored.cause, (scored.shape,), *whence, columns, raw[None], scored.places, products)
     again = next(iter(score(residuals, [alone], attributed)), None)
     if again is None:
         return replace(scored, statistic=0.0, log_evidence=-float(np.log(scored.places)), p_value=1.0)
@@ -312,7 +271,8 @@ def within_reason(projected: Projected, traces: Traces, chosen: Array, amplitude
     if setting.beta is None:
         return kept
     norm = setting.norm if traces.common else setting.norm[traces.sensor[chosen], None]
-    columns = np.stack([s.columns[:, list(s.sensors) or slice(None)] for s in shapes])
+    sensor = traces.sensor[chosen].tolist()
+    columns = np.stack([s.columns if i < 0 else s.columns[:, i : i + 1] for s, i in zip(shapes, sensor, strict=True)])
     size = np.abs((columns @ amplitude[:, None, : columns.shape[-1], None])[..., 0]).max(axis=1)
     return np.asarray(kept & (size < LARGEST * norm).all(axis=1))
 

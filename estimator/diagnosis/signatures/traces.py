@@ -1,9 +1,7 @@
 """What a signature leaves in the residuals: the traces of a cause's shapes, and one shape with its score."""
 
-from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -19,6 +17,11 @@ Group = tuple[str, tuple[int, ...]]
 """What is named: a cause and the numbers of its sensors."""
 
 
+def sensors_of(shapes: Sequence[Shape]) -> Array:
+    """(S,) int, the number of the sensor that each shape is blamed on; −1 for none."""
+    return np.array([next(iter(s.sensors), -1) for s in shapes], dtype=int)
+
+
 @dataclass(frozen=True, eq=False)
 class Traces:
     """The traces of all shapes of one cause. S shapes, n rows, q amplitudes."""
@@ -27,6 +30,8 @@ class Traces:
     shapes: tuple[Shape, ...]
     lasting: tuple[bool, ...]
     """(S,) whether each is taken as having acted since before the history."""
+    sensor: Array
+    """(S,) int, the number of the sensor that each is blamed on; −1 for none."""
     columns: Array
     """(S, n, q) standard errors per unit amplitude."""
     raw: Array
@@ -61,28 +66,16 @@ class Traces:
         return wide, np.concatenate([columns, rows], axis=1)
 
     def at(self, sensors: tuple[int, ...]) -> "Traces":
-        """The shapes on some sensors, and those of no sensor; the prior is still shared among all."""
-        return self.chosen([*self._numbers.get((), ()), *(self._numbers.get(sensors, ()) if sensors else ())])
-
-    @cached_property
-    def _numbers(self) -> dict[tuple[int, ...], list[int]]:
-        """Which shapes are blamed on which sensors."""
-        numbers = defaultdict(list)
-        for k, shape in enumerate(self.shapes):
-            numbers[shape.sensors].append(k)
-        return dict(numbers)
+        """The shapes on a sensor, and those of no sensor; the prior is still shared among all."""
+        return self.chosen(np.flatnonzero(np.isin(self.sensor, [-1, *sensors])).tolist())
 
     def chosen(self, own: Sequence[int]) -> "Traces":
         """Some of the shapes, by number; the prior is still shared among all."""
         shapes, lasting = tuple(self.shapes[k] for k in own), tuple(self.lasting[k] for k in own)
         columns, products = self.columns.swapaxes(0, 1)[:, own].swapaxes(0, 1), self.products.at(own)
-        some = replace(self, shapes=shapes, lasting=lasting, columns=columns, raw=self.raw[own], products=products)
-        return some if self.beside is None else replace(some, beside=self.beside.at(own))
-
-    @cached_property
-    def sensor(self) -> Array:
-        """(S,) int, the number of the sensor that each is blamed on; −1 for none."""
-        return np.array([next(iter(s.sensors), -1) for s in self.shapes], dtype=int)
+        beside = None if self.beside is None else self.beside.at(own)
+        sensor, raw = self.sensor[own], self.raw[own]
+        return Traces(self.cause, shapes, lasting, sensor, columns, raw, self.places, products, beside)
 
 
 @dataclass(frozen=True, eq=False)

@@ -56,9 +56,7 @@ def candidate(
 ) -> Found:
     """A cause at its best shape, as if it had been selected; with the sensor's change since the history left open."""
     traces = [
-        t
-        for t in state.traces
-        if t.cause.identifier == identifier and (t.width > len(t.cause.units)) == open_change
+        t for t in state.traces if t.cause.identifier == identifier and (t.width > len(t.cause.units)) == open_change
     ]
     own = [s for s in score(state.residuals, traces, state.attributed()) if s.sensors == sensors]
     best = max(own, key=lambda s: s.log_evidence)

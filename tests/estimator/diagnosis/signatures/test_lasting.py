@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from estimator import CalibrationSession
 from estimator.causes import Signature, cause
@@ -101,3 +102,17 @@ def test_a_lasting_effect_that_another_schedule_absorbed_otherwise_is_foretold()
     foretold = residuals.trace(shape.columns, absorbed_before(residuals, ramp, [shape]))[residuals.rows :, 0] * 3e-6
     assert np.linalg.norm(change.deviation) > 30
     assert np.linalg.norm(change.deviation - foretold) < 3 * np.sqrt(len(foretold))
+
+
+@pytest.mark.parametrize("identifier", ["bias-temperature", "cubic-nonlinearity"])
+def test_what_the_history_absorbed_is_the_sum_over_its_sessions(identifier: str) -> None:
+    """At other temperatures each; those in which the cause is the same signature are worked out together."""
+    known, settings = cause(identifier), [one.setting for one in CHANGE.earlier]
+    warmer = [replace(s, temperature=(k + 1) * s.temperature) for k, s in enumerate(settings)]
+    earlier = [replace(one, setting=s) for one, s in zip(CHANGE.earlier, warmer, strict=True)]
+    shapes = list(known.shapes(NOW.setting))
+    whole, *each = (
+        absorbed_before(replace(RESIDUALS, change=replace(CHANGE, earlier=own)), known, shapes)
+        for own in (earlier, *([one] for one in earlier))
+    )
+    assert np.allclose(whole, sum(each), rtol=0, atol=1e-12 * np.abs(whole).max())

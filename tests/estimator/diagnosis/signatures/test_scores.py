@@ -82,6 +82,8 @@ def test_what_the_findings_leave_is_what_projecting_every_row_would_leave(stated
     left = second.columns - attributed @ (attributed.T @ second.columns)
     whole, expected = projected([second.products], [second.columns]), Products.of(residuals, left)
     found = whole.parts
+    for once, each in zip(whole.whole, found.whole, strict=True):
+        assert np.allclose(once, each, rtol=0, atol=1e-12 * np.abs(second.products.whole[0]).max())
     assert np.allclose(found.square, expected.square, rtol=0, atol=1e-12 * second.products.square.max())
     assert np.allclose(
         found.along.sum(axis=0), left.swapaxes(1, 2) @ projected.z, rtol=0, atol=1e-9 * found.along.max()
