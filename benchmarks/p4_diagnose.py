@@ -38,11 +38,11 @@ held out: sixty thousand calls in all, of which none stands out. A hundredth of 
 third of them.
 
 P4h takes 1.8 to 1.9 times as long where the process has read the earlier sessions before: their fits, also the ones
-near the session that observes most, and their statistics are remembered. By profile two fifths of what history adds
-are the search, which scores every signature three times (as lasting, as new, and with the sensor's change left open),
-a fifth makes those signatures and what the earlier sessions absorbed of them, a fifth turns the sessions into this
-one's frame, and a fifth pools them. Where this session itself observes most, the earlier ones are fitted anew near it:
-that takes 2.0 times as long.
+near the session that observes most, and their statistics are remembered. By profile a third of what history adds is
+the search, which scores every signature three times (as lasting, as new, and with the sensor's change left open); a
+fifth makes those signatures and what the earlier sessions absorbed of them; a fifth turns the sessions into this one's
+frame; and a quarter is this session's statistics and the pool of all. Where this session itself observes most, the
+earlier ones are fitted anew near it: that takes 2.0 times as long.
 
 Where the earlier sessions are new to the process it misses its target: 2.8 to 2.9 times. Every new session costs 2 ms
 for its own fit and the one near the best, and 4 ms for the statistics of its 140 candidates. Ten of them take as long

@@ -7,6 +7,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field, fields
 from functools import lru_cache
+from threading import Lock
 from typing import Any, Protocol, TypeVar, TypeVarTuple
 from weakref import WeakKeyDictionary
 
@@ -92,17 +93,19 @@ def each_remembered(
     Its results are shared, so that nobody may change them.
     """
     known: OrderedDict[Hashable, Result] = OrderedDict()
+    lock = Lock()
 
     def asked(each: list[Worked], *rest: *Rest) -> list[Result]:
-        found = {one: known[one, *rest] for one in each if (one, *rest) in known}
+        with lock:
+            found = {one: known.pop((one, *rest)) for one in each if (one, *rest) in known}
+            known.update({(one, *rest): result for one, result in found.items()})
         missing = [one for one in each if one not in found]
-        found |= zip(missing, function(missing, *rest) if missing else [], strict=True)
-        for one, result in found.items():
-            if one.session.readings.size <= LARGEST:
-                known.pop((one, *rest), None)
-                known[one, *rest] = result
-        while len(known) > REMEMBERED:
-            known.popitem(last=False)
+        new = dict(zip(missing, function(missing, *rest) if missing else [], strict=True))
+        with lock:
+            known.update({(one, *rest): r for one, r in new.items() if one.session.readings.size <= LARGEST})
+            while len(known) > REMEMBERED:
+                known.popitem(last=False)
+        found |= new
         return [found[one] for one in each]
 
     return asked
