@@ -52,7 +52,8 @@ TOGETHER = 256
 
 
 def with_estimated(variance: Array, y: Array, p: SensorParameters, geometry: Geometry) -> Array:
-    """Variances of the readings, those not stated estimated from what the model leaves of all sensors.
+    """Variances of the readings, those not stated estimated from what the model leaves of all sensors; each session's
+    until they stand themselves, so that it does not matter which sessions are worked on together.
 
     Parameters
     ----------
@@ -73,15 +74,16 @@ def _estimated(variance: Array, y: Array, p: SensorParameters, geometry: Geometr
     unstated, floor = np.isnan(variance), (FINEST * geometry.norm) ** 2
     sensors = np.asarray(unstated.any(axis=1))
     residual = linearise(y, p, geometry, np.ones(y.shape))[1]
-    value = np.maximum((residual**2).mean(axis=1), floor)
+    value, k = np.maximum((residual**2).mean(axis=1), floor), np.arange(len(y))
     for _ in range(MOST_STEPS):
-        energy, freedom = residual_energy(np.where(unstated, value[:, None, :], variance), y, p, geometry, unstated)
-        expected = typical(value, sensors, geometry.norm)
-        energy, freedom = with_the_others(energy, freedom, expected)
+        known = np.where(unstated[k], value[k, None, :], variance[k])
+        energy, freedom = residual_energy(known, y[k], p.at(k), geometry, unstated[k])
+        energy, freedom = with_the_others(energy, freedom, typical(value[k], sensors[k], geometry.norm))
         new = np.maximum(energy / np.maximum(freedom, LEAST), floor)
-        change = np.where(sensors, new / value, 1.0)
-        value = value * change
-        if np.abs(np.log(change)).max() < STEADY:
+        change = np.where(sensors[k], new / value[k], 1.0)
+        value[k] *= change
+        k = k[~(np.abs(np.log(change)).max(axis=1) < STEADY)]
+        if not len(k):
             break
     return np.where(unstated, value[:, None, :], variance)
 

@@ -119,3 +119,9 @@ def test_a_standard_error_of_zero_is_not_believed_beyond_rounding() -> None:
     result = calibrate(replace(session, sensors=sensors))
     assert np.isfinite(result.covariance).all()
     assert all(all(s.observable.values()) for s in result.sensors)
+
+
+def test_unstated_noise_is_that_of_the_session_whichever_others_are_solved_with_it() -> None:
+    every = sessions(STAND, 8, stated=False)
+    alone = [solved([one]).fitted.variance[0] for one in every]
+    assert np.allclose(solved(every).fitted.variance, alone, rtol=1e-9, atol=0)
