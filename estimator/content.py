@@ -3,11 +3,9 @@
 Whoever reads a session again has the same one: the next diagnosis of a unit asks for its earlier sessions anew.
 """
 
-from collections import OrderedDict
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field, fields
 from functools import lru_cache
-from threading import Lock
 from typing import Any, Protocol, TypeVar, TypeVarTuple
 from weakref import WeakKeyDictionary
 
@@ -92,20 +90,19 @@ def each_remembered(
 
     Its results are shared, so that nobody may change them.
     """
-    known: OrderedDict[Hashable, Result] = OrderedDict()
-    lock = Lock()
+    known: dict[Hashable, Result] = {}
 
     def asked(each: list[Worked], *rest: *Rest) -> list[Result]:
-        with lock:
-            found = {one: known.pop((one, *rest)) for one in each if (one, *rest) in known}
-            known.update({(one, *rest): result for one, result in found.items()})
+        before = known.copy()
+        found = {one: before[one, *rest] for one in each if (one, *rest) in before}
         missing = [one for one in each if one not in found]
-        new = dict(zip(missing, function(missing, *rest) if missing else [], strict=True))
-        with lock:
-            known.update({(one, *rest): r for one, r in new.items() if one.session.readings.size <= LARGEST})
-            while len(known) > REMEMBERED:
-                known.popitem(last=False)
-        found |= new
+        found |= zip(missing, function(missing, *rest) if missing else [], strict=True)
+        for one, result in found.items():
+            if one.session.readings.size <= LARGEST:
+                known.pop((one, *rest), None)
+                known[one, *rest] = result
+        for key in list(known)[:-REMEMBERED]:
+            known.pop(key, None)
         return [found[one] for one in each]
 
     return asked
