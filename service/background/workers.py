@@ -16,6 +16,7 @@ from datetime import datetime
 from functools import cache
 from itertools import islice
 
+import dask
 from distributed import Client, Future, LocalCluster, as_completed
 
 from service.background.guard import Failure
@@ -31,6 +32,8 @@ PATIENCE = "30s"
 """That a scheduler, and its first worker, is waited for."""
 QUIET = {"dashboard": False, "dashboard_address": "127.0.0.1:0"}
 """Dask's own pages need what is not installed; its figures lie on a port of this machine."""
+PROFILING = "distributed.worker.profile.enabled"
+"""Of Dask: what its workers were seen at, every hundredth of a second, kept for an hour: most of a gigabyte each."""
 OTHER = "This worker's database is another one; set its IMU_HEALTH_DATABASE_URL and IMU_HEALTH_DATA_FOLDER."
 
 
@@ -41,8 +44,10 @@ def local_cluster(settings: Settings, workers: int) -> Iterator[Client]:
         "IMU_HEALTH_DATABASE_URL": settings.database,
         "IMU_HEALTH_DATA_FOLDER": str(settings.data_folder),
         "OPENBLAS_NUM_THREADS": "1",
+        "DASK_" + PROFILING.replace(".", "__").upper(): "False",
     }
     with (
+        dask.config.set({PROFILING: False}),
         LocalCluster(
             n_workers=workers,
             threads_per_worker=1,
