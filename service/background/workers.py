@@ -44,7 +44,6 @@ def local_cluster(settings: Settings, workers: int) -> Iterator[Client]:
         "IMU_HEALTH_DATABASE_URL": settings.database,
         "IMU_HEALTH_DATA_FOLDER": str(settings.data_folder),
         "OPENBLAS_NUM_THREADS": "1",
-        "DASK_" + PROFILING.replace(".", "__").upper(): "False",
     }
     with (
         dask.config.set({PROFILING: False}),

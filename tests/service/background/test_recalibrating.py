@@ -108,6 +108,14 @@ def kill_one_worker() -> int:
     return own[-1].pid
 
 
+@one_engine
+def test_workers_keep_no_profile_which_would_grow_for_an_hour(settings: Settings) -> None:
+    with workers.local_cluster(settings, 1) as client:
+        (callbacks,) = client.run(lambda dask_worker: list(dask_worker.periodic_callbacks)).values()
+    assert "heartbeat" in callbacks
+    assert not [name for name in callbacks if name.startswith("profile")]
+
+
 @pytest.fixture
 def elsewhere(sqlite: Databases, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """This process as a worker with another database."""
