@@ -9,6 +9,7 @@ from estimator.applied_vector import stand_geometry
 from estimator.causes import CATALOGUE, Cause, Correction, Setting, Shape, Signature, cause, find
 from estimator.causes.contract import NEEDS
 from estimator.diagnosis.residuals.fitted import stand_baseline
+from estimator.diagnosis.signatures.lasting import RECORDED
 from estimator.session import CalibrationSession
 from tests.estimator.calibration.cases import accelerometers, block, gyros
 from tests.estimator.causes.physics import ACTED, SENSOR, World
@@ -111,6 +112,14 @@ def test_says_what_is_wrong_and_what_to_do(known: Cause) -> None:
 @every
 def test_needs_only_what_a_session_may_hold(known: Cause) -> None:
     assert known.needs <= NEEDS
+
+
+@every_signature
+def test_looks_at_nothing_recorded_that_it_does_not_need(known: Signature) -> None:
+    full = replace(SETTING, vibration=np.linspace(1.0, 2.0, WORLD.session.readings.size).reshape(-1, 6))
+    changed = {name: getattr(full, name)[::-1] ** 2 for name in RECORDED - known.needs}
+    for shape in list(known.shapes(full))[::7]:
+        assert np.array_equal(known.columns(replace(full, **changed), shape), shape.columns)
 
 
 @every_signature
