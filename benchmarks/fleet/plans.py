@@ -35,7 +35,7 @@ QUESTIONS: dict[str, Callable[[Store], object]] = {
     ),
     "Who drifts unlike the others": lambda store: store.populations.furthest(6),
     "Due dates": lambda store: store.outlooks.due(1000),
-    "How stands are used": lambda store: store.stands.uses(),
+    "How stands are used": lambda store: store.stands.every(),
     "Open flags": lambda store: store.flags.page(FlagQuery(unresolved=True, limit=101)),
     "Sessions, the newest first": lambda store: store.sessions.wanted(SessionQuery(limit=51)),
     "What the page of a unit begins with": lambda store: store.fleet.unit_known(UNIT, NOW),
