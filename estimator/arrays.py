@@ -38,6 +38,26 @@ def tangents(axis: Array) -> Array:
     return frame
 
 
+def in_frame(covariance: Array, own: Array, frame: Array) -> Array:
+    """A covariance of turns along one pair of tangents, along another pair.
+
+    A turn c along the tangents T moves the axis by T·c, so the covariance in space is T·C·Tᵀ, and along the frame F it
+    is (FᵀT)·C·(FᵀT)ᵀ. Of two axes an angle ε apart this is right to second order in ε (JCGM 102, 6.2). Tangents of
+    nearly equal axes may differ by a third of a turn: see `tangents`.
+
+    Parameters
+    ----------
+    covariance : (2, 2) of turns along ``own``, rad²; leading axes free.
+    own, frame : (3, 2) orthonormal columns, dimensionless; leading axes free.
+
+    Returns
+    -------
+    (2, 2), rad².
+    """
+    turn = np.swapaxes(frame, -1, -2) @ own
+    return np.asarray(turn @ covariance @ np.swapaxes(turn, -1, -2))
+
+
 def nearest_turn(vectors: Array, others: Array) -> Array:
     """(3, 3) rotation R, dimensionless, for which R·v come nearest to the others; both (n, 3), leading axes free, any
     one unit.

@@ -1,8 +1,8 @@
 """``python -m benchmarks.study.open_world --sessions 12 --seed 1 [PART…]`` writes docs/diagnosis/open-world.md.
 
 Beyond the catalogue and the assumptions: a cause left out, noise wrongly stated or unlike normal noise, probabilities
-as stated, few readings, blocks turned between sessions, parity checks of moving blocks. Of a page that exists, a part
-can be made anew by itself; each part says what made it.
+as stated, few readings, blocks turned between sessions, parity checks of moving blocks, steps that
+sensors share. Of a page that exists, a part can be made anew by itself; each part says what made it.
 """
 
 import argparse
@@ -23,6 +23,7 @@ from benchmarks.study import (
     other_noise,
     parity_reach,
     reliability,
+    shared_steps,
     stated_noise,
     turns,
 )
@@ -84,6 +85,11 @@ def parity_part(pool: Executor, sessions: int, seed: int) -> str:
     return "## Parity checks of moving blocks\n\n" + pool.submit(parity_reach.tables, 5 * sessions, seed).result()
 
 
+def shared_steps_part(pool: Executor, sessions: int, seed: int) -> str:
+    """So many sessions of every number of sensors and strength."""
+    return shared_steps.section(performed(pool, shared_steps.wishes(sessions, seed), shared_steps.perform))
+
+
 PARTS: dict[str, Callable[[Executor, int, int], str]] = {
     "left-out": left_out_part,
     "stated-noise": stated_noise_part,
@@ -92,6 +98,7 @@ PARTS: dict[str, Callable[[Executor, int, int], str]] = {
     "few-readings": few_readings_part,
     "turned": turned_part,
     "parity": parity_part,
+    "shared-steps": shared_steps_part,
 }
 """In the order of the page; each begins with its heading."""
 

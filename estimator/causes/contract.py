@@ -186,6 +186,9 @@ class Cause(ABC):
     """Whether its amplitude is the rotation vector of the whole block, taken out as the rotation that it is."""
     grows_an_angle: ClassVar[bool] = False
     """Whether its rad/s is an angle that grows with time, not a rate that is measured."""
+    shared_sentence: ClassVar[str] = ""
+    """What it is called where several sensors have it at once, as one event; empty where it is not looked for so."""
+    shared_advice: ClassVar[str] = ""
     clips: ClassVar[bool] = False
     """Whether it cuts readings off at a limit, beyond which they tell nothing."""
     always_modelled: ClassVar[bool] = False

@@ -171,6 +171,8 @@ class BiasJump(GridCause):
     repeats = 2
     sentence = "The zero of {sensors} jumps once and stays."
     advice = "Look for what happened then: a shock, a supply switch, a particle in the sensor. Repeat the session."
+    shared_sentence = "The zeros of {sensors} jump together, at one moment, and stay."
+    shared_advice = "Look for what the whole block met then: a bump, a break of its supply. Repeat the session."
 
     def grid(self, setting: Setting) -> Iterator[tuple[float, ...]]:
         for row in range(1, setting.rows):

@@ -20,6 +20,7 @@ from estimator.diagnosis.explanation.record_findings import (
     record_error_finding,
     wrong_record,
 )
+from estimator.diagnosis.explanation.temperature import temperatures, with_temperature
 from estimator.diagnosis.record.clipping import Clip, unclipped
 from estimator.diagnosis.record.earlier import earlier_baseline
 from estimator.diagnosis.record.implausible import ImplausibleAxes, implausible_axes
@@ -99,13 +100,14 @@ def diagnosed(session: PutRight, catalogue: Sequence[Cause]) -> Diagnosis:
     fitted = amplitudes(state)
     new = newness(state, fitted)
     calibration = extended_calibration(state, fitted)
+    warmth = temperatures(right.session.temperature, [b.session.temperature for b in earlier])
     return Diagnosis(
         unit=right.session.unit,
         findings=(
             *clip_findings(session.clips, rows, state.baseline, calibration),
             *(record_error_finding(e, rows) for e in session.errors),
             *([] if entry is None else [entry_finding(entry)]),
-            *findings(state, fitted, new),
+            *with_temperature(findings(state, fitted, new), warmth),
         ),
         structures=(*wrong_record(wrong, right.session), *structures(state)),
         gain=gain(state, baseline_of(rows) if session.clips or session.errors else None, fitted, new),

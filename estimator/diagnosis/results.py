@@ -72,7 +72,7 @@ class OverSessions:
     form: str
     """``same``, ``varying`` from session to session, or ``since`` a session."""
     since: str | None
-    """Start of the first session that has it, where earlier ones had not."""
+    """Start of the first session that has it, where earlier ones had not; None too where that states none."""
     spread: tuple[float, ...]
     """τ between sessions of each sensor in turn, in the unit of its amplitudes."""
     here: float

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from tests.blind.catalogue import CATALOGUE, DISCRETE, HISTORY, SENSOR
+from tests.blind.effects_grammar import GRAMMAR
 from tests.blind.effects_outside import OUTSIDE_INPUT
 from tests.blind.effects_sensor import late, smooth
 from tests.blind.physics import mean_readings
@@ -157,7 +158,7 @@ def _crossing(excess: Callable[[float], float], low: float, high: float) -> floa
 def sensible(session: Session, effect: Effect) -> bool:
     """Whether the amplitude is one that a real unit, stand or typist could show."""
     hidden = CATALOGUE.get(effect.cause)
-    if effect.cause in OUTSIDE_INPUT or (hidden and (hidden.scope == SENSOR or effect.cause in SINGLE)):
+    if effect.cause in (OUTSIDE_INPUT | GRAMMAR) or (hidden and (hidden.scope == SENSOR or effect.cause in SINGLE)):
         unit = session.unit
         i = effect.sensor
         change = signature(session, effect)[:, i] / unit.scale[i]

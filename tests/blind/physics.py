@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from tests.blind.effects_grammar import GRAMMAR
 from tests.blind.effects_outside import OUTSIDE_INPUT, OUTSIDE_POSE
 from tests.blind.effects_pose import POSE
 from tests.blind.effects_sensor import INPUT, UNIT, clipped
@@ -13,7 +14,7 @@ from tests.blind.pose import Pose, believed, gravity
 from tests.blind.world import EARTH_RATE, Array, Effect, Session
 
 HELD = POSE | OUTSIDE_POSE
-ADDED = INPUT | OUTSIDE_INPUT
+ADDED = INPUT | OUTSIDE_INPUT | GRAMMAR
 
 
 @dataclass(frozen=True, eq=False)

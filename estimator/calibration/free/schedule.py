@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.applied_vector import gravity
+from estimator.calibration.analytic import answers
 from estimator.errors import Problem, ScheduleError
 from estimator.forward import measured
 from estimator.session import ACCELEROMETER, CalibrationSession
@@ -49,7 +50,8 @@ def sorted_out(session: CalibrationSession) -> tuple[Mask, Mask, Mask]:
     if R < FEWEST:
         raise ScheduleError([Problem("table", f"{few(R, 'orientation')} to estimate anything; {advice(R)}")])
     unit = gravity(session.site) * np.array([s.nominal_scale for s in session.sensors])
-    swing = np.where(gyro, 0.0, (measured(session)[0] / unit).std(axis=0))
+    readings = measured(session)[0]
+    swing = np.where(gyro | ~answers(readings), 0.0, (readings / unit).std(axis=0))
     if swing.max() < LEAST_TURN:
         raise ScheduleError(
             [

@@ -122,15 +122,23 @@ def extended_calibration(state: SearchState, fitted: Amplitudes) -> Calibration:
     if not state.found:
         return plain
     columns = [f.best.shape.columns * (not f.best.cause.moves_parameters) for f in state.found]
-    residuals = WhitenedResiduals.of(turned_baseline(state.baseline, turned_back(state, fitted)))
+    baseline = turned_baseline(state.baseline, turned_back(state, fitted))
+    residuals = WhitenedResiduals.of(baseline)
     response = residuals.response @ residuals.whitened(np.concatenate(columns, axis=-1))
     factors = state.baseline.parameters.si_factors(state.baseline.setting.norm)
     response = response * factors[:, None]
-    return enlarged(plain, response @ fitted.covariance @ response.T)
+    return enlarged(plain, response @ fitted.covariance @ response.T, baseline.parameters.axis_tangents)
 
 
-def enlarged(calibration: Calibration, more: Array) -> Calibration:
-    """The calibration with ``more`` (P, P), SI, added to both covariances."""
+def enlarged(calibration: Calibration, more: Array, frames: Array) -> Calibration:
+    """The calibration with ``more`` (P, P), SI, added to both covariances; its axes turn along ``frames`` (m, 3, 2),
+    dimensionless, which may be others than the calibration's."""
+    own = np.stack([sensor.axis_tangents for sensor in calibration.sensors])
+    carry = np.eye(len(more))
+    for i, turn in enumerate(np.swapaxes(own, -1, -2) @ frames):
+        angles = slice(5 * i + 3, 5 * i + 5)
+        carry[angles, angles] = turn
+    more = carry @ more @ carry.T
     total = calibration.covariance + more
     steady = calibration.repeatability + more
     return replace(

@@ -8,7 +8,7 @@ import numpy as np
 from estimator.causes.contract import Cause
 from estimator.causes.noise import ExcessNoise
 from estimator.diagnosis.explanation.extended_model import Amplitudes
-from estimator.diagnosis.explanation.naming import merged, named_cause
+from estimator.diagnosis.explanation.naming import merged, named_cause, shared_event
 from estimator.diagnosis.explanation.rivals import CREDIBLE, alternatives, ranking, separations
 from estimator.diagnosis.explanation.sensor_or_stand import parity_split
 from estimator.diagnosis.results import Course, Finding, NoiseScale, Structure
@@ -35,7 +35,15 @@ def findings(state: SearchState, fitted: Amplitudes, new: Sequence[bool | None])
     ]
     cause = noise_cause(state)
     excess = [] if cause is None else [excess_finding(state, cause, e) for e in state.excess]
-    return tuple(sorted((*merged(named), *excess), key=lambda f: -f.strength))
+    together = (as_event(state, found) for found in merged(named))
+    return tuple(sorted((*together, *excess), key=lambda f: -f.strength))
+
+
+def as_event(state: SearchState, found: Finding) -> Finding:
+    """A finding in the words of one event, where all its sensors share one."""
+    own = [f for f in state.found if f.best.cause.identifier == found.cause]
+    one = len(own) > 1 and len({f.event for f in own}) == 1 and bool(own[0].event)
+    return shared_event(own[0].best.cause, found) if one else found
 
 
 def finding(state: SearchState, found: Found, fitted: Amplitudes, part: slice, new: bool | None) -> Finding:

@@ -14,6 +14,12 @@ def named_cause(cause: Cause, sensors: tuple[str, ...], p_value: float, strength
     return Finding(cause.identifier, sentence(cause, sensors), cause.advice, sensors, p_value, strength)
 
 
+def shared_event(cause: Cause, finding: Finding) -> Finding:
+    """A finding of several sensors that share one event, in words for all of them."""
+    text = cause.shared_sentence.format(sensors=", ".join(finding.sensors))
+    return replace(finding, sentence=text[:1].upper() + text[1:], advice=cause.shared_advice)
+
+
 def listed(sensors: tuple[str, ...]) -> str:
     """``A1``, ``each of A1 and A2``, ``each of A1, A2 and A3``."""
     names = list(dict.fromkeys(sensors))

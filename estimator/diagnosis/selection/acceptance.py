@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from estimator.diagnosis.selection.borne_out import hold, too_sure
 from estimator.diagnosis.selection.chosen_again import without_unpredictive
-from estimator.diagnosis.selection.common_or_own import common_or_own
+from estimator.diagnosis.selection.common_or_own import common_or_own, with_events
 from estimator.diagnosis.selection.heavy_tails import without_names_of_tails
 from estimator.diagnosis.selection.lack_of_fit import with_unlike_noise, without_common_rows, without_misfits
 from estimator.diagnosis.selection.noise_claim import (
@@ -70,5 +70,7 @@ def believed(start: SearchState) -> SearchState:
 
 
 def held(start: SearchState) -> SearchState:
-    """The causes that a search finds and that fit."""
-    return without_misfits(with_refined_shapes(search(start)))
+    """The causes that a search finds and that fit; what sensors share counts once."""
+    state = without_misfits(with_refined_shapes(search(start)))
+    shared = with_events(start, state)
+    return state if shared is state else without_misfits(with_refined_shapes(shared))

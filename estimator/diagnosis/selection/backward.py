@@ -7,9 +7,9 @@ from scipy.special import expit
 
 from estimator.diagnosis.selection.excess_noise import overdispersed
 from estimator.diagnosis.selection.ranking import (
-    family_p_value,
     joint_log_evidence,
     log_evidence_beside,
+    p_beside,
     strongest,
 )
 from estimator.diagnosis.selection.search_state import LEVEL, SearchState
@@ -42,15 +42,17 @@ since drift has the free parameters to take up what any other effect leaves."""
 
 def weighed(state: SearchState) -> float:
     """ln evidence of the names and structures found together against nothing, every further one paid for."""
-    number = len(state.found) + len(state.structures)
-    return joint_log_evidence(state) - FURTHER * max(number - 1, 0)
+    return joint_log_evidence(state) - FURTHER * max(state.misfortunes - 1, 0)
 
 
 def backward_elimination(state: SearchState) -> SearchState:
-    """Every finding keeps its significance beside all others, or goes, the weakest first."""
+    """Every finding keeps its significance beside all others, or goes, the weakest first; a sensor of an event that
+    several share has that of the event."""
     while state.found:
         again = [rescored(state.residuals, f.best, state.attributed(without=f)) for f in state.found]
-        p_value, weakest = max((family_p_value(s, state.families), k) for k, s in enumerate(again))
+        p_value, weakest = max(
+            (p_beside(f, s, state.families), k) for k, (f, s) in enumerate(zip(state.found, again, strict=True))
+        )
         if p_value < LEVEL:
             break
         state = replace(state, found=state.found[:weakest] + state.found[weakest + 1 :])

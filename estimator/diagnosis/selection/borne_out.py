@@ -26,7 +26,7 @@ from estimator.diagnosis.residuals.likelihood import log_likelihood_ratio
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
 from estimator.diagnosis.selection.common_or_own import seen_from
 from estimator.diagnosis.selection.excess_noise import sensor_scatter, with_unknown_noise
-from estimator.diagnosis.selection.ranking import extended_basis, family_p_value
+from estimator.diagnosis.selection.ranking import extended_basis, p_beside
 from estimator.diagnosis.selection.search_state import LEVEL, Found, SearchState
 from estimator.diagnosis.selection.start import as_they_scatter
 from estimator.diagnosis.signatures.lasting import MANY
@@ -70,7 +70,9 @@ def hold(state: SearchState, names: tuple[Found, ...]) -> bool:
     seen = seen_from(state, names)
     beside = replace(state, found=seen)
     again = [rescored(state.residuals, f.best, beside.attributed(without=f)) for f in seen]
-    return len(seen) == len(names) and all(family_p_value(s, state.families) < LEVEL for s in again)
+    return len(seen) == len(names) and all(
+        p_beside(f, s, state.families) < LEVEL for f, s in zip(names, again, strict=True)
+    )
 
 
 def p_if_unknown(state: SearchState, found: Found, sensor: int) -> float:
@@ -78,7 +80,7 @@ def p_if_unknown(state: SearchState, found: Found, sensor: int) -> float:
     doubting, attributed = with_unknown_noise(state, sensor), state.attributed(without=found)
     own = extended_basis(attributed, found.best.trace)[:, attributed.shape[1] :]
     p_value = tail(Projected.of(doubting.residuals, attributed), next(iter(found.best.sensors), -1), own)
-    return family_p_value(replace(found.best, p_value=p_value), state.families)
+    return p_beside(found, replace(found.best, p_value=p_value), state.families)
 
 
 def evidence_of_more(state: SearchState) -> tuple[Array, Array]:

@@ -21,10 +21,11 @@ from estimator.diagnosis.selection.excess_noise import sensor_scatter
 from estimator.diagnosis.selection.lack_of_fit import MISFIT
 from estimator.diagnosis.selection.parity_space import in_parity_space
 from estimator.diagnosis.selection.search_state import Found, SearchState
+from estimator.diagnosis.selection.shared_event import with_shared_event
 from estimator.diagnosis.selection.start import begun_with
 from estimator.diagnosis.signatures.applied_course import SIZE, AppliedCourse, applied_course
 from estimator.diagnosis.signatures.scores import score
-from estimator.diagnosis.signatures.traces import Group
+from estimator.diagnosis.signatures.traces import Group, Scored
 from estimator.session import Array
 
 DISTINCT = 5.3
@@ -113,6 +114,21 @@ def weighed_noise(state: SearchState, begun: SearchState, plain: SearchState) ->
     return float(larger + courses - sizes) - FURTHER * len(state.scatter_attributed)
 
 
+def with_events(start: SearchState, state: SearchState) -> SearchState:
+    """The state, or its rival in which several sensors share one event, whichever is likelier."""
+    return with_shared_event(start, state, own_log_evidence)
+
+
+def own_log_evidence(start: SearchState, state: SearchState) -> float:
+    """ln evidence of what was found, scatter beyond the stated noise included, against nothing; ``start``: nothing
+    found."""
+    if not state.scatter:
+        return weighed(state)
+    begun, seen = settled(start, state, state.baseline.unstated)
+    plain, _ = settled(start, state, start.baseline.unstated)
+    return weighed(seen) + weighed_noise(state, begun, plain)
+
+
 def common_or_own(start: SearchState, state: SearchState, search: Callable[[SearchState], SearchState]) -> SearchState:
     """The state, or its rival with a course of the applied vector, whichever is likelier; ``start``: nothing found."""
     if not concerns_all(state):
@@ -191,5 +207,12 @@ def seen_from(start: SearchState, found: Sequence[Found]) -> tuple[Found, ...]:
         own = [t.at(old.best.sensors) for t in known if t.cause is old.best.cause]
         same = [s for s in score(start.residuals, own, nothing) if s.shape.nonlinear == old.best.shape.nonlinear]
         if same:
-            seen.append(replace(old, best=max(same, key=lambda s: s.log_evidence)))
+            best = max(same, key=lambda s: s.log_evidence)
+            seen.append(replace(old, best=sharing(best, old.best.places) if old.event else best))
     return tuple(seen)
+
+
+def sharing(best: Scored, places: int) -> Scored:
+    """What a sensor shows of an event, which chooses among other ``places`` than a cause of one sensor."""
+    log_evidence = best.log_evidence + float(np.log(best.places / places))
+    return replace(best, places=places, log_evidence=log_evidence)

@@ -23,7 +23,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import chdtrc, gammaln
 
-from estimator.diagnosis.selection.ranking import extended_basis, family_p_value
+from estimator.diagnosis.selection.ranking import extended_basis, p_beside
 from estimator.diagnosis.selection.search_state import LEVEL, Found, SearchState
 from estimator.session import Array
 
@@ -69,9 +69,7 @@ def without_names_of_tails(state: SearchState) -> SearchState:
     They must be as rare under the tails that the readings show as under normal errors.
     """
     while state.found and (tails := tails_of(state)) is not None:
-        chances = [
-            family_p_value(replace(f.best, p_value=p_value(state, f, tails)), state.families) for f in state.found
-        ]
+        chances = [p_beside(f, replace(f.best, p_value=p_value(state, f, tails)), state.families) for f in state.found]
         worst = int(np.argmax(chances))
         if chances[worst] < LEVEL:
             break

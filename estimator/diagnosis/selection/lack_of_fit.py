@@ -53,7 +53,7 @@ def without_misfits(state: SearchState) -> SearchState:
 
 def without_common_rows(state: SearchState) -> SearchState:
     """The state without causes of single rows that most sensors show: something befell the rows, not the sensors."""
-    single = tuple(f for f in state.found if f.best.cause.nonlinear_units == ("row",) and f.best.sensors)
+    single = tuple(f for f in state.found if f.best.cause.passing and f.best.sensors)
     if 2 * len({f.best.sensors for f in single}) <= max(state.sensor_count, 4):
         return state
     kept = tuple(f for f in state.found if f not in single)

@@ -21,6 +21,11 @@ def family_p_value(scored: Scored, families: int) -> float:
     return min(1.0, scored.p_value * scored.places * families)
 
 
+def p_beside(found: Found, again: Scored, families: int) -> float:
+    """Family-wise p-value of a finding that was scored ``again`` beside others; of an event's sensor the event's."""
+    return found.p_family if found.event else family_p_value(again, families)
+
+
 def strongest(state: SearchState, traces: Sequence[Traces], without: Found | None = None) -> Found | None:
     """The signature with the strongest evidence given the other findings; None if it is not significant.
 

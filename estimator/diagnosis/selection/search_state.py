@@ -34,6 +34,8 @@ class Found:
     """Every (cause, sensors) with its ln evidence, strongest first, given the other findings."""
     unnamed: float = 0.0
     """Probability that no cause of the catalogue acts here, but something that only a free course describes."""
+    event: tuple[int, ...] = ()
+    """Sensors that share one event with this finding, its own among them: all of them are one misfortune."""
 
     @property
     def cause_log_evidence(self) -> float:
@@ -99,6 +101,12 @@ class SearchState:
     def scatter_attributed(self) -> set[int]:
         """Sensors whose scatter is already known to be excess noise or autocorrelated."""
         return {s.sensor for s in self.scatter}
+
+    @property
+    def misfortunes(self) -> int:
+        """How many independent things were found: names, of which those of one event count once, and structures."""
+        events = {(f.best.cause.identifier, f.event) for f in self.found if f.event}
+        return len(events) + sum(not f.event for f in self.found) + len(self.structures)
 
     @property
     def remaining(self) -> Array:

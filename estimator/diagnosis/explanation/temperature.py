@@ -1,0 +1,111 @@
+"""What a change of temperature since the earlier sessions can explain: it moves parameters as a drift does.
+
+The bias and scale of a sound sensor follow the temperature by a law that no session at one temperature shows. A session
+far from the temperatures of its history compares parameters under two conditions, and cannot tell which of the two
+changed: the sensor or the room. A session at the temperature of the others can.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from estimator.diagnosis.explanation.findings import UNEXPLAINED
+from estimator.diagnosis.results import Finding, Rival, Separation
+from estimator.session import Array
+
+APART = 5.0
+"""°C from which on two sessions were measured at different temperatures: laboratories that are held at 20 ± 2 °C differ
+by less through all seasons, while 30 µg and 100 ppm per °C, usual of sensors without compensation, are worth whole
+tolerances beyond it."""
+
+BIAS, SCALE = "bias-temperature", "scale-temperature"
+OF_TEMPERATURE = frozenset({BIAS, SCALE})
+"""Causes that a change between sessions may be, where their temperatures differ."""
+OF_ALL_SENSORS = {"gravity-entry": (SCALE,), "alpha-entry": (BIAS,)}
+"""What temperature does to all sensors alike, by the change between sessions that looks the same."""
+DRIFT = "sensor-drift"
+
+
+@dataclass(frozen=True)
+class Temperatures:
+    """A session's temperature, and that of its history, °C."""
+
+    now: float
+    usual: float
+
+    @property
+    def apart(self) -> float:
+        """°C."""
+        return abs(self.now - self.usual)
+
+
+def temperatures(session: Array | None, history: Sequence[Array | None]) -> Temperatures | None:
+    """Where a session and most of its history were measured; None where they are alike, or where nothing says it.
+
+    Parameters
+    ----------
+    session : (R,) °C of its rows; None where it was not recorded.
+    history : the same of every earlier session. What one runs through, it covers.
+    """
+    known = [rows for rows in history if rows is not None]
+    if session is None or not known:
+        return None
+    now = float(session.mean())
+    nearest = np.array([np.clip(now, rows.min(), rows.max()) for rows in known])
+    usual = now + float(np.median(nearest - now))
+    found = Temperatures(now, usual)
+    return found if found.apart > APART else None
+
+
+def with_temperature(findings: Sequence[Finding], found: Temperatures | None) -> tuple[Finding, ...]:
+    """The findings; changes since the history have temperature beside them where it changed as well."""
+    return tuple(findings if found is None else (beside_temperature(f, found) for f in findings))
+
+
+def beside_temperature(finding: Finding, found: Temperatures) -> Finding:
+    """One finding with what temperature may be instead of it."""
+    rivals = tuple(name for name in rivals_of(finding) if name not in finding.alternatives)
+    if not rivals:
+        return finding
+    named = tuple(name for name in rivals if name != UNEXPLAINED)
+    again = f"measure again at about {found.usual:.0f} °C"
+    apart = tuple(Separation(name, finding.sensors, 0.0, again, finding.strength) for name in named)
+    own = replace(
+        finding,
+        alternatives=(*named, *finding.alternatives, *(name for name in rivals if name == UNEXPLAINED)),
+        separations=(*apart, *finding.separations),
+        ranking=tuple(shared(finding, named)),
+        advice=f"Measure again at about {found.usual:.0f} °C, as in the earlier sessions, or calibrate over "
+        f"temperature, before you act on this: the session was measured at {found.now:.0f} °C.",
+    )
+    return replace(own, sentence=in_words(own, found)) if finding.cause == DRIFT else own
+
+
+def in_words(finding: Finding, found: Temperatures) -> str:
+    """What is known of a drift, and no more."""
+    sensors = ", ".join(finding.sensors)
+    return (
+        f"The parameters of {sensors} differ from those of the earlier sessions, and the temperature "
+        f"differs by {found.apart:.0f} °C."
+    )
+
+
+def rivals_of(finding: Finding) -> tuple[str, ...]:
+    """Causes by which temperature moves what has moved; of axes alone it is none of the catalogue."""
+    if finding.cause != DRIFT:
+        return OF_ALL_SENSORS.get(finding.cause, ())
+    scales, biases = any(finding.amplitude[0::4]), any(finding.amplitude[1::4])
+    return tuple(name for name, acts in ((BIAS, biases), (SCALE, scales)) if acts) or (UNEXPLAINED,)
+
+
+def shared(finding: Finding, rivals: Sequence[str]) -> list[Rival]:
+    """The ranking, in which a cause shares its probability evenly with rivals that do the same to these sessions."""
+    ranked = list[Rival]()
+    for one in finding.ranking:
+        if one.cause != finding.cause:
+            ranked.append(one)
+            continue
+        part = replace(one, probability=one.probability / (1 + len(rivals)))
+        ranked += [part, *(replace(part, cause=name) for name in rivals)]
+    return ranked

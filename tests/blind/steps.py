@@ -1,0 +1,135 @@
+"""Zeros of several sensors that step at one row of a session: a bump, a power glitch, a block seated anew."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from tests.blind.draw import Arrangement, draw_mounting, draw_noise, draw_site, draw_stand, draw_unit
+from tests.blind.effects_sensor import across
+from tests.blind.physics import measure
+from tests.blind.pose import gravity
+from tests.blind.schedule import Wanted, draw_schedule
+from tests.blind.strength import Lens, orthonormal
+from tests.blind.world import Array, Noise, Session
+from tests.blind.write import session_file
+
+ORIENTATIONS = 24
+SAFE = 4
+"""Rows before and after a step at least: fewer hardly tell it from a reading or two far off."""
+SHOWN = 0.4
+"""Share of a step that the calibration must leave: one between the runs of a stand is taken for a turn of the axes."""
+
+
+@dataclass(frozen=True)
+class Block:
+    """What is measured."""
+
+    name: str
+    accelerometers: int = 0
+    gyros: int = 0
+    stand: bool = True
+
+
+BLOCKS = (
+    Block("stand, 6 accelerometers", accelerometers=6),
+    Block("stand, 6 gyros", gyros=6),
+    Block("orientations, 6 accelerometers", accelerometers=6, stand=False),
+    Block("orientations, 12 accelerometers", accelerometers=12, stand=False),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Stepped:
+    """A session file and what is true of it."""
+
+    session: dict[str, Any]
+    sensors: tuple[str, ...]
+    rows: tuple[int, ...]
+    """The first after the step of every one of the sensors, counted from 1."""
+    size: tuple[float, ...]
+    """Of every one of the sensors, m/s² or rad/s."""
+
+
+def draw_steps(block: Block, strengths: Array, rng: np.random.Generator, *, apart: bool = False) -> Stepped:
+    """So many sensors step by ``strengths`` (k,) standard errors each; ``apart``: each at a row of its own."""
+    world, up = _session(block, rng), _directions(rng)
+    rows, m = world.schedule.rows if block.stand else ORIENTATIONS, world.unit.size
+    sensors = np.sort(rng.choice(m, len(strengths), replace=False))
+    after = (np.arange(rows)[:, None] >= np.arange(rows)) * 1.0
+    seen = np.array([_strength(block, world, up, i, after) for i in range(m)])
+    alone = np.array([_strength_alone(world, i, after) for i in range(m)])
+    able = np.flatnonzero((seen > SHOWN * alone).all(axis=0))
+    able = able[(able >= SAFE) & (able <= rows - SAFE)]
+    if not len(able):
+        return draw_steps(block, strengths, rng, apart=apart)
+    row = rng.choice(able, len(sensors)) if apart else np.full(len(sensors), rng.choice(able))
+    size = rng.choice([-1.0, 1.0], len(sensors)) * strengths / seen[sensors, row]
+    added = np.zeros((rows, m))
+    added[:, sensors] = after[:, row] * size
+    names = tuple(world.unit.names[i] for i in sensors)
+    return Stepped(_file(block, world, up, added, rng), names, tuple((row + 1).tolist()), tuple(size.tolist()))
+
+
+def _session(block: Block, rng: np.random.Generator) -> Session:
+    unit = draw_unit(Arrangement(block.accelerometers, block.gyros), rng)
+    site = draw_site(rng)
+    wanted = Wanted(int(rng.integers(10, 17)), (False, True), rng.random() < 0.7, False, "wander", True, True)
+    drawn = draw_noise(unit, None, rng)
+    whole = np.hypot(drawn.reading, drawn.repeatability)
+    noise = replace(drawn, stated=True) if block.stand else Noise(whole, np.zeros(unit.size))
+    return Session(unit, draw_schedule(wanted, rng), site, draw_stand(site, rng), draw_mounting(rng), noise)
+
+
+def _directions(rng: np.random.Generator) -> Array:
+    up = rng.standard_normal((ORIENTATIONS, 3))
+    return np.asarray(up / np.linalg.norm(up, axis=1, keepdims=True))
+
+
+def _strength(block: Block, world: Session, up: Array, sensor: int, steps: Array) -> Array:
+    """(S,) standard errors of steps (R, S) of one unit, m/s² or rad/s, beside what the calibration absorbs."""
+    columns = np.zeros((steps.shape[0], world.unit.size, steps.shape[1]))
+    columns[:, sensor] = steps
+    if block.stand:
+        columns = columns * world.unit.scale[:, None]
+        return np.asarray(np.linalg.norm(Lens(world).left(columns.reshape(-1, steps.shape[1])), axis=0))
+    absorbed = orthonormal(_absorbed(world, up))
+    white = (columns / world.noise.reading[:, None]).reshape(-1, steps.shape[1])
+    return np.asarray(np.linalg.norm(white - absorbed @ (absorbed.T @ white), axis=0))
+
+
+def _strength_alone(world: Session, sensor: int, steps: Array) -> Array:
+    """(S,) the same with nothing absorbed but a constant."""
+    share = steps.mean(axis=0)
+    error = np.hypot(world.noise.reading, world.noise.repeatability)[sensor]
+    return np.asarray(np.sqrt(np.maximum(len(steps) * share * (1 - share), 1e-9)) / error)
+
+
+def _absorbed(world: Session, up: Array) -> Array:
+    """(R·m, 5m + 2R) of parameters and of each row's own direction, standard errors."""
+    unit, g = world.unit, gravity(world.site)
+    a = g * up @ unit.axis.T
+    R, m = a.shape
+    sides = np.array([across(e) for e in unit.axis])
+    own = [a, 1 + 0 * a, a**2, g * up @ sides[:, 0].T, g * up @ sides[:, 1].T]
+    columns = np.zeros((R, m, 5 * m + 2 * R))
+    for i in range(m):
+        columns[:, i, 5 * i : 5 * i + 5] = np.stack([c[:, i] for c in own], axis=-1)
+    for j, n in enumerate(up):
+        columns[j, :, 5 * m + 2 * j : 5 * m + 2 * j + 2] = g * unit.axis @ np.stack(across(n), axis=1)
+    return (columns / world.noise.reading[:, None]).reshape(R * m, -1)
+
+
+def _file(block: Block, world: Session, up: Array, added: Array, rng: np.random.Generator) -> dict[str, Any]:
+    if block.stand:
+        readings, _ = measure(world, (), rng)
+        return session_file(world, readings + world.unit.scale * added)
+    unit, g = world.unit, gravity(world.site)
+    a = g * up @ unit.axis.T
+    error = world.noise.reading
+    u = unit.scale * (a + unit.bias + unit.quadratic * a**2 + added + error * rng.standard_normal(a.shape))
+    table: dict[str, Any] = {name: u[:, i].tolist() for i, name in enumerate(unit.names)}
+    table |= {f"{name}_se": [float(unit.scale[i] * error[i])] * len(up) for i, name in enumerate(unit.names)}
+    document = session_file(world, np.zeros((world.schedule.rows, unit.size)))
+    document |= {"programme": "arbitrary-orientations", "table": table, "site": {"gravity_m_s2": g}}
+    return {key: value for key, value in document.items() if key not in ("stand", "mounting")}
