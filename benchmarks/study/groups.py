@@ -31,14 +31,15 @@ from estimator.groups.evidence import ALPHA
 from estimator.groups.looks import e_process
 from estimator.groups.terms import HELD_OUT, learn, libraries
 from tests.blind.group_score import score
-from tests.blind.groups import OUTSIDE, Group, draw_group
+from tests.blind.groups import OF_GRAMMAR, OUTSIDE, Group, draw_group
 from tests.blind.physics import mean_readings
 
 PAGE = Path(__file__).parents[2] / "docs" / "diagnosis" / "groups.md"
 LOOKS = 100
 """Sessions of a life without an effect."""
 DESIGNS = 10
-"""Sessions that are simulated whole for a life; their scores are drawn anew for the others."""
+"""Sessions that are simulated whole for a life, and those of an effect of the grammar; the scores of a life's further
+ones are drawn anew."""
 TIMED = 10
 """Every so many groups a diagnosis is timed beside the statistics of its session."""
 
@@ -66,18 +67,21 @@ def tasks(groups: int, seed: int) -> Iterator[Task]:
         if k % 4 == 0:
             yield Task("since", levels[k // 4 % 3], "one", "since", False, (seed, 3, k))
             yield Task("two", levels[k // 4 % 3], "two", "same", False, (seed, 4, k))
-        if k % 2 == 1:
-            yield Task("none", levels[k // 2 % 3], "none", "same", k % 4 == 1, (seed, 5, k))
+        for again in range(2):
+            yield Task("none", levels[k % 3], "none", "same", bool(again), (seed, 5 + 6 * again, k))
         if k % 3 == 1:
             yield Task("misstated", levels[k // 3 % 3], "one", "same", True, (seed, 6, k))
         if k % 3 == 2:
             yield Task("outside", levels[k // 3 % 2], OUTSIDE, "same", False, (seed, 7, k))
+        for again in range(2):
+            level = ("unit", "unit", "type")[(2 * k + again) % 3]
+            yield Task("grammar", level, OF_GRAMMAR, "same", False, (seed, 9 + again, k))
         yield Task("life", levels[k % 3], "none", "same", False, (seed, 8, k))
 
 
 def perform(task: Task) -> dict[str, Any]:
     """The marks of one group, plain, so that they can be kept as JSON."""
-    size = DESIGNS if task.part == "life" else None
+    size = DESIGNS if task.part in ("life", "grammar") else None
     quiet = task.part == "one" and task.seed[2] % 2 == 1
     group = draw_group(
         task.level, task.kind, task.seed, form=task.form, size=size, misstated=task.misstated, quiet=quiet
@@ -121,13 +125,15 @@ def prediction(group: Group, sessions: list[CalibrationSession], found: GroupDia
                 told[number] += whole[k].residuals.trace(learned.predicted(whole[k])[..., None])[:, 0]
     x, y = np.concatenate(truth), np.concatenate(told)
     size = float(x @ x)
+    if not size:
+        return {}
     alike = float(x @ y / np.sqrt(max(size * (y @ y), 1e-300)))
     return {"correlation": alike, "explained": 1 - float((x - y) @ (x - y)) / size}
 
 
 def first_strength(group: Group, kept: list[SessionStatistics]) -> float | None:
     """True pooled strength of the only effect at the session at which a look first says that something is there."""
-    if len(group.truths) != 1 or group.kind == OUTSIDE:
+    if len(group.truths) != 1 or group.kind in (OUTSIDE, OF_GRAMMAR):
         return None
     reached = np.flatnonzero(e_process(kept, group.level) >= -np.log(ALPHA))
     strengths = np.array(group.truths[0].strengths)

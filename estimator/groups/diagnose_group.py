@@ -12,16 +12,19 @@ from estimator.causes.catalogue import cause
 from estimator.diagnosis.explanation.naming import sentence
 from estimator.groups.findings import LARGEST, Told, finding_of, structures, told
 from estimator.groups.gain import gain_of
-from estimator.groups.layout import LEVELS, STAND, TYPE, UNIT, Layout
+from estimator.groups.lack_of_fit import Group, names_that_fit
+from estimator.groups.layout import EVERY, LEVELS, STAND, TYPE, UNIT, Layout
 from estimator.groups.limits import limits
 from estimator.groups.pictures import pictures
+from estimator.groups.place import Where
 from estimator.groups.pool import Model, pooled
+from estimator.groups.predicts import names_that_predict
 from estimator.groups.results import EmpiricalTerm, GroupDiagnosis, GroupFinding
 from estimator.groups.selection import Selection, select
 from estimator.groups.separation import Separator
 from estimator.groups.session_statistics import statistics_of
 from estimator.groups.statistics import SessionStatistics
-from estimator.groups.terms import learn, libraries, shown
+from estimator.groups.terms import Library, learn, shown
 from estimator.session import CALIBRATIONS, CalibrationSession
 
 
@@ -59,7 +62,9 @@ def diagnose_statistics(
     if not statistics:
         raise ValueError("a group needs a session that calibrates a block")
     layout = Layout.of(statistics, level)
-    selection = select(layout)
+    selection = names_that_predict(select(layout))
+    group = Group(selection, tuple(sessions))
+    selection = names_that_fit(group) if sessions else selection
     each = [told(selection, f) for f in selection.found]
     separator = Separator(tuple(sessions))
     found = [finding_of(selection, one, separator.measurements(selection, one)) for one in each]
@@ -73,7 +78,7 @@ def diagnose_statistics(
         first=statistics[0].started_at,
         last=statistics[-1].started_at,
         findings=tuple(replace(f, picture=picture) for f, picture in zip(whole, drawn, strict=True)),
-        terms=tuple(learned_terms(selection, level, sessions)),
+        terms=tuple(learned_terms(selection, level, group)),
         structures=structures(selection),
         limits=limits(pooled(layout, Model(), selection.scale), level),
         gain=gain_of(selection, found, sessions),
@@ -82,7 +87,7 @@ def diagnose_statistics(
     )
 
 
-def learned_terms(selection: Selection, level: str, sessions: Sequence[CalibrationSession]) -> Iterator[EmpiricalTerm]:
+def learned_terms(selection: Selection, level: str, group: Group) -> Iterator[EmpiricalTerm]:
     """Empirical terms where the sessions share structure that no cause explains, place by place.
 
     What has a name is left free in every session.
@@ -93,10 +98,9 @@ def learned_terms(selection: Selection, level: str, sessions: Sequence[Calibrati
         (h.sensor, *((TYPE, whole_type) if level == TYPE and h.sensor else (h.level, h.subject)))
         for h, _ in selection.structures
     )
-    for sensor, whose, subject in places if sessions else ():
-        own = [s for s in sessions if subject in (s.unit, s.unit_type, s.stand.id if s.stand else "")]
-        own = [s for s in own if not sensor or sensor in [x.name for x in s.sensors]]
-        whole = libraries(own, sensor, named)
+    for sensor, whose, subject in places if group.sessions else ():
+        own = [one for one in group.fitted if Where(whose, subject, sensor, "").concerns(one.record)]
+        whole = [Library.of(one.baseline, sensor, named) for one in own] if sensor != EVERY else []
         terms = learn(sensor, whole)
         if terms is not None:
             yield replace(shown(subject, terms, whole), level=whose)
@@ -145,10 +149,14 @@ def notes(selection: Selection, each: Sequence[Told]) -> list[str]:
     found = []
     for f, h in selection.misfits:
         where = f" on {f.sensor}" if f.sensor else ""
-        found.append(f"{f.cause}{where} is near, but leaves harmonic {h.shape:g} of β: it does not fit")
-    alone = {selection.layout.parts[k].statistics.started_at for k, _ in selection.own}
+        if h.shape is None:
+            found.append(f"{f.cause}{where} is near, but {' + '.join(h.words)} fits better: it has no name")
+        else:
+            found.append(f"{f.cause}{where} is near, but leaves harmonic {h.shape:g} of β: it does not fit")
+    alone = [selection.layout.parts[k].statistics.started_at for k in sorted({k for k, _ in selection.own})]
     if alone:
-        found.append(f"taken out of single sessions, which show it by themselves: {', '.join(sorted(alone))}")
+        dates = dict.fromkeys(date or "one without a date" for date in alone)
+        found.append(f"taken out of single sessions, which show it by themselves: {', '.join(dates)}")
     larger = {p.statistics.unit: s for p, s in zip(selection.layout.parts, selection.scale, strict=True) if s > 1.5}
     found += [f"{u}: the sessions scatter {np.sqrt(s):.1f} times as much as stated" for u, s in larger.items()]
     return found

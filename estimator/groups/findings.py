@@ -69,7 +69,8 @@ def finding_of(selection: Selection, one: Told, measurements: Sequence[tuple[str
     weighed = one.scale.weighed[f.place[0]]
     date = selection.layout.parts[f.since].statistics.started_at
     others = dict.fromkeys(n.hypothesis.cause for n in one.rivals if n.hypothesis.cause != h.cause)
-    beside = [UNEXPLAINED] if any(concerns(h, s) for s, _ in selection.structures) else []
+    doubted = h.group in selection.doubted or any(concerns(h, s) for s, _ in selection.structures)
+    beside = [UNEXPLAINED] if doubted else []
     return GroupFinding(
         cause=h.cause,
         level=h.level,
@@ -138,7 +139,7 @@ def structures(selection: Selection) -> tuple[GroupStructure, ...]:
     """Structure that the sessions share and no cause explains, in words."""
     found = []
     for h, statistic in selection.structures:
-        wave = f"harmonic {h.shape:g} of β"
-        where = f"{h.sensor}: {wave}" if h.sensor else f"the applied vector, common to all sensors: {wave}"
+        what = f"harmonic {h.shape:g} of β" if h.shape is not None else " + ".join(h.words)
+        where = f"{words_of(h)}: {what}" if h.sensor else f"the applied vector, common to all sensors: {what}"
         found.append(GroupStructure(where, h.subject, (h.sensor,) if h.sensor else (), float(np.sqrt(statistic))))
     return tuple(found)

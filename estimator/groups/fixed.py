@@ -111,12 +111,13 @@ def calibrate_with(
     if baseline is None or added is None:
         return calibrate_extended(session, causes) if causes else calibrate(session)
     without, more = taken_out(baseline, added)
-    return enlarged(calibrate_extended(without, causes) if causes else calibrate(without), more)
+    plain = calibrate_extended(without, causes) if causes else calibrate(without)
+    return enlarged(plain, more, baseline.parameters.axis_tangents)
 
 
 def taken_out(baseline: Baseline, added: Added) -> tuple[CalibrationSession, Array]:
     """A fitted session without what effects add to its readings, and what is not known of them as covariance of the
-    parameters (P, P), SI."""
+    parameters (P, P), SI, along the tangents of the fit."""
     residuals, session = WhitenedResiduals.of(baseline), baseline.session
     value, covariance = amplitude_in(residuals, added)
     without = replace(session, readings=session.readings - in_readings(baseline, added.columns @ value))

@@ -18,6 +18,7 @@ from estimator.diagnosis.results import Rival
 from estimator.groups.evidence import log_sum
 from estimator.groups.findings import Told, finding_of, told
 from estimator.groups.layout import UNIT, Layout
+from estimator.groups.predicts import names_that_predict
 from estimator.groups.random_effects import mean_of
 from estimator.groups.results import GroupFinding
 from estimator.groups.selection import select
@@ -42,6 +43,8 @@ class Lasting:
     """The same with the amplitude that the others have, without the latest."""
     sessions: int
     """That speak of it, the latest among them."""
+    began: int
+    """Of how many sessions before the latest it is known; what began with the latest itself has 0."""
     here: float
     """Probability that the latest session has it."""
     ranking: tuple[Rival, ...]
@@ -54,7 +57,7 @@ def lasting(records: Sequence[SessionStatistics], catalogue: Sequence[Cause]) ->
     known = {cause.identifier for cause in catalogue}
     tables = layout.hypotheses.values()
     barred = frozenset(h.group for table in tables for h in table if not h.nameless and h.cause not in known)
-    selection = select(layout, barred)
+    selection = names_that_predict(select(layout, barred))
     found = []
     for f in selection.found:
         one = told(selection, f)
@@ -82,6 +85,7 @@ def _in_latest(one: Told, whole: GroupFinding) -> Iterator[Lasting]:
             spread=(mean.spread,),
         ),
         sessions=count + 1,
+        began=latest - one.found.since,
         here=probability(predictive(mean.value, spread, U[latest], F[latest]), count),
         ranking=tuple(_ranking(one)),
     )

@@ -17,6 +17,8 @@ from estimator.session import Array
 
 UNIT, TYPE, STAND = "unit", "type", "stand"
 LEVELS = (UNIT, TYPE, STAND)
+TERMS = "terms"
+"""In place of a cause: nameless structure that terms of the library describe."""
 EVERY = "*"
 """In place of a sensor's name: every sensor of the kind."""
 
@@ -44,10 +46,12 @@ class Hypothesis:
     kind: str
     shape: float | None
     width: int
+    words: tuple[str, ...] = ()
+    """Of terms of the library: what they multiply."""
 
     @property
     def nameless(self) -> bool:
-        return self.cause == HARMONIC
+        return self.cause in (HARMONIC, TERMS)
 
     @property
     def group(self) -> tuple[str, str, str, str, str]:

@@ -1,9 +1,10 @@
 """The library of empirical terms: products of up to two of what a session knows of each reading.
 
-Of one sensor: a, |a|, sign a, p·n, o·n (as part of the applied vector), T − T̄, dT/dt, t − t̄, the run (±1), the input of
-the row before, and waves of β. Of the applied vector: δα and δβ as waves of β, as
-courses of temperature and time, alike and opposite in the two runs. A wave has two amplitudes, and so have its
-products. The catalogue's causes lie in the span, so that what is learned beside them is what the catalogue lacks.
+Of one sensor: a, |a|, sign a, p·n, o·n (as part of the applied vector), T − T̄, dT/dt, T late by some time, t − t̄, the
+run (±1), the input of the row before, waves of β, and the squares of a, T − T̄ and t − t̄. Of the applied vector: δα and
+δβ as waves of β, as courses of temperature and time, alike and opposite in the two runs. A wave has two amplitudes, and
+so have its products. The catalogue's causes lie in the span, so that what is learned beside them is what the catalogue
+lacks.
 """
 
 from collections.abc import Iterator
@@ -13,6 +14,7 @@ from itertools import combinations
 import numpy as np
 
 from estimator.causes.contract import Setting
+from estimator.causes.lag import lagging
 from estimator.causes.sensor import across
 from estimator.causes.stand import harmonic
 from estimator.diagnosis.residuals.baseline import Baseline
@@ -22,6 +24,10 @@ WAVES = 5
 """Highest harmonic of β in the library: what is kept with every session for the look at structure ends there too.
 
 A session of few positions takes the fifth for the third. It is in the library all the same: other sessions tell."""
+
+
+LAGS = (540.0, 1620.0)
+"""s, of the grid of lags that the cause is pooled on: between them and the rate lies what follows within an hour."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +64,15 @@ def factors_of_sensor(setting: Setting, i: int, nominal: Array) -> Iterator[Fact
     axes = setting.parameters.axis.copy()
     axes[i] = nominal
     p, o = across(replace(setting, parameters=replace(setting.parameters, axis=axes)), i)
-    plain = {"a": a, "|a|": np.abs(a), "sign a": np.sign(a), "(p·n)": p / g, "(o·n)": o / g, "a before": before}
+    plain = {
+        "a": a,
+        "|a|": np.abs(a),
+        "sign a": np.sign(a),
+        "(p·n)": p / g,
+        "(o·n)": o / g,
+        "a before": before,
+        "a²": a**2,
+    }
     for words, values in plain.items():
         yield Factor((words,), "", values[:, None])
     yield from factors_of_session(setting)
@@ -67,11 +81,18 @@ def factors_of_sensor(setting: Setting, i: int, nominal: Array) -> Iterator[Fact
 def factors_of_session(setting: Setting) -> Iterator[Factor]:
     """Factors that are the same for all sensors."""
     if setting.has("temperature") and setting.temperature is not None:
-        yield Factor(("(T − T̄)",), "K", (setting.temperature - setting.temperature.mean())[:, None])
+        warm = (setting.temperature - setting.temperature.mean())[:, None]
+        yield Factor(("(T − T̄)",), "K", warm)
+        yield Factor(("(T − T̄)²",), "(K)²", warm**2)
         if setting.time is not None and bool(np.all(np.diff(setting.time) > 0)):
             yield Factor(("dT/dt",), "K/s", np.gradient(setting.temperature, setting.time)[:, None])
+            for tau in LAGS:
+                behind = lagging(setting.temperature, setting.time, tau)
+                yield Factor((f"(T, τ = {tau:.0f} s)",), "K", (behind - behind.mean())[:, None])
     if setting.time is not None and float(np.ptp(setting.time)) > 0:
-        yield Factor(("(t − t̄)",), "s", (setting.time - setting.time.mean())[:, None])
+        late = (setting.time - setting.time.mean())[:, None]
+        yield Factor(("(t − t̄)",), "s", late)
+        yield Factor(("(t − t̄)²",), "(s)²", late**2)
     if setting.flipped is not None and setting.has("both runs"):
         yield Factor(("run",), "", np.where(setting.flipped, -1.0, 1.0)[:, None])
     if setting.beta is not None:
@@ -83,9 +104,11 @@ def factors_of_session(setting: Setting) -> Iterator[Factor]:
 def products(factors: list[Factor]) -> Iterator[Factor]:
     """The factors, their squares where those are something else, and products of two; of waves only with others."""
     yield from factors
+    known = {f.words[0] for f in factors}
     for f in factors:
-        if len(f.words) == 1 and f.words[0] not in ("|a|", "sign a", "run"):
-            yield Factor((f"{f.words[0]}²",), f"({f.unit})²" if f.unit else "", f.values**2)
+        square = f.words[0].replace("²", "⁴") if "²" in f.words[0] else f"{f.words[0]}²"
+        if len(f.words) == 1 and f.words[0] not in ("|a|", "sign a", "run") and square not in known:
+            yield Factor((square,), f"({f.unit})²" if f.unit else "", f.values**2)
     for f, g in combinations(factors, 2):
         if len(f.words) == 2 and len(g.words) == 2:
             continue
@@ -122,4 +145,4 @@ def _of_vector(setting: Setting) -> Iterator[Term]:
 
 def variable_of(factor: Factor) -> str:
     """What a term is drawn over: β where it has a wave in it, else its first factor."""
-    return "β" if "β" in factor.words[0] else factor.words[0].split("·")[0].strip("²")
+    return "β" if "β" in factor.words[0] else factor.words[0].split("·")[0].strip("²⁴")

@@ -10,7 +10,8 @@ from estimator.diagnosis.results import Limit
 class SessionAmplitude:
     """One line of a forest plot."""
 
-    started_at: str
+    started_at: str | None
+    """In UTC; None where the file states none."""
     unit: str
     amplitude: tuple[float, ...]
     """SI, element by element as in the finding."""
@@ -60,7 +61,7 @@ class GroupFinding:
     form: str
     """``same``: always there; ``varying``: there, but different every time; ``since``: from a session on."""
     since: str | None
-    """Start of the first session that has it, where earlier ones had not."""
+    """Start of the first session that has it, where earlier ones had not; None too where that states none."""
     e_value: float
     strength: float
     """Pooled, in standard errors of a reading."""
@@ -179,8 +180,10 @@ class GroupDiagnosis:
     level: str
     subject: str
     sessions: int
-    first: str
-    last: str
+    first: str | None
+    """Start of the oldest session; None where it states none."""
+    last: str | None
+    """The same of the latest."""
     findings: tuple[GroupFinding, ...]
     terms: tuple[EmpiricalTerm, ...]
     structures: tuple[GroupStructure, ...]

@@ -6,12 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator.arrays import eigh
+from estimator.diagnosis.signatures.scores import FAINT
 from estimator.groups.statistics import Block
 from estimator.session import Array
-
-FAINT = 1e-3
-"""Share of a block's strongest direction, as information, below which a direction is no amplitude of its own: 0.03 as
-a trace, as within one session."""
 
 
 def starts_of(blocks: Sequence[Block]) -> Array:
@@ -31,14 +28,18 @@ def eigen_scores(blocks: Sequence[Block], U: Array, F: Array) -> tuple[Array, Ar
 
 
 def batch(U: Array, F: Array) -> tuple[Array, Array]:
-    """(H,) χ² and (H,) degrees of freedom of H candidates; ``U`` (H, w), ``F`` (H, w, w), any units."""
+    """(H,) χ² and (H,) degrees of freedom of H candidates; ``U`` (H, w), ``F`` (H, w, w), any units.
+
+    What counts as an amplitude of its own is what counts within one session: `FAINT` of the trace, its square of the
+    information.
+    """
     if U.shape[1] == 1:
         seen = F[:, 0, 0] > 0
         return np.where(seen, U[:, 0] ** 2 / np.where(seen, F[:, 0, 0], 1.0), 0.0), seen.astype(int)
     size = np.sqrt(np.maximum(np.diagonal(F, axis1=1, axis2=2), 0.0))
     scale = np.where(size > 0, 1 / np.where(size > 0, size, 1.0), 0.0)
     value, vector = eigh(F * scale[:, :, None] * scale[:, None, :])
-    live = value > FAINT * np.maximum(value[:, -1:], 1e-300)
+    live = value > FAINT**2 * np.maximum(value[:, -1:], 1e-300)
     along = ((U * scale)[:, None, :] @ vector)[:, 0]
     return (np.where(live, along**2 / np.where(live, value, 1.0), 0.0)).sum(axis=1), live.sum(axis=1) * (
         value[:, -1] > 0

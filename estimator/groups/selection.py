@@ -66,10 +66,14 @@ class Selection:
     nameless: tuple[Place, ...] = ()
     """Structure that is in the fit."""
     barred: frozenset[tuple[str, ...]] = frozenset()
+    aside: tuple[tuple[int, Place], ...] = ()
+    """What is left free in single sessions, since no cause describes what their place does."""
+    doubted: frozenset[tuple[str, ...]] = frozenset()
+    """Names that may as well be something outside the catalogue."""
 
     def model(self, without: Found | None = None) -> Model:
         """Everything found, one finding left out."""
-        model = Model(absorbed=self.own)
+        model = Model(absorbed=(*self.own, *self.aside))
         n = range(len(self.layout.parts))
         for place in self.nameless:
             model = model.with_shared(place)
@@ -84,9 +88,11 @@ class Selection:
         return weigh(pooled(self.layout, self.model(without), self.scale), self.barred)
 
 
-def select(layout: Layout, barred: frozenset[tuple[str, ...]] = frozenset()) -> Selection:
-    """The findings of a group; ``barred`` hypotheses are not tried."""
-    state = Selection(layout, larger_than_stated(layout), barred=barred)
+def select(
+    layout: Layout, barred: frozenset[tuple[str, ...]] = frozenset(), aside: tuple[tuple[int, Place], ...] = ()
+) -> Selection:
+    """The findings of a group; ``barred`` hypotheses are not tried, those ``aside`` are left free in their session."""
+    state = Selection(layout, larger_than_stated(layout), barred=barred, aside=aside)
     for _ in range(ROUNDS):
         scale = state.weighed()
         step = plainly_nameless(state, scale)

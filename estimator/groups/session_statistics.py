@@ -7,6 +7,7 @@ session enters with the scatter that it has and never with full weight. Noise th
 makes its scores Student's t: they enter the evidence as normal deviates of the same tail probability.
 """
 
+import re
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -28,7 +29,12 @@ from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.groups.candidates import columns_of
 from estimator.groups.scores import Scores, eigen_scores
 from estimator.groups.statistics import Block, SessionStatistics, quantised, shared
+from estimator.moments import in_utc
 from estimator.session import Array, CalibrationSession
+
+LEFT_OUT = re.compile(r"reading (\d+) left out")
+MUTE = 1e9
+"""Times its variance a lone wrong reading has no weight."""
 
 PLAIN = 1e-3
 """p-value, all candidates of a session together, at which one shows plainly in the session by itself."""
@@ -78,12 +84,27 @@ def statistics_of(session: CalibrationSession) -> SessionStatistics:
     ------
     ScheduleError : the session cannot be calibrated at all.
     """
+    return kept(session, *put_right(session))
+
+
+def put_right(session: CalibrationSession) -> tuple[Baseline, tuple[str, ...]]:
+    """A session fitted with its record put right, and what was put right, in words."""
     clips, whole = unclipped(averaged(session), CATALOGUE)
     errors, right = undo_record_errors(baseline_of(whole), (), CATALOGUE)
-    baseline = about_its_flip(right)
     words = [f"{session.sensors[c.sensor].name} clipped" for c in clips]
     words += [e.undone.cause.identifier for e in errors]
-    return kept(session, baseline, tuple(words))
+    return about_its_flip(right), tuple(words)
+
+
+def as_kept(session: CalibrationSession, record: SessionStatistics) -> Baseline:
+    """A session fitted as its record took it: put right, in the noise that it shows, lone readings without weight."""
+    baseline, _ = put_right(session)
+    alone = [int(found[1]) - 1 for words in record.put_right if (found := LEFT_OUT.fullmatch(words))]
+    if np.all(record.noise_factor == 1) and not alone:
+        return baseline
+    variance = baseline.variance * record.noise_factor**2
+    variance.flat[alone] *= MUTE
+    return refitted(replace(baseline, variance=variance))
 
 
 def kept(session: CalibrationSession, baseline: Baseline, words: tuple[str, ...]) -> SessionStatistics:
@@ -106,7 +127,7 @@ def kept(session: CalibrationSession, baseline: Baseline, words: tuple[str, ...]
         unit=session.unit,
         unit_type=session.unit_type or "",
         stand="" if session.stand is None else session.stand.id,
-        started_at=session.started_at or "",
+        started_at=in_utc(session.started_at),
         sensors=tuple(s.name for s in session.sensors),
         blocks=shared(seen.blocks),
         size=size,

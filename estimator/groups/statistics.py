@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from estimator.moments import in_utc
 from estimator.session import Array
 
 FORMAT = "imu-session-statistics/2"
@@ -54,7 +55,8 @@ class SessionStatistics:
     """Empty where the file states none."""
     stand: str
     """Empty where there is none."""
-    started_at: str
+    started_at: str | None
+    """In UTC; None where the file states none."""
     sensors: tuple[str, ...]
     blocks: tuple[Block, ...]
     size: Array
@@ -119,7 +121,7 @@ class SessionStatistics:
             unit=stored["unit"],
             unit_type=stored["unit_type"],
             stand=stored["stand"],
-            started_at=stored["started_at"],
+            started_at=in_utc(stored["started_at"]),
             sensors=tuple(stored["sensors"]),
             blocks=shared(tuple(Block(*b) for b in stored["blocks"])),
             put_right=tuple(stored["put_right"]),

@@ -131,11 +131,23 @@ def learn(sensor: str, whole: Sequence[Library]) -> Learned | None:
         others = tuple(k for k in chosen if k != key)
         if evidence(fit, (key,), others)[0] - np.log(len(every)) < -np.log(ALPHA):
             chosen = others
-    for key in chosen:
-        others = tuple(k for k in chosen if k != key)
-        if gain(fitted(sensor, fit, chosen), held) <= (gain(fitted(sensor, fit, others), held) if others else 0.0):
-            chosen = others
+    chosen = confirmed(sensor, fit, held, chosen)
     return fitted(sensor, fit, chosen) if chosen else None
+
+
+def confirmed(sensor: str, fit: Sequence[Library], held: Sequence[Library], chosen: tuple[Key, ...]) -> tuple[Key, ...]:
+    """The terms without those that the sessions left out do better without; none where these gain nothing by the rest.
+
+    Whenever one goes the others are asked again: what one gained beside another it may lose alone.
+    """
+    while chosen:
+        fewer = [tuple(k for k in chosen if k != key) for key in chosen]
+        gains = [gain(fitted(sensor, fit, keys), held) if keys else 0.0 for keys in fewer]
+        best = int(np.argmax(gains))
+        if gain(fitted(sensor, fit, chosen), held) > gains[best]:
+            break
+        chosen = fewer[best]
+    return chosen if chosen and gain(fitted(sensor, fit, chosen), held) > 0 else ()
 
 
 def moments(whole: Sequence[Library], keys: Sequence[Key]) -> tuple[Array, Array]:

@@ -98,25 +98,34 @@ def _weighed(pool: Pool, w: int, m: Moments, barred: frozenset[tuple[str, ...]])
     U, E = np.where(gone[:, None], 0.0, U), np.where(gone[:, None], 0.0, E)
     F = np.where(gone[:, None, None], 0.0, F)
     statistic, freedom = batch(U, F)
-    forms = np.full((3, len(U)), -np.inf)
-    since = np.zeros(len(U), dtype=int)
-    forms[SAME] = log_bayes(E, F, first_seen(m.F)) + np.log(FORMS[SAME])
-    table = pool.layout.hypotheses[w]
-    named = np.array([not h.nameless for h in table])
-    if named.any():
-        forms[VARYING, named] = log_varying(*_each_session(m, named)) + np.log(FORMS[VARYING])
-        began = log_since(m.evidence[:, named], m.F[:, named])
-        if len(began):
-            forms[SINCE, named] = log_sum(began) + np.log(FORMS[SINCE])
-            since[named] = np.array(beginnings(len(m.F)))[began.argmax(axis=0)]
+    named = np.array([not h.nameless for h in pool.layout.hypotheses[w]])
+    forms, since = weighed_forms(m.evidence, m.F, E, F, named)
     forms[:, gone] = np.log(FORMS)[:, None]
     prior = pool.layout.log_prior[w].copy()
-    prior[[h.group in barred for h in table]] = -np.inf
+    prior[[h.group in barred for h in pool.layout.hypotheses[w]]] = -np.inf
     return Weighed(statistic, freedom, forms, since, prior)
 
 
-def _each_session(m: Moments, named: Array) -> tuple[Array, Array]:
+def weighed_forms(each: Array, every: Array, U: Array, F: Array, named: Array) -> tuple[Array, Array]:
+    """(3, H) ln Bayes factor in each form, its prior share included, and (H,) the likeliest session of a beginning.
+
+    ``each`` (n, H, w) scores and ``every`` (n, H, w, w) information of the sessions; ``U`` (H, w) and ``F`` (H, w, w)
+    of the pool; ``named`` (H,) bool: what else than always the same may be asked of.
+    """
+    forms = np.full((3, len(U)), -np.inf)
+    since = np.zeros(len(U), dtype=int)
+    forms[SAME] = log_bayes(U, F, first_seen(every)) + np.log(FORMS[SAME])
+    if named.any():
+        forms[VARYING, named] = log_varying(*_each_session(each[:, named], every[:, named])) + np.log(FORMS[VARYING])
+        began = log_since(each[:, named], every[:, named])
+        if len(began):
+            forms[SINCE, named] = log_sum(began) + np.log(FORMS[SINCE])
+            since[named] = np.array(beginnings(len(every)))[began.argmax(axis=0)]
+    return forms, since
+
+
+def _each_session(each: Array, every: Array) -> tuple[Array, Array]:
     """(H,) sums over sessions of χ² and of their degrees of freedom."""
-    n, (H, w) = len(m.F), m.F[0, named].shape[:2]
-    statistic, freedom = batch(m.evidence[:, named].reshape(n * H, w), m.F[:, named].reshape(n * H, w, w))
+    n, H, w = each.shape
+    statistic, freedom = batch(each.reshape(n * H, w), every.reshape(n * H, w, w))
     return statistic.reshape(n, H).sum(axis=0), freedom.reshape(n, H).sum(axis=0)

@@ -95,7 +95,7 @@ def with_lasting(begun: PutRight, own: Diagnosis, found: Sequence[Lasting], cata
                 findings=(*left.findings, *named),
                 gain=replace(left.gain, before=own.gain.before),
                 baseline=own.baseline,
-                calibration=enlarged(left.calibration, more),
+                calibration=enlarged(left.calibration, more, begun.right.parameters.axis_tangents),
                 notes=(*own.notes, *map(words_of_end, ended)),
             )
         wanted = held
@@ -112,15 +112,16 @@ def without(begun: PutRight, lasting: Sequence[Lasting], ended: Sequence[Lasting
     """A session without lasting effects and its history without these and those that ended; and what is not known of
     the lasting ones as covariance of the session's parameters (P, P), SI."""
     right, more = taken_from(begun.right, lasting)
-    earlier = tuple(taken_from(b, [*lasting, *ended])[0] for b in begun.earlier)
+    count, both = len(begun.earlier), [*lasting, *ended]
+    earlier = tuple(
+        taken_from(b, [one for one in both if count - k <= one.began])[0] for k, b in enumerate(begun.earlier)
+    )
     return replace(begun, right=right, earlier=earlier), more
 
 
 def taken_from(baseline: Baseline, effects: Sequence[Lasting]) -> tuple[Baseline, Array]:
-    """One session without the effects that it has."""
-    date = baseline.session.started_at or ""
-    own = [fixed(one.others) for one in effects if one.finding.since is None or one.finding.since <= date]
-    added = added_by(baseline, own, ())
+    """One session without effects that it has."""
+    added = added_by(baseline, [fixed(one.others) for one in effects], ())
     if added is None:
         return baseline, np.zeros(baseline.covariance.shape)
     rest, more = taken_out(baseline, added)
@@ -138,7 +139,7 @@ def finding_of(one: Lasting) -> Finding:
         nonlinear_each=({} if whole.shape is None else {"s": whole.shape},),
         alternatives=whole.alternatives,
         ranking=one.ranking,
-        new=False if whole.since is None else None,
+        new=None if whole.form == "since" else False,
         over_sessions=OverSessions(
             sessions=one.sessions,
             e_value=whole.e_value,

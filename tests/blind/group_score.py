@@ -1,5 +1,6 @@
 """One group, one diagnosis: was the truth named, at its level, listed, measured?"""
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import Any
 
@@ -34,6 +35,12 @@ class GroupOutcome:
     pulls: tuple[float, ...]
     unexplained: bool
     terms: int
+    sure: bool
+    """Something has a name, and nothing is said to be without one."""
+    doubted: bool
+    """The first finding may as well be something outside the catalogue."""
+    crowd: int
+    """Most names on one sensor."""
 
     @property
     def clear(self) -> bool:
@@ -64,6 +71,9 @@ def score(group: Group, found: dict[str, Any], misstated: bool = False) -> Group
         pulls=tuple(p for t, n in zip(group.truths, named, strict=True) if n is not None for p in pulls(t, n)),
         unexplained=bool(found["unexplained"]),
         terms=len(found["terms"]),
+        sure=not found["unexplained"] and any("unexplained" not in f["alternatives"] for f in findings),
+        doubted=bool(findings) and "unexplained" in findings[0]["alternatives"],
+        crowd=max(Counter(sensor for f in findings for sensor in f["sensors"]).values(), default=0),
     )
 
 

@@ -21,7 +21,8 @@ def pooled_separation(lenses: list[Lens], effect: Effect, acts: list[bool]) -> f
 
     Rivals with more amplitudes that contain the truth are spared, as parsimony does.
     """
-    own = CATALOGUE[effect.cause].parameters
+    known = CATALOGUE.get(effect.cause)
+    own = known.parameters if known else len(effect.amplitude)
     truth, blocks = [], {}
     for lens, on in zip(lenses, acts, strict=True):
         left = lens.left(signature(lens.session, effect).reshape(-1, 1))[:, 0] if on else None
@@ -33,7 +34,7 @@ def pooled_separation(lenses: list[Lens], effect: Effect, acts: list[bool]) -> f
     best = np.inf
     for key, parts in blocks.items():
         left = _left(lenses, truth, parts)
-        if CATALOGUE[key[0]].parameters > own and left < 2.0:
+        if known and CATALOGUE[key[0]].parameters > own and left < 2.0:
             continue
         best = min(best, left)
     return float(best)

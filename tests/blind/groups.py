@@ -7,6 +7,7 @@ import numpy as np
 
 from tests.blind.catalogue import CATALOGUE, SENSOR, TANGENT
 from tests.blind.draw import _misaligned, draw_earlier, draw_session, draw_stand
+from tests.blind.effects_grammar import GRAMMAR, told_of
 from tests.blind.effects_outside import OUTSIDE_INPUT, OUTSIDE_POSE
 from tests.blind.group_separation import pooled_separation
 from tests.blind.hide import UnhideableError, draw_effect, sensible, strength_of
@@ -46,7 +47,7 @@ OF_STAND = (
 BEYOND = ("third-harmonic", "fifth-harmonic", "turning-scale", "encoder-third-harmonic", "bearing-second-harmonic")
 """Effects outside the catalogue that are the same in every session, whatever its schedule."""
 SAME, SPREAD, SINCE = "same", "spread", "since"
-OUTSIDE = "outside"
+OUTSIDE, OF_GRAMMAR = "outside", "grammar"
 LONGEST = 14
 TRIES = 60
 
@@ -98,8 +99,9 @@ def draw_group(
     misstated: bool = False,
     quiet: bool = False,
 ) -> Group:
-    """A group of a kind (none, one, two, outside) from a seed; drawn anew until it can hold its effects.
+    """A group from a seed, drawn anew until it can hold its effects.
 
+    ``kind``: none, one, two, outside, grammar, or the name of an effect of the grammar.
     ``quiet``: no session shows an effect by itself.
     """
     for attempt in range(TRIES):
@@ -188,11 +190,11 @@ def draw_truths(
     level: str, kind: str, form: str, worlds: list[Session], rng: np.random.Generator, quiet: bool
 ) -> tuple[GroupTruth, ...]:
     """None, one or two effects."""
-    count = {"none": 0, "one": 1, "outside": 1, "two": 2}[kind]
+    count = {"none": 0, "two": 2}.get(kind, 1)
     found: list[GroupTruth] = []
     for _ in range(count):
-        if kind == "outside":
-            cause = str(rng.choice(BEYOND))
+        if kind not in ("one", "two"):
+            cause = str(rng.choice({OUTSIDE: BEYOND, OF_GRAMMAR: tuple(GRAMMAR)}.get(kind, (kind,))))
             found.append(draw_truth(level, cause, form, worlds, rng, target=6 * np.sqrt(len(worlds))))
             continue
         common = level == "stand" or (level == "unit" and rng.random() < 0.25)
@@ -215,13 +217,10 @@ def draw_truth(
 ) -> GroupTruth:
     """One effect of a pooled strength, at most ``loudest`` in a session."""
     first = worlds[0]
-    outside = cause in OUTSIDE_INPUT or cause in OUTSIDE_POSE
+    outside = cause in (GRAMMAR | OUTSIDE_INPUT | OUTSIDE_POSE)
     common = cause in OF_STAND or cause in OUTSIDE_POSE
     if outside:
-        gyro = first.unit.gyro
-        sensors = () if common else (int(rng.integers(first.unit.size)),)
-        size = 1e-5 if not sensors or not gyro[sensors[0]] else 1e-8
-        effect = Effect(cause, (size,), sensors, (float(rng.uniform(0, 2 * np.pi)),))
+        effect = draw_outside(first, cause, common, rng)
     else:
         if not available(first, cause):
             raise UnhideableError(cause)
@@ -247,12 +246,24 @@ def draw_truth(
     if whose == "unit" and level != "unit":
         raise UnhideableError("a unit's effect in a group of several")
     spread = float(rng.uniform(0.4, 0.8)) if form == SPREAD else 0.0
-    apart = np.inf if outside else pooled_separation(lenses, effect, [bool(a) for a in acts])
+    unasked = outside and cause not in GRAMMAR
+    apart = np.inf if unasked else pooled_separation(lenses, effect, [bool(a) for a in acts])
     strengths = grown * each
     if whose != "unit":
         apart = min(apart, _beyond_one_unit(worlds, strengths))
     names = tuple(first.unit.names[i] for i in effect.sensors)
     return GroupTruth(effect, whose, subject, names, form, since, tuple(strengths.tolist()), float(apart), spread)
+
+
+def draw_outside(first: Session, cause: str, common: bool, rng: np.random.Generator) -> Effect:
+    """An effect outside the catalogue, of any size, on a sensor or common to all."""
+    if cause in GRAMMAR and not told_of(first, cause):
+        raise UnhideableError(cause)
+    sensors = () if common else (int(rng.integers(first.unit.size)),)
+    size = 1e-5 if not sensors or not first.unit.gyro[sensors[0]] else 1e-8
+    if cause in GRAMMAR:
+        return Effect(cause, (size,), sensors, (float(np.exp(rng.uniform(np.log(300), np.log(3000)))),))
+    return Effect(cause, (size,), sensors, (float(rng.uniform(0, 2 * np.pi)),))
 
 
 def _shows(world: Session, cause: str) -> bool:

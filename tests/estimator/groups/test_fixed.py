@@ -6,9 +6,20 @@ import numpy as np
 import pytest
 
 from estimator import CalibrationSession, calibrate, calibrate_extended, diagnose_group
-from estimator.groups.fixed import EMPIRICAL, FixedEffect, calibrate_with, fixed, in_one_session
+from estimator.diagnosis.residuals.fitted import baseline_of
+from estimator.groups.fixed import (
+    EMPIRICAL,
+    FixedEffect,
+    added_by,
+    calibrate_with,
+    fixed,
+    in_one_session,
+    taken_out,
+)
+from estimator.reading import read_session
 from estimator.results import Calibration
 from tests.blind.world import Effect
+from tests.builders import accelerometer_block, true_sensors
 from tests.estimator.groups.cases import measured, worlds
 
 SIZE = 2.5e-5
@@ -112,3 +123,23 @@ def test_what_of_a_term_a_session_lacks_is_left_out() -> None:
     assert np.array_equal(parameters(calibrate_with(session, [warm])), parameters(calibrate_with(session, [alone])))
     elsewhere = calibrate_with(session, [replace(LEARNED, sensors=("B9",))])
     assert np.array_equal(parameters(elsewhere), parameters(calibrate(session)))
+
+
+def test_what_is_not_known_is_added_along_the_calibration_s_own_tangents() -> None:
+    sensors = true_sensors(8)
+    session = read_session(accelerometer_block(8, seed=1, sensors=sensors, positions=24))
+    moves = FixedEffect("cubic-nonlinearity", ("A2",), "accelerometer", (2e-5,), (2e-6,), None, varies=False)
+    baseline = baseline_of(session)
+    added = added_by(baseline, [moves], ())
+    assert added is not None
+    without, more = taken_out(baseline, added)
+    plain, found = calibrate(without).sensor("A2"), calibrate_with(session, [moves]).sensor("A2")
+    frame = baseline.parameters.axis_tangents[1]
+    assert np.abs(frame - found.axis_tangents).max() > 0.5
+    grown = in_space(plain.axis_tangents, plain.axis_covariance) + in_space(frame, more[8:10, 8:10])
+    assert in_space(found.axis_tangents, found.axis_covariance) == pytest.approx(grown, rel=1e-3, abs=1e-16)
+
+
+def in_space(frame: np.ndarray, covariance: np.ndarray) -> np.ndarray:
+    """(3, 3) of turns along tangents, rad²."""
+    return np.asarray(frame @ covariance @ frame.T)

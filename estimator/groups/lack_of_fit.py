@@ -1,0 +1,100 @@
+"""A group's names held against the library of empirical terms, place after place.
+
+Where a place's names do not fit they are taken back, the place is left free in every session, and the search is made
+anew: what is named elsewhere then holds whatever that place does. Only names are taken back, and none is added by what
+the library says: a group without an effect keeps its bound.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from estimator.groups.beyond import Judgement, judged
+from estimator.groups.layout import TERMS, Hypothesis
+from estimator.groups.place import Fitted, Key, Moments, Where, key_of, moments_at
+from estimator.groups.pool import Place, columns_in
+from estimator.groups.selection import Found, Selection, select
+from estimator.groups.session_statistics import as_kept
+from estimator.session import CalibrationSession
+
+MOST = 4
+"""Places whose names are taken back; in a group with more of them little can be said at all."""
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """The sessions of a group, fitted when they are first asked for."""
+
+    selection: Selection
+    sessions: tuple[CalibrationSession, ...]
+
+    @cached_property
+    def fitted(self) -> tuple[Fitted, ...]:
+        """Every session as its record took it."""
+        parts = [p.statistics for p in self.selection.layout.parts]
+        scales = self.selection.scale.tolist()
+        return tuple(
+            Fitted(record, as_kept(session, record), scale)
+            for session, record, scale in zip(self.sessions, parts, scales, strict=True)
+        )
+
+    def moments(self, state: Selection, where: Where) -> Moments:
+        """Causes and terms of a place over its sessions, what was found elsewhere left free."""
+        numbers = [k for k, one in enumerate(self.fitted) if where.concerns(one.record)]
+        beside = [(Where.of(f.hypothesis), key_of(f.hypothesis)) for f in state.found]
+        beside += [_at(state, place) for place in state.nameless]
+        whole = [(w, key) for w, key in beside if w != where]
+        own = [[*whole, *(_at(state, p) for j, p in (*state.own, *state.aside) if j == k)] for k in numbers]
+        return moments_at(where, [self.fitted[k] for k in numbers], [[x for x in o if x[0] != where] for o in own])
+
+
+def _at(state: Selection, place: Place) -> tuple[Where, Key]:
+    """A hypothesis as a candidate of its place."""
+    h = state.layout.hypotheses[place[0]][place[1]]
+    return Where.of(h), key_of(h)
+
+
+def names_that_fit(group: Group) -> Selection:
+    """The findings that the library does not describe better; what it describes as well is doubted."""
+    state, settled = group.selection, dict[Where, tuple[Hypothesis, Judgement]]()
+    while True:
+        each = [
+            (where, names, judged(group.moments(state, where), names))
+            for where, names in by_place(state)
+            if where not in settled
+        ]
+        wrong = [(where, says) for where, _, says in each if not says.fits]
+        if not wrong or len(settled) == MOST:
+            break
+        where, says = max(wrong, key=lambda x: x[1].statistic)
+        settled[where] = (Hypothesis(*where[:2], TERMS, *where[2:], None, 0, says.words), says)
+        state = searched_again(state, where, says)
+    doubted = frozenset(f.hypothesis.group for _, names, says in each if says.doubtful for f in names)
+    own = tuple((h, says.statistic) for h, says in settled.values())
+    gone = tuple((f, h) for h, says in settled.values() for f in says.taken_back)
+    structures, misfits = (*state.structures, *own), (*state.misfits, *gone)
+    return replace(state, structures=structures, misfits=misfits, doubted=doubted)
+
+
+def by_place(state: Selection) -> Iterator[tuple[Where, list[Found]]]:
+    """The findings of every place."""
+    for where in dict.fromkeys(Where.of(f.hypothesis) for f in state.found):
+        yield where, [f for f in state.found if Where.of(f.hypothesis) == where]
+
+
+def searched_again(state: Selection, where: Where, says: Judgement) -> Selection:
+    """The search without a place: it is left free in every session, or for the names that hold there alone."""
+    table = [((w, k), h) for w, own in state.layout.hypotheses.items() for k, h in enumerate(own)]
+    if says.kept:
+        kept = {f.hypothesis.group for f in says.kept}
+        others = {h.group for _, h in table if Where.of(h) == where} - kept
+        return select(state.layout, state.barred | others, state.aside)
+    there = [place for place, h in table if (h.sensor, h.kind) == (where.sensor, where.kind)]
+    free = tuple(
+        (k, place)
+        for k, part in enumerate(state.layout.parts)
+        if where.concerns(part.statistics)
+        for place in there
+        if columns_in(part, place) is not None
+    )
+    return select(state.layout, state.barred, (*state.aside, *free))

@@ -1,0 +1,233 @@
+"""One place of a group in every session: causes of the catalogue and terms of the library, side by side.
+
+A place is a sensor of a unit or of a type, every sensor of a kind, or the applied vector on a stand. What was found
+elsewhere is left free in each session, so that what is asked here does not hang on it.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from estimator.diagnosis.residuals.baseline import Baseline
+from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.diagnosis.signatures.scatter import equivalent_chi2
+from estimator.diagnosis.signatures.traces import INVISIBLE
+from estimator.groups.candidates import columns_of
+from estimator.groups.layout import EVERY, Hypothesis
+from estimator.groups.library import library
+from estimator.groups.scores import batch, inverse
+from estimator.groups.statistics import HARMONIC, SessionStatistics
+from estimator.groups.weighing import LEFT, weighed_forms
+from estimator.session import Array
+
+Key = tuple[str, ...]
+"""A candidate of a place: a cause with its shape, or the words of a term."""
+
+
+class Where(NamedTuple):
+    """A place of a group."""
+
+    level: str
+    subject: str
+    sensor: str
+    kind: str
+
+    @classmethod
+    def of(cls, h: Hypothesis) -> "Where":
+        """Where a hypothesis acts."""
+        return cls(h.level, h.subject, h.sensor, h.kind)
+
+    def concerns(self, s: SessionStatistics) -> bool:
+        """Whether a session has this place."""
+        return self.subject in (s.unit, s.unit_type, s.stand) and (self.sensor in ("", EVERY, *s.sensors))
+
+
+def key_of(h: Hypothesis) -> Key:
+    """A named hypothesis as a candidate of its place."""
+    return h.cause, "" if h.shape is None else repr(h.shape)
+
+
+def causes_at(baseline: Baseline, where: Where) -> dict[Key, Array]:
+    """(R, m, w) columns of every cause, and nameless wave, at a place of a session."""
+    found: dict[Key, Array] = {}
+    for b, columns in columns_of(baseline):
+        if b.sensor == where.sensor or (where.sensor == EVERY and b.kind == where.kind and b.width == 1):
+            key = (b.cause, "" if b.shape is None else repr(b.shape))
+            found[key] = found[key] + columns if key in found else columns
+    return found
+
+
+def terms_at(baseline: Baseline, where: Where) -> dict[Key, Array]:
+    """(R, m, w) columns of every term of the library at a place of a session."""
+    if where.sensor != EVERY:
+        return {t.words: t.columns for t in library(baseline, where.sensor)}
+    found: dict[Key, Array] = {}
+    for sensor in baseline.session.sensors:
+        for t in library(baseline, sensor.name) if sensor.kind == where.kind else ():
+            found[t.words] = found[t.words] + t.columns if t.words in found else t.columns
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class Moments:
+    """Candidates of a place over n sessions. D columns, each of pooled norm one."""
+
+    causes: tuple[Key, ...]
+    terms: tuple[Key, ...]
+    slots: dict[Key, Array]
+    """Columns of every candidate."""
+    U: Array
+    """(n, D) scores."""
+    F: Array
+    """(n, D, D) information."""
+    estimated: Array
+    """(n,) degrees of freedom from which the noise of each session is estimated; infinite where it is as stated."""
+
+    def given(self, shared: Sequence[Key] = (), free: Sequence[Key] = ()) -> "Given":
+        """The same with some candidates in the fit: of one amplitude in all sessions, or of one in each."""
+        U, F = self.U, self.F
+        if free:
+            own = np.concatenate([self.slots[k] for k in free])
+            gain = np.array([f[:, own] @ inverse(f[np.ix_(own, own)]) for f in F])
+            U = U - (gain @ U[:, own, None])[..., 0]
+            F = _cleared(F - gain @ F[:, own], F)
+        if not shared:
+            return Given(self, U, F, F.sum(axis=0))
+        own = np.concatenate([self.slots[k] for k in shared])
+        whole = F.sum(axis=0)
+        covariance = inverse(whole[np.ix_(own, own)])
+        value = covariance @ U[:, own].sum(axis=0)
+        left = whole - whole[:, own] @ covariance @ whole[own]
+        return Given(self, U - F[:, :, own] @ value, F, _cleared(left, self.F.sum(axis=0)))
+
+
+@dataclass(frozen=True, eq=False)
+class Given:
+    """Candidates of a place given some of them."""
+
+    of: Moments
+    U: Array
+    F: Array
+    whole: Array
+    """(D, D) information of the pool, given what all sessions share."""
+
+    def evidence(self, keys: Sequence[Key]) -> dict[Key, tuple[Array, float]]:
+        """Of each: (3,) ln Bayes factor in each form, the form's prior share included, and χ² in the pool."""
+        found: dict[Key, tuple[Array, float]] = {}
+        for width in {len(self.of.slots[k]) for k in keys}:
+            own = [k for k in keys if len(self.of.slots[k]) == width]
+            at = np.array([self.of.slots[k] for k in own])
+            F = self.F[:, at[:, :, None], at[:, None, :]]
+            U = as_normal(self.U[:, at], F, self.of.estimated)
+            whole = self.whole[at[:, :, None], at[:, None, :]]
+            alone = self.of.F.sum(axis=0)[at, at]
+            gone = (np.diagonal(whole, axis1=1, axis2=2) <= LEFT * alone).all(axis=1)
+            total = np.where(gone[:, None], 0.0, U.sum(axis=0))
+            forms, _ = weighed_forms(U, F, total, np.where(gone[:, None, None], 0.0, whole), np.ones(len(own), bool))
+            forms[:, gone] = -np.inf
+            statistic, _ = batch(total, whole)
+            found |= {k: (forms[:, j], float(statistic[j])) for j, k in enumerate(own)}
+        return found
+
+
+def _cleared(left: Array, before: Array) -> Array:
+    """Information with the columns taken out of which next to nothing is left."""
+    gone = np.diagonal(left, axis1=-2, axis2=-1) <= LEFT * np.diagonal(before, axis1=-2, axis2=-1)
+    return np.where(gone[..., :, None] | gone[..., None, :], 0.0, left)
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """A session as it is pooled."""
+
+    record: SessionStatistics
+    baseline: Baseline
+    scale: float
+    """By which its variance is larger than it says."""
+
+    def elsewhere(self, places: Sequence[tuple[Where, Key]]) -> Iterator[Array]:
+        """(R, m, w) columns of what was found at other places."""
+        for where in dict.fromkeys(w for w, _ in places):
+            if where.concerns(self.record):
+                own = causes_at(self.baseline, where)
+                yield from (own[key] for w, key in places if w == where and key in own)
+
+
+@dataclass(frozen=True, eq=False)
+class Traced:
+    """A session at a place."""
+
+    each: dict[Key, Array]
+    """(N, w) trace of every candidate, standard errors per unit amplitude."""
+    causes: frozenset[Key]
+    """Which of them the catalogue has."""
+    z: Array
+    """(N,) standard errors."""
+
+
+def moments_at(where: Where, whole: Sequence[Fitted], elsewhere: Sequence[Sequence[tuple[Where, Key]]]) -> Moments:
+    """Candidates of a place over sessions; ``elsewhere``: of each session, what else acts in it."""
+    each = [_traced(where, one, own) for one, own in zip(whole, elsewhere, strict=True)]
+    widths = {key: trace.shape[1] for x in each for key, trace in x.each.items()}
+    ends = np.cumsum([0, *widths.values()])
+    slots = {key: np.arange(a, b) for key, a, b in zip(widths, ends, ends[1:], strict=False)}
+    U, F = np.zeros((len(each), ends[-1])), np.zeros((len(each), ends[-1], ends[-1]))
+    for k, x in enumerate(each):
+        at = np.concatenate([slots[key] for key in x.each])
+        X = np.concatenate(list(x.each.values()), axis=1)
+        U[k, at], F[k][np.ix_(at, at)] = X.T @ x.z, X.T @ X
+    size = np.sqrt(np.diagonal(F.sum(axis=0)))
+    unit = np.where(size > 0, 1 / np.where(size > 0, size, 1.0), 0.0)
+    causes = frozenset[Key]().union(*(x.causes for x in each))
+    own, terms = [tuple(key for key in widths if (key in causes) == named) for named in (True, False)]
+    estimated = np.array([_estimated(where, one) for one in whole])
+    return Moments(own, terms, slots, U * unit, F * unit[:, None] * unit, estimated)
+
+
+def _traced(where: Where, one: Fitted, own: Sequence[tuple[Where, Key]]) -> "Traced":
+    """A session at a place, what acts elsewhere left free."""
+    residuals = WhitenedResiduals.of(one.baseline)
+    free = [residuals.trace(columns) for columns in one.elsewhere(own)]
+    basis = np.zeros((len(residuals.z), 0))
+    if free:
+        stacked = np.concatenate(free, axis=1)
+        size = np.linalg.norm(stacked, axis=0)
+        basis, value, _ = np.linalg.svd(stacked[:, size > 0] / size[size > 0], full_matrices=False)
+        basis = basis[:, value > 1e-3 * value[:1]]
+
+    named = {k: c for k, c in causes_at(one.baseline, where).items() if k[0] != HARMONIC}
+    whole = named | terms_at(one.baseline, where)
+    white = residuals.whitened(np.concatenate(list(whole.values()), axis=-1))
+    trace = residuals.left_of(white)
+    trace = trace - basis @ (basis.T @ trace)
+    seen = np.linalg.norm(trace, axis=0) > INVISIBLE * np.maximum(np.linalg.norm(white, axis=0), 1e-300)
+    ends = np.cumsum([columns.shape[-1] for columns in whole.values()])
+    each = dict(zip(whole, np.split(trace * seen / np.sqrt(one.scale), ends[:-1], axis=1), strict=True))
+    z = (residuals.z - basis @ (basis.T @ residuals.z)) / np.sqrt(one.scale)
+    return Traced(each, frozenset(named), z)
+
+
+def _estimated(where: Where, one: Fitted) -> float:
+    """Degrees of freedom from which a session's noise at a place is estimated; infinite where it is as stated."""
+    record = one.record
+    own = np.array([where.sensor in ("", EVERY, name) for name in record.sensors])
+    doubtful = one.baseline.unstated | (record.noise_factor != 1)
+    return float(record.freedom[own].sum()) if (own & doubtful).any() else np.inf
+
+
+def as_normal(U: Array, F: Array, freedom: Array) -> Array:
+    """(n, H, w) scores U as unlikely as normal ones where noise is estimated from ``freedom`` (n,) degrees of freedom;
+    F (n, H, w, w)."""
+    own = np.flatnonzero(np.isfinite(freedom))
+    if not len(own):
+        return U
+    n, H, w = U[own].shape
+    statistic, q = batch(U[own].reshape(n * H, w), F[own].reshape(n * H, w, w))
+    free = np.repeat(freedom[own], H)
+    normal = equivalent_chi2(statistic, q, np.maximum(free - statistic, 1e-3), free - q)
+    shrink = np.sqrt(np.where(statistic > 0, np.minimum(normal / np.where(statistic > 0, statistic, 1.0), 1.0), 1.0))
+    shrunk = U.copy()
+    shrunk[own] *= shrink.reshape(n, H, 1)
+    return shrunk
