@@ -72,6 +72,11 @@ class _Kind:
 
 def early(one: History, law: Law, level: float, rng: Random) -> float:
     """Years from the last session before which the tolerance is passed with a chance; infinite if never."""
+    return known_dates(one, law, (level,), rng)[0]
+
+
+def known_dates(one: History, law: Law, levels: tuple[float, ...], rng: Random) -> tuple[float, ...]:
+    """The same for several chances, given that it is within its tolerance now."""
     days = STEP * np.arange(round(float(one.time[-1]) / STEP), round(YEARS / STEP))
     kinds = [_drawn(kind, one, law, days, rng) for kind in law.kinds]
     logs = np.stack([kind.log_weight for kind in kinds])
@@ -80,7 +85,9 @@ def early(one: History, law: Law, level: float, rng: Random) -> float:
     found = [_passed(kind.future(picked[picked // DRAWS == i] % DRAWS)) for i, kind in enumerate(kinds)]
     passed = np.concatenate(found)
     inside = passed[passed > 0]
-    return float(np.quantile(inside, level, method="inverted_cdf")) if len(inside) else float("inf")
+    if not len(inside):
+        return tuple(float("inf") for _ in levels)
+    return tuple(float(q) for q in np.quantile(inside, levels, method="inverted_cdf"))
 
 
 def _passed(deviation: Array) -> Array:

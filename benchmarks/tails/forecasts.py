@@ -16,7 +16,7 @@ from estimator.health.forecast import earliest, staying
 from estimator.health.pooled import Prior
 from estimator.health.posterior import Draws, draw
 from estimator.health.prognosis import prognosis
-from estimator.health.shapes import DRIFTS, shapes
+from estimator.health.shapes import DRIFTS, courses
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ def _by_rival(one: History, prior: Prior, *, is_missing: bool) -> tuple[float, D
     n, rng = len(one.time), np.random.default_rng(0)
     base = Readings(one.time, one.value[:, None], one.sigma[:, None], np.ones((n, 1)), np.ones(1), prior.tails)
     found = detect(base, prior.usual_walk, np.full(n, np.inf), one.temperature, LEVEL)
-    family = shapes(found.readings.time)
+    family = courses(found.readings.time)
     draws = draw(reweighted(found.readings, family, prior, is_missing=is_missing), family, prior, rng)
     swing = 0.0
     if found.warmth is not None and found.warmth.is_found:

@@ -262,7 +262,7 @@ def _warmth(readings: Readings, temperature: Array, rival: Change | None, level:
     squared = float((size**2 * information).sum())
     p = float(np.exp(-squared / 2)) if len(size) == 2 else 2 * float(ndtr(-np.sqrt(squared)))
     explains = rival is None or _explained(readings, column) >= _explained(readings, rival.column)
-    return Warmth(size, information**-0.5, p, p < level and explains)
+    return Warmth(size, information**-0.5, p, bool(p < level and explains))
 
 
 def _explained(readings: Readings, column: Array) -> float:

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from estimator.arrays import in_frame
 from estimator.coverage import combined
 from estimator.results import Estimate, SensorCalibration
 from estimator.session import Array
@@ -78,8 +79,7 @@ def _axis_deviation(current: SensorCalibration, reference: SensorCalibration) ->
     if current.axis is None or reference.axis is None:
         return None
     basis = reference.axis_tangents
-    turn = basis.T @ current.axis_tangents
-    own = turn @ current.axis_covariance @ turn.T
+    own = in_frame(current.axis_covariance, current.axis_tangents, basis)
     offset = axis_offset(current.axis, reference.axis, basis)
     return Deviation(offset, own, reference.axis_covariance, current.axis_dof, reference.axis_dof)
 

@@ -27,7 +27,7 @@ PARTS = tuple(
     [(Kind.NONE, 0.0)]
     + [(Kind.JUMP, size) for size in (0.2, 0.6, 1.5)]
     + [(kind, rate) for kind in (Kind.LATE, Kind.START) for rate in (0.1, 0.3, 0.9)]
-    + [(Kind.AGING, size) for size in (0.2, 0.6)]
+    + [(kind, size) for kind in (Kind.AGING, Kind.SETTLING) for size in (0.2, 0.6)]
 )
 """P kinds of change with one sigma of their sizes, in T or T a year, from hardly seen to ruinous."""
 PART_KINDS = np.array([kind for kind, _ in PARTS])

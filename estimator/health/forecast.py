@@ -8,7 +8,9 @@ tolerance from |l| with the chance g_s(|l|), drifts begin with a rate of theirs,
 
     exp(−∫ Σ_s λ_s g_s(|l(u)|) du − Σ_r λ_r ∫ P(|l(h) + r·v| ≥ 1) dv)
 
-of a draw. Where temperature moves the parameter, the tolerance holds for the whole span of temperatures that was seen.
+of a draw. The rates λ of one in which nothing has begun yet fall with the years (`pooled`), here on the average up to
+h; in one that has changed the next change comes at the rates of units in general at most. Where temperature moves the
+parameter, the tolerance holds for the whole span of temperatures that was seen.
 Given the type, parameters move on their own: the unit's chance is that of them together.
 """
 
@@ -22,7 +24,7 @@ from scipy.stats import ncx2
 from estimator.health.fits import PART_KINDS, PART_SIZES
 from estimator.health.pooled import Prior
 from estimator.health.posterior import Draws
-from estimator.health.shapes import DRIFTS, Kind, course
+from estimator.health.shapes import DRIFTS, Kind
 from estimator.session import Array
 
 AHEAD = np.concatenate([[0.0], np.geomspace(0.02, 12.0, 30)])
@@ -50,9 +52,7 @@ def followed(draws: Draws, ahead: Array, rng: np.random.Generator) -> Array:
     path = (walks + rng.integers(PATHS)) % PATHS
     level[walks] += _paths(level.shape[1], ahead.tobytes())[path] * draws.walk[walks, None, None]
     ages = draws.aging.any(axis=1)
-    constant = draws.constant[ages, None]
-    aged = course(draws.age + ahead, constant) - course(np.full(1, draws.age), constant)
-    level[ages] += draws.aging[ages, :, None] * aged[:, None, :]
+    level[ages] += draws.aging[ages, :, None] * draws.aged(ahead)[ages, None, :]
     return np.asarray(level)
 
 
@@ -108,14 +108,17 @@ def staying(draws: Draws, prior: Prior, swing: float, rng: np.random.Generator) 
     spread = draws.walk[walks, None] ** 2 * np.diff(AHEAD)
     within[walks, 1:] = -np.expm1(-2 * inside[:, :-1] * inside[:, 1:] / spread)
     within = np.cumprod(within, axis=1)
-    return np.asarray(within * np.exp(-_hazard(np.minimum(length, 1.0), prior, draws.level.shape[1])))
+    k, quiet, near = draws.level.shape[1], draws.kind == Kind.NONE, np.minimum(length, 1.0)
+    within[quiet] *= np.exp(-_hazard(near[quiet], prior.rate, k) * prior.left(draws.age, AHEAD))
+    within[~quiet] *= np.exp(-_hazard(near[~quiet], prior.again, k))
+    return np.asarray(within)
 
 
-def _hazard(length: Array, prior: Prior, k: int) -> Array:
+def _hazard(length: Array, rate: Array, k: int) -> Array:
     """(N, h) expected number of new events that take a draw at (N, h) lengths, T, beyond its tolerance by `AHEAD`."""
     jumps, drifts = PART_KINDS == Kind.JUMP, PART_KINDS == Kind.LATE
-    at_once = np.broadcast_to(prior.rate[jumps] @ _beyond_jump(k), (len(AHEAD), len(DISTANCES)))
-    now, drifted = _looked_up((at_once, np.tensordot(prior.rate[drifts], _beyond_drift(k), axes=1)), length)
+    at_once = np.broadcast_to(rate[jumps] @ _beyond_jump(k), (len(AHEAD), len(DISTANCES)))
+    now, drifted = _looked_up((at_once, np.tensordot(rate[drifts], _beyond_drift(k), axes=1)), length)
     drifted[:, 1:] += np.cumsum((now[:, :-1] + now[:, 1:]) / 2 * np.diff(AHEAD), axis=1)
     return drifted
 
@@ -201,13 +204,28 @@ class Future:
 
 def future(draws: Draws, prior: Prior, ahead: Array, rng: np.random.Generator) -> Future:
     """Levels at increasing years ahead (h,), with jumps and drifts that the type lets expect."""
-    level = followed(draws, ahead, rng)
-    n, k, _ = level.shape
-    for part in np.flatnonzero(prior.rate):
-        chance = -np.expm1(-prior.rate[part] * ahead[-1])
-        struck = np.flatnonzero(rng.random(n) < chance)
-        come = -np.log1p(-chance * rng.random(len(struck))) / prior.rate[part]
-        size = PART_SIZES[part] * rng.standard_normal((len(struck), k, 1))
-        since = np.maximum(ahead - come[:, None], 0.0)[:, None, :]
-        level[struck] += size * (since if PART_KINDS[part] == Kind.LATE else since > 0)
+    level, quiet, again = followed(draws, ahead, rng), draws.kind == Kind.NONE, prior.again
+    last = float(ahead[-1])
+    effective = last * float(prior.left(draws.age, ahead[-1:])[0])
+    for part in map(int, np.flatnonzero(prior.rate)):
+        rows, expected = _struck(quiet, prior.rate[part], effective, rng)
+        _move(level, rows, part, (prior.comes(draws.age, expected), ahead), rng)
+        rows, come = _struck(~quiet, again[part], last, rng)
+        _move(level, rows, part, (come, ahead), rng)
     return Future(draws.weight, level)
+
+
+def _struck(own: Array, rate: float, years: float, rng: np.random.Generator) -> tuple[Array, Array]:
+    """(m,) places among ``own`` (N,) bool in which an event comes within years, and (m,) years until it does."""
+    chance = -np.expm1(-rate * years)
+    rows = np.flatnonzero(own)
+    rows = rows[rng.random(len(rows)) < chance]
+    return rows, -np.log1p(-chance * rng.random(len(rows))) / rate
+
+
+def _move(level: Array, rows: Array, part: int, when: tuple[Array, Array], rng: np.random.Generator) -> None:
+    """Adds an event of a part to levels (N, k, h) of ``rows`` (m,), at (m,) of years ahead (h,)."""
+    come, ahead = when
+    size = PART_SIZES[part] * rng.standard_normal((len(rows), level.shape[1], 1))
+    since = np.maximum(ahead - come[:, None], 0.0)[:, None, :]
+    level[rows] += size * (since if PART_KINDS[part] == Kind.LATE else since > 0)

@@ -115,7 +115,7 @@ def mixture(null: Fits, time: Array, tells: Array) -> Mixture:
     """Of the fits at the one walk of the null; ``tells`` (H,) bool: shapes that leave a trace."""
     shape, kind, share, size2 = [], [], [], []
     family, information = null.family, null.information[0]
-    for place in np.flatnonzero(PART_KINDS != Kind.NONE):
+    for place in np.flatnonzero(np.isin(PART_KINDS, list(SHARES))):
         own_kind = PART_KINDS[place] == PART_KINDS
         own = np.flatnonzero((family.kind == PART_KINDS[place]) & tells)
         sizes = int(np.count_nonzero(own_kind))

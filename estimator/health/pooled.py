@@ -9,6 +9,12 @@ drifts from the start and aging have a chance per parameter. With the marginal l
 and the parameters are the mode under conjugate weak priors, by expectation maximisation (Dempster, Laird & Rubin 1977):
 ω and the chances with Dirichlet, the rates with gamma priors, each worth a few histories of what inertial units do in
 general. So a type of one unit works as well, and a type of many hardly feels them.
+
+Parameters differ in how readily something begins in them: the rate of one is Λ·Z with Z of a gamma law of mean 1 and
+shape κ (frailty; Vaupel, Manton & Stallard 1979). Quiet for t years are (1 + Λt/κ)^{−κ} of them, and the rate of those
+has fallen to Λ·κ/(κ + Λt): who was quiet for long is one of the good ones. Histories have one change each, so of a
+parameter that has changed they do not tell how soon it changes again: at the rates of units in general, or at those of
+the type where they are lower.
 """
 
 from collections.abc import Sequence
@@ -23,17 +29,20 @@ from estimator.session import Array
 
 COMES = (PART_KINDS == Kind.JUMP) | (PART_KINDS == Kind.LATE)
 """(P,) bool: parts that happen at some time, with a rate."""
-STARTS = (PART_KINDS == Kind.START) | (PART_KINDS == Kind.AGING)
+STARTS = np.isin(PART_KINDS, (Kind.START, Kind.AGING, Kind.SETTLING))
 """(P,) bool: parts that a history has from its start, with a chance."""
 WALK = np.array([0.70, 0.12, 0.08, 0.05, 0.03, 0.015, 0.005])
 """(7,) chance of each strength of the walk in units in general: most keep their values within their uncertainty."""
-CHANCE = np.array([0.003, 0.003, 0.002] * 2 + [0.006, 0.006, 0.004] + [0.01, 0.01])
+CHANCE = np.array([0.003, 0.003, 0.002] * 2 + [0.006, 0.006, 0.004] + [0.005] * 4)
 """(P − 1,) per year of jumps and late drifts, by size, and per history of drifts from the start and of aging: one in
 sixty parameters a year begins something, one in thirty has from the start."""
 HISTORIES = 10.0
 """Histories that the general strength of the walk, and the chances, are worth."""
 YEARS = 40.0
 """Years of histories that the general rates are worth."""
+FRAILTY = 0.5
+"""κ: rates differ by more than their mean, as those of weak and sound parts do. The histories of one type, all about as
+long, hardly tell it."""
 ROUNDS = 60
 """Of the expectation maximisation: the slowest moves by less than 1e-3 of itself then."""
 
@@ -58,9 +67,29 @@ class Prior:
         span = np.asarray(span, dtype=float)[..., None]
         total = self.rate.sum()
         still = 1 - self.chance.sum()
-        come = still * -np.expm1(-total * span) * self.rate / max(total, 1e-300)
-        none = still * np.exp(-total * span) * (PART_KINDS == Kind.NONE)
+        quiet = (1 + total * span / FRAILTY) ** -FRAILTY
+        come = still * (1 - quiet) * self.rate / max(total, 1e-300)
+        none = still * quiet * (PART_KINDS == Kind.NONE)
         return np.asarray(come + none + self.chance)
+
+    @property
+    def again(self) -> Array:
+        """(P,) rates per year of the next change of one that has changed; 0 elsewhere."""
+        return np.minimum(self.rate, general_prior().rate)
+
+    def left(self, span: float, ahead: Array) -> Array:
+        """(h,) mean rate within years ahead (h,) of one that was quiet for a span, years; by the rate of a new one."""
+        ahead = np.maximum(ahead, 1e-6)
+        return np.asarray(self._fall * np.log1p(ahead / (self._fall + span)) / ahead)
+
+    def comes(self, span: float, expected: Array) -> Array:
+        """(m,) years ahead by which as many events are expected as within (m,) years of a new one."""
+        return np.asarray((self._fall + span) * np.expm1(expected / self._fall))
+
+    @property
+    def _fall(self) -> float:
+        """κ/Λ, the years of quiet in which the rate of a new one falls to a half."""
+        return FRAILTY / max(float(self.rate.sum()), 1e-12)
 
     @property
     def usual_walk(self) -> float:
@@ -115,7 +144,16 @@ def _improved(found: Prior, general: Prior, likelihood: Array, span: Array) -> P
     parts, m = joint.sum(axis=(0, 1)), len(span)
     return Prior(
         walk=(joint.sum(axis=(0, 2)) + HISTORIES * general.walk) / (m + HISTORIES),
-        rate=np.where(COMES, (parts + YEARS * general.rate) / (span.sum() + YEARS), 0.0),
+        rate=np.where(COMES, (parts + YEARS * general.rate) / (_exposed(found, joint, span) + YEARS), 0.0),
         chance=np.where(STARTS, (parts + HISTORIES * general.chance) / (m + HISTORIES), 0.0),
         histories=m,
     )
+
+
+def _exposed(found: Prior, joint: Array, span: Array) -> float:
+    """Years at the rate of a new one: of the quiet by what is left of their frailty, of the others until the event."""
+    came = joint[:, :, COMES].sum(axis=(1, 2))
+    total, half = float(found.rate.sum()), span / 2
+    quiet = span * FRAILTY / (FRAILTY + total * span)
+    struck = half * (1 + FRAILTY) / (FRAILTY + total * half)
+    return float(((1 - came) * quiet + came * struck).sum())

@@ -12,7 +12,7 @@ import numpy as np
 
 from estimator.health.fits import CHANGES, PART_KINDS, PART_SIZES, WALKS, Fits, Readings, fits
 from estimator.health.pooled import Prior
-from estimator.health.shapes import Kind, Shapes
+from estimator.health.shapes import Kind, Shapes, course, settled
 from estimator.session import Array
 
 DRAWS = 1600
@@ -39,6 +39,23 @@ class Draws:
     """(N,) `Kind` of the change in force."""
     age: float
     """Years from the first session to the last."""
+
+    @property
+    def _ends(self) -> Array:
+        """(N,) bool: whether aging comes to an end."""
+        return np.asarray(self.kind == Kind.SETTLING)
+
+    def aged(self, ahead: Array) -> Array:
+        """(N, h) aging per unit of size from the last session on, at years ahead (h,)."""
+        constant, since = self.constant[:, None], self.age + np.append(0.0, ahead)
+        along = np.where(self._ends[:, None], settled(since, constant), course(since, constant))
+        return np.asarray(along[:, 1:] - along[:, :1])
+
+    def slowed(self) -> Array:
+        """(N,) slope of that aging at the last session, a year."""
+        constant = self.constant
+        goes_on = 1 / ((self.age + constant) * np.log1p(1 / constant))
+        return np.where(self._ends, -np.exp(-self.age / constant) / (constant * np.expm1(-1 / constant)), goes_on)
 
     def mean(self, values: Array) -> Array:
         """Weighted mean of (N, ...)."""
@@ -100,7 +117,7 @@ def draw(readings: Readings, family: Shapes, prior: Prior, rng: np.random.Genera
         weight=weight / weight.sum(),
         level=level,
         rate=np.where((kind == Kind.LATE) | (kind == Kind.START), size, 0.0),
-        aging=np.where(kind == Kind.AGING, size, 0.0),
+        aging=np.where((kind == Kind.AGING) | (kind == Kind.SETTLING), size, 0.0),
         constant=family.constant[shape],
         walk=WALKS[q],
         kind=PART_KINDS[part],

@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from estimator.health.detection import LEVEL, Change, Detected, Warmth, alone, detect, tells_of_temperature, warmed
+from estimator.health.detection import LEVEL, Change, Warmth, detect, tells_of_temperature, warmed
 from estimator.health.fits import Readings, fits
 from estimator.health.forecast import AHEAD, MEDIAN, Future, earliest, future, passed, reach, staying, together
 from estimator.health.pooled import Evidence, Prior
 from estimator.health.posterior import Draws, draw
-from estimator.health.shapes import DRIFTS, Kind, shapes
+from estimator.health.shapes import DRIFTS, Kind, courses
 from estimator.health.tails import log_tails
 from estimator.session import Array
 
@@ -22,8 +22,6 @@ RECENT = 60
 KNOWN = 0.5
 """A level is known well enough for a forecast while its sigma is below this part of the tolerance: U = 2·u below T, as
 the decision rule asks."""
-STEEPEST = 1.0
-"""One sigma of a rate before it is measured, T a year: nothing in use is steeper for long."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +51,7 @@ class Outlook:
     """Along `direction`."""
     level_sigma: float
     rate: float
-    """Of the drift in force; where none was found, of the straight line through what came after the last jump."""
+    """Of the drift in force: its mean over all that history and type leave open."""
     rate_sigma: float
     p_value: float
     """Of any change at all: the chance of one as evident, at any time and of any kind, where nothing happens."""
@@ -63,7 +61,8 @@ class Outlook:
     chance: Array
     """(h,) probability of having reached the tolerance by `AHEAD` after the track's last session."""
     reach_50: float
-    """Years after the last session; infinite beyond the horizon."""
+    """Years after the last session by which one that is within its tolerance now has reached it as likely as not;
+    infinite beyond the horizon."""
     reach_90: float
     """Before it the tolerance is reached with 10 % probability, and with 20 % at most if what is there is a drift; with
     10 % of a drift that was found."""
@@ -93,13 +92,18 @@ class Prognosis:
     risk: Array
     """(h,) probability that any known parameter has reached its tolerance by `AHEAD` after the latest session."""
 
+    def chances(self, tracks: Sequence[Track]) -> Array:
+        """(B, h) of every one of the tracks that it was made of, 0 where its level is not known well enough."""
+        found = _chances(tracks, self.outlooks)
+        return np.where([[outlook.is_known] for outlook in self.outlooks], found, 0.0)
+
 
 def evidence(track: Track) -> Evidence:
     """What a track tells of its type, whatever else is known of the type."""
     readings, (dof, temperature) = _readings(track), _conditions(track)
     if tells_of_temperature(temperature):
         readings = warmed(readings, 0.0, dof, temperature, LEVEL).readings
-    found = fits(readings, shapes(readings.time))
+    found = fits(readings, courses(readings.time))
     logs = found.log_evidence()
     return Evidence(found.span, logs, log_tails(readings, found.family, logs))
 
@@ -151,13 +155,13 @@ def _outlook(track: Track, prior: Prior, ahead: Array, of: tuple[int, float]) ->
     rng = np.random.default_rng(number)
     readings = replace(_readings(track), tails=prior.tails)
     detected = detect(readings, prior.usual_walk, *_conditions(track), level)
-    family = shapes(detected.readings.time)
+    family = courses(detected.readings.time)
     draws = draw(detected.readings, family, prior, rng)
     stays = staying(draws, prior, _swing(detected.warmth, track), rng)
     chance = passed(draws.weight, stays)
     way = direction(track)
     middle, sigma = _moments(draws, way)
-    rate, rate_sigma = _rate(detected, draws, prior, way)
+    rate, rate_sigma = _rate(draws, way)
     skipped = max(len(track.time) - RECENT, 0)
     return Outlook(
         level=middle * track.tolerance,
@@ -168,12 +172,19 @@ def _outlook(track: Track, prior: Prior, ahead: Array, of: tuple[int, float]) ->
         changes=tuple(_placed(change, skipped) for change in detected.changes),
         warmth=detected.warmth,
         chance=chance,
-        reach_50=float(reach(chance[None], MEDIAN)[0]),
+        reach_50=_median(chance),
         reach_90=earliest(draws, stays, drifts=any(change.kind in DRIFTS for change in detected.changes)),
         is_known=sigma < KNOWN,
         direction=way,
         fan=future(draws, prior, ahead, rng),
     )
+
+
+def _median(chance: Array) -> float:
+    """Years by which it is reached as likely as not by one that is within now; 0 where it is out already as likely as
+    not."""
+    now = float(chance[0])
+    return float(reach(chance[None], now + MEDIAN * (1 - now))[0]) if now < MEDIAN else 0.0
 
 
 def _moments(draws: Draws, way: Array) -> tuple[float, float]:
@@ -183,17 +194,12 @@ def _moments(draws: Draws, way: Array) -> tuple[float, float]:
     return middle, float(np.sqrt(draws.mean((along - middle) ** 2)))
 
 
-def _rate(detected: Detected, draws: Draws, prior: Prior, way: Array) -> tuple[float, float]:
-    """Drift in force along a direction with one sigma, T a year; where one was found, whenever it may have begun."""
-    if any(change.kind in DRIFTS for change in detected.changes):
-        slowed = 1 / ((draws.age + draws.constant) * np.log1p(1 / draws.constant))
-        rates = (draws.rate + draws.aging * slowed[:, None]) @ way
-        middle = float(draws.mean(rates))
-        return middle, float(np.sqrt(draws.mean((rates - middle) ** 2)))
-    readings = detected.readings
-    found = fits(readings, alone(readings.time), np.array([prior.usual_walk]))
-    variance = 1 / (found.information[0, :, 0] + STEEPEST**-2)
-    return float((variance * found.score[0, :, 0]) @ way), float(np.sqrt(variance @ way**2))
+def _rate(draws: Draws, way: Array) -> tuple[float, float]:
+    """Drift in force along a direction with one sigma, T a year, over all that the history may be: few sessions after a
+    break leave it to what the type does."""
+    rates = (draws.rate + draws.aging * draws.slowed()[:, None]) @ way
+    middle = float(draws.mean(rates))
+    return middle, float(np.sqrt(draws.mean((rates - middle) ** 2)))
 
 
 def _swing(warmth: Warmth | None, track: Track) -> float:
@@ -210,12 +216,17 @@ def _placed(change: Change, skipped: int) -> Change:
     return replace(change, gap=change.gap + skipped)
 
 
-def _risk(tracks: Sequence[Track], outlooks: Sequence[Outlook]) -> Array:
-    """(h,) probability that any known parameter is out by `AHEAD` after the latest session of all tracks."""
+def _chances(tracks: Sequence[Track], outlooks: Sequence[Outlook]) -> Array:
+    """(B, h) probability of every parameter of being out by `AHEAD` after the latest session of all tracks."""
     latest = max(float(track.time[-1]) for track in tracks)
     rows = [
         np.interp(AHEAD + latest - float(track.time[-1]), AHEAD, outlook.chance)
         for track, outlook in zip(tracks, outlooks, strict=True)
-        if outlook.is_known
     ]
-    return together(np.stack(rows)) if rows else np.zeros_like(AHEAD)
+    return np.stack(rows)
+
+
+def _risk(tracks: Sequence[Track], outlooks: Sequence[Outlook]) -> Array:
+    """(h,) probability that any known parameter is out by `AHEAD` after the latest session of all tracks."""
+    known = np.array([outlook.is_known for outlook in outlooks])
+    return together(_chances(tracks, outlooks)[known]) if known.any() else np.zeros_like(AHEAD)

@@ -6,12 +6,15 @@ Times t_0 < … < t_{n−1} of the sessions in years since the first, one column
     drift from the start                   t
     drift that began in the gap before k   max(t − t_{k−1} − u(t_k − t_{k−1}), 0)   k = 1 … n−1, u of `BEGINS`
     aging                                  ln(1 + t/τ)/ln(1 + 1/τ)                  τ of `AGES`
+    aging that comes to an end             (1 − e^{−t/τ})/(1 − e^{−1/τ})            τ of `SETTLES`, in forecasts
 
 A drift begins anywhere within its gap, each time alike, so its likelihood is the mean over u. With m nodes u is wrong
 by 1/2m of a gap d at most, the course by r·d/2m: of a young drift that has to stay below a session's own uncertainty,
 or a walk, which fits anything, takes the drift's place and its rate is not carried on. Aging is fast at first and slows
 down as stresses relax and volatiles leave (logarithmic, as of quartz and electronics; Primak 1955); its unit is the
-change of the first year.
+change of the first year. Whether it goes on for ever, as a logarithm does, or comes to an end, as stresses that relax
+at one rate, hardly shows within the readings and decides where they lead: detection does without the second, forecasts
+weigh both.
 """
 
 from dataclasses import dataclass
@@ -24,6 +27,8 @@ from estimator.session import Array
 
 AGES = (0.03, 0.3, 1.0)
 """τ, years: from days, as after an assembly, to a year."""
+SETTLES = (0.3, 1.0, 3.0)
+"""τ, years, of aging that comes to an end: what is slower cannot be told from a drift."""
 BEGINS = (0.125, 0.375, 0.625, 0.875)
 """u, parts of a gap: the middles of quarters. At half a tolerance a year and half a year between sessions a drift is
 then wrong by 0.03 T at most, as much as a good session is uncertain of."""
@@ -43,6 +48,8 @@ class Kind(IntEnum):
     AGING = 4
     WALK = 5
     """At no steady rate, away and back again."""
+    SETTLING = 6
+    """Aging that comes to an end."""
 
 
 DRIFTS = (Kind.LATE, Kind.START, Kind.AGING)
@@ -71,6 +78,24 @@ def shapes(time: Array) -> Shapes:
 
 
 @lru_cache(maxsize=8)
+def _with_ends(moments: bytes) -> Shapes:
+    found, time = _shapes(moments), np.frombuffer(moments)
+    b = len(SETTLES)
+    return Shapes(
+        columns=np.concatenate([found.columns, np.stack([settled(time, age) for age in SETTLES], axis=1)], axis=1),
+        kind=np.append(found.kind, np.full(b, Kind.SETTLING)),
+        gap=np.append(found.gap, np.zeros(b, dtype=int)),
+        share=np.append(found.share, np.full(b, 1 / b)),
+        constant=np.append(found.constant, SETTLES),
+    )
+
+
+def courses(time: Array) -> Shapes:
+    """The same with aging that comes to an end, for forecasts."""
+    return _with_ends(time.tobytes())
+
+
+@lru_cache(maxsize=8)
 def _shapes(moments: bytes) -> Shapes:
     time = np.frombuffer(moments)
     gap = np.diff(time)
@@ -93,3 +118,8 @@ def _shapes(moments: bytes) -> Shapes:
 def course(time: Array, age: Array | float) -> Array:
     """Aging at times since the first session, years, with a constant τ = ``age``, years; dimensionless."""
     return np.asarray(np.log1p(time / age) / np.log1p(1 / np.asarray(age)))
+
+
+def settled(time: Array, age: Array | float) -> Array:
+    """The same of aging that comes to an end."""
+    return np.asarray(np.expm1(-time / age) / np.expm1(-1 / np.asarray(age)))

@@ -154,3 +154,25 @@ def test_an_axis_drifts_along_its_direction() -> None:
     found = prognosis([measured(rng, t, drift, sigma=0.05)], [general_prior()], YEAR).outlooks[0]
     assert found.rate == pytest.approx(0.4, abs=3 * found.rate_sigma)
     assert found.direction == pytest.approx([0.6, 0.8], abs=0.15)
+
+
+def test_a_type_that_settles_is_not_expected_to_go_on() -> None:
+    """All end at 0.8 T. That aging may come to an end is told by those that were watched until it did."""
+    rng = np.random.default_rng(21)
+    whole = [np.linspace(0, 4, 10) for _ in range(24)]
+    prior = learn([evidence(measured(rng, t, -0.8 * np.expm1(-t), sigma=0.03)) for t in whole])
+    young = np.linspace(0, 2, 8)
+    found = prognosis([measured(rng, young, -0.8 * np.expm1(-young), sigma=0.03)], [prior], YEAR)
+    assert found.outlooks[0].reach_50 == np.inf
+
+
+def test_who_was_quiet_for_long_is_expected_to_stay_so() -> None:
+    prior = replace(general_prior(), rate=20 * general_prior().rate)
+    young, old = (replace(draws(10, np.zeros(1)), age=age) for age in (0.5, 8.0))
+    assert chance_in(2.0, old, prior) < 0.4 * chance_in(2.0, young, prior)
+
+
+def test_one_that_has_changed_changes_again_as_units_in_general_do() -> None:
+    prior = replace(general_prior(), rate=20 * general_prior().rate)
+    jumped = replace(draws(10, np.zeros(1)), kind=np.full(10, Kind.JUMP))
+    assert chance_in(2.0, jumped, prior) == pytest.approx(chance_in(2.0, jumped, general_prior()))

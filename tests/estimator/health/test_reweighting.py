@@ -23,7 +23,7 @@ def test_squared_errors_beside_a_jump_are_those_of_the_joint_normal_law() -> Non
     """z₂ − z₁ = a + e₂ − e₁ and nothing else is known: e₂ is normal given the difference."""
     given = readings(np.array([0.0, 0.5]), np.array([0.1, 0.2]))
     family = shapes(given.time)
-    jumps = np.where((PART_KINDS == Kind.JUMP) & (np.arange(len(PART_KINDS)) == 2), 1e3, 0.0)
+    jumps = np.where((PART_KINDS == Kind.JUMP) & (np.arange(len(PART_KINDS)) == 2), 1e18, 0.0)
     found = fits(given, family)
     square = _squares(found, given, weighed(found, Prior(STILL, jumps, NEVER)))
     total = 0.6**2 + 0.1**2 + 0.2**2
