@@ -156,7 +156,7 @@ class CalibrationSession:
     """(R,) consecutive counts in the mean of a row; None where every row is one count."""
     unit_type: str | None = None
     started_at: str | None = None
-    """ISO 8601."""
+    """ISO 8601, in UTC; None when the file does not say."""
     operator: str = ""
     notes: str = ""
     stage: str | None = None

@@ -11,17 +11,15 @@ from types import NoneType
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.reading.fields import NUMBERS, Fields, Interval, number_in
+from estimator.reading.bounds import COMPONENT, WITHIN
+from estimator.reading.fields import NUMBERS, Fields, number_in
+from estimator.reading.interval import Interval
 from estimator.reading.problems import Problems, shown
 from estimator.session import Array
 
 Column = Sequence[object] | Array
 """Cells as written: numbers, texts, None; or all numbers as an array."""
 Mask = NDArray[np.bool_]
-COMPONENT = Interval(-2, 2)
-"""Of a unit vector or a rotation, and a little beyond: what has the wrong length is told by its length."""
-LABEL = Interval(-1, 1e9)
-"""Of a position; −1 where a row belongs to none."""
 
 
 @dataclass(frozen=True)
@@ -50,9 +48,7 @@ class Columns:
         array = as_floats(cells)
         if array is None:
             return self._faulty(name, cells, within, holes)
-        with np.errstate(invalid="ignore"):
-            low = array > within.low if within.above else array >= within.low
-            good = low & (array <= within.high)
+        good = within.held_by(array)
         if holes and not good.all():
             good |= empty(cells)
         if not good.all():
@@ -150,7 +146,7 @@ def _numbered(cells: Column) -> NDArray[np.int64] | None:
     if array is None:
         return None
     array[empty(cells)] = -1
-    if not ((array >= LABEL.low) & (array <= LABEL.high) & (array == np.floor(array))).all():
+    if not (WITHIN["position"].held_by(array) & (array == np.floor(array))).all():
         return None
     return array.astype(np.int64)
 
@@ -164,5 +160,5 @@ def _label(cell: object) -> int | str | _Bad:
         except ValueError:
             return cell
         return _label(number) if math.isfinite(number) else cell
-    label, _ = number_in(cell, LABEL)
+    label, _ = number_in(cell, WITHIN["position"])
     return _Bad() if label is None or label % 1 else int(label)

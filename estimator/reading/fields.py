@@ -7,37 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from estimator.reading.interval import Interval
 from estimator.reading.problems import Problems, shown
 
 UNSTORABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff]")
 """Control characters and lone surrogates, which databases and XML refuse."""
-LARGEST = 1e300
-"""Beyond, arithmetic overflows, and an integer may not become a float."""
 NUMBERS = (int, float, np.integer, np.floating)
 """What counts as a number, bool apart."""
 LONGEST_NAME = 200
 """Characters: a name stands in headings, file names and indices."""
 LONGEST_NOTE = 100_000
 """Characters: fifty pages, which is no note any more."""
-
-
-@dataclass(frozen=True)
-class Interval:
-    """The numbers a field may hold; ``above`` leaves the lower end itself out."""
-
-    low: float
-    high: float
-    unit: str = ""
-    above: bool = False
-
-    def __contains__(self, value: float) -> bool:
-        return (self.low < value if self.above else self.low <= value) and value <= self.high
-
-    def __str__(self) -> str:
-        unit = f" {self.unit}" if self.unit else ""
-        if self.above:
-            return f"above {self.low:g} and at most {self.high:g}{unit}"
-        return f"from {self.low:g} to {self.high:g}{unit}"
 
 
 @dataclass(frozen=True)
@@ -128,7 +108,5 @@ def number_in(value: object, within: Interval) -> tuple[float | None, str]:
         return None, f"is the text {shown(value)}; write a number, without quotes and with a decimal point"
     if isinstance(value, bool) or not isinstance(value, NUMBERS):
         return None, f"is {shown(value)}; must be a number"
-    if not -LARGEST < value < LARGEST:
-        return None, f"is {shown(value)}; must be a finite number of ordinary size"
-    number = float(value)
-    return (number, "") if number in within else (None, f"is {shown(number)}; must be {within}")
+    number = value if isinstance(value, int | float) else float(value)
+    return (float(number), "") if number in within else (None, within.fault(number))

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from estimator.reading.bounds import WITHIN
 from estimator.reading.columns import vector
-from estimator.reading.fields import Fields, Interval
+from estimator.reading.fields import Fields
 from estimator.reading.keys import COLUMNS, SENSOR, check_keys
 from estimator.reading.problems import Problems, shown
 from estimator.session import ACCELEROMETER, GYROSCOPE, TWO_AXIS_STAND, Array, Sensor
@@ -18,16 +19,8 @@ LENGTH_TOLERANCE = 1e-3
 """Of an axis written with three digits; the axis is then scaled to one."""
 FLATTEST = 0.01
 """Smallest ratio of the axes' singular values; below it they lie in one plane, to half a degree."""
-SCALE = Interval(0, 1e18, above=True)
-OFFSET = Interval(-1e18, 1e18)
-"""Any unit that readings may have; the bounds keep squares and products finite."""
-REPEATABILITY = {
-    ACCELEROMETER: ("bias_repeatability_m_s2", Interval(0, 100, "m/s²")),
-    GYROSCOPE: ("bias_repeatability_rad_s", Interval(0, 100, "rad/s")),
-}
-"""Key and bounds by kind: ten g and 16 turns a second are beyond any sensor that is calibrated."""
-POSITION = Interval(-100, 100, "m")
-"""No block is so large, and none is measured from so far away."""
+REPEATABILITY = {ACCELEROMETER: "bias_repeatability_m_s2", GYROSCOPE: "bias_repeatability_rad_s"}
+"""Key by kind."""
 PULSES = frozenset({"pulse", "pulses"})
 COUNTS = frozenset({"count", "counts"})
 """Reading units, in lower case, that ask gyros for a count time: pulses always, counts on a stand."""
@@ -73,10 +66,12 @@ def _read_sensor(entry: Fields, block: str) -> Sensor:
         name=entry.text("name", "give each sensor the name of its column"),
         kind=kind,
         nominal_axis=_read_axis(entry),
-        nominal_scale=entry.number("nominal_scale", SCALE, "give the reading units per m/s² or rad/s"),
+        nominal_scale=entry.number(
+            "nominal_scale", WITHIN["sensors[].nominal_scale"], "give the reading units per m/s² or rad/s"
+        ),
         reading_unit=entry.text("reading_unit", "give the unit of the readings, for instance V"),
         bias_repeatability=_read_repeatability(entry, kind),
-        nominal_offset=entry.optional_number("nominal_offset", OFFSET),
+        nominal_offset=entry.optional_number("nominal_offset", WITHIN["sensors[].nominal_offset"]),
         position=_read_position(entry),
     )
 
@@ -94,14 +89,16 @@ def _read_axis(entry: Fields) -> Array:
 def _read_position(entry: Fields) -> Array | None:
     if not entry.has("position_m"):
         return None
-    return vector(entry, "position_m", "give where the sensor sits, three components in m, block axes", POSITION)
+    advice = "give where the sensor sits, three components in m, block axes"
+    return vector(entry, "position_m", advice, WITHIN["sensors[].position_m"])
 
 
 def _read_repeatability(entry: Fields, kind: str) -> float:
-    for other, (key, _) in REPEATABILITY.items():
+    own = REPEATABILITY[kind]
+    for other, key in REPEATABILITY.items():
         if other != kind and entry.has(key):
-            entry.add(key, f"is for a {other}; this sensor is a {kind}, so give {REPEATABILITY[kind][0]}")
-    value = entry.optional_number(*REPEATABILITY[kind])
+            entry.add(key, f"is for a {other}; this sensor is a {kind}, so give {own}")
+    value = entry.optional_number(own, WITHIN[f"sensors[].{own}"])
     return 0.0 if value is None else value
 
 

@@ -3,8 +3,9 @@
 from collections.abc import Mapping
 from pathlib import Path
 
+from estimator.reading.bounds import WITHIN
 from estimator.reading.extent import Extent
-from estimator.reading.fields import Fields, Interval
+from estimator.reading.fields import Fields
 from estimator.reading.keys import FORMAT, TOP, check_keys
 from estimator.reading.problems import Problems, Where, shown
 from estimator.reading.schedule import check_schedule
@@ -13,10 +14,6 @@ from estimator.reading.setting import read_mounting, read_site, read_stand, read
 from estimator.reading.source import display_name, load
 from estimator.reading.table import read_table
 from estimator.session import COUNTERS, ORIGINS, PROGRAMMES, SIMULATED, STAGES, CalibrationSession
-
-SAMPLE_RATE = Interval(0, 1e9, "Hz", above=True)
-COUNT_TIME = Interval(0, 1e6, "s", above=True)
-"""Beyond, the unit is mistaken."""
 
 
 def read_session(
@@ -65,8 +62,8 @@ def _assemble(document: Fields, *, part: bool) -> CalibrationSession:
     stand = read_stand(document, programme, kinds)
     mounting = read_mounting(document)
     check_pulses(document, sensors, programme)
-    sample_rate = document.optional_number("sample_rate_hz", SAMPLE_RATE)
-    count_time = document.optional_number("count_time_s", COUNT_TIME)
+    sample_rate = document.optional_number("sample_rate_hz", WITHIN["sample_rate_hz"])
+    count_time = document.optional_number("count_time_s", WITHIN["count_time_s"])
     counter = document.choice("counter", COUNTERS) if document.has("counter") else None
     stage = document.choice("stage", STAGES) if document.has("stage") else None
     origin = document.choice("origin", ORIGINS) if document.has("origin") else None

@@ -6,8 +6,11 @@ from datetime import datetime
 
 import numpy as np
 
+from estimator.moments import written
+from estimator.reading.bounds import WITHIN
 from estimator.reading.columns import vector
-from estimator.reading.fields import Fields, Interval
+from estimator.reading.fields import Fields
+from estimator.reading.interval import Interval
 from estimator.reading.keys import SIGMA, SITE, STAND, check_keys
 from estimator.reading.problems import Problems, shown
 from estimator.session import (
@@ -24,17 +27,8 @@ from estimator.session import (
 
 ARCSEC = math.pi / 648_000
 """rad."""
-LATITUDE = Interval(-90, 90, "degrees")
-HEIGHT = Interval(-500, 9000, "m")
-"""On the Earth's surface: the Dead Sea to Everest."""
-GRAVITY = Interval(9.7, 9.9, "m/s²")
-"""On the Earth's surface: 9.764 to 9.834, and room for whoever rounds."""
-ELEVATION = Interval(-90, 90, "degrees")
 FLATTEST = 0.01
 """Degrees by which the head's axis must stay clear of 0° and 90°, where bias and scale become inseparable."""
-ANGLE_SIGMA = Interval(0, 36_000, "arcsec")
-TIME_SIGMA = Interval(0, 1000, "s")
-"""Ten degrees, a quarter of an hour: a stand that is worse is none, and the unit is mistaken."""
 ROTATION_TOLERANCE = 1e-6
 """Of the products of rows that should be 0 or 1: a mounting written with seven digits, known to 0.2″."""
 YEARS = Interval(1950, 2200)
@@ -48,8 +42,8 @@ def read_site(document: Fields, programme: str, kinds: set[str]) -> Site:
     """The site; records what the applied vectors need and it lacks."""
     site = document.child("site") or Fields({}, "site", document.problems)
     check_keys(site, SITE)
-    latitude = site.optional_number("latitude_deg", LATITUDE)
-    height = site.optional_number("height_m", HEIGHT)
+    latitude = site.optional_number("latitude_deg", WITHIN["site.latitude_deg"])
+    height = site.optional_number("height_m", WITHIN["site.height_m"])
     if ACCELEROMETER in kinds and programme in NEEDS_GRAVITY and not _any(site, "latitude_deg", "gravity_m_s2"):
         site.add("gravity_m_s2", "missing, and latitude_deg too; accelerometers need one of them")
     if GYROSCOPE in kinds and programme in NEEDS_LATITUDE and not site.has("latitude_deg"):
@@ -57,7 +51,7 @@ def read_site(document: Fields, programme: str, kinds: set[str]) -> Site:
     return Site(
         latitude=None if latitude is None else math.radians(latitude),
         height=0.0 if height is None else height,
-        gravity=site.optional_number("gravity_m_s2", GRAVITY),
+        gravity=site.optional_number("gravity_m_s2", WITHIN["site.gravity_m_s2"]),
     )
 
 
@@ -95,20 +89,22 @@ def read_mounting(document: Fields) -> Array:
 
 
 def read_started_at(document: Fields) -> str | None:
-    """The start as ISO 8601 with an offset, as written; None when not given."""
+    """The start in UTC, ISO 8601; None when not given."""
     text = document.optional_text("started_at")
     if text is None:
         return None
     try:
-        moment = datetime.fromisoformat(text)
+        at = datetime.fromisoformat(text)
     except ValueError:
         document.add("started_at", f"is {shown(text)}; write it like 2026-03-01T09:00:00Z")
         return None
-    if moment.tzinfo is None:
+    if at.tzinfo is None:
         document.add("started_at", f"{shown(text)} has no offset; end it with Z for UTC or with one like +03:00")
-    elif moment.year not in YEARS:
-        document.add("started_at", f"is in the year {moment.year}; must be {YEARS}")
-    return text
+    elif at.year not in YEARS:
+        document.add("started_at", f"is in the year {at.year}; must be {YEARS}")
+    else:
+        return written(at)
+    return None
 
 
 def _any(fields: Fields, *keys: str) -> bool:
@@ -118,7 +114,7 @@ def _any(fields: Fields, *keys: str) -> bool:
 def _read_elevation(stand: Fields, key: str, required: bool, programme: str) -> float | None:
     if required and not stand.has(key):
         stand.add(key, "missing; give the elevation of the head's axis in degrees")
-    degrees = stand.optional_number(key, ELEVATION)
+    degrees = stand.optional_number(key, WITHIN[f"stand.{key}"])
     if degrees is None:
         return None
     if programme == TWO_AXIS_STAND and not FLATTEST <= abs(degrees) <= 90 - FLATTEST:
@@ -129,12 +125,12 @@ def _read_elevation(stand: Fields, key: str, required: bool, programme: str) -> 
 
 
 def _read_sigma(stand: Fields) -> StandErrors:
-    count_time = stand.optional_number("sigma_count_time_s", TIME_SIGMA) or 0.0
+    count_time = stand.optional_number("sigma_count_time_s", WITHIN["stand.sigma_count_time_s"]) or 0.0
     sigma = stand.child("sigma_arcsec")
     if sigma is None:
         return StandErrors(count_time=count_time)
     check_keys(sigma, SIGMA)
-    stated = {name: sigma.optional_number(name, ANGLE_SIGMA) for name in SIGMA}
+    stated = {name: sigma.optional_number(name, WITHIN["stand.sigma_arcsec"]) for name in SIGMA}
     angles = {name: ARCSEC * angle for name, angle in stated.items() if angle is not None}
     return replace(StandErrors(**angles), count_time=count_time)
 

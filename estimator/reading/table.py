@@ -6,28 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from estimator.reading.bounds import WITHIN
 from estimator.reading.columns import Columns
-from estimator.reading.fields import Fields, Interval
+from estimator.reading.fields import Fields
+from estimator.reading.interval import Interval
 from estimator.reading.keys import DIRECTIONS
 from estimator.reading.shape import check_unknown, read_columns
 from estimator.session import RATE_TABLE, ROTATION_ALIGNMENT, TWO_AXIS_STAND, Array, Sensor
 
 RUNS = ("direct", "flipped")
 """What the column ``run`` may say."""
-READING = Interval(-1e20, 1e20)
-STANDARD_ERROR = Interval(0, 1e20, above=True)
-BETA = Interval(-360_000, 360_000, "degrees")
-TURN = Interval(-3.6e7, 3.6e7, "degrees")
-TURN_RATE = Interval(-36_000, 36_000, "deg/s")
-TIME = Interval(-1e12, 1e12, "s")
-TEMPERATURE = Interval(-100, 200, "°C")
-VIBRATION = Interval(0, 1e4, "m/s²")
-DIRECTION = Interval(-1e6, 1e6)
-"""Bounds that good cells of any instrument keep; beyond, the unit or the column is mistaken."""
 SHORTEST_DIRECTION = 1e-3
 """Length, in whatever unit the components are written: shorter is a zero that was rounded."""
-DIRECTION_SIGMA = Interval(0, 180, "degrees", above=True)
-"""More than half a turn states nothing."""
 
 
 @dataclass(frozen=True)
@@ -58,42 +48,42 @@ def read_table(document: Fields, programme: str, sensors: tuple[Sensor, ...]) ->
     on_stand = programme == TWO_AXIS_STAND
     directions = _directions(columns)
     return Table(
-        readings=_stack([_required(columns, name, READING) for name in names], columns.rows),
+        readings=_stack([_required(columns, name, WITHIN["<sensor>"]) for name in names], columns.rows),
         standard_errors=_standard_errors(columns, names, raw=document.has("sample_rate_hz")),
         flipped=_flipped(columns) if on_stand else None,
-        beta=np.radians(_required(columns, "beta_deg", BETA)) if on_stand else None,
+        beta=np.radians(_required(columns, "beta_deg")) if on_stand else None,
         time=_time(columns),
-        temperature=_optional(columns, "temperature_c", TEMPERATURE),
+        temperature=_optional(columns, "temperature_c"),
         vibration=_vibration(columns, len(names)),
-        turn_angle=_turning(columns, "turn_angle_deg", TURN, needed=programme == ROTATION_ALIGNMENT),
-        turn_rate=_turning(columns, "turn_rate_deg_s", TURN_RATE, needed=programme == RATE_TABLE),
+        turn_angle=_turning(columns, "turn_angle_deg", needed=programme == ROTATION_ALIGNMENT),
+        turn_rate=_turning(columns, "turn_rate_deg_s", needed=programme == RATE_TABLE),
         position=columns.labels("position") if columns.has("position") else None,
         directions=directions,
         direction_sigma=_direction_sigma(document, columns),
     )
 
 
-def _required(columns: Columns, name: str, within: Interval) -> Array:
+def _required(columns: Columns, name: str, within: Interval | None = None) -> Array:
     if columns.has(name):
-        return columns.numbers(name, within)
+        return columns.numbers(name, within or WITHIN[name])
     columns.report_missing(name)
     return np.full(columns.rows, np.nan)
 
 
-def _optional(columns: Columns, name: str, within: Interval) -> Array | None:
-    return columns.numbers(name, within) if columns.has(name) else None
+def _optional(columns: Columns, name: str) -> Array | None:
+    return columns.numbers(name, WITHIN[name]) if columns.has(name) else None
 
 
 def _vibration(columns: Columns, m: int) -> Array | None:
     """(R, m) (m/s²)² of every sensor: the square of what is stated for all."""
-    rms = _optional(columns, "vibration_m_s2", VIBRATION)
+    rms = _optional(columns, "vibration_m_s2")
     return None if rms is None else np.repeat(rms[:, None] ** 2, m, axis=1)
 
 
-def _turning(columns: Columns, name: str, within: Interval, *, needed: bool) -> Array | None:
+def _turning(columns: Columns, name: str, *, needed: bool) -> Array | None:
     """(R,) rad or rad/s, of a turntable."""
     read = _required if needed else _optional
-    degrees = read(columns, name, within)
+    degrees = read(columns, name)
     return None if degrees is None else np.radians(degrees)
 
 
@@ -112,7 +102,7 @@ def _standard_errors(columns: Columns, names: list[str], *, raw: bool) -> Array:
     empty = np.full(columns.rows, np.nan)
     return _stack(
         [
-            columns.numbers(f"{name}_se", STANDARD_ERROR, holes=True) if f"{name}_se" in stated else empty
+            columns.numbers(f"{name}_se", WITHIN["<sensor>_se"], holes=True) if f"{name}_se" in stated else empty
             for name in names
         ],
         columns.rows,
@@ -127,7 +117,7 @@ def _flipped(columns: Columns) -> NDArray[np.bool_]:
 
 
 def _time(columns: Columns) -> Array | None:
-    time = _optional(columns, "time_s", TIME)
+    time = _optional(columns, "time_s")
     if time is not None:
         back = np.flatnonzero(np.diff(time) < 0) + 1
         columns.problems.add_rows(
@@ -144,7 +134,7 @@ def _directions(columns: Columns) -> Array | None:
     for name in DIRECTIONS:
         if name not in given:
             columns.report_missing(name)
-    stated = [columns.numbers(name, DIRECTION, holes=True) for name in given]
+    stated = [columns.numbers(name, WITHIN["direction_x…z"], holes=True) for name in given]
     if len(given) < 3 or any(np.isnan(component).all() for component in stated):
         return None
     vectors = np.column_stack(stated)
@@ -167,7 +157,7 @@ def _direction_sigma(document: Fields, columns: Columns) -> float | None:
     """rad."""
     key = "direction_sigma_deg"
     if any(columns.has(name) for name in DIRECTIONS):
-        return math.radians(document.number(key, DIRECTION_SIGMA, "give how well the stated directions are known"))
+        return math.radians(document.number(key, WITHIN[key], "give how well the stated directions are known"))
     if document.has(key):
         document.add(key, f"is given without directions; add the columns {', '.join(DIRECTIONS)} or take it out")
     return None

@@ -12,6 +12,7 @@ import socket
 import struct
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, replace
@@ -25,6 +26,7 @@ from service.ingest import limits
 from service.ingest.exchange import DAMAGED, Array, plain_bytes, unpack
 from service.ingest.limits import Limits, refusal
 from service.ingest.scanned import Heard, listener
+from service.ingest.sender import SENDER
 
 SERVER = "service.ingest.fork_server"
 ROOT = str(Path(__file__).parents[2])
@@ -35,6 +37,10 @@ FRUGAL = {"POLARS_MAX_THREADS": "1", "MALLOC_ARENA_MAX": "1"}
 """One thread: more take address space, and several files are read at once already."""
 WAITING = 3
 """Times the computing time that reading may last: the machine may be busy with other things."""
+SHORTEST = 5
+"""Seconds of computing for the smallest file: the largest table that may be unpacked of it takes four."""
+SLOWEST = 500_000
+"""Bytes of a file for which it may compute a second more, up to the limit in force: a third of a workbook's pace."""
 PACE = 20_000_000
 """Bytes of a file for which reading may take a second more: a fifth of what a CSV is read at."""
 GRACE = 5.0
@@ -59,14 +65,14 @@ FELL = (OSError, EOFError, *DAMAGED)
 
 def read_apart(job: str, content: bytes | Path, filename: str) -> Any:
     """What the job makes of the content; a SessionError where it cannot be used, BusyError where it must wait."""
-    most = _limits(content)
+    most = limits_of_file(content)
     with turn(), _refused_if_it_fell(filename, most):
         return _asked_again_if_ended(job, content, filename, most)
 
 
 def read_parts(job: str, path: Path, filename: str) -> Iterator[Any]:
     """The parts that the job makes of a file, one after another; its process waits until they are taken."""
-    most = _limits(path)
+    most = limits_of_file(path)
     with turn(), _refused_if_it_fell(filename, most), _server.fork() as child:
         child.settimeout(most.seconds * WAITING + GRACE)
         _ask(child, {"job": job, "filename": filename, "limits": asdict(most)}, path)
@@ -74,11 +80,12 @@ def read_parts(job: str, path: Path, filename: str) -> Iterator[Any]:
             yield _answer(child, line, most)
 
 
-def _limits(content: bytes | Path) -> Limits:
-    """Those in force, and more time for a long file."""
+def limits_of_file(content: bytes | Path) -> Limits:
+    """Those in force, with less time for a small file and more for a long one."""
     most = limits.in_force()
-    more = content.stat().st_size // PACE if isinstance(content, Path) else 0
-    return replace(most, seconds=most.seconds + more)
+    size = content.stat().st_size if isinstance(content, Path) else len(content)
+    more = size // PACE if isinstance(content, Path) else 0
+    return replace(most, seconds=min(most.seconds, SHORTEST + size // SLOWEST) + more)
 
 
 @contextmanager
@@ -238,16 +245,22 @@ class _Server:
         if self._control is not None:
             self._control.close()
         if self._process is not None and self._owner == os.getpid():
-            self._process.wait(GRACE)
+            try:
+                self._process.wait(GRACE)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
         self._process = self._control = None
 
 
 class _Turns:
-    """At most so many files at once; a few wait for a while, further ones are asked to come again."""
+    """At most so many files at once, and of one sender one fewer; a few wait for a while, further ones are asked to
+    come again."""
 
     def __init__(self) -> None:
         self._changed = Condition()
-        self._busy = self._waiting = 0
+        self._busy: Counter[str] = Counter()
+        self._waiting: Counter[str] = Counter()
         self._own = local()
 
     @contextmanager
@@ -256,29 +269,35 @@ class _Turns:
         if getattr(self._own, "held", False):
             yield
             return
+        sender = SENDER.get()
         with self._changed:
-            self._wait(at_once)
-            self._busy += 1
+            self._wait(sender, at_once)
+            self._busy[sender] += 1
         self._own.held = True
         try:
             yield
         finally:
             self._own.held = False
             with self._changed:
-                self._busy -= 1
-                self._changed.notify()
+                self._busy[sender] -= 1
+                self._changed.notify_all()
 
-    def _wait(self, at_once: int) -> None:
-        if self._busy < at_once:
+    def _wait(self, sender: str, at_once: int) -> None:
+        def is_free() -> bool:
+            own = max(1, at_once - 1) if sender else at_once
+            return self._busy.total() < at_once and self._busy[sender] < own
+
+        if is_free():
             return
-        if self._waiting >= MOST_WAITING:
+        own = MOST_WAITING // 2 if sender else MOST_WAITING
+        if self._waiting.total() >= MOST_WAITING or self._waiting[sender] >= own:
             raise BusyError(BUSY)
-        self._waiting += 1
+        self._waiting[sender] += 1
         try:
-            if not self._changed.wait_for(lambda: self._busy < at_once, PATIENCE):
+            if not self._changed.wait_for(is_free, PATIENCE):
                 raise BusyError(BUSY)
         finally:
-            self._waiting -= 1
+            self._waiting[sender] -= 1
 
 
 BUSY = "Many large files are being read; nothing of this one was stored. Send it again in a few seconds."

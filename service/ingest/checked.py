@@ -1,15 +1,18 @@
 """Step: uploaded bytes → a session that can be calibrated and stored; every fault is named with its place."""
 
-from dataclasses import dataclass
-from datetime import UTC, datetime, timedelta
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
+from functools import cached_property
 from pathlib import Path
 
 from estimator.errors import FormatError, Problem
+from estimator.moments import moment, written
 from estimator.session import CalibrationSession
 from service.ingest import read_upload
+from service.ingest.digest import readings_digest
+from service.ingest.names import LONGEST_NAME, fault_of_name, fault_of_serial, plain_name
 
-LONGEST_NAME = 200
-"""Characters of a name that the store keeps: the width of its columns."""
 LONGEST_NOTES = 20_000
 """Characters of a text that people write: some pages, so that no upload fills the database."""
 CLOCK_LEEWAY = timedelta(days=1)
@@ -28,24 +31,46 @@ class Checked:
     stand: str | None
     """That it was measured on."""
 
+    @cached_property
+    def readings_digest(self) -> str:
+        """Of its readings alone."""
+        return readings_digest(self.session)
 
-def check(content: bytes | Path, filename: str, now: datetime) -> Checked:
-    """The session that uploaded bytes hold; SessionError with every problem where they cannot be used."""
+
+def check(
+    content: bytes | Path, filename: str, now: datetime, is_known: Callable[[str], bool] = lambda _: False
+) -> Checked:
+    """The session that uploaded bytes hold; SessionError with every problem where they cannot be used.
+
+    ``is_known`` tells whether there is a unit of a serial number: what an earlier version stored under one that is no
+    longer taken goes on under it.
+    """
     session = read_upload(content, filename)
-    problems = [*_text_problems(session), *_date_problems(session, now)]
+    serial = plain_name(session.unit)
+    fault = fault_of_serial(serial)
+    if (fault is not None or serial != session.unit) and is_known(session.unit):
+        serial, fault = session.unit, None
+    own = [] if fault is None else [Problem("unit", fault)]
+    problems = [*own, *_text_problems(session), *_date_problems(session, now)]
     if problems:
         raise FormatError(problems, filename)
-    return as_checked(session, now)
+    return as_checked(session, now, serial)
 
 
-def as_checked(session: CalibrationSession, uploaded_at: datetime) -> Checked:
-    """A session that was checked before, as one that is read from the store was."""
+def as_checked(session: CalibrationSession, uploaded_at: datetime, serial: str) -> Checked:
+    """A session that was checked before, as one that is read from the store was, with its unit's serial number."""
+    session = session if session.unit == serial else replace(session, unit=serial)
     return Checked(
         session=session,
         measured_at=_measured_at(session, uploaded_at),
         type_name=session.unit_type or _described(session),
         stand=None if session.stand is None else session.stand.id,
     )
+
+
+def dated(session: CalibrationSession, at: datetime) -> CalibrationSession:
+    """A stored session with the moment that it is kept under: what its file says, or when it was received."""
+    return replace(session, started_at=written(at))
 
 
 def plain_filename(filename: str) -> str:
@@ -55,10 +80,7 @@ def plain_filename(filename: str) -> str:
 
 
 def _measured_at(session: CalibrationSession, now: datetime) -> datetime:
-    if session.started_at is None:
-        return now
-    stated = datetime.fromisoformat(session.started_at)
-    return (stated if stated.tzinfo else stated.replace(tzinfo=UTC)).astimezone(UTC)
+    return now if session.started_at is None else moment(session.started_at)
 
 
 def _described(session: CalibrationSession) -> str:
@@ -69,21 +91,20 @@ def _described(session: CalibrationSession) -> str:
 
 def _text_problems(session: CalibrationSession) -> list[Problem]:
     names = {
-        "unit": session.unit,
         "unit_type": session.unit_type or "",
         "stand.id": session.stand.id if session.stand else "",
     }
     names |= {f"sensors[{i}].name": sensor.name for i, sensor in enumerate(session.sensors)}
     names |= {f"sensors[{i}].reading_unit": sensor.reading_unit for i, sensor in enumerate(session.sensors)}
     texts = {"operator": session.operator, "notes": session.notes}
-    limits = [(field, text, LONGEST_NAME) for field, text in names.items()]
-    limits += [(field, text, LONGEST_NOTES) for field, text in texts.items()]
-    return [Problem(field, fault) for field, text, longest in limits if (fault := _fault(text, longest))]
+    found = [(field, fault_of_name(text)) for field, text in names.items()]
+    found += [(field, _fault(text)) for field, text in texts.items()]
+    return [Problem(field, fault) for field, fault in found if fault]
 
 
-def _fault(text: str, longest: int) -> str | None:
-    if len(text) > longest:
-        return f"is {len(text)} characters long; at most {longest} are kept"
+def _fault(text: str) -> str | None:
+    if len(text) > LONGEST_NOTES:
+        return f"is {len(text)} characters long; at most {LONGEST_NOTES} are kept"
     if "\x00" in text or any("\ud800" <= c <= "\udfff" for c in text):
         return "holds characters that are not text (NUL or half of a pair); remove them"
     return None

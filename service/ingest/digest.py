@@ -7,11 +7,11 @@ fifteen; times in UTC.
 import hashlib
 from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
-from datetime import UTC, datetime
 
 import numpy as np
 from numpy.typing import NDArray
 
+from estimator.moments import moment
 from estimator.session import CalibrationSession
 
 DIGITS = 32
@@ -27,6 +27,13 @@ def content_digest(session: CalibrationSession) -> str:
     for part in _parts("", session):
         digest.update(part)
     return digest.hexdigest()
+
+
+def readings_digest(session: CalibrationSession) -> str:
+    """SHA-256 of the readings alone, whatever is written beside them: the same for other names of unit and sensors, for
+    other dates and notes, and for sensors in another order."""
+    columns = (b"".join(_bytes("", column)) for column in session.readings.T)
+    return hashlib.sha256(b"".join(sorted(hashlib.sha256(column).digest() for column in columns))).hexdigest()
 
 
 def _parts(name: str, value: object) -> Iterator[bytes]:
@@ -47,7 +54,7 @@ def _parts(name: str, value: object) -> Iterator[bytes]:
 
 def _bytes(name: str, value: object) -> Iterator[bytes]:
     if name == ".started_at":
-        yield _in_utc(str(value)).encode()
+        yield moment(str(value)).isoformat().encode()
     elif isinstance(value, str):
         yield value.strip().encode()
     else:
@@ -63,8 +70,3 @@ def _rounded(array: NDArray[np.float64]) -> bytes:
     kept = np.rint(np.ldexp(fraction, DIGITS)) / 2.0**DIGITS
     rounded = np.where(np.isfinite(array), np.ldexp(kept, exponent) + 0.0, np.nan)
     return rounded.astype("<f8").tobytes()
-
-
-def _in_utc(stated: str) -> str:
-    at = datetime.fromisoformat(stated)
-    return (at if at.tzinfo else at.replace(tzinfo=UTC)).astimezone(UTC).isoformat()

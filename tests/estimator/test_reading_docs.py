@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from estimator.reading import read_session
+from estimator.reading.bounds import BOUNDS
 from estimator.reading.keys import COLUMNS, SENSOR, SIGMA, SITE, STAND, TOP
 from tests.estimator.test_reading_csv import same
 
@@ -26,3 +27,8 @@ def test_the_examples_work_and_are_the_same_session():
 @pytest.mark.parametrize("key", [*TOP, *SITE, *STAND, *SIGMA, *SENSOR, *COLUMNS])
 def test_every_field_is_described(key):
     assert f"`{key}`" in PAGE
+
+
+def test_the_page_has_the_bounds_of_every_number():
+    stated = {line for line in PAGE.splitlines() if line.startswith("| `") and line.count("|") == 7}
+    assert stated == {bound.row for bound in BOUNDS}

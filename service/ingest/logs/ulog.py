@@ -22,6 +22,10 @@ COMBINED = {"accelerometer_m_s2": ACCELEROMETER, "gyro_rad": GYROSCOPE}
 MICROSECOND = 1e-6
 HEADER = 16
 """Bytes before the first message."""
+KNOWN = frozenset(b"BFIMPQARDLCSO")
+"""Types of message; others are skipped, unless their header is that of no message."""
+LONGEST = 10_000
+"""Bytes of an unknown message that is still taken for one, as the library does."""
 DAMAGED = (ULogException, struct.error, ValueError, LookupError, TypeError, AttributeError, OverflowError)
 """What the library raises on files that were cut off or written over."""
 BROKEN = "is damaged within: some of its messages cannot be read; copy it from the card again"
@@ -31,15 +35,16 @@ UNREADABLE = "is damaged or not a readable ULog file; copy it from the card agai
 
 def read(content: bytes, filename: str) -> Contents:
     """The IMUs of a log; FormatError where it is damaged. One that breaks off at its end is read up to there."""
+    end = _end_of_messages(content, filename)
     try:
         with redirect_stdout(io.StringIO()):  # the library prints what it thinks of a file
-            log = ULog(io.BytesIO(content), [*RAW, "sensor_combined"])
+            log = ULog(io.BytesIO(content[:end]), [*RAW, "sensor_combined"])
             streams = [*_raw(log)] or [*_combined(log)]
     except DAMAGED as fault:
         raise refusal(filename, UNREADABLE) from fault
     if log.file_corruption:
         raise refusal(filename, BROKEN)
-    return Contents(streams, _facts(log, content))
+    return Contents(streams, _facts(log, is_whole=end == len(content)))
 
 
 def _raw(log: ULog) -> Iterator[Stream]:
@@ -65,19 +70,27 @@ def _time(data: dict[str, Array]) -> Array:
     return MICROSECOND * chosen.astype(float)
 
 
-def _facts(log: ULog, content: bytes) -> dict[str, object]:
+def _facts(log: ULog, *, is_whole: bool) -> dict[str, object]:
     """Serial number of the flight controller, and what was lost."""
     lost = sum(dropout.duration for dropout in log.dropouts)
     notes = [f"The logger dropped {lost} ms of samples in {len(log.dropouts)} gaps."] if log.dropouts else []
-    notes += [] if _is_whole(content) else [CUT]
+    notes += [] if is_whole else [CUT]
     serial = log.msg_info_dict.get("sys_uuid")
     said = {"unit": serial if isinstance(serial, str) else "", "notes": " ".join(notes)}
     return {key: text for key, text in said.items() if text}
 
 
-def _is_whole(content: bytes) -> bool:
-    """Whether the last message ends where the file does: each has its length before it."""
+def _end_of_messages(content: bytes, filename: str) -> int:
+    """Where the last whole message ends: each has its length before it. FormatError where there are no messages.
+
+    The library goes back by the length that a header states, and for ever where the file has fewer bytes.
+    """
     at = HEADER
     while at + 3 <= len(content):
-        at += 3 + int.from_bytes(content[at : at + 2], "little")
-    return at == len(content)
+        size, kind = int.from_bytes(content[at : at + 2], "little"), content[at + 2]
+        if kind not in KNOWN and (kind == 0 or not 0 < size <= LONGEST):
+            raise refusal(filename, BROKEN)
+        if at + 3 + size > len(content):
+            break
+        at += 3 + size
+    return at

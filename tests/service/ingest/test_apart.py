@@ -20,6 +20,7 @@ from service.ingest import LONG, apart, limits, read_upload
 from service.ingest.exchange import DAMAGED, pack, unpack
 from tests import builders
 from tests.estimator.test_reading_csv import csv_of, same
+from tests.patience import LONG as VERY_LONG
 from tests.service.ingest.test_formats import json_bytes, metadata, parquet_bytes
 
 SMALL = builders.accelerometer_block(3, positions=2)
@@ -98,17 +99,18 @@ def test_the_process_knows_nothing_of_the_environment(monkeypatch):
 
 
 def test_beyond_the_turns_and_those_who_wait_a_sender_is_asked_to_come_again(limited, monkeypatch):
-    limited(at_once=1, seconds=1)
-    monkeypatch.setattr(apart, "MOST_WAITING", 0)
-    server()
-    with open(ENDLESS, "rb") as file, ThreadPoolExecutor() as threads:
-        content = file.read()
-        found = [threads.submit(read_upload, content, "x") for _ in range(3)]
-    assert sorted(type(one.exception()).__name__ for one in found) == ["BusyError", "BusyError", "FormatError"]
-
-
-def test_a_file_that_waits_gets_its_turn(limited):
     limited(at_once=1)
+    monkeypatch.setattr(apart, "MOST_WAITING", 0)
+    content = parquet_bytes(SMALL)
+    with apart.turn(), ThreadPoolExecutor() as threads:
+        found = [threads.submit(read_upload, content, "x") for _ in range(2)]
+    assert [type(one.exception()).__name__ for one in found] == ["BusyError"] * 2
+    assert read_upload(content, "x").unit == SMALL["unit"]
+
+
+def test_a_file_that_waits_gets_its_turn(limited, monkeypatch):
+    limited(at_once=1)
+    monkeypatch.setattr(apart, "PATIENCE", VERY_LONG)
     with ThreadPoolExecutor() as threads:
         units = [session.unit for session in threads.map(read_upload, [parquet_bytes(SMALL)] * 5, "xxxxx")]
     assert units == [SMALL["unit"]] * 5

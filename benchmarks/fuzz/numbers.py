@@ -1,0 +1,201 @@
+"""``python -m benchmarks.fuzz.numbers`` sends extreme numbers to a running service, and writes what became of them.
+
+A find is an answer of 5xx, an answer later than ten seconds, an ordinary upload after it that is not taken, a page or
+result of what was taken that cannot be read, and work beside the requests that failed at it.
+"""
+
+import argparse
+import json
+import os
+import re
+import time
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from itertools import groupby
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import httpx
+
+from benchmarks.files.service import Service, service
+from benchmarks.fuzz.extremes import EXTREMES, Case, cases, in_csv, in_xlsx
+from benchmarks.fuzz.requests import requests
+from tests.builders import accelerometer_block
+
+LATEST = 10.0
+"""Seconds."""
+MOMENT = 0.5
+"""Seconds between two looks at what still waits."""
+PARTS = ("", "/calibration", "/diagnosis", "/correction", "/file")
+"""Of a session that was taken."""
+FAULT = re.compile(r"^imu_health_background_faults_total\{.*\} [1-9]")
+PENDING = re.compile(r"^imu_health_pending_diagnoses (\S+)", re.MULTILINE)
+PAGE = Path(__file__).with_name("NUMBERS.md")
+SAMPLE = 7
+"""One case of so many in the other formats: they share the checks behind the reader."""
+JSON = {"Content-Type": "application/json"}
+HEAD = f"""# Extreme numbers
+
+Written by `make fuzz-numbers`. Every number of a session file of every programme, one row and whole columns alike, and
+every number of the other calls of the API, has in turn each of {len(EXTREMES)} values: 0, from 5e-324 to 1.7e308 in
+either sense, integers of up to 401 digits, NaN, infinities, truth values and texts. After each place an ordinary
+session is uploaded, and what was taken is read again.
+
+| sent | answers | of them |
+| --- | --- | --- |
+"""
+
+
+@dataclass
+class Tally:
+    """What became of the cases."""
+
+    answers: Counter[tuple[str, int]] = field(default_factory=Counter)
+    finds: list[str] = field(default_factory=list)
+    slowest: float = 0.0
+
+    def note(self, group: str, name: str, answer: httpx.Response) -> None:
+        """One answer."""
+        seconds = answer.elapsed.total_seconds()
+        self.answers[group, answer.status_code] += 1
+        self.slowest = max(self.slowest, seconds)
+        if answer.status_code >= httpx.codes.INTERNAL_SERVER_ERROR or seconds > LATEST:
+            self.find(f"{name}: {answer.status_code} in {seconds:.1f} s")
+
+    def find(self, text: str) -> None:
+        """Something that must not be."""
+        print(text, flush=True)
+        self.finds.append(text)
+
+
+def main() -> None:
+    """Send everything, wait until all work beside it is done, and write the table."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.fuzz.numbers", description=__doc__)
+    parser.add_argument("--only", default="", help="only cases whose name holds this")
+    parser.add_argument("--every", type=int, default=1, help="one case of so many")
+    parser.add_argument("--wait", type=float, default=60, help="minutes that diagnoses are waited for")
+    parser.add_argument("--read", type=int, default=1, help="one stored session of so many is read again")
+    parser.add_argument("--out", type=Path, default=PAGE)
+    options = parser.parse_args()
+    tally = Tally()
+    chosen = [case for case in cases() if options.only in case.name][:: options.every]
+    with TemporaryDirectory() as folder, service(Path(folder), _ordinary("FIRST")) as running:
+        began = time.monotonic()
+        taken = list(_sent(running, tally, chosen))
+        _others(running, tally)
+        minutes = (time.monotonic() - began) / 60
+        left = _waited(running, options.wait * 60)
+        for id in taken[:: options.read]:
+            _read(running, tally, id)
+        for line in running.client.get(f"{running.address}/metrics").text.splitlines():
+            if FAULT.match(line):
+                tally.find(line)
+        log = (Path(folder) / "log").read_text()
+    (options.out.parent / f"{options.out.stem}.log").write_text(log)
+    for line in log.splitlines():
+        if "Traceback" in line or "failed" in line:
+            tally.find(f"log: {line[:300]}")
+    made = f"{len(taken) - left:,} of the {len(taken):,} sessions that were taken were diagnosed when it ended."
+    options.out.write_text(_page(tally, minutes, made))
+    print(options.out.read_text())
+
+
+def _sent(running: Service, tally: Tally, tried: Iterable[Case]) -> Iterator[str]:
+    """Every case, and an ordinary session after each place; ids of what was taken."""
+    for number, (place, own) in enumerate(groupby(tried, lambda case: (case.programme, case.way))):
+        for at, case in enumerate(own):
+            answer = running.client.post(
+                f"{running.address}/api/v1/sessions", content=case.content(f"EX-{number}-{at}")
+            )
+            tally.note(case.programme, case.name, answer)
+            if answer.status_code == httpx.codes.CREATED:
+                yield answer.json()["id"]
+        _next(running, tally, f"after {place}", number)
+
+
+def _read(running: Service, tally: Tally, id: str) -> None:
+    """Everything that is made of a stored session."""
+    unit = running.client.get(f"{running.address}/api/v1/sessions/{id}").json()["unit"]
+    paths = (*(f"/api/v1/sessions/{id}{part}" for part in PARTS), f"/sessions/{id}", f"/units/{unit}")
+    for path in (*paths, f"/api/v1/units/{unit}/usable"):
+        tally.note("what was taken, read again", path, running.client.get(f"{running.address}{path}"))
+
+
+def _next(running: Service, tally: Tally, name: str, number: int) -> None:
+    answer = running.client.post(f"{running.address}/api/v1/sessions", content=_ordinary(f"ORD-{number}"))
+    tally.note("an ordinary session", name, answer)
+    if answer.status_code != httpx.codes.CREATED:
+        tally.find(f"{name}: an ordinary upload got {answer.status_code}")
+
+
+def _others(running: Service, tally: Tally) -> None:
+    """The other formats for a sample, and every number of every other call."""
+    chosen = [case for case in cases() if case.programme == "two-axis-stand"][::SAMPLE]
+    for form, written in (("as CSV", in_csv), ("as XLSX", in_xlsx)):
+        for number, case in enumerate(chosen):
+            content = written(case, f"{form[3:]}-{number}")
+            name = f"{form}, {case.name}"
+            tally.note(form, name, running.client.post(f"{running.address}/api/v1/sessions", content=content))
+    known = {
+        "serial": "FIRST",
+        "id": running.client.get(f"{running.address}/api/v1/units/FIRST").json()["sessions"][0]["id"],
+    }
+    spec = running.client.get(f"{running.address}/openapi.json").json()
+    for one in requests(spec, known):
+        answer = running.client.request(one.method, f"{running.address}{one.path}", content=one.body, headers=JSON)
+        tally.note("other calls of the API", one.name, answer)
+    _next(running, tally, "all other calls", -2)
+
+
+def _waited(running: Service, most: float) -> int:
+    """Waits, for so many seconds at most, until every diagnosis is made; how many are not."""
+    end = time.monotonic() + most
+    while (left := _pending(running)) and time.monotonic() < end:
+        time.sleep(MOMENT)
+    return left
+
+
+def _pending(running: Service) -> int:
+    found = PENDING.search(running.client.get(f"{running.address}/metrics").text)
+    assert found is not None
+    return int(float(found[1]))
+
+
+def _ordinary(unit: str) -> bytes:
+    document = accelerometer_block(3, positions=4, unit=unit)
+    document["stand"]["id"] = unit
+    return json.dumps(document | {"unit_type": unit}).encode()
+
+
+def _page(tally: Tally, minutes: float, made: str) -> str:
+    groups = dict.fromkeys(group for group, _ in tally.answers)
+    lines = [
+        f"| {group} | {sum(n for (g, _), n in tally.answers.items() if g == group):,} | {_codes(tally, group)} |"
+        for group in groups
+    ]
+    finds = "\n".join(f"* {find}" for find in tally.finds) or "None."
+    return (
+        HEAD
+        + "\n".join(lines)
+        + f"""
+
+{sum(tally.answers.values()):,} answers in {minutes:.0f} minutes by the clock; the slowest took {tally.slowest:.1f} s.
+{made}
+
+## Finds
+
+{finds}
+"""
+    )
+
+
+def _codes(tally: Tally, group: str) -> str:
+    own = sorted((code, n) for (g, code), n in tally.answers.items() if g == group)
+    return ", ".join(f"{n:,} × {code}" for code, n in own)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,32 @@
+"""Names of units, types and stands: written once, found in addresses, lists and on labels ever after."""
+
+import unicodedata
+
+LONGEST_NAME = 200
+"""Characters of a name that the store keeps: the width of its columns."""
+UNSEEN = ("Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp")
+"""Kinds of characters that nobody sees: control, direction of writing, no width, half of a pair, private, unassigned,
+and ends of lines."""
+STEPS = ("", ".", "..")
+"""Between slashes: what browsers take out of an address."""
+
+
+def plain_name(text: str) -> str:
+    """A name as it is kept: composed (NFC), without space around it, one space for several."""
+    return " ".join(unicodedata.normalize("NFC", text).split())
+
+
+def fault_of_name(text: str) -> str | None:
+    """What is wrong with a name; None where nothing is."""
+    if len(text) > LONGEST_NAME:
+        return f"is {len(text)} characters long; at most {LONGEST_NAME} are kept"
+    if any(unicodedata.category(c) in UNSEEN for c in text):
+        return "holds characters that nobody sees, such as control characters or marks of direction; remove them"
+    if text and any(part in STEPS for part in text.split("/")):
+        return "cannot stand in an address: it is or holds . or .. or nothing between slashes; write it otherwise"
+    return None
+
+
+def fault_of_serial(text: str) -> str | None:
+    """The same of a serial number, which cannot be left out."""
+    return fault_of_name(text) if text else "is empty; write the unit's serial number"
