@@ -28,7 +28,7 @@ from service.dependencies import Now, Reading, StorageOf
 from service.errors import ConflictError, ForbiddenError
 from service.flows.identity.accounts import AccountChange, add_account, change_account
 from service.flows.identity.links import make_link
-from service.flows.identity.tokens import make_token, revoke_token
+from service.flows.identity.tokens import make_token, require_may_revoke, require_no_token, revoke_token
 from service.records.identity import UNNAMED, Role
 
 router = APIRouter(tags=["accounts"])
@@ -63,9 +63,11 @@ def update_account(
     return AccountSchema.model_validate(change_account(storage, login, change, now, who=person.signs(UNNAMED)))
 
 
-@router.post("/accounts/{login}/link", status_code=201, responses=errors(404, 422))
+@router.post("/accounts/{login}/link", status_code=201, responses=errors(403, 404, 422))
 def create_link(login: Login, storage: StorageOf, now: Now, person: PersonOf) -> LinkSchema:
-    """A link with which the account's owner chooses a password and is signed in, once, within an hour."""
+    """A link with which the account's owner chooses a password and is signed in, once, within an hour. A token makes
+    none."""
+    require_no_token(person)
     return LinkSchema(path=f"/sign-in/{make_link(storage, login, now, person.signs(UNNAMED))}")
 
 
@@ -78,7 +80,8 @@ def list_tokens(store: Reading, person: PersonOf) -> TokenList:
 
 @router.post("/tokens", status_code=201, responses=errors(400, 403, 409, 422))
 def create_token(new: NewToken, storage: StorageOf, now: Now, person: PersonOf) -> MadeToken:
-    """A token of one's own. Its secret is in this answer and nowhere else."""
+    """A token of one's own, for somebody who is signed in: a token makes none. Its secret is in this answer alone."""
+    require_no_token(person)
     if not person.login:
         raise ConflictError(NO_ACCOUNT)
     if not person.may(new.role):
@@ -90,9 +93,9 @@ def create_token(new: NewToken, storage: StorageOf, now: Now, person: PersonOf) 
 
 @router.delete("/tokens/{id}", status_code=204, responses=errors(403, 404, 422))
 def delete_token(id: Number, storage: StorageOf, store: Reading, now: Now, person: PersonOf) -> None:
-    """Nobody gets in with the token any more; it stays listed. Others' tokens need an administrator."""
-    if store.tokens.get(id).login != person.login and not person.may(Role.ADMIN):
-        raise ForbiddenError("This token is another account's.")
+    """Nobody gets in with the token any more; it stays listed. Others' tokens need an administrator who is signed in: a
+    token revokes only itself."""
+    require_may_revoke(person, store.tokens.get(id))
     revoke_token(storage, id, now, who=person.signs(UNNAMED))
 
 

@@ -98,6 +98,7 @@ GET {API}/feeds/due.ics
 GET {API}/fleet
 GET {API}/fleet/report
 GET {API}/jobs
+GET {API}/jobs/failed
 GET {API}/jobs/{{id}}
 GET {API}/jobs/{{id}}/file
 POST {API}/jobs/report
@@ -153,6 +154,7 @@ ENGINEER = f"""
 POST /sessions/{{id}}/diagnosis/accept
 POST /sessions/{{id}}/diagnosis/withdraw/{{revision}}
 POST /jobs/recalibration
+POST /jobs/failed/retry
 POST /groups/accept
 POST /models/{{id}}/withdraw
 POST /flags/acknowledge
@@ -180,6 +182,7 @@ POST {SESSION}/diagnosis/accept
 POST {UNIT}/reference
 POST {UNIT}/recalibrate
 POST {API}/jobs/recalibration
+POST {API}/jobs/failed/retry
 POST {UNIT}/diagnosis/accept
 POST {API}/unit-types/{{name:path}}/diagnosis/accept
 POST {API}/stands/{{name:path}}/diagnosis/accept

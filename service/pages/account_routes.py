@@ -6,15 +6,17 @@ from typing import Annotated
 from fastapi import APIRouter, Form, Path, Query, Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
-from service.admission import COOKIE, PersonOf
+from service.admission import COOKIE, PersonOf, attempt_of
 from service.application import application_of
-from service.dependencies import Now, Reading, SettingsOf, StorageOf, address_of
+from service.dependencies import Now, Reading, SettingsOf, StorageOf
 from service.errors import ForbiddenError, SignInError
 from service.flows.identity.accounts import change_password
-from service.flows.identity.attempts import Attempt, attempting
+from service.flows.identity.attempts import attempting
 from service.flows.identity.links import Chosen, link_of, use_link
 from service.flows.identity.sign_in import LASTS, sign_in, sign_out
-from service.flows.identity.tokens import make_token, revoke_token
+from service.flows.identity.tokens import make_token, require_may_revoke, require_no_token, revoke_token
+from service.identity.known_browser import LASTS as KNOWN
+from service.identity.known_browser import cookie_of, proof_for
 from service.identity.passwords import LONGEST, SHORTEST
 from service.pages.account import LinkPage, SignInPage, account_page
 from service.pages.forms import NO_NUL, SEE_OTHER, Number
@@ -47,11 +49,11 @@ def take_sign_in(
 ) -> Response:
     """Signs in, or says that it was wrong."""
     try:
-        with attempting(storage, Attempt(login, address_of(request)), now):
+        with attempting(storage, attempt_of(request, login), now):
             secret = sign_in(storage, login, password, now)
     except SignInError as wrong:
         return render(request, "sign_in.html", SignInPage(inside(next), wrong.detail, _provider(request)), wrong.status)
-    return signed_in(request, settings, secret, inside(next))
+    return _known(signed_in(request, settings, secret, inside(next)), request, login)
 
 
 @router.get("/sign-in/{secret}")
@@ -72,7 +74,9 @@ def take_link(
     name: Login = "",
 ) -> Response:
     """Sets the password and signs in."""
-    return signed_in(request, settings, use_link(storage, secret, Chosen(login, name, password), now), "/")
+    owner = link_of(storage, secret, now)
+    answer = signed_in(request, settings, use_link(storage, secret, Chosen(login, name, password), now), "/")
+    return _known(answer, request, login if owner is None else owner.login)
 
 
 @router.post("/sign-out")
@@ -94,10 +98,11 @@ def show_account(request: Request, store: Reading, person: PersonOf, now: Now) -
 def take_password(
     request: Request, old: Password, new: Password, storage: StorageOf, person: PersonOf, now: Now
 ) -> RedirectResponse:
-    """Another password; every browser of the account must sign in again. Whoever found one open may not guess."""
-    with attempting(storage, Attempt(person.login, address_of(request)), now):
+    """Another password; browsers must sign in again, and tokens are revoked. Whoever found a browser open may not
+    guess."""
+    with attempting(storage, attempt_of(request, person.login), now):
         change_password(storage, person.login, old, new, now)
-    return RedirectResponse("/sign-in", SEE_OTHER)
+    return _known(RedirectResponse("/sign-in", SEE_OTHER), request, person.login)
 
 
 @router.post("/account/tokens")
@@ -111,6 +116,7 @@ def take_token(
     now: Now,
 ) -> HTMLResponse:
     """A new token; its secret is on this page and nowhere else."""
+    require_no_token(person)
     if not person.login or not person.may(role):
         raise ForbiddenError(f"{person.account or 'Nobody'} cannot make a token for {role}.")
     _, secret = make_token(storage, person.login, label, role, now, lasts=timedelta(days=days), who=person.name)
@@ -122,9 +128,7 @@ def take_token(
 def take_back(id: Number, storage: StorageOf, person: PersonOf, now: Now) -> RedirectResponse:
     """Nobody gets in with it any more."""
     with storage.database.reading() as store:
-        owner = store.tokens.get(id).login
-    if owner != person.login and not person.may(Role.ADMIN):
-        raise ForbiddenError("This token is another account's.")
+        require_may_revoke(person, store.tokens.get(id))
     revoke_token(storage, id, now, who=person.signs("admin"))
     return RedirectResponse("/account", SEE_OTHER)
 
@@ -145,6 +149,18 @@ def signed_in(request: Request, settings: Settings, secret: str, to: str) -> Red
     answer = RedirectResponse(to, SEE_OTHER)
     age = int(LASTS.total_seconds())
     answer.set_cookie(COOKIE, secret, max_age=age, httponly=True, samesite="lax", secure=is_secure(request, settings))
+    return answer
+
+
+def _known(answer: RedirectResponse, request: Request, login: str) -> RedirectResponse:
+    """The browser has just shown the account's password: from now on its attempts are counted apart from others'."""
+    own = application_of(request)
+    with own.storage.database.reading() as store:
+        stored = store.accounts.password_hash(login.strip())
+    if stored is not None:
+        proof, age = proof_for(login, stored, own.clock()), int(KNOWN.total_seconds())
+        secure = is_secure(request, own.settings)
+        answer.set_cookie(cookie_of(login), proof, max_age=age, httponly=True, samesite="lax", secure=secure)
     return answer
 
 

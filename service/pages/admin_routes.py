@@ -10,6 +10,7 @@ from service.application import application_of
 from service.dependencies import Now, Reading, StorageOf
 from service.flows.identity.accounts import AccountChange, add_account, change_account
 from service.flows.identity.links import make_link
+from service.flows.identity.tokens import require_no_token
 from service.pages.admin import AccountsPage, audit_page
 from service.pages.forms import NO_NUL, SEE_OTHER
 from service.pages.render import render
@@ -39,6 +40,7 @@ def take_account(
     name: Written = "",
 ) -> HTMLResponse:
     """Makes an account and shows the link with which its owner chooses a password."""
+    require_no_token(person)
     made = add_account(storage, login, name, role, now, who=person.signs(UNNAMED))
     return _with_link(request, storage, made.login, make_link(storage, made.login, now, person.signs(UNNAMED)))
 
@@ -61,6 +63,7 @@ def change(
 @router.post("/accounts/{login}/link")
 def show_link(request: Request, login: Login, storage: StorageOf, person: PersonOf, now: Now) -> HTMLResponse:
     """Shows a new link for an account."""
+    require_no_token(person)
     return _with_link(request, storage, login, make_link(storage, login, now, person.signs(UNNAMED)))
 
 

@@ -70,6 +70,8 @@ class Person:
     """None of somebody who may only sign in."""
     token: str = ""
     """Label of the token that was shown; empty of a browser."""
+    token_id: int | None = None
+    """Its number; None of a browser."""
     csrf: str = ""
     """What every form of a signed-in browser brings back; empty of a program."""
 

@@ -60,7 +60,7 @@ class SignInLinkRow(Base):
 
 
 class AttemptRow(Base):
-    """How often somebody tried to sign in within a minute, by what they tried; kept for a day."""
+    """How often somebody tried to sign in within a minute or a day, by what they tried; kept for two days."""
 
     __tablename__ = "attempts"
     key: Mapped[str] = mapped_column(String(64), primary_key=True)

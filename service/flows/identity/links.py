@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
-from estimator.errors import Problem
-from service.errors import ConflictError, RefusedError, SignInError
-from service.flows.identity.accounts import require_login
+from service.errors import ConflictError, SignInError
+from service.flows.identity.accounts import end_access, require_login, require_new_password
 from service.flows.identity.sign_in import begin
-from service.identity.passwords import fault_of, hashed
+from service.identity.passwords import hashed
 from service.identity.secret import new_secret, stored_hash
 from service.records.identity import Account, Role
 from service.storage import Storage
@@ -15,7 +14,10 @@ from service.storage.store import Store
 
 HOLDS = timedelta(hours=1)
 """That a link can be used; the one who asked for it is at hand."""
-SPENT = "This link was used already, or its hour is over. Ask an administrator for another, or start the service again."
+SPENT = (
+    "This link was used already, or its hour is over. Ask an administrator for another; "
+    "while there is no account, start the service again."
+)
 
 
 @dataclass(frozen=True)
@@ -47,20 +49,20 @@ def link_of(storage: Storage, secret: str, now: datetime) -> Account | None:
 
 
 def use_link(storage: Storage, secret: str, chosen: Chosen, now: datetime) -> str:
-    """Sets the password, signs in, and returns what the browser shows from now on."""
+    """Sets the password, ends what the account had open, signs in, and returns what the browser shows from now on."""
+    with storage.database.reading() as store:
+        owner = _owner(store, secret, now)
+        stored = None if owner is None else store.accounts.password_hash(owner.login)
+    require_new_password(stored, chosen.password)
+    replacing = hashed(chosen.password)
     with storage.database.writing() as store:
         owner = _owner(store, secret, now)
-        faults = [] if (fault := fault_of(chosen.password)) is None else [Problem("password", fault)]
-        if faults:
-            raise RefusedError("The password cannot be used.", tuple(faults))
         if not store.sign_ins.use_link(stored_hash(secret), now):
             raise SignInError(SPENT)
         login = _first(store, chosen, now) if owner is None else owner.login
-        store.accounts.put_password_hash(login, hashed(chosen.password))
+        store.accounts.put_password_hash(login, replacing)
         account = store.accounts.get(login)
-        store.sign_ins.end_all(account)
-        store.sign_ins.end_links(account)
-        store.audit.write(now, account.name, "password", login, {})
+        store.audit.write(now, account.name, "password", login, end_access(store, account, now))
         return begin(store, account, now)
 
 

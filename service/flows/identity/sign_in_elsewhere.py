@@ -25,6 +25,7 @@ def sign_in_elsewhere(storage: Storage, claims: Claims, joining: Joining, now: d
     """The secret that the browser shows from now on."""
     role = _claimed(claims, joining)
     with storage.database.writing() as store:
+        store.accounts.hold_admins()
         account = store.identities.account(claims.issuer, claims.subject) or _made(store, claims, joining, role, now)
         if not account.is_active:
             raise SignInError(WRONG)

@@ -3,13 +3,32 @@
 from datetime import datetime, timedelta
 
 from estimator.errors import Problem
-from service.errors import ConflictError, RefusedError
+from service.errors import ConflictError, ForbiddenError, RefusedError
 from service.identity.secret import TOKEN_PREFIX, new_secret, stored_hash
-from service.records.identity import Role, Token
+from service.records.identity import Person, Role, Token
 from service.storage import Storage
 
 LONGEST = timedelta(days=366)
 """That a token may hold: what nobody remembers should end by itself."""
+
+
+OUTLIVES = "A token makes no tokens and no sign-in links, which would outlive it: sign in with a browser."
+OTHERS = "This token is another account's."
+NOT_ITSELF = "A token revokes none but itself: sign in with a browser."
+
+
+def require_no_token(person: Person) -> None:
+    """ForbiddenError where a token asks for something that lets somebody in for longer than the token does."""
+    if person.token:
+        raise ForbiddenError(OUTLIVES)
+
+
+def require_may_revoke(person: Person, token: Token) -> None:
+    """ForbiddenError unless a token is somebody's own, or an administrator asks; a token revokes only itself."""
+    if token.login != person.login and not person.may(Role.ADMIN):
+        raise ForbiddenError(OTHERS)
+    if person.token and person.token_id != token.id:
+        raise ForbiddenError(NOT_ITSELF)
 
 
 def make_token(

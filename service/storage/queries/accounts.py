@@ -25,11 +25,11 @@ class Accounts(Queries):
         """One account."""
         return account_of(self._row(login))
 
-    def first_admin(self) -> Account | None:
-        """The oldest account that may do everything."""
-        admins = select(AccountRow).where(AccountRow.role == Role.ADMIN, AccountRow.is_active).order_by(AccountRow.id)
-        row = self._session.scalar(admins.limit(1))
-        return None if row is None else account_of(row)
+    def hold_admins(self) -> None:
+        """Holds every active administrator until the transaction ends, always in the same order: of two who demote each
+        other at once, the second one sees what the first one did."""
+        admins = select(AccountRow.id).where(AccountRow.role == Role.ADMIN, AccountRow.is_active)
+        self._session.execute(admins.order_by(AccountRow.id).with_for_update()).all()
 
     def admins(self) -> int:
         """How many active accounts may do everything."""

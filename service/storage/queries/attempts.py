@@ -8,19 +8,18 @@ from sqlalchemy.dialects import postgresql, sqlite
 from service.storage.identity_tables import AttemptRow
 from service.storage.queries.base import Queries
 
-WINDOW = timedelta(minutes=1)
-"""In which attempts are counted, from the first one on."""
-FORGOTTEN = timedelta(days=1)
-"""After which a row is removed; long after its window, so that nobody else is at it."""
+FORGOTTEN = timedelta(days=2)
+"""After which a row is removed; long after every window, so that nobody else is at it."""
 
 
 class Attempts(Queries):
     """Attempts by key; a statement that counts also tells, so that of two at once each sees its own number."""
 
-    def count(self, key: str, now: datetime) -> int:
-        """Counts one more, and returns how many there were within the window, this one included."""
+    def count(self, key: str, window: timedelta, now: datetime) -> int:
+        """Counts one more, and returns how many there were within the window that the first one opened, this one
+        included."""
         insert = postgresql.insert if self._session.get_bind().dialect.name == "postgresql" else sqlite.insert
-        is_over = AttemptRow.since <= now - WINDOW
+        is_over = AttemptRow.since <= now - window
         counted = insert(AttemptRow).values(key=key, since=now, count=1)
         counted = counted.on_conflict_do_update(
             index_elements=[AttemptRow.key],

@@ -66,6 +66,12 @@ class Tokens(Queries):
             update(TokenRow).where(TokenRow.id == id, TokenRow.revoked_at.is_(None)).values(revoked_at=now)
         )
 
+    def revoke_all(self, account: Account, now: datetime) -> tuple[int, ...]:
+        """The same of every token of an account that is not revoked; returns their numbers."""
+        own = TokenRow.account_id == account.id, TokenRow.revoked_at.is_(None)
+        revoked = update(TokenRow).where(*own).values(revoked_at=now).returning(TokenRow.id)
+        return tuple(sorted(self._session.scalars(revoked)))
+
 
 def is_stale(token: Token, now: datetime) -> bool:
     """Whether the last use is worth noting again."""

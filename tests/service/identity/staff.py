@@ -1,5 +1,6 @@
 """People with accounts, as tests need them: one of every role, signed in by token."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 
@@ -25,11 +26,14 @@ class Staff:
         return {} if role is None else {"Authorization": f"Bearer {self.tokens[role]}"}
 
 
-def staffed(storage: Storage, now: datetime = NOW) -> Staff:
-    """One account of every role, named after it, each with a token that holds for a year."""
+def staffed(storage: Storage, now: datetime = NOW, signing: Collection[str] = ()) -> Staff:
+    """One account of every role, named after it, each with a token that holds for a year; of some a password too, which
+    is chosen first: it would revoke the token."""
     tokens = {}
     for role in reversed(Role):
         add_account(storage, role, role.title(), role, now, who="test")
+        if role in signing:
+            with_password(storage, role, now)
         year = timedelta(days=365)
         tokens[role] = make_token(storage, role, "bench", role, now, lasts=year, who="test")[1]
     return Staff(tokens)
