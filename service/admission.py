@@ -7,8 +7,12 @@ from starlette.datastructures import UploadFile
 
 from service.application import application_of
 from service.errors import ForbiddenError, SignInError
+from service.flows.identity.attempts import Attempt
 from service.identity.access import API, METRICS, NEEDED, Route
+from service.identity.client_address import counted_address
+from service.identity.known_browser import browser_of, cookie_of
 from service.identity.secret import csrf_of, is_same, stored_hash
+from service.ingest.sender import SENDER
 from service.records.identity import EVERYBODY, LOOKING, RANKS, STRANGER, Person, Role
 from service.storage.queries.tokens import is_stale
 
@@ -65,7 +69,7 @@ def _by_token(request: Request) -> Person | None:
         with own.storage.database.writing() as store:
             store.tokens.used(token.id, now)
     role = min(token.role, account.role, key=RANKS.__getitem__)
-    return Person(account.login, account.name, role, token=token.label)
+    return Person(account.login, account.name, role, token=token.label, token_id=token.id)
 
 
 def _by_cookie(request: Request) -> Person | None:
@@ -95,6 +99,7 @@ def _was_forwarded(request: Request) -> bool:
 async def _admitted(request: Request, person: PersonOf) -> None:
     """Whether this person may; a signed-in browser proves that the form is ours."""
     route = route_of(request.scope)
+    SENDER.set(person.login or (request.client.host if request.client else ""))
     if route not in NEEDED:
         raise ForbiddenError(f"Nobody may {route[0]} {route[1]}: it has no rule.")
     needed = NEEDED[route]
@@ -117,6 +122,17 @@ async def _proof(request: Request) -> str:
         field = (await request.form()).get(CSRF)
         shown = None if isinstance(field, UploadFile) else field
     return shown or ""
+
+
+def attempt_of(request: Request, login: str) -> Attempt:
+    """Who tries a password: at which account, from where, and with which browser if that has signed in there before."""
+    own = application_of(request)
+    peer = request.client.host if request.client else ""
+    with own.storage.database.reading() as store:
+        stored = store.accounts.password_hash(login.strip())
+    proof = request.cookies.get(cookie_of(login), "")
+    browser = browser_of(proof, login, stored, own.clock()) if proof else ""
+    return Attempt(login, counted_address(peer), browser)
 
 
 ADMITTED = [Depends(_admitted)]

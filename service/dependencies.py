@@ -107,11 +107,6 @@ LanguageOf = Annotated[Language, Depends(_language)]
 """What is made for people is made in the language of the one who asks."""
 
 
-def address_of(request: Request) -> str:
-    """The address that a request came from."""
-    return request.client.host if request.client else ""
-
-
 def limited(request: Request, most: int, *, is_form: bool) -> Request:
     """The same request, but a body that grows beyond ``most`` bytes is stopped, whatever it announced."""
     longest = most + (ENVELOPE if is_form else 0)

@@ -1,8 +1,11 @@
 """Figures for Prometheus: requests by operation and status with their time, uploads by what became of them,
 work beside the requests that failed."""
 
+from collections.abc import Mapping
+
 from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
 
+from service.records.failure import FailedKind
 from service.records.session import Receipt
 
 BUCKETS = (0.005, 0.02, 0.05, 0.1, 0.25, 0.5, 1, 2.5, 5, 15)
@@ -46,6 +49,18 @@ class Metrics:
         self._pending = Gauge(
             "imu_health_pending_diagnoses", "Diagnoses that are still to be made.", registry=self._registry
         )
+
+        self._failed = Gauge(
+            "imu_health_failed_work",
+            "Work beside the requests that has failed and waits for the administrator, by kind.",
+            ("kind",),
+            registry=self._registry,
+        )
+
+    def note_failed(self, counts: Mapping[FailedKind, int]) -> None:
+        """How much work of each kind is failed now."""
+        for kind, number in counts.items():
+            self._failed.labels(kind.value).set(number)
 
     def note_room(self, free: int) -> None:
         """How much room is left for uploads, bytes."""

@@ -3,7 +3,7 @@
 import os
 from enum import StrEnum
 from importlib.metadata import version
-from ipaddress import ip_address
+from ipaddress import IPv4Network, IPv6Network, ip_address
 from pathlib import Path
 from typing import Annotated, Literal
 from urllib.parse import urlsplit
@@ -64,6 +64,11 @@ class Settings(BaseSettings):
         default="auto",
         description="Who must sign in. auto: nobody while the service listens on this machine only and there is no "
         "account yet; everybody otherwise. off: nobody, whoever reaches the address.",
+    )
+    trusted_proxies: Annotated[tuple[IPv4Network | IPv6Network, ...], NoDecode] = Field(
+        default=(),
+        description="Addresses or networks of proxies, separated by commas, whose X-Forwarded-For and "
+        "X-Forwarded-Proto say where a request came from and how: 10.0.0.5, 172.16.0.0/12.",
     )
     metrics_token: str = Field(
         default="",
@@ -216,7 +221,7 @@ class Settings(BaseSettings):
         pairs = (part.rpartition("=") for part in given.split(",") if part.strip())
         return tuple((value.strip(), role.strip()) for value, _, role in pairs)
 
-    @field_validator("webhook_hosts", "allowed_hosts", "oidc_hosts", mode="before")
+    @field_validator("webhook_hosts", "allowed_hosts", "oidc_hosts", "trusted_proxies", mode="before")
     @classmethod
     def _split(cls, given: object) -> object:
         return tuple(filter(None, (h.strip() for h in given.split(",")))) if isinstance(given, str) else given

@@ -4,14 +4,13 @@ from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Path, Query, Request, Response
 
-from service.admission import PersonOf
+from service.admission import PersonOf, attempt_of
 from service.api.exports import as_file
 from service.api.schemas.corrections import CorrectionDocument
 from service.api.schemas.fields import TEXT, SessionId, Text
 from service.api.schemas.papers import IssueList, IssueSchema, NewSignature, SignatureSchema
 from service.api.schemas.problem import errors
-from service.dependencies import DeskOf, Now, StorageOf, address_of
-from service.flows.identity.attempts import Attempt
+from service.dependencies import DeskOf, Now, StorageOf
 from service.flows.sign_certificate import Signing
 from service.records.paper import NOT_STATED
 from service.reports.desk import HandedOut, hand_out, hand_out_approved, sign
@@ -94,7 +93,7 @@ def sign_certificate(
     one, and the same bytes are handed out from then on.
     """
     signing = Signing(id, new.number, new.meaning, person.login, new.password)
-    signature = sign(desk, signing, Attempt(person.login, address_of(request)), now)
+    signature = sign(desk, signing, attempt_of(request, person.login), now)
     return SignatureSchema.model_validate(signature)
 
 

@@ -8,7 +8,17 @@ from service.admission import PersonOf
 from service.api.exports import BINARY, as_file
 from service.api.fleet import PDF, XLSX
 from service.api.schemas.fields import Number, Text
-from service.api.schemas.jobs import Cancelling, JobPage, JobSchema, NewRecalibration, NewReport, job_schema
+from service.api.schemas.jobs import (
+    Cancelling,
+    FailedWorkPage,
+    FailedWorkSchema,
+    JobPage,
+    JobSchema,
+    NewRecalibration,
+    NewReport,
+    RetriedSchema,
+    job_schema,
+)
 from service.api.schemas.problem import errors
 from service.dependencies import CREW, JobDeskOf, LanguageOf, Now, Reading, StorageOf
 from service.flows.ask_job import cancel_job, file_of
@@ -34,6 +44,22 @@ def list_jobs(
     account = person.login if mine else ""
     found = store.jobs.page(limit, before=before, account=account, subject=subject)
     return JobPage(jobs=list(map(job_schema, found)), before=found[-1].id if len(found) == limit else None)
+
+
+@router.get("/failed", responses=errors(422))
+def list_failed(
+    store: Reading, now: Now, limit: Annotated[int, Query(ge=1, le=500, description="How many.")] = 100
+) -> FailedWorkPage:
+    """Work beside the requests that has failed, and why. Jobs and messages are listed for a week after they ended."""
+    counts = {kind: number for kind, number in store.failures.counts(now).items() if number}
+    listed = [FailedWorkSchema.model_validate(one) for one in store.failures.listed(now, limit)]
+    return FailedWorkPage(counts=counts, failed=listed)
+
+
+@router.post("/failed/retry", responses=errors(422))
+def retry_failed(storage: StorageOf, now: Now, desk: JobDeskOf, person: PersonOf) -> RetriedSchema:
+    """Try again everything that failed and is still wanted, apart from jobs and messages, which have ended."""
+    return RetriedSchema(retried=desk.try_again(storage, now, person.signs(CREW)))
 
 
 @router.post("/recalibration", status_code=202, responses={**ACCEPTED, **errors(400, 422, 503)})

@@ -8,8 +8,9 @@ from prometheus_client import CONTENT_TYPE_LATEST
 from pydantic import BaseModel, Field
 
 from service.api.schemas.problem import errors
-from service.dependencies import MetricsOf, SettingsOf, StorageOf
+from service.dependencies import MetricsOf, Now, SettingsOf, StorageOf
 from service.errors import AwayError
+from service.records.failure import FailedKind
 from service.storage.space import space_at
 
 router = APIRouter(tags=["operations"])
@@ -28,6 +29,10 @@ class Readiness(BaseModel):
         description="`ready` when it can do everything, `degraded` when it takes no uploads."
     )
     reasons: list[str] = Field(description="What it cannot do and why; empty when it is ready.")
+    failed: dict[FailedKind, int] = Field(
+        description="Work beside the requests that has failed, by kind, and waits for the administrator; the service "
+        "stays ready with it. `GET /api/v1/jobs/failed` lists it."
+    )
 
 
 @router.get("/healthz")
@@ -37,17 +42,21 @@ async def health() -> ServiceState:
 
 
 @router.get("/readyz", responses=errors())
-def readiness(storage: StorageOf, settings: SettingsOf) -> Readiness:
+def readiness(storage: StorageOf, settings: SettingsOf, now: Now) -> Readiness:
     """Readiness: the database answers, its schema is the one this version needs, and there is room for uploads."""
     storage.database.require_ready()
+    with storage.database.reading() as store:
+        failed = {kind: number for kind, number in store.failures.counts(now).items() if number}
     lack = space_at(settings.files, settings.min_free_bytes).too_little
-    return Readiness(status="ready", reasons=[]) if lack is None else Readiness(status="degraded", reasons=[lack])
+    reasons = [] if lack is None else [lack]
+    return Readiness(status="degraded" if reasons else "ready", reasons=reasons, failed=failed)
 
 
 @router.get("/metrics", responses={200: {"content": {"text/plain": {}}}, **errors()}, response_class=Response)
-def metrics(figures: MetricsOf, settings: SettingsOf, storage: StorageOf) -> Response:
+def metrics(figures: MetricsOf, settings: SettingsOf, storage: StorageOf, now: Now) -> Response:
     """Figures for Prometheus; without a database those that need none."""
     with suppress(AwayError), storage.database.reading() as store:
         figures.note_pending(store.pending.count())
+        figures.note_failed(store.failures.counts(now))
     figures.note_room(space_at(settings.files, settings.min_free_bytes).free)
     return Response(figures.text(), media_type=CONTENT_TYPE_LATEST)

@@ -3,13 +3,13 @@
 from threading import Event
 
 from service.background.diagnose_waiting import WORK, Diagnosing, diagnose_next
-from service.background.guard import Guard
 from service.background.helper import Helper
 from service.background.job_waiting import work_on_next
 from service.background.pool_waiting import pool_next
 from service.background.recompute_waiting import recompute_next
 from service.background.refresh_waiting import refresh_next
 from service.background.summarise_waiting import summarise_next
+from service.flows.guard import Guard
 
 LOOK_EVERY = 1.0
 """Seconds between two looks at what other services left; what this one takes in rings."""

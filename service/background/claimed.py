@@ -8,8 +8,8 @@ from threading import Event
 from typing import Generic, Protocol, TypeVar
 
 from service.background.diagnose_waiting import CLAIM, EXTEND, MOST_ATTEMPTS, PUT_OFF, Diagnosing
-from service.background.guard import Failure
 from service.background.helper import Helper, Still, StoppingError
+from service.flows.guard import Failure
 from service.log import log
 from service.storage import Storage
 from service.storage.store import Store
@@ -29,6 +29,9 @@ class Queue(Protocol[T]):
 
     def extend(self, one: T, until: datetime) -> None:
         """Whoever claimed it is still at it."""
+
+    def hold_up(self, one: T, why: str) -> None:
+        """Keeps why a try failed."""
 
     def give_back(self, one: T) -> None:
         """The program failed or its process died: the next one may take it at once."""
@@ -107,6 +110,7 @@ def _leave(own: Diagnosing, work: Work[T], one: T, failure: Failure) -> None:
     """What is foreseen passes, and is tried for ever; at what is not, a few times."""
     _note(own, work, one, failure)
     with own.storage.database.writing() as store:
+        work.queue(store).hold_up(one, failure.reason)
         if failure.is_foreseen:
             work.queue(store).put_off(one, own.clock() + work.put_off)
         else:

@@ -4,8 +4,9 @@ from collections.abc import Callable
 from datetime import datetime
 from threading import Event
 
-from service.background.guard import Alone, Guard, plainly
 from service.flows.derive_again import Deriving, derive_batch
+from service.flows.guard import Alone, Guard, kept, plainly
+from service.flows.refresh_beside import date
 from service.metrics import Metrics
 from service.storage import Storage
 
@@ -37,8 +38,16 @@ def derive_waiting(
     with storage.database.reading() as store:
         serials = store.derivations.waiting()
     for serial in serials:
-        with alone("derivations", serial):
+        with alone("derivations", serial), kept(_failed_at(storage, serial)):
             _derive_unit(storage, coverage_factor, clock, stop, serial)
+
+
+def _failed_at(storage: Storage, serial: str) -> Callable[[str], None]:
+    def keep(why: str) -> None:
+        with storage.database.writing() as store:
+            store.failures.put_derivation(serial, why)
+
+    return keep
 
 
 def _derive_unit(
@@ -49,3 +58,4 @@ def _derive_unit(
         way = Deriving(storage.files, coverage_factor, clock())
         with storage.database.writing() as store:
             left = derive_batch(store, way, serial, BATCH)
+        date(storage, way, serial)

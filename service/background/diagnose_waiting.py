@@ -11,9 +11,9 @@ from threading import Event
 from uuid import uuid4
 
 from service.background.bell import Bell
-from service.background.guard import Failure, Guard
 from service.background.helper import Helper, StoppingError
 from service.flows.diagnose import give_up
+from service.flows.guard import Failure, Guard
 from service.log import log
 from service.metrics import Metrics
 from service.records.pending import Claim
@@ -103,6 +103,7 @@ def _leave(own: Diagnosing, claim: Claim, failure: Failure) -> None:
     """What is foreseen passes, and is tried for ever; at what is not, a few times."""
     _note(own, claim, failure)
     with own.storage.database.writing() as store:
+        store.pending.hold_up(claim.session, failure.reason)
         if failure.is_foreseen:
             store.pending.put_off(claim, own.clock() + PUT_OFF)
         else:
@@ -120,11 +121,11 @@ BATCH = 500
 
 def ask_for_missing(storage: Storage, clock: Callable[[], datetime], metrics: Metrics, bell: Bell, stop: Event) -> None:
     """At the start: asks for the diagnosis of every session that has none, or on which an older version failed; what
-    was given up of units' outlooks is tried again."""
+    failed is tried again."""
     last = ""
     with Guard(metrics).alone(WORK, ""):
         with storage.database.writing() as store:
-            store.pending_outlooks.try_again()
+            store.failures.try_again()
         while not stop.is_set():
             with storage.database.reading() as store:
                 missing = store.sessions.without_diagnosis(last, BATCH, VERSION)

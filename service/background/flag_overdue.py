@@ -2,12 +2,13 @@
 
 from datetime import datetime
 
-from service.background.guard import Alone, plainly
-from service.flows.flagging.settle import Occasion, raise_flag, resolve_as_done
+from service.flows.flagging.overdue import no_longer_overdue
+from service.flows.flagging.settle import Occasion, raise_flag
+from service.flows.guard import Alone, plainly
 from service.records.flag import Concern, Matter
 from service.storage import Storage
 from service.views.outlook import dated
-from service.words.due import NOTHING_DUE, was_due
+from service.words.due import was_due
 
 
 def flag_overdue(storage: Storage, now: datetime, alone: Alone = plainly) -> None:
@@ -24,9 +25,6 @@ def _settle(storage: Storage, serial: str, now: datetime) -> None:
     with storage.database.writing() as store:
         occasion = Occasion(store.units.hold(serial), None, now)
         outlook = dated(store.outlooks.of_unit(serial), now)
-        opened = tuple(flag for flag in store.flags.open_of(occasion.unit) if flag.matter is Matter.OVERDUE)
-        if outlook is None or not outlook.overdue:
-            for flag in opened:
-                resolve_as_done(store, occasion, flag, NOTHING_DUE)
-        elif not opened and outlook.due is not None:
+        opened = no_longer_overdue(store, occasion, outlook)
+        if not opened and outlook is not None and outlook.overdue and outlook.due is not None:
             raise_flag(store, occasion, Concern(Matter.OVERDUE, "", 1, was_due(outlook.due, outlook.reason)))

@@ -3,9 +3,9 @@
 from collections.abc import Iterable
 from datetime import datetime
 
-from service.background.guard import Alone, plainly
 from service.errors import ServiceError
 from service.flows.flagging.settle import Occasion, propose, raise_flag, see_again
+from service.flows.guard import Alone, plainly
 from service.judging.stand_health import stand_health
 from service.records.flag import Concern, Flag, FlagState, Matter
 from service.records.stand import StandCondition

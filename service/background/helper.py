@@ -16,10 +16,10 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Any
 
-from service.background.guard import Failure, ending_here
 from service.background.work_job import work_piece
 from service.errors import ServiceError
 from service.flows.diagnose import diagnose
+from service.flows.guard import Failure, ending_here
 from service.flows.recompute import recompute
 from service.flows.refresh_beside import refresh_beside
 from service.flows.refresh_group import refresh_group
@@ -116,16 +116,19 @@ class Helper:
             raise StoppingError(f"The {job} of {of} was not begun.")
         self.start()
         assert self._pipe is not None
+        answered = False
         try:
             self._pipe.send((job, of, now))
             while not self._pipe.poll(LOOK_EVERY):
                 if not still():
-                    self.end()
                     raise StoppingError(f"The {job} of {of} was interrupted.")
             answer: Failure | None = self._pipe.recv()
+            answered = True
         except (EOFError, OSError):
-            self.end()
             return Failure(DIED, f"The process died at the {job} of {of}.", is_foreseen=False)
+        finally:
+            if not answered:  # its answer would be taken for that of the next job
+                self.end()
         return answer
 
     def end(self) -> None:

@@ -7,10 +7,11 @@ from uuid import uuid4
 
 from service.background.bell import Bell
 from service.background.diagnose_waiting import CLAIM
-from service.background.guard import FORESEEN, Guard
 from service.background.work_job import skip_piece, work_piece
 from service.flows.ask_job import ask_job
+from service.flows.guard import FORESEEN, Guard
 from service.flows.receive import Reception
+from service.flows.retry_failed import retry_failed
 from service.flows.take_in import ask_upload, take_in
 from service.metrics import Metrics
 from service.records.identity import Person
@@ -48,6 +49,12 @@ class JobDesk:
         self.bell.ring()
         with storage.database.reading() as store:
             return store.jobs.get(job.id)
+
+    def try_again(self, storage: Storage, now: datetime, who: str) -> int:
+        """Asks anew for everything that failed; returns how much that is."""
+        count = retry_failed(storage, now, who)
+        self.bell.ring()
+        return count
 
     def _work_through(self, storage: Storage, id: int) -> None:
         while True:

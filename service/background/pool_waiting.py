@@ -6,8 +6,8 @@ from threading import Event
 
 from service.background.claimed import Work, work_next
 from service.background.diagnose_waiting import MOST_ATTEMPTS, Diagnosing
-from service.background.guard import Alone, plainly
 from service.background.helper import Helper
+from service.flows.guard import Alone, plainly
 from service.flows.refresh_group import current, give_up
 from service.storage import Storage
 

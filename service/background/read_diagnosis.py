@@ -11,12 +11,12 @@ from uuid import uuid4
 from estimator.errors import SessionError
 from service.background.bell import Bell
 from service.background.diagnose_waiting import PUT_OFF, WORK
-from service.background.guard import Guard
 from service.background.refresh_waiting import OUTLOOKS
 from service.background.summarise_waiting import SUMMARIES
 from service.errors import PendingError, ServiceError
 from service.flows.diagnose import diagnose, give_up, known_of
-from service.flows.refresh_beside import refresh_beside
+from service.flows.guard import Guard
+from service.flows.refresh_beside import date_one
 from service.flows.summarise import summarise_all
 from service.metrics import Metrics
 from service.records.diagnosis import StoredDiagnosis
@@ -100,12 +100,10 @@ class Reader:
                 summarise_all(self.storage, self.clock())
 
     def _date(self, serial: str) -> bool:
-        """Here; where the program fails that is kept, and nobody waits for it."""
+        """Here; where that fails it is kept, and nobody waits for it."""
         guard = Guard(self.metrics)
         with guard.at_request(OUTLOOKS.name, serial):
-            refresh_beside(self.storage, serial, self.clock())
-        if guard.failed:
-            OUTLOOKS.give_up(self.storage, serial, self.clock())
+            date_one(self.storage, serial, self.clock())
         return not guard.failed
 
     def _dated(self, serial: str, end: float) -> bool:
@@ -159,7 +157,8 @@ class Reader:
     def _diagnose(self, claim: Claim, now: datetime) -> None:
         try:
             diagnose(self.storage, claim.session, now, self.coverage_factor)
-        except (ServiceError, SessionError):
+        except (ServiceError, SessionError) as fault:
             with self.storage.database.writing() as store:
+                store.pending.hold_up(claim.session, str(fault))
                 store.pending.put_off(claim, now + PUT_OFF)
             raise

@@ -7,12 +7,14 @@ from threading import BoundedSemaphore
 from time import monotonic
 
 from service.background.bell import Bell
-from service.background.guard import Guard
 from service.background.pool_waiting import GROUPS
+from service.flows.guard import Guard
 from service.flows.refresh_group import current, refresh_group
 from service.metrics import Metrics
 from service.records.group import Group, GroupAnswer, Level
+from service.settings import VERSION
 from service.storage import Storage
+from service.words.failed import group_failed
 
 PATIENCE = 15.0
 """Seconds that a program is let wait: a usual group takes some."""
@@ -40,10 +42,13 @@ class GroupReader:
         with self.storage.database.reading() as store:
             group = store.groups.find(level, name)
             known, asked = current(store, group), store.pending_groups.asked(group)
+            failed = store.pending_groups.failed(group)
         if known is not None:
             return known
         if not self.workers:
             return self._made(group)
+        if failed:
+            return GroupAnswer("", 0, group_failed(failed), "", None, VERSION, self.clock())
         if not asked:
             with self.storage.database.writing() as store:
                 store.pending_groups.ask((group,), self.clock())

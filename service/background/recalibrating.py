@@ -12,8 +12,8 @@ from datetime import datetime
 from importlib import import_module
 from importlib.util import find_spec
 
-from service.background.guard import Failure, ending_here
 from service.errors import ServiceError
+from service.flows.guard import Failure, ending_here
 from service.flows.recalibrate import Recalibrated, recalibrate
 from service.settings import Settings
 from service.storage import Storage

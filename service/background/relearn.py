@@ -2,11 +2,9 @@
 
 from datetime import datetime
 
-from service.background.guard import Alone, plainly
-from service.flows.flagging.drift import flag_drift
-from service.flows.flagging.settle import Occasion
-from service.flows.refresh_outlook import digest, of_type, refresh_outlook
-from service.flows.summarise import ask_for_summaries
+from service.flows.guard import Alone, plainly
+from service.flows.refresh_beside import date_one
+from service.flows.refresh_outlook import digest, of_type
 from service.storage import Storage
 from service.storage.store import Store
 
@@ -32,12 +30,8 @@ def _relearned(storage: Storage, serial: str, now: datetime) -> bool:
         if not _is_stale(store, serial):
             return False
     with storage.database.writing() as store:
-        unit = store.units.hold(serial)
-        refresh_outlook(store, serial)
-        ask_for_summaries(store, serial, now)
-        summary = store.fleet.unit(serial)
-        session = None if summary is None else summary.last_session
-        flag_drift(store, Occasion(unit, session, now), store.outlooks.of_unit(serial))
+        store.pending_outlooks.ask(store.units.hold(serial), now)
+    date_one(storage, serial, now)
     return True
 
 

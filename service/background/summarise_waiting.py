@@ -13,7 +13,7 @@ from service.storage import Storage
 def _give_up(storage: Storage, group: Group, now: datetime) -> None:
     """What was made last stays, until a record of the group changes again."""
     with storage.database.writing() as store:
-        store.pending_summaries.settle(store.pending_summaries.asked(group))
+        store.pending_summaries.give_up(group)
 
 
 SUMMARIES = Work(

@@ -8,8 +8,8 @@ from threading import Event, Thread
 
 from service.background.claimed import Work, work_next
 from service.background.diagnose_waiting import Diagnosing
-from service.background.guard import FORESEEN, Failure, Guard, ending_here
 from service.background.helper import Helper, Still, StoppingError
+from service.flows.guard import FORESEEN, Failure, Guard, ending_here
 from service.flows.receive import Reception
 from service.flows.take_in import give_up, take_in
 from service.storage import Storage

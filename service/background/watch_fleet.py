@@ -7,10 +7,10 @@ from threading import Event
 
 from service.background.flag_overdue import flag_overdue
 from service.background.flag_shifted_stands import flag_shifted_stands
-from service.background.guard import Guard
 from service.background.pool_waiting import ask_for_outdated
 from service.background.relearn import relearn
 from service.flows.ask_job import drop_outlived
+from service.flows.guard import Guard
 from service.flows.take_in import sweep_waiting
 from service.metrics import Metrics
 from service.storage import Storage

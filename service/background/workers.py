@@ -19,9 +19,9 @@ from itertools import islice
 import dask
 from distributed import Client, Future, LocalCluster, as_completed
 
-from service.background.guard import Failure
 from service.background.recalibrating import Outcome, Run, recalibrate_one
 from service.errors import ConflictError, ServiceError
+from service.flows.guard import Failure
 from service.ingest import limits
 from service.settings import Settings
 from service.storage import Storage, open_storage

@@ -42,6 +42,7 @@ def server_config(app: FastAPI, settings: Settings) -> uvicorn.Config:
         http=_protocol(settings),
         log_config=None,
         access_log=False,
+        forwarded_allow_ips=[str(network) for network in settings.trusted_proxies],
         timeout_graceful_shutdown=LAST_WORDS,
     )
 

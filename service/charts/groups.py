@@ -14,6 +14,7 @@ import altair as alt
 from estimator.groups import GroupFinding
 from estimator.groups.layout import EVERY
 from estimator.groups.pictures import ANGLES
+from estimator.moments import moment
 from service.charts import DATA_FORM, HIGH, LEFT, LOW, RIGHT, UNIT, ChartSet, Panel, filled, padded, specification
 from service.charts.across import BETA, ticks, zero_line
 from service.measures import ARCSEC, COVERAGE, Measure, deviation_measure, measured, number
@@ -64,11 +65,11 @@ def elements_of(finding: GroupFinding) -> Iterator[Element]:
 
 
 def forest_chart(finding: GroupFinding, name: str) -> ChartSet | None:
-    """A panel an amplitude; None where no session sees one."""
+    """A panel an amplitude; None where no session sees one, or none has a date."""
     elements = list(elements_of(finding))
-    if not elements:
+    times = [moment(one.started_at) for one in finding.sessions if one.started_at]
+    if not elements or not times:
         return None
-    times = [_at(one.started_at) for one in finding.sessions]
     span = [_iso(min(times)), _iso(max(times))]
     reach = max(_reach(finding, element) for element in elements)
     low, high = padded(-reach, reach)
@@ -100,7 +101,7 @@ def _forest_panel(finding: GroupFinding, element: Element, span: list[str]) -> P
     k, factor, sigma = element.number, element.measure.factor, finding.sigma[element.number] or 0.0
     value, spread = finding.amplitude[k], COVERAGE * sigma
     since = finding.since if finding.form == "since" and finding.since else None
-    start = _iso(_at(since)) if since else span[0]
+    start = _iso(moment(since)) if since else span[0]
     reach = _reach(finding, element)
     beyond = sum(value > reach for value, _ in _spreads(finding, element))
     left = f"; {beyond} too unsure to be drawn are in the table" if beyond else ""
@@ -122,15 +123,15 @@ def _session_points(finding: GroupFinding, element: Element) -> Iterator[dict[st
     k, factor = element.number, element.measure.factor
     for one in finding.sessions:
         sigma = one.sigma[k]
-        if sigma is not None:
-            value, spread = one.amplitude[k], COVERAGE * sigma
+        if sigma is not None and one.started_at is not None:
+            at, value, spread = moment(one.started_at), one.amplitude[k], COVERAGE * sigma
             yield {
-                "t": _iso(_at(one.started_at)),
+                "t": _iso(at),
                 "y": _short(value * factor),
                 "lo": _short((value - spread) * factor),
                 "hi": _short((value + spread) * factor),
                 "unit": one.unit,
-                "date": day_of(_at(one.started_at)),
+                "date": day_of(at),
                 "value": measured(value, spread, element.measure),
             }
 
@@ -242,12 +243,8 @@ def _picture_spec(title: str, *, by_angle: bool) -> dict[str, Any]:
     return specification([band.encode(y=alt.Y("low:Q", scale=y_scale), y2="band:Q"), zero_line(), marks], HEIGHT)
 
 
-def _at(started_at: str) -> datetime:
-    return datetime.fromisoformat(started_at)
-
-
 def _iso(at: datetime) -> str:
-    return at.strftime("%Y-%m-%dT%H:%M:%SZ")
+    return f"{at:%Y-%m-%dT%H:%M:%SZ}"
 
 
 def _short(value: float) -> float:

@@ -13,7 +13,7 @@ import httpx
 
 from service.client.answers import Diagnosis, Flag, Point, Receipt, Session, Unit, Usable
 from service.client.connection import Connection
-from service.client.reading import read, read_all
+from service.client.reading import read
 from service.errors import ServiceError
 
 T = TypeVar("T")
@@ -107,12 +107,16 @@ class Client(Connection):
         """The certificate of a session: for people to sign, or as XML for programs; ``by`` is kept with its number."""
         return self.get(f"/sessions/{_in_path(session)}/certificate", format=form, by=by).content
 
-    def _pages(self, kind: type[T], path: str, name: str, query: dict[str, Any]) -> Iterator[T]:
+    def every(self, path: str, name: str, **query: Any) -> Iterator[dict[str, Any]]:
+        """The entries of a list as the API answers them, page after page."""
         page: int | None = 1
         while page is not None:
             found = self.get(path, page=page, **query).json()
-            yield from read_all(kind, found[name])
+            yield from found[name]
             page = found["next_page"]
+
+    def _pages(self, kind: type[T], path: str, name: str, query: dict[str, Any]) -> Iterator[T]:
+        return (read(kind, entry) for entry in self.every(path, name, **query))
 
 
 def _in_path(name: str) -> str:

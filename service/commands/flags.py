@@ -1,5 +1,6 @@
 """`imu-health flags`: what somebody must look after, and what people do about it."""
 
+from itertools import takewhile
 from typing import Annotated, Any
 
 import typer
@@ -43,8 +44,8 @@ def list_flags(
         return
     wanted = {"unit": unit, "state": None if state is None else state.value, "assigned": assigned}
     with connect(server) as client:
-        found = client.get("/flags", limit="1000", **{k: v for k, v in wanted.items() if v}).json()["flags"]
-    shown = [flag for flag in found if state is not None or flag["state"] != FlagState.RESOLVED]
+        found = client.every("/flags", "flags", limit=1000, **{k: v for k, v in wanted.items() if v})
+        shown = list(found if state is not None else takewhile(_is_open, found))
     none = "No flag is open." if state is None else "There is none."
     Listing(form, as_json).show(shown, lambda: _table(shown) if shown else none)
 
@@ -74,6 +75,11 @@ def assign(
     with connect(server) as client:
         for id in ids:
             screen().print(_line(client.post(f"/flags/{id}/assign", {"to": to, "by": by, "why": why})))
+
+
+def _is_open(flag: dict[str, Any]) -> bool:
+    """The API has open flags first."""
+    return bool(flag["state"] != FlagState.RESOLVED)
 
 
 def _handle(id: int, what: str, by: str, why: str, server: str) -> None:

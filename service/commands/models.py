@@ -34,7 +34,7 @@ def list_models(
     if context.invoked_subcommand is not None:
         return
     with connect(server) as client:
-        found = client.get("/models", limit="1000").json()["models"]
+        found = list(client.every("/models", "models", limit=1000))
     Listing(form, as_json).show(found, lambda: _table(found) if found else "No cause is accepted.")
 
 

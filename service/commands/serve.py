@@ -1,7 +1,6 @@
 """`imu-health serve`: the service, with its schema up to date, and the demonstration fleet where it is asked for."""
 
 import socket
-from dataclasses import dataclass
 from typing import Annotated
 
 import typer
@@ -24,7 +23,6 @@ from service.storage.writable import require_writable
 STARTED = "who started the service"
 """As the audit trail names them."""
 FIRST = "To make everybody sign in, open this within an hour and make the first account:"
-AGAIN = "To sign in as {login} with a new password, once, within an hour:"
 
 
 def serve(
@@ -46,47 +44,35 @@ def serve(
     if demo:
         _fill(settings)
     write_log()
-    _Server(settings, _invitation(settings)).run()
-
-
-@dataclass(frozen=True)
-class _Invitation:
-    """A link for whoever starts the service."""
-
-    secret: str
-    words: str
+    _Server(settings, _first_link(settings)).run()
 
 
 class _Server(Server):
-    """Says where it listens once it does, and how to sign in."""
+    """Says where it listens once it does, and how to make the first account."""
 
-    def __init__(self, settings: Settings, invitation: _Invitation | None) -> None:
+    def __init__(self, settings: Settings, first: str | None) -> None:
         super().__init__(create_app(settings), settings)
-        self._invitation = invitation
+        self._first = first
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
         address = address_of(self)
         typer.echo(f"imu-health is ready: open {address}")
-        if self._invitation is not None:
-            typer.echo(f"{self._invitation.words} {address}/sign-in/{self._invitation.secret}")
+        if self._first is not None:
+            typer.echo(f"{FIRST} {address}/sign-in/{self._first}")
 
 
-def _invitation(settings: Settings) -> _Invitation | None:
-    """For the first account of all; later for the administrator at this machine, whose log others do not read."""
+def _first_link(settings: Settings) -> str | None:
+    """The secret of the link that makes the first account; None once there is one: what a start prints is kept in logs,
+    and must not reset anybody's password."""
     if settings.sign_in == "off":
         return None
     storage = Storage(Database(settings.database), Files(settings.files))
     with storage.database.reading() as store:
-        has_accounts, admin = store.accounts.any(), store.accounts.first_admin()
-    invitation = None
-    if not has_accounts:
-        invitation = _Invitation(make_link(storage, None, utc_now(), STARTED), FIRST)
-    elif admin is not None and settings.is_local:
-        words = AGAIN.format(login=admin.login)
-        invitation = _Invitation(make_link(storage, admin.login, utc_now(), STARTED), words)
+        has_accounts = store.accounts.any()
+    secret = None if has_accounts else make_link(storage, None, utc_now(), STARTED)
     storage.database.close()
-    return invitation
+    return secret
 
 
 def _fill(settings: Settings) -> None:

@@ -80,8 +80,8 @@ def evidence_of(finding: GroupFinding, shown: GroupShown) -> Evidence:
         gain=None,
         pooled=Pooled(
             sessions=shown.sessions,
-            first=shown.first or "",
-            last=shown.last or "",
+            first=shown.first,
+            last=shown.last,
             form=finding.form,
             since=finding.since,
             kind=finding.kind,
@@ -109,8 +109,8 @@ def term_evidence(term: EmpiricalTerm, shown: GroupShown) -> Evidence:
         gain=None,
         pooled=Pooled(
             sessions=shown.sessions,
-            first=shown.first or "",
-            last=shown.last or "",
+            first=shown.first,
+            last=shown.last,
             form="same",
             since=None,
             kind="",

@@ -3,6 +3,7 @@
 from estimator.session import IN_SERVICE
 from service.errors import ConflictError
 from service.flows.derive_again import Derived, Deriving, derive_again
+from service.flows.refresh_beside import date
 from service.records.session import StoredSession
 from service.records.state import RecordState, Step
 from service.storage import Storage
@@ -19,7 +20,9 @@ def choose_reference(storage: Storage, way: Deriving, id: str, step: Step) -> tu
         store.states.choose(unit, id, step)
         store.audit.write(step.at, step.who, "choose reference", id, {"unit": session.unit, "why": step.why})
         derived = derive_again(store, way, session.unit, session.started_at, (id,))
-        return store.sessions.get(id), derived
+        chosen = store.sessions.get(id)
+    date(storage, way, chosen.unit)
+    return chosen, derived
 
 
 def _require_possible(store: Store, session: StoredSession) -> None:

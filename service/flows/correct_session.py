@@ -4,7 +4,7 @@ Only the slip is corrected: names, dates and everything else of the file stay, a
 """
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from datetime import datetime
 
@@ -13,7 +13,8 @@ import numpy as np
 from estimator.session import CalibrationSession
 from estimator.writing import session_document
 from service.errors import ConflictError
-from service.flows.receive import Reception, receive
+from service.flows.receive import Reception, deriving, receipt_of, receive
+from service.flows.supersede_session import supersede_session
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
 from service.judging.known_unit import known_unit
@@ -30,9 +31,13 @@ UNKNOWN = "Nothing is known that would put session {id} right: upload a correcte
 
 def correct_session(reception: Reception, id: str, by: str, now: datetime) -> Receipt:
     """Stores the corrected file; ConflictError where the session is not questioned, or where no correction is known."""
-    source, corrections = _corrections(reception.storage, id)
+    source, found = _doubted(reception.storage, id)
+    corrections = tuple(doubt.correction for doubt in found if doubt.correction is not None)
     if not corrections:
         raise ConflictError(UNKNOWN.format(id=id))
+    copied = next((d.stands_for for d in found if d.correction is not None and d.correction.unit), None)
+    if copied is not None:
+        return _as_copy(reception, id, copied, by, now)
     done = ", ".join(correction.text for correction in corrections)
     content = json.dumps(session_document(corrected(source, corrections, f"Corrected: {done}."))).encode()
     with reception.storage.database.reading() as store:
@@ -55,10 +60,12 @@ def remedies_of(storage: Storage, id: str, states: Sequence[StateChange]) -> Rem
     return remedies_among(found)
 
 
-def _corrections(storage: Storage, id: str) -> tuple[CalibrationSession, tuple[Correction, ...]]:
-    """The session as its file has it, and what would put it right."""
-    source, found = _doubted(storage, id)
-    return source, tuple(doubt.correction for doubt in found if doubt.correction is not None)
+def _as_copy(reception: Reception, id: str, original: str, by: str, now: datetime) -> Receipt:
+    """Its readings are stored already under the right serial number: that session stands for it."""
+    replaced = Replaced(id, by, "corrected: its readings are stored under the right serial number")
+    session, _ = supersede_session(reception.storage, deriving(reception, now), replaced, original)
+    with reception.storage.database.reading() as store:
+        return receipt_of(store.sessions.get(session.superseded_by or original), created=False)
 
 
 def _doubted(storage: Storage, id: str) -> tuple[CalibrationSession, tuple[Doubt, ...]]:
@@ -69,11 +76,11 @@ def _doubted(storage: Storage, id: str) -> tuple[CalibrationSession, tuple[Doubt
             raise ConflictError(f"Session {id} is not questioned, so there is nothing to correct.")
         source = read_upload(storage.files.content(stored.sha256), stored.filename)
         known = known_unit(store, store.units.key(stored.unit))
-        found = doubts(known, as_checked(source, stored.started_at), known.calibration(id), (id,))
+        found = doubts(known, as_checked(source, stored.started_at, stored.unit), known.calibration(id), (id,))
     return source, found
 
 
-def corrected(session: CalibrationSession, corrections: Iterable[Correction], note: str) -> CalibrationSession:
+def corrected(session: CalibrationSession, corrections: Sequence[Correction], note: str) -> CalibrationSession:
     """The session with readings, their standard errors and nominal scale factors put right; the note says so."""
     readings, errors, sensors = session.readings.copy(), session.standard_errors.copy(), list(session.sensors)
     names = [sensor.name for sensor in sensors]
@@ -87,5 +94,6 @@ def corrected(session: CalibrationSession, corrections: Iterable[Correction], no
         if correction.remedy in (Remedy.NOMINAL, Remedy.BOTH):
             for i in own:
                 sensors[i] = replace(sensors[i], nominal_scale=sensors[i].nominal_scale * correction.factor)
+    unit = next((correction.unit for correction in corrections if correction.unit), session.unit)
     notes = f"{session.notes} {note}".strip()
-    return replace(session, readings=readings, standard_errors=errors, sensors=tuple(sensors), notes=notes)
+    return replace(session, unit=unit, readings=readings, standard_errors=errors, sensors=tuple(sensors), notes=notes)

@@ -1,8 +1,9 @@
 """Step: everything that is derived of a unit's accepted records, brought in line with them after a change.
 
-References, verdicts with their decisions and common motions, the outlook, the unit's line in the fleet and its open
-flags. Every flow that changes which records count ends with it, within its own transaction. A session whose verdict
-rests on what it must rest on is left alone, so an ordinary upload judges one session.
+References, verdicts with their decisions and common motions, the unit's line in the fleet and its open flags; the
+outlook is asked for, and made after the transaction. Every flow that changes which records count ends with it, within
+its own transaction. A session whose verdict rests on what it must rest on is left alone, so an ordinary upload judges
+one session.
 """
 
 from collections.abc import Collection, Mapping, Sequence
@@ -13,12 +14,13 @@ from estimator.errors import SessionError
 from estimator.parity import parity_check
 from estimator.parity.as_calibration import parity_calibration
 from estimator.results import Calibration
-from estimator.session import CALIBRATIONS, IN_SERVICE
+from estimator.session import IN_SERVICE
 from service.flows.flagging.drift import flag_drift
 from service.flows.flagging.fold import settle_sessions
+from service.flows.flagging.overdue import no_longer_overdue
 from service.flows.flagging.settle import Occasion
-from service.flows.flagging.verdict import no_longer_overdue, tell_verdict, told_by
-from service.flows.refresh_outlook import END_OF_TIME, refresh_outlook
+from service.flows.flagging.verdict import tell_verdict, told_by
+from service.flows.refresh_outlook import END_OF_TIME
 from service.flows.summarise import ask_for_summaries
 from service.flows.weigh import weigh_again
 from service.ingest import read_upload
@@ -56,9 +58,9 @@ class Deriving:
     at_once: int | None = AT_ONCE
     """None where all are judged now."""
     outlook: bool = True
-    """Whether the outlook is made too: of many files in a row the last one brings it."""
+    """Whether the outlook is asked for: of many files in a row the last one brings it."""
     is_dated_later: bool = False
-    """Whether the outlook is asked for only, because processes beside the requests make it."""
+    """Whether processes beside the requests make it; else it is made after the transaction (`refresh_beside.date`)."""
 
 
 @dataclass(frozen=True)
@@ -146,6 +148,7 @@ def derive_batch(store: Store, way: Deriving, serial: str, most: int) -> int:
         weigh_again(store, way.files, id)
     left = max(len(waiting) - most, 0)
     if not left:
+        store.failures.settle_derivation(known.unit)
         _sum_up(store, way, serial, ())
         ask_for_summaries(store, serial, way.at)
     return left
@@ -248,16 +251,12 @@ def _sum_up(store: Store, way: Deriving, serial: str, touched: Sequence[str]) ->
         store.pending_outlooks.settle(unit)
         settle_sessions(store, occasion)
         flag_drift(store, occasion, None)
+        no_longer_overdue(store, occasion, None)
         return None
     if was.before is None:
         store.fleet.count_flags(unit)
     tell_verdict(store, occasion, latest, was)
-    opened = settle_sessions(store, occasion)
-    if way.outlook and way.is_dated_later:
+    settle_sessions(store, occasion)
+    if way.outlook:
         store.pending_outlooks.ask(unit, way.at)
-    elif way.outlook:
-        refresh_outlook(store, serial)
-        flag_drift(store, occasion, store.outlooks.of_unit(serial))
-    if latest.id in touched and latest.programme in CALIBRATIONS:
-        no_longer_overdue(store, occasion, latest, opened)
     return latest

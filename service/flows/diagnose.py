@@ -18,8 +18,10 @@ from service.flows.flagging.diagnosis import flag_diagnosis
 from service.flows.keep_noise import keep_noise
 from service.flows.keep_statistics import keep_statistics
 from service.flows.question_session import question_diagnosed
+from service.flows.refresh_beside import date
 from service.flows.weigh import Weighed, weigh, weighing_of
 from service.ingest import read_upload
+from service.ingest.checked import dated
 from service.judging.reservations import UNCHECKED
 from service.log import log
 from service.records.diagnosis import DiagnosisState, StoredDiagnosis, state_of
@@ -70,6 +72,7 @@ def diagnose(storage: Storage, id: str, now: datetime, coverage_factor: float = 
         with storage.database.writing() as store:
             is_kept = _keep(store, way, task.session.unit, made, None if asked is None else asked.ticket)
         if is_kept:
+            date(storage, way, task.session.unit)
             keep_noise(storage, id, now)
             if made.state is not DiagnosisState.FAILED:
                 keep_statistics(storage, id, now)
@@ -160,7 +163,7 @@ def _nothing_found(task: Task, state: DiagnosisState, summary: str, now: datetim
 
 
 def _read(files: Files, stored: StoredSession) -> CalibrationSession:
-    return read_upload(files.content(stored.sha256), stored.filename)
+    return dated(read_upload(files.content(stored.sha256), stored.filename), stored.started_at)
 
 
 def _comparable(files: Files, task: Task, session: CalibrationSession) -> dict[str, CalibrationSession]:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from estimator.groups import SessionStatistics, statistics_of
+from estimator.moments import written
 from estimator.session import CALIBRATIONS, CalibrationSession
 from service.records.group import Group, Level
 from service.records.session import StoredSession
@@ -17,9 +18,9 @@ def kept_before(store: Store, session: StoredSession) -> dict[str, SessionStatis
     unit = store.units.key(session.unit)
     since, _ = store.services.around(unit, session.started_at)
     members = store.groups.members(Group(Level.UNIT, unit, session.unit), since).pooled
-    earlier = [m.session for m in members if m.started_at < session.started_at]
+    earlier = {m.session: m.started_at for m in members if m.started_at < session.started_at}
     found = store.statistics.of(earlier)
-    return {id: found[id] for id in earlier if id in found}
+    return {id: replace(found[id], started_at=written(at)) for id, at in earlier.items() if id in found}
 
 
 def as_evidence(

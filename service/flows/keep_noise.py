@@ -58,7 +58,7 @@ def _reference(storage: Storage, stored: StoredSession, session: CalibrationSess
     if session.programme != IN_SERVICE:
         return None
     with storage.database.reading() as store:
-        return calibration_to_compare_with(store, as_checked(session, stored.started_at))
+        return calibration_to_compare_with(store, as_checked(session, stored.started_at, stored.unit))
 
 
 def thinned(path: Path) -> CalibrationSession:

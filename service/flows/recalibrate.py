@@ -9,6 +9,7 @@ from estimator.results import Calibration
 from estimator.session import IN_SERVICE
 from service.flows.derive_again import Deriving, derive_again
 from service.flows.keep import Made, keep, made
+from service.flows.refresh_beside import date
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
 from service.judging.calibrate import Basis, calibrate, rests_on_model
@@ -75,6 +76,8 @@ def recalibrate(
         moved = _put_in_force(store, way, serial, new, who) if new else ()
         done = _told(serial, stored, outcomes, moved)
         then(store, done)
+    if new:
+        date(storage, way, serial)
     return done
 
 
@@ -156,7 +159,7 @@ def _recalibrated(storage: Storage, source: _Source) -> _Recomputed | LeftSessio
         return _Recomputed(stored, model, made(source.recording), ())
     try:
         session = read_upload(storage.files.content(stored.sha256), stored.filename)
-        found = calibrate(as_checked(session, stored.started_at), Basis(model, None)).calibration
+        found = calibrate(as_checked(session, stored.started_at, stored.unit), Basis(model, None)).calibration
     except (*LOST, SessionError) as fault:
         return LeftSession(stored.id, str(fault))
     own = made(found)

@@ -14,6 +14,7 @@ from service.flows.course import UNFOLLOWED, Course
 from service.flows.derive_again import Deriving, derive_again, foresee
 from service.flows.keep import Made, keep, made
 from service.flows.question_session import question
+from service.flows.refresh_beside import date
 from service.flows.refuse import refuse
 from service.flows.supersede_session import give_way, supersede
 from service.ingest import in_turn
@@ -30,7 +31,7 @@ from service.records.decision import Verdict
 from service.records.derivation import Counted
 from service.records.doubt import remedies_among
 from service.records.received import Content, Received, Replaced, SentFile, where
-from service.records.session import Receipt, StoredSession
+from service.records.session import Digests, Receipt, StoredSession
 from service.storage import Storage
 from service.storage.files import content_hash
 from service.storage.queries.sessions import NOT_JUDGED
@@ -125,7 +126,7 @@ def upload(
         storage.files.put_back(content)
         return _known(storage, way, known, replaces)
     try:
-        ready = _ready(storage, way, received, _calibrated(storage, check(where(content), received.filename, now)))
+        ready = _ready(storage, way, received, _calibrated(storage, _checked(storage, content, received)))
     except SessionError as fault:
         raise refuse(storage, received, fault.problems, course) from fault
     course.keeping()
@@ -133,16 +134,35 @@ def upload(
     with storage.database.writing() as store:
         receipt = _store(store, way, received, ready, replaces)
         course.stored(store, receipt)
-        return receipt
+    _date(storage, way, receipt.id, replaces)
+    return receipt
+
+
+def _date(storage: Storage, way: Deriving, id: str, replaces: Replaced | None) -> None:
+    """The unit of a session, and that of the one that gave way to it."""
+    concerned = (id,) if replaces is None else (id, replaces.session)
+    with storage.database.reading() as store:
+        serials = {store.sessions.get(one).unit for one in concerned}
+    date(storage, way, *sorted(serials))
 
 
 def _known(storage: Storage, way: Deriving, known: StoredSession, replaces: Replaced | None) -> Receipt:
     """The receipt of a session that was stored before; also that replaces the one named now."""
     if replaces is None:
-        return _receipt(known, created=False)
+        return receipt_of(known, created=False)
     with storage.database.writing() as store:
         supersede(store, way, replaces, store.sessions.get(known.id))
-        return _receipt(store.sessions.get(known.id), created=False)
+        receipt = receipt_of(store.sessions.get(known.id), created=False)
+    _date(storage, way, known.id, replaces)
+    return receipt
+
+
+def _checked(storage: Storage, content: Content, received: Received) -> Checked:
+    def is_known(serial: str) -> bool:
+        with storage.database.reading() as store:
+            return store.units.exists(serial)
+
+    return check(where(content), received.filename, received.at, is_known)
 
 
 def _calibrated(storage: Storage, checked: Checked) -> Calibrated:
@@ -159,7 +179,7 @@ class _Ready:
     """A session with all that its transaction needs not wait for."""
 
     new: Calibrated
-    digest: str
+    digests: Digests
     made: Made
     foreseen: Foreseen | None
 
@@ -171,21 +191,22 @@ def _ready(storage: Storage, way: Deriving, received: Received, new: Calibrated)
     with storage.database.reading() as store:
         counted = Counted(*own, is_reference=False, basis=NOT_JUDGED)
         foreseen = foresee(store, way, record.unit, counted, new.calibration)
-    return _Ready(new, content_digest(session), made(new.calibration), foreseen)
+    digests = Digests(content_digest(session), new.checked.readings_digest)
+    return _Ready(new, digests, made(new.calibration), foreseen)
 
 
 def _store(store: Store, way: Deriving, received: Received, ready: _Ready, replaces: Replaced | None) -> Receipt:
     """The record, and everything that follows from it, within one transaction."""
     new = ready.new
     unit = _unit(store, received, new)
-    known = store.sessions.same(received.sha256, ready.digest)
+    known = store.sessions.same(received.sha256, ready.digests.content_digest)
     if known is not None:
         if replaces is not None:
             supersede(store, way, replaces, known)
-        return _receipt(store.sessions.get(known.id), created=False)
+        return receipt_of(store.sessions.get(known.id), created=False)
     record = _record(received, new)
     stand = store.units.stand_key(record.stand)
-    store.sessions.add(record, unit, stand, new.checked.session.block, ready.digest)
+    store.sessions.add(record, unit, stand, new.checked.session.block, ready.digests)
     store.pending.add((record.id,), received.at)
     keep(store, unit, ((record, ready.made),), received.at)
     stored = _derived(
@@ -193,7 +214,7 @@ def _store(store: Store, way: Deriving, received: Received, ready: _Ready, repla
     )
     details = {"unit": stored.unit, "verdict": stored.verdict.value, "revision": stored.revision}
     store.audit.write(received.at, received.who, "upload", stored.id, details)
-    return _receipt(stored, created=True)
+    return receipt_of(stored, created=True)
 
 
 def _derived(
@@ -256,7 +277,8 @@ def _record(received: Received, new: Calibrated) -> StoredSession:
     )
 
 
-def _receipt(record: StoredSession, *, created: bool) -> Receipt:
+def receipt_of(record: StoredSession, *, created: bool) -> Receipt:
+    """What an upload of a session is answered with."""
     return Receipt(
         id=record.id,
         unit=record.unit,

@@ -6,6 +6,7 @@ from datetime import datetime
 from estimator.errors import Problem
 from service.errors import RefusedError
 from service.flows.derive_again import Derived, Deriving, derive_again
+from service.flows.refresh_beside import date
 from service.ingest.checked import CLOCK_LEEWAY
 from service.records.event import NewService, Service
 from service.records.state import RecordKind, RecordState, Step
@@ -20,6 +21,7 @@ def record_service(
 
     One that was withdrawn and is recorded again counts again.
     """
+    way = Deriving(storage.files, coverage_factor, now)
     with storage.database.writing() as store:
         unit = store.units.hold(serial)
         problems = _problems(store, serial, new, now)
@@ -36,8 +38,10 @@ def record_service(
             store.states.add(RecordKind.SERVICE, str(number), RecordState.ACCEPTED, step)
         details = {"kind": new.kind, "at": new.at.isoformat(), "note": new.note, "sensor": new.sensor}
         store.audit.write(now, who, "service", serial, details)
-        derived = derive_again(store, Deriving(storage.files, coverage_factor, now), serial, new.at)
-        return store.services.get(number), derived
+        derived = derive_again(store, way, serial, new.at)
+        recorded = store.services.get(number)
+    date(storage, way, serial)
+    return recorded, derived
 
 
 def _problems(store: Store, serial: str, new: NewService, now: datetime) -> tuple[Problem, ...]:

@@ -1,13 +1,36 @@
-"""Flow: a unit's outlook is worked out beside the requests that changed its history, with no transaction open."""
+"""Flow: a unit's outlook is worked out after the transaction that changed its history, with none open."""
 
 from datetime import datetime
 
+from service.flows.derive_again import Deriving
 from service.flows.flagging.drift import flag_drift
+from service.flows.flagging.overdue import no_longer_overdue
 from service.flows.flagging.settle import Occasion
+from service.flows.guard import ending_here, kept
 from service.flows.refresh_outlook import gathered, known_of, worked_out
 from service.flows.summarise import ask_for_summaries
 from service.judging.histories import told_of_type
 from service.storage import Storage
+
+
+def date(storage: Storage, way: Deriving, *serials: str) -> None:
+    """After a change of records, where no process beside the requests does it. What fails is kept with why, and costs
+    nobody else anything."""
+    for serial in () if way.is_dated_later or not way.outlook else serials:
+        with ending_here("outlook", serial):
+            date_one(storage, serial, way.at)
+
+
+def date_one(storage: Storage, serial: str, now: datetime) -> None:
+    """The same for one unit, whose failure is the caller's too."""
+
+    def keep(why: str) -> None:
+        with storage.database.writing() as store:
+            store.pending_outlooks.hold_up(serial, why)
+            store.pending_outlooks.give_up(serial)
+
+    with kept(keep):
+        refresh_beside(storage, serial, now)
 
 
 def refresh_beside(storage: Storage, serial: str, now: datetime) -> None:
@@ -39,5 +62,7 @@ def refresh_beside(storage: Storage, serial: str, now: datetime) -> None:
             ask_for_summaries(store, serial, now)
             summary = store.fleet.unit(serial)
             session = None if summary is None else summary.last_session
-            flag_drift(store, Occasion(unit, session, now), store.outlooks.of_unit(serial))
+            occasion, made = Occasion(unit, session, now), store.outlooks.of_unit(serial)
+            flag_drift(store, occasion, made)
+            no_longer_overdue(store, occasion, made, sources.past.latest)
             return

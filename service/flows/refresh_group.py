@@ -12,12 +12,14 @@ from hashlib import sha256
 from estimator.calibration.calibrate import averaged
 from estimator.errors import SessionError
 from estimator.groups import SessionStatistics, diagnose_statistics
+from estimator.moments import written
 from estimator.session import CalibrationSession
 from service.flows.flagging.lasting import flag_lasting
 from service.flows.keep_statistics import add_statistics
 from service.flows.own_of_group import tell_own
 from service.flows.refresh_outlook import END_OF_TIME
 from service.ingest import read_upload
+from service.ingest.checked import dated
 from service.log import log
 from service.records.group import Group, GroupAnswer, Level, Member, Members
 from service.records.model import SCOPES
@@ -28,7 +30,7 @@ from service.storage.group_document import group_document, read_group
 from service.storage.store import Store
 from service.words.group import FAILED, summary_of_group
 
-RULE = b"3"
+RULE = b"4"
 """Version of what an answer says of its sessions: those made by an earlier one are made again."""
 
 
@@ -134,16 +136,20 @@ def _is_own(group: Group, member: Member) -> bool:
 
 
 def _named(record: SessionStatistics, member: Member) -> SessionStatistics:
-    """As the service calls what it belongs to: a file may not state its type."""
-    return replace(record, unit=member.unit, unit_type=member.unit_type, stand=member.stand or "")
+    """As the service calls what it belongs to and when it was: a file may not state its type, nor a date."""
+    stand, at = member.stand or "", written(member.started_at)
+    return replace(record, unit=member.unit, unit_type=member.unit_type, stand=stand, started_at=at)
 
 
 def _sessions(files: Files, members: Sequence[Member]) -> list[CalibrationSession]:
     """The sessions themselves, raw logs as their averaged positions, since all of them are held at once; none where one
     is lost: then no measurement is proposed and no term learned."""
     try:
-        return [
-            replace(averaged(read_upload(files.content(m.sha256), m.filename)), unit_type=m.unit_type) for m in members
-        ]
+        return [_averaged(files, member) for member in members]
     except (*LOST, SessionError):
         return []
+
+
+def _averaged(files: Files, member: Member) -> CalibrationSession:
+    session = averaged(read_upload(files.content(member.sha256), member.filename))
+    return dated(replace(session, unit_type=member.unit_type), member.started_at)

@@ -1,4 +1,4 @@
-"""Step: a unit's outlook is worked out again, within the transaction that changed its history."""
+"""Step: what a unit's outlook is worked out from, and the working out, which no transaction waits for."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -8,7 +8,7 @@ from hashlib import sha256
 
 from estimator.health.pooled import Prior, learn
 from service.judging.forecast import Past, forecast
-from service.judging.histories import Histories, histories, told_of_type
+from service.judging.histories import Histories, histories
 from service.measures import COVERAGE
 from service.records.outlook import UnitOutlook
 from service.storage.history_document import unpacked
@@ -17,7 +17,7 @@ from service.words.motion import motions_in_words
 
 END_OF_TIME = datetime(9999, 1, 1, tzinfo=UTC)
 """After every break."""
-RULE = b"3"
+RULE = b"4"
 """Version of what an outlook says of a history: those made by an earlier one are made again."""
 AT_HAND = 32
 """Parameters whose prior is kept: those of several types. Units are worked out again type by type."""
@@ -35,14 +35,6 @@ class Sources:
     told: TypeHistories
     together: tuple[str, ...]
     """What all sensors did together, in words."""
-
-
-def refresh_outlook(store: Store, serial: str) -> None:
-    """Works out a unit's outlook again from the sessions since its last break; within the transaction that writes."""
-    unit, known = store.units.key(serial), known_of(store, serial)
-    store.outlooks.put_histories(unit, told_of_type(known))
-    store.outlooks.put(unit, worked_out(gathered(store, serial, known)))
-    store.pending_outlooks.settle(unit)
 
 
 def known_of(store: Store, serial: str) -> Histories:

@@ -1,6 +1,7 @@
 """Flow: a session is said to be a check, which moves no date, or a calibration after all."""
 
 from service.flows.derive_again import Deriving, derive_again
+from service.flows.refresh_beside import date
 from service.flows.refresh_outlook import END_OF_TIME
 from service.records.session import StoredSession
 from service.records.state import Step
@@ -17,4 +18,6 @@ def set_check(storage: Storage, way: Deriving, id: str, step: Step, *, is_check:
             details = {"unit": session.unit, "is_check": is_check, "why": step.why}
             store.audit.write(step.at, step.who, "check", id, details)
             derive_again(store, way, session.unit, END_OF_TIME)
-        return store.sessions.get(id)
+        marked = store.sessions.get(id)
+    date(storage, way, marked.unit)
+    return marked

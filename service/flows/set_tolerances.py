@@ -4,7 +4,9 @@ from dataclasses import asdict
 from datetime import datetime
 
 from service.errors import ConflictError
-from service.flows.refresh_outlook import refresh_outlook
+from service.flows.derive_again import Deriving
+from service.flows.refresh_beside import date
+from service.measures import COVERAGE
 from service.records.unit import Tolerances, UnitType
 from service.storage import Storage
 
@@ -27,6 +29,7 @@ def set_tolerances(
 
     Another interval holds for all units of the type at once; None leaves it as it is.
     """
+    undated: tuple[str, ...] = ()
     with storage.database.writing() as store:
         current = store.unit_types.hold(name)
         if seen is not None and seen != current.revision:
@@ -37,13 +40,15 @@ def set_tolerances(
         if interval_days is not None and interval_days != current.maximum_interval_days:
             was = current.maximum_interval_days
             current = store.unit_types.set_interval(name, interval_days)
-            for serial in store.units.of_type(name):
-                refresh_outlook(store, serial)
+            undated = tuple(store.units.of_type(name))
+            for serial in undated:
+                store.pending_outlooks.ask(store.units.key(serial), now)
             store.audit.write(
                 now, who, "interval", name, {"before": was, "maximum_interval_days": interval_days} | said
             )
-        if (current.tolerances, current.gyro_tolerances) == (tolerances, gyro_tolerances):
-            return current
-        revised = store.unit_types.revise(name, tolerances, gyro_tolerances, now)
-        store.audit.write(now, who, "tolerances", name, {"before": asdict(current), **asdict(revised), **said})
-        return revised
+        if (current.tolerances, current.gyro_tolerances) != (tolerances, gyro_tolerances):
+            before = asdict(current)
+            current = store.unit_types.revise(name, tolerances, gyro_tolerances, now)
+            store.audit.write(now, who, "tolerances", name, {"before": before, **asdict(current), **said})
+    date(storage, Deriving(storage.files, COVERAGE, now), *undated)
+    return current

@@ -6,6 +6,7 @@ from estimator.errors import SessionError
 from service.errors import ConflictError
 from service.flows.change_state import change
 from service.flows.derive_again import Derived, Deriving, derive_again
+from service.flows.refresh_beside import date
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
 from service.judging.known_unit import known_unit
@@ -25,7 +26,9 @@ def supersede_session(storage: Storage, way: Deriving, replaced: Replaced, by: s
     """Says that a stored session stands for another one; ConflictError where either does not count."""
     with storage.database.writing() as store:
         derived = supersede(store, way, replaced, store.sessions.get(by))
-        return store.sessions.get(replaced.session), derived
+        own, unit = store.sessions.get(replaced.session), store.sessions.get(by).unit
+    date(storage, way, *{own.unit: 0, unit: 0})
+    return own, derived
 
 
 def supersede(store: Store, way: Deriving, replaced: Replaced, by: StoredSession) -> Derived:
@@ -46,7 +49,7 @@ def _is_settled(store: Store, way: Deriving, replaced: str, by: StoredSession) -
     except (*LOST, SessionError):
         return False
     known = known_unit(store, store.units.key(by.unit))
-    found = doubts(known, as_checked(source, by.started_at), known.calibration(by.id), (by.id,))
+    found = doubts(known, as_checked(source, by.started_at, by.unit), known.calibration(by.id), (by.id,))
     asked = store.states.of(RecordKind.SESSION, by.id)[-1].why
     return [doubt.stands_for for doubt in found] == [replaced] and asked == found[0].text
 

@@ -1,8 +1,10 @@
 """Step: what a diagnosis means for its session's verdict: the verdict with the named causes, and the reservations."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from datetime import datetime
 
 from estimator.errors import SessionError
+from estimator.results import Calibration
 from estimator.session import CalibrationSession
 from service.ingest import read_upload
 from service.judging.cause_sizes import Yardstick
@@ -10,13 +12,18 @@ from service.judging.model_in_force import in_force, places_of
 from service.judging.reference import reference_of
 from service.judging.reservations import UNCHECKED, Doubted, reservations_of
 from service.judging.standing import Basis, Otherwise, verdicts_under_alternatives
+from service.judging.temperatures import Covered, covered_by, worth_of
 from service.judging.tolerances import tolerances_of
 from service.records.decision import Verdict, nominal_factor_of
 from service.records.diagnosis import Diagnosed
 from service.records.reservation import Reservation
+from service.records.session import StoredSession
 from service.storage import Files
 from service.storage.files import LOST
 from service.storage.store import Store
+
+MOST_EARLIER = 50
+"""Sessions before one whose temperatures count: those of many years."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +37,8 @@ class Weighing:
     tolerances: dict[tuple[str, str], float]
     known: frozenset[tuple[str, str]]
     """Causes in the model in force, with the sensor or an empty name."""
+    temperatures: Covered | None
+    """Of the session, beside those of its unit; None where nothing says them."""
 
 
 @dataclass(frozen=True)
@@ -46,11 +55,12 @@ def weighing_of(store: Store, id: str, block: str) -> Weighing:
     stored, decisions = store.sessions.get(id), store.sessions.decisions(id)
     unit_type = store.unit_types.of_unit(stored.unit)
     unit = store.units.key(stored.unit)
-    found = reference_of(store, unit, block, stored.programme, stored.started_at).session
-    is_judged = bool(decisions) and found is not None and not stored.is_reference
-    basis = None
-    if is_judged and found is not None:
-        basis = Basis(store.calibrations.get(found), unit_type, nominal_factor_of(decisions))
+    found = reference_of(store, unit, block, stored.programme, stored.started_at)
+    is_judged = bool(decisions) and found.session is not None and not stored.is_reference
+    basis, temperatures = None, None
+    if is_judged and found.session is not None:
+        basis = Basis(store.calibrations.get(found.session), unit_type, nominal_factor_of(decisions))
+        temperatures = _temperatures(store, stored, basis.reference, found.since)
     accepted = in_force([r for r in store.models.of_session(id) if r.id <= stored.revision])
     sensors = store.calibrations.get(id).sensors if accepted else ()
     return Weighing(
@@ -58,7 +68,21 @@ def weighing_of(store: Store, id: str, block: str) -> Weighing:
         basis=basis,
         tolerances=tolerances_of(unit_type),
         known=frozenset((r.cause, place) for r in accepted for place in places_of(r, sensors)),
+        temperatures=temperatures,
     )
+
+
+def _temperatures(
+    store: Store, session: StoredSession, reference: Calibration, since: datetime | None
+) -> Covered | None:
+    """A session's temperature beside those of its unit; with its history where it lies outside them."""
+    seen = covered_by(session, reference.residuals, store.sessions.before(session, since, MOST_EARLIER))
+    if seen is None or not seen.is_far:
+        return seen
+    unit, at = store.units.key(session.unit), session.started_at
+    changes = tuple(row for row in store.outlooks.changes(unit, since) if row.at < at)
+    references = tuple(row for row in store.outlooks.references(unit, since) if row.at < at)
+    return replace(seen, changes=changes, references=references)
 
 
 def weigh(session: CalibrationSession, found: Diagnosed, by: Weighing) -> Weighed:
@@ -79,6 +103,8 @@ def weigh(session: CalibrationSession, found: Diagnosed, by: Weighing) -> Weighe
         by=Yardstick(found.calibration, found.residuals_before, by.tolerances),
         otherwise=others,
         known=by.known,
+        temperatures=by.temperatures,
+        worth=worth_of(by.temperatures) if by.temperatures is not None and by.temperatures.is_far else None,
     )
     return Weighed(after, reservations_of(doubted))
 

@@ -2,6 +2,7 @@
 
 from service.errors import ConflictError
 from service.flows.derive_again import Derived, Deriving, derive_again
+from service.flows.refresh_beside import date
 from service.records.event import Service
 from service.records.state import RecordKind, RecordState, Step
 from service.storage import Storage
@@ -19,4 +20,6 @@ def withdraw_service(storage: Storage, way: Deriving, number: int, step: Step) -
         details = {"service": number, "kind": service.kind, "at": service.at.isoformat(), "why": step.why}
         store.audit.write(step.at, step.who, "withdraw service", service.unit, details)
         derived = derive_again(store, way, service.unit, service.at)
-        return store.services.get(number), derived
+        withdrawn = store.services.get(number)
+    date(storage, way, withdrawn.unit)
+    return withdrawn, derived

@@ -3,6 +3,7 @@
 from service.errors import ConflictError
 from service.flows.change_state import change
 from service.flows.derive_again import Derived, Deriving, derive_again
+from service.flows.refresh_beside import date
 from service.records.session import StoredSession
 from service.records.state import RecordState, Step
 from service.storage import Storage
@@ -20,4 +21,6 @@ def withdraw_session(storage: Storage, way: Deriving, id: str, step: Step) -> tu
             raise ConflictError(f"Session {id} is {session.state} already.")
         change(store, session, RecordState.WITHDRAWN, step)
         derived = derive_again(store, way, session.unit, session.started_at, (id,))
-        return store.sessions.get(id), derived
+        withdrawn = store.sessions.get(id)
+    date(storage, way, withdrawn.unit)
+    return withdrawn, derived

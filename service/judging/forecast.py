@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 
 import numpy as np
+from numpy.typing import NDArray
 
 from estimator.health.detection import Change, Warmth
 from estimator.health.forecast import AHEAD, RISK_LEVEL, reach
@@ -15,6 +16,8 @@ from service.judging.histories import Histories
 from service.records.decision import Verdict
 from service.records.outlook import (
     Action,
+    DueBasis,
+    DueRule,
     FanPoint,
     FoundChange,
     ParameterTrend,
@@ -23,13 +26,19 @@ from service.records.outlook import (
     UnitOutlook,
 )
 from service.records.session import StoredSession
-from service.words.due import UNFIT, why_due, why_measure, why_now
+from service.words.due import UNFIT, reason_of
 from service.words.names import YEAR
 
 FAN_AHEAD = np.linspace(0.0, 1.0, 6)
 """Years after the last session for which a trend's bounds are drawn."""
 FAN_LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 """Median, and the bounds that hold half and nine tenths, as `FanPoint` has them."""
+ACTIONS = {
+    DueRule.UNFIT: Action.NOW,
+    DueRule.UNDECIDED: Action.REPEAT,
+    DueRule.MAY_BE_OUT: Action.REPEAT,
+}
+"""What a unit needs next that waits for no date."""
 CALLED = {Kind.JUMP: "jump", Kind.LATE: "drift", Kind.START: "drift", Kind.AGING: "aging", Kind.WALK: "walk"}
 """Kinds of change as `FoundChange` has them."""
 
@@ -53,14 +62,23 @@ def forecast(past: Past, known: Histories, priors: Mapping[tuple[str, str], Prio
     """The outlook of a unit; priors by kind of sensor and parameter."""
     last, since = past.latest, past.since
     if last is None or (since is not None and last.started_at < since):
-        waiting = UnitOutlook(past.serial, since, False, why_measure(since), None, None, None, None, None, ())
-        return replace(waiting, action=Action.MEASURE)
+        return _unmeasured(past)
     if not known.tracks:
-        return _decided(past, last, (), None)
+        return _decided(past, last, _Foreseen((), (), np.zeros((0, len(AHEAD)))))
     found = prognosis(known.tracks, [priors[(key.kind, key.parameter)] for key in known.keys], FAN_AHEAD)
     trends = tuple(_trend(known, i, outlook) for i, outlook in enumerate(found.outlooks))
     learned = min(prior.histories for prior in priors.values())
-    return replace(_decided(past, last, trends, _risk(known, found)), learned_from=learned)
+    foreseen = _Foreseen(trends, _risk(known, found), found.chances(known.tracks))
+    return replace(_decided(past, last, foreseen), learned_from=learned)
+
+
+def _unmeasured(past: Past) -> UnitOutlook:
+    """No session has shown it, ever or since its last service."""
+    since = past.since
+    basis = DueBasis(DueRule.UNMEASURED if since is None else DueRule.SERVICED, since)
+    reason = reason_of(basis, since)
+    unit = UnitOutlook(past.serial, since, False, reason, None, None, None, None, None, ())
+    return replace(unit, action=Action.MEASURE, basis=basis)
 
 
 def _trend(known: Histories, i: int, found: Outlook) -> ParameterTrend:
@@ -119,46 +137,70 @@ def _risk(known: Histories, found: Prognosis) -> tuple[RiskPoint, ...]:
     return tuple(RiskPoint(latest + float(a) * YEAR, float(r)) for a, r in zip(AHEAD, found.risk, strict=True))
 
 
-def _decided(
-    past: Past, last: StoredSession, trends: tuple[ParameterTrend, ...], risk: tuple[RiskPoint, ...] | None
-) -> UnitOutlook:
+@dataclass(frozen=True, eq=False)
+class _Foreseen:
+    """What the histories let expect; empty where there are none."""
+
+    trends: tuple[ParameterTrend, ...]
+    risk: tuple[RiskPoint, ...]
+    chances: NDArray[np.float64]
+    """(B, h) of every trend to be out of tolerance, 0 where its level is not known, at the dates of the risk."""
+
+    def riskiest(self, at: datetime) -> ParameterTrend:
+        """The trend that is out of tolerance by a date with the largest chance."""
+        years = (at - self.risk[0].at) / YEAR
+        return self.trends[int(np.argmax([np.interp(years, AHEAD, row) for row in self.chances]))]
+
+
+def _decided(past: Past, last: StoredSession, foreseen: _Foreseen) -> UnitOutlook:
     """The unit as a whole: it comes back before its risk passes the level, and never after the longest interval.
 
     Found unfit, by a recording in service too, it needs a hand and no date; undecided, or perhaps out of tolerance
     already, another session.
     """
     longest = last.started_at + timedelta(days=past.longest_days)
-    first = min((t for t in trends if t.reach_90), key=lambda t: (t.reach_90, t.reach_50 or longest), default=None)
-    risky = None if risk is None else _passes(risk)
-    told = next((s for s in (past.shown, last) if s is not None and s.verdict in UNFIT), last)
-    action, due = _action(told, risky), longest if risky is None else min(longest, risky)
-    reason = why_due(trends, first, last.started_at, past.longest_days, is_longest=due == longest)
+    first = min(
+        (t for t in foreseen.trends if t.reach_90), key=lambda t: (t.reach_90, t.reach_50 or longest), default=None
+    )
+    basis, due = _basis(past, last, foreseen)
     unit = UnitOutlook(
         serial=past.serial,
-        due=due if action is Action.CALIBRATE else None,
+        due=due,
         overdue=False,
-        reason=reason if action is Action.CALIBRATE else why_now(action, told, reason),
+        reason=reason_of(basis, due),
         sensor=None if first is None else first.sensor,
         parameter=None if first is None else first.parameter,
         reach_50=None if first is None else first.reach_50,
         reach_90=None if first is None else first.reach_90,
         risk_at_due=None,
-        trends=trends,
-        risk=risk or (),
-        action=action,
+        trends=foreseen.trends,
+        risk=foreseen.risk,
+        action=ACTIONS.get(basis.rule, Action.CALIBRATE),
+        basis=basis,
     )
-    return unit if unit.due is None else replace(unit, risk_at_due=unit.risk_by(unit.due))
+    return unit if due is None else replace(unit, risk_at_due=unit.risk_by(due))
+
+
+def _basis(past: Past, last: StoredSession, foreseen: _Foreseen) -> tuple[DueBasis, datetime | None]:
+    """The rule that decides, and the date that it sets."""
+    found = next((s for s in (past.shown, last) if s is not None and s.verdict in UNFIT), None)
+    if found is not None:
+        return DueBasis(DueRule.UNFIT, found.started_at), None
+    if last.verdict is Verdict.UNDECIDABLE and not last.is_reference:
+        return DueBasis(DueRule.UNDECIDED, last.started_at, because=last.reason), None
+    longest = last.started_at + timedelta(days=past.longest_days)
+    if not foreseen.risk:
+        return DueBasis(DueRule.NO_TREND, last.started_at, interval_days=past.longest_days), longest
+    risky = _passes(foreseen.risk)
+    if risky is None or risky >= longest:
+        return DueBasis(DueRule.INTERVAL, last.started_at, interval_days=past.longest_days), longest
+    is_out, worst = risky <= last.started_at, foreseen.riskiest(risky)
+    rule = DueRule.MAY_BE_OUT if is_out else DueRule.RISK
+    basis = DueBasis(rule, last.started_at, risk=RISK_LEVEL, sensor=worst.sensor, parameter=worst.parameter)
+    return basis, None if is_out else risky
 
 
 def _passes(risk: tuple[RiskPoint, ...]) -> datetime | None:
     """When the risk passes the level."""
     years = float(reach(np.array([[point.risk for point in risk]]), RISK_LEVEL)[0])
     return _after(risk[0].at, years)
-
-
-def _action(last: StoredSession, risky: datetime | None) -> Action:
-    if last.verdict in UNFIT:
-        return Action.NOW
-    if last.verdict is Verdict.UNDECIDABLE and not last.is_reference:
-        return Action.REPEAT
-    return Action.REPEAT if risky is not None and risky <= last.started_at else Action.CALIBRATE

@@ -5,11 +5,13 @@ from datetime import UTC, datetime
 
 from estimator.groups.fixed import FixedEffect, in_one_session
 from estimator.groups.layout import EVERY
+from estimator.moments import moment
 from estimator.results import SensorCalibration
 from service.ingest.checked import Checked
 from service.records.model import Evidence, Model, ModelRevision, Pooled, Scope
 from service.storage.store import Store
 
+EVER = datetime.min.replace(tzinfo=UTC)
 NARROWEST = (Scope.UNIT, Scope.UNIT_TYPE, Scope.STAND)
 """Of one cause on one sensor the size found nearest to it counts: every group is pooled on the plain simulation, so
 each of them holds the whole effect."""
@@ -56,7 +58,7 @@ def _fixed(revisions: Sequence[ModelRevision], at: datetime) -> Iterator[FixedEf
     """Of what groups showed; what began at a date is not in the sessions before it."""
     for revision in revisions:
         evidence, pooled = revision.evidence, pooled_of(revision)
-        if evidence is not None and pooled is not None and not _is_before(at, pooled.since):
+        if evidence is not None and pooled is not None and at >= _began(revision, pooled):
             yield _effect(revision, evidence, pooled)
 
 
@@ -73,8 +75,8 @@ def _effect(revision: ModelRevision, evidence: Evidence, pooled: Pooled) -> Fixe
     )
 
 
-def _is_before(at: datetime, since: str | None) -> bool:
-    if since is None:
-        return False
-    began = datetime.fromisoformat(since)
-    return at < (began if began.tzinfo else began.replace(tzinfo=UTC))
+def _began(revision: ModelRevision, pooled: Pooled) -> datetime:
+    """From when on sessions have it; where earlier versions did not know, those after its acceptance surely do."""
+    if pooled.form != "since":
+        return EVER
+    return revision.accepted_at if pooled.since is None else moment(pooled.since)

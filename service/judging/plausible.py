@@ -18,6 +18,7 @@ from service.ingest.checked import Checked
 from service.judging.beside_type import MOST, beside_type, type_of_references
 from service.judging.known_unit import KnownUnit
 from service.judging.moments import of_date, of_moment
+from service.judging.same_unit import of_unit
 from service.judging.tolerances import tolerances_of
 from service.records.doubt import Correction, Doubt, Remedy
 from service.records.unit import UnitType
@@ -41,7 +42,12 @@ TOO_QUIET = 1e-4
 def doubts(known: KnownUnit, new: Checked, calibration: Calibration, but: Collection[str]) -> tuple[Doubt, ...]:
     """Everything that cannot be as the file says; none where all is plausible. ``but`` are sessions that it may share
     its moment with: itself, and the one that it replaces."""
-    return (*of_date(known, new, but), *_of_calibration(known, new, calibration), *of_moment(known, new, but))
+    return (
+        *of_unit(known, new, calibration.sensors, but),
+        *of_date(known, new, but),
+        *_of_calibration(known, new, calibration),
+        *of_moment(known, new, but),
+    )
 
 
 def _of_calibration(known: KnownUnit, new: Checked, calibration: Calibration) -> Iterator[Doubt]:
@@ -105,13 +111,23 @@ def _of_scale(found: Found, what: str, known: dict[str, float], remedy: Remedy =
         if own.scale.value and known.get(sensor.name) and own.observable.get("scale")
     }
     off = {name: r for name, r in ratios.items() if not 1 / LEAST_RATIO < r < LEAST_RATIO}
-    while off:
-        ratio = next(iter(off.values()))
-        alike = tuple(name for name, r in off.items() if ratio / LIKE < r < ratio * LIKE)
-        off = {name: r for name, r in off.items() if name not in alike}
+    for alike in _alike(off):
+        ratio = off[alike[0]]
         slip, correction = _slip(ratio, alike, remedy)
         who = "Every scale factor is" if len(alike) == len(ratios) else f"The scale factor of {', '.join(alike)} is"
         yield Doubt(f"{who} {ratio:.4g} times its {what}", slip, correction)
+
+
+def _alike(ratios: dict[str, float]) -> Iterator[tuple[str, ...]]:
+    """The sensors in groups of about one ratio; each is in one of them, whatever its ratio."""
+    left = dict(ratios)
+    while left:
+        first = next(iter(left))
+        ratio = left.pop(first)
+        others = tuple(name for name, r in left.items() if ratio / LIKE < r < ratio * LIKE)
+        for name in others:
+            del left[name]
+        yield first, *others
 
 
 def _slip(ratio: float, sensors: tuple[str, ...], remedy: Remedy) -> tuple[str, Correction | None]:

@@ -12,6 +12,8 @@ from estimator.diagnosis import Finding
 from estimator.diagnosis.results import NoiseScale, Structure
 from service.judging.cause_sizes import Size, Yardstick, size_of_cause, size_of_structure
 from service.judging.standing import Otherwise, acts_within, is_of_record
+from service.judging.temperatures import Covered
+from service.measures import COVERAGE
 from service.records.decision import Verdict
 from service.records.reservation import Doubt, Reservation
 from service.words.noise_claims import wrong_errors
@@ -25,11 +27,14 @@ from service.words.reservation import (
     TOO_FEW,
     advice_on,
     advice_on_structure,
+    at_about,
+    elsewhere,
     named,
     otherwise,
     size_in_words,
     unexplained,
     within,
+    worth_in,
 )
 
 WORTH_SAYING = 1 / 3
@@ -54,11 +59,16 @@ class Doubted:
     otherwise: tuple[Otherwise, ...]
     """Verdicts under the other models that are left standing."""
     known: Known = frozenset()
+    temperatures: Covered | None = None
+    """Beside those of its unit; None where nothing says them, or nothing was judged."""
+    worth: tuple[Size, ...] | None = None
+    """What the step in temperature is worth in every parameter; None where that is not known."""
 
 
 def reservations_of(session: Doubted) -> tuple[Reservation, ...]:
     """Everything that the verdict is said with, by how much it matters; empty where it is plain."""
     found = (
+        *_of_temperature(session),
         *_of_findings(session),
         *_of_models(session),
         *_of_structures(session),
@@ -78,6 +88,25 @@ def _of_findings(session: Doubted) -> Iterator[Reservation]:
             kind, text = Doubt.RECORD if of_record else Doubt.CAUSE, named(finding, _in_words(size))
             plain = Reservation(kind, text, advice_on(finding.cause), finding.sensors, finding.cause)
             yield _sized(plain, size)
+
+
+def _of_temperature(session: Doubted) -> Iterator[Reservation]:
+    """Where the session lies outside what its unit covers, unless that is known to be worth little."""
+    seen = session.temperatures
+    if seen is None or not seen.is_far:
+        return
+    worth = None if session.worth is None else max(session.worth, key=_at_most)
+    if worth is not None and _at_most(worth) <= WORTH_SAYING:
+        return
+    known = "" if worth is None else worth_in(worth.parameter, worth.sensors[0], _in_words(worth))
+    text = elsewhere(seen.outside, seen.now, (seen.lowest, seen.highest), known)
+    sensors = () if worth is None else worth.sensors
+    yield _sized(Reservation(Doubt.TEMPERATURE, text, at_about(seen.reference), sensors), worth)
+
+
+def _at_most(size: Size) -> float:
+    """Of the tolerance, with U."""
+    return (size.value + COVERAGE * (size.sigma or 0.0)) / size.tolerance
 
 
 def _is_large(size: Size | None) -> bool:

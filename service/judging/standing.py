@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from estimator.causes import find
 from estimator.diagnosis import Finding
 from estimator.diagnosis.explanation.accepted import calibrate_extended
+from estimator.diagnosis.explanation.temperature import OF_TEMPERATURE
 from estimator.results import Calibration
 from estimator.session import CALIBRATIONS, CalibrationSession
 from service.judging.judge import judge
@@ -60,12 +61,19 @@ def verdicts_under_alternatives(
         return
     first = findings[0]
     others = tuple((f.cause, _once(f.sensors)) for f in findings[1:] if acts_within(f.cause))
-    for name in first.alternatives[:MOST_ALTERNATIVES]:
+    for name in _of_the_session(first)[:MOST_ALTERNATIVES]:
         if name == UNKNOWN_CAUSE or acts_within(name):
             own = () if name == UNKNOWN_CAUSE else ((name, _sensors(name, first)),)
             causes = (*own, *others)
             verdict = basis.verdict_of(calibrate_extended(session, causes))
             yield Otherwise(tuple(cause for cause, _ in causes), own[0][1] if own else (), verdict)
+
+
+def _of_the_session(first: Finding) -> tuple[str, ...]:
+    """Alternatives that a model of the session can hold: what temperature did between sessions it cannot show."""
+    known = find(first.cause)
+    between = known is not None and known.between
+    return tuple(name for name in first.alternatives if not (between and name in OF_TEMPERATURE))
 
 
 def is_of_record(name: str) -> bool:

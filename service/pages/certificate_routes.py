@@ -5,10 +5,9 @@ from typing import Annotated
 from fastapi import APIRouter, Form, Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
-from service.admission import PersonOf
-from service.dependencies import DeskOf, Now, Reading, address_of
+from service.admission import PersonOf, attempt_of
+from service.dependencies import DeskOf, Now, Reading
 from service.errors import SignInError
-from service.flows.identity.attempts import Attempt
 from service.flows.sign_certificate import Signing
 from service.identity.passwords import LONGEST
 from service.pages.certificate import certificate_page
@@ -44,7 +43,7 @@ def take_signature(
     """Puts a name under the certificate; the page again where the password is wrong."""
     signing = Signing(id, number, meaning, person.login, password)
     try:
-        sign(desk, signing, Attempt(person.login, address_of(request)), now)
+        sign(desk, signing, attempt_of(request, person.login), now)
     except SignInError as wrong:
         papers, four_eyes = papers_of(desk, id), desk.rules.four_eyes
         with desk.storage.database.reading() as store:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from service.records.diagnosis import DiagnosisState, DiagnosisSummary
+from service.words.failed import session_failed
 
 PENDING = "Still being examined"
 TONES = {
@@ -24,6 +25,8 @@ class DiagnosisLine:
     text: str
 
 
-def diagnosis_line(found: DiagnosisSummary | None) -> DiagnosisLine:
-    """What is known; None while it is still being examined."""
+def diagnosis_line(found: DiagnosisSummary | None, failed: str = "") -> DiagnosisLine:
+    """What is known; None while it is still being examined, or where that ``failed``."""
+    if found is None and failed:
+        return DiagnosisLine(TONES[DiagnosisState.FAILED], session_failed(failed))
     return DiagnosisLine("none", PENDING) if found is None else DiagnosisLine(TONES[found.state], found.summary)

@@ -21,7 +21,7 @@ router = APIRouter(include_in_schema=False)
 @router.get("/sessions/{id}/diagnosis")
 def show_diagnosis(request: Request, store: Reading, id: Key, reader: ReaderOf) -> HTMLResponse:
     """What the simulation gets wrong about the session."""
-    page = diagnosis_page(diagnosis_report(store, id, reader.read(id, GLANCE)))
+    page = diagnosis_page(diagnosis_report(store, id, reader.read(id, patience=GLANCE)))
     return render(request, "diagnosis.html", page)
 
 

@@ -1,11 +1,12 @@
 """The forms of what happened to a unit: services, notes, sessions as found and as left."""
 
-from datetime import UTC, datetime
+from datetime import datetime
 from typing import Annotated, Literal
 from urllib.parse import quote
 
 from fastapi import APIRouter, Form
 from fastapi.responses import RedirectResponse
+from pydantic import AfterValidator
 
 from service.dependencies import Now, ReceptionOf, StorageOf
 from service.flows.add_note import add_note
@@ -14,10 +15,11 @@ from service.flows.set_stage import set_stage
 from service.flows.withdraw_note import withdraw_note
 from service.pages.forms import NO_NUL, SEE_OTHER, By, Key, Number, Why
 from service.records.event import NewService
+from service.records.instants import in_utc
 
 router = APIRouter(include_in_schema=False)
 
-At = Annotated[datetime | None, Form()]
+At = Annotated[Annotated[datetime, AfterValidator(in_utc)] | None, Form()]
 """A time in UTC; left empty it is now."""
 Kind = Annotated[Literal["adjustment", "repair", "sensor-swap", "reference", "service"], Form()]
 
@@ -35,7 +37,7 @@ def add_service(
     note: Annotated[str, Form(max_length=2000, pattern=NO_NUL)] = "",
 ) -> RedirectResponse:
     """Records what was done to the unit."""
-    new, k = NewService(kind, _utc(at, now), note, by, sensor), reception.coverage_factor
+    new, k = NewService(kind, at or now, note, by, sensor), reception.coverage_factor
     record_service(reception.storage, serial, new, now, coverage_factor=k)
     reception.ring()
     return _unit(serial, "events")
@@ -44,7 +46,7 @@ def add_service(
 @router.post("/units/{serial:path}/notes")
 def write_note(serial: Key, text: Why, by: By, storage: StorageOf, now: Now, *, at: At = None) -> RedirectResponse:
     """Keeps a remark."""
-    add_note(storage, serial, text, at=_utc(at, now), who=by, now=now)
+    add_note(storage, serial, text, at=at or now, who=by, now=now)
     return _unit(serial, "events")
 
 
@@ -61,12 +63,6 @@ def mark_session(
     """The session shows its unit as found, as left, or neither."""
     set_stage(storage, id, None if stage == "neither" else stage, by, now)
     return RedirectResponse(f"/sessions/{id}#stage", SEE_OTHER)
-
-
-def _utc(at: datetime | None, now: datetime) -> datetime:
-    if at is None:
-        return now
-    return at.astimezone(UTC) if at.tzinfo else at.replace(tzinfo=UTC)
 
 
 def _unit(serial: str, place: str) -> RedirectResponse:

@@ -8,6 +8,7 @@ from math import isclose, isfinite, nan
 import numpy as np
 
 from estimator.diagnosis.results import Gain, Score
+from estimator.moments import moment
 from estimator.results import Calibration, Estimate, SensorCalibration
 from service.measures import deviation_measure, leading_kind, measured, number
 from service.records.decision import Verdict
@@ -89,7 +90,7 @@ def _kinds(gain: Gain, calibration: Calibration) -> tuple[str, ...]:
 
 def _at(started_at: str | None) -> datetime | None:
     """When a session began; None where its file does not say."""
-    return None if started_at is None else datetime.fromisoformat(started_at)
+    return None if started_at is None else moment(started_at)
 
 
 def _is_same(before: Score, after: Score) -> bool:

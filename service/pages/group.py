@@ -18,6 +18,7 @@ from service.settings import VERSION
 from service.storage.group_document import read_group
 from service.storage.queries.models import ModelQuery
 from service.storage.store import Store
+from service.words.failed import group_failed
 from service.words.group_finding import GroupView, group_view
 
 HOMES = {Level.UNIT: "units", Level.TYPE: "unit-types", Level.STAND: "stands"}
@@ -82,7 +83,9 @@ def whose(group: Group) -> str:
 
 def group_section(store: Store, level: Level, name: str) -> GroupSection:
     """What the sessions of a unit, a unit type or a stand show together, where it is made of its records of now."""
-    group, answer, is_asked = store.groups.known(level, name)
+    group, answer, is_asked, failed = store.groups.known(level, name)
+    if failed:
+        return GroupSection(group, None, group_failed(failed))
     if answer is None or answer.is_of_another(VERSION):
         return GroupSection(group, None, "")
     if is_asked and (level is not Level.UNIT or not rests_on_now(store, group, answer)):

@@ -1,7 +1,7 @@
 """Every answer that people read, in their language: what is refused is said in it, and caches are told."""
 
 import json
-from time import monotonic
+from time import thread_time
 from typing import Any
 
 from starlette.concurrency import run_in_threadpool
@@ -18,8 +18,8 @@ PAPERS = ("application/pdf", "application/vnd.openxmlformats-officedocument.spre
 """Made in the language of the one who asks, or kept in that of the one who approved them."""
 SAID = ("title", "detail")
 PATIENCE = 2.0
-"""Seconds that a refusal's sentences are looked up for; a file may be made so that they are many and take long, and
-the rest is then told in English."""
+"""Seconds of computing for which a refusal's sentences are looked up; a file may be made so that they are many and
+take long, and the rest is then in English."""
 
 
 class InOneLanguage:
@@ -85,10 +85,10 @@ class _Speaker:
 def in_words_of(language: Language, problem: dict[str, Any]) -> dict[str, Any]:
     """A problem with its sentences said in a language; its keys and fields stay."""
     catalogue = catalogue_of(language)
-    end = monotonic() + PATIENCE
+    end = thread_time() + PATIENCE
 
     def say(text: str) -> str:
-        return catalogue.say(text) if monotonic() < end else text
+        return catalogue.say(text) if thread_time() < end else text
 
     told = problem | {key: say(problem[key]) for key in SAID if key in problem}
     if "problems" in told:

@@ -24,6 +24,7 @@ def show_jobs(
     request: Request,
     store: Reading,
     person: PersonOf,
+    now: Now,
     subject: Annotated[str, Query(max_length=200, pattern=NO_NUL)] = "",
     mine: Literal["yes", ""] = "",
     before: Annotated[int | None, Query(ge=1, le=2_000_000_000)] = None,
@@ -31,7 +32,15 @@ def show_jobs(
     """Long work that was asked for, the newest first."""
     account = person.login if mine else ""
     found = store.jobs.page(PAGE_SIZE, before=before, account=account, subject=subject)
-    return render(request, "jobs.html", jobs_page(found, person, subject, mine=bool(account)))
+    failed = store.failures.listed(now, PAGE_SIZE)
+    return render(request, "jobs.html", jobs_page(found, person, subject, mine=bool(account), failed=failed))
+
+
+@router.post("/jobs/failed/retry")
+def retry_failed(by: By, desk: JobDeskOf, storage: StorageOf, now: Now) -> RedirectResponse:
+    """Tries again what failed beside the requests."""
+    desk.try_again(storage, now, by)
+    return RedirectResponse("/jobs#failed", SEE_OTHER)
 
 
 @router.post("/jobs/recalibration")

@@ -9,9 +9,11 @@ from estimator.errors import Problem
 from service.flows.ask_job import may_cancel
 from service.measures import number
 from service.pages.follow import SOONEST, follow_seconds
+from service.records.failure import Failed
 from service.records.identity import Person
 from service.records.job import Job, JobFailure, JobKind, JobState
 from service.records.model import Scope
+from service.words.failed import NAMES
 from service.words.jobs import STATES, ending_of, outcome_of, progress_of, title_of
 
 PAGE_SIZE = 50
@@ -37,6 +39,15 @@ class JobLine:
 
 
 @dataclass(frozen=True)
+class FailedLine:
+    """Work beside the requests that has failed."""
+
+    what: str
+    of: str
+    why: str
+
+
+@dataclass(frozen=True)
 class JobsPage:
     """Everything the list shows."""
 
@@ -47,6 +58,8 @@ class JobsPage:
     """Whether somebody signed in, so that there are jobs of one's own."""
     earlier: str
     """Address of the next page; empty where there is none."""
+    failed: tuple[FailedLine, ...] = ()
+    """Work beside the requests that has failed."""
 
 
 @dataclass(frozen=True)
@@ -73,12 +86,15 @@ class JobPage:
     """Of an upload that was refused."""
 
 
-def jobs_page(found: Sequence[Job], person: Person, subject: str, *, mine: bool) -> JobsPage:
+def jobs_page(
+    found: Sequence[Job], person: Person, subject: str, *, mine: bool, failed: Sequence[Failed] = ()
+) -> JobsPage:
     """The newest first."""
     lines = tuple(map(job_line, found))
     narrowed = ({"subject": subject} if subject else {}) | ({"mine": "yes"} if mine else {})
     earlier = f"/jobs?{urlencode(narrowed | {'before': found[-1].id})}" if len(found) == PAGE_SIZE else ""
-    return JobsPage(lines, subject, mine, bool(person.login), earlier)
+    shown = tuple(FailedLine(NAMES[one.kind], one.of, one.why) for one in failed)
+    return JobsPage(lines, subject, mine, bool(person.login), earlier, shown)
 
 
 def job_line(job: Job) -> JobLine:

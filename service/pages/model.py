@@ -15,7 +15,7 @@ from service.words.causes import cause_on
 from service.words.conditions import Condition, condition_of
 from service.words.finding import standard_errors
 from service.words.group import over
-from service.words.group_finding import FORMS, day_in_words
+from service.words.group_finding import since_in_words
 from service.words.recomputations import CANCELLED, GIVEN_UP, moved_in_words, progress_of
 
 HOMES = {Scope.UNIT: "/units/", Scope.UNIT_TYPE: "/unit-types/", Scope.STAND: "/stands/"}
@@ -101,7 +101,7 @@ def _evidence(strength: float, pooled: Pooled | None) -> str:
     """``Over 34 sessions, in all of these sessions: 12.3 standard errors.``"""
     if pooled is None:
         return f"In one session: {standard_errors(strength)}. Each session fits its own size."
-    since = FORMS.get(pooled.form) or f"since {day_in_words(pooled.since or '')}"
+    since = since_in_words(pooled.form, pooled.since)
     fitted = "each session has a say in it" if pooled.form == "varying" else "no session fits it again"
     return f"{over(pooled.sessions)}, {since}: {standard_errors(strength)}. The size is theirs: {fitted}."
 

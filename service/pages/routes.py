@@ -88,7 +88,8 @@ def show_unit(
 ) -> HTMLResponse:
     """One unit with the history of its parameters; ``raw``: what the whole block did is left in."""
     report = unit_report(store, serial, now)
-    is_coming = report.summary.is_undated and not report.summary.is_given_up
+    is_judged_later = report.waiting and not report.summary.failed
+    is_coming = report.summary.is_undated and not report.summary.failed
     return render(
         request,
         "unit.html",
@@ -102,7 +103,7 @@ def show_unit(
             pair=found_and_left(store, report.unit_type, report.sessions, report.services, settings.coverage_factor),
             outlook=dated(report.outlook, now),
             group=group_section(store, Level.UNIT, serial),
-            follow=SOONEST if report.waiting or (is_coming and settings.diagnosis_workers) else None,
+            follow=SOONEST if is_judged_later or (is_coming and settings.diagnosis_workers) else None,
             said=remarks(serial, "", (), report.said.files, settings.max_attachment_bytes),
         ),
     )
@@ -116,12 +117,14 @@ def show_session(
     report = session_report(store, id)
     made, said = report.diagnosis, store.said_of.session(report.session.unit, id)
     questioned = report.session.state is RecordState.QUESTIONED
+    failed = "" if made else report.failed
     page = session_page(
         report,
         made,
         traceability_of(store, report.session),
         remedies=remedies_of(storage, id, report.states) if questioned else Remedies(),
-        follow=None if made else follow_seconds(report.session.uploaded_at, now, settings.diagnosis_workers),
+        failed=failed,
+        follow=None if made or failed else follow_seconds(report.session.uploaded_at, now, settings.diagnosis_workers),
         model=model_as_of(store.models.of_session(id), report.session.revision),
         computed=store.calibrations.revisions(id),
         said=remarks(

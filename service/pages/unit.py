@@ -20,6 +20,7 @@ from service.records.outlook import ParameterTrend, UnitOutlook
 from service.records.unit import UnitReport
 from service.views.found_and_left import FoundAndLeft
 from service.words.conditions import NOT_JUDGED, Condition, condition_of
+from service.words.failed import unit_failed
 from service.words.names import day_of, heading
 from service.words.outlook import NextCalibration, next_calibration
 
@@ -68,6 +69,8 @@ class UnitPage:
 
     report: UnitReport
     condition: Condition
+    failed: str
+    """That what follows from its latest records could not be worked out, and why; empty else."""
     sections: tuple[ParameterSection, ...]
     sessions: tuple[SessionLine, ...]
     reference: str
@@ -118,6 +121,7 @@ def unit_page(
     kinds = {point.kind for point in history}
     return UnitPage(
         report=report,
+        failed=unit_failed(report.summary.failed) if report.summary.failed else "",
         condition=condition_of(report.summary.verdict, is_reference=report.summary.is_reference),
         sections=tuple(_section(tracks, report.services, valid, trends, several=len(kinds) > 1) for tracks in groups),
         sessions=session_lines(report.sessions),

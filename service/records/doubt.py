@@ -16,6 +16,8 @@ class Remedy(StrEnum):
     """Both times a factor."""
     EXCHANGE = "exchange"
     """The readings of two sensors, one for the other."""
+    UNIT = "unit"
+    """The serial number of the unit."""
 
 
 @dataclass(frozen=True)
@@ -23,13 +25,17 @@ class Correction:
     """A corrected file that can be made of the first one."""
 
     remedy: Remedy
-    sensors: tuple[str, ...]
+    sensors: tuple[str, ...] = ()
     factor: float = 1.0
+    unit: str = ""
+    """Which it is of, where that is what is corrected."""
 
     @property
     def text(self) -> str:
         """What it does, as the corrected file's notes say it."""
         who = " and ".join(self.sensors) if len(self.sensors) < 3 else f"{self.sensors[0]}–{self.sensors[-1]}"
+        if self.remedy is Remedy.UNIT:
+            return f"unit {self.unit}"
         if self.remedy is Remedy.EXCHANGE:
             return f"readings of {who} exchanged"
         return f"{self.remedy.value} of {who} × {self.factor:.6g}"
@@ -65,10 +71,13 @@ class Remedies:
     """What a corrected file would hold otherwise; empty where nothing is known."""
     stands_for: str | None = None
     """The session that it could stand for."""
+    unit: str = ""
+    """Which it probably is of; empty where that is not in doubt."""
 
 
 def remedies_among(doubts: Iterable[Doubt]) -> Remedies:
     """All corrections in one file, and the first session that it could stand for."""
     found = tuple(doubts)
-    correction = ", ".join(doubt.correction.text for doubt in found if doubt.correction is not None)
-    return Remedies(correction, next((doubt.stands_for for doubt in found if doubt.stands_for is not None), None))
+    known = tuple(doubt.correction for doubt in found if doubt.correction is not None)
+    stands_for = next((doubt.stands_for for doubt in found if doubt.stands_for is not None), None)
+    return Remedies(", ".join(one.text for one in known), stands_for, next((one.unit for one in known if one.unit), ""))

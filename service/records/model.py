@@ -47,8 +47,8 @@ class Pooled:
 
     sessions: int
     """That were pooled, from ``first`` to ``last``."""
-    first: str
-    last: str
+    first: str | None
+    last: str | None
     form: str
     """``same``, ``varying`` or ``since``."""
     since: str | None

@@ -57,6 +57,45 @@ class Action(StrEnum):
     """No session has shown it yet, or none since its service."""
 
 
+class DueRule(StrEnum):
+    """The rule that decided when a unit comes back, or that it waits for no date."""
+
+    INTERVAL = "interval"
+    """The longest interval of its type, before its risk passes the level."""
+    NO_TREND = "no-trend"
+    """The same interval, for one session tells no risk."""
+    RISK = "risk"
+    """The chance that any parameter is out of tolerance passes the level."""
+    MAY_BE_OUT = "may-be-out"
+    """That chance passed the level at the latest session already."""
+    UNDECIDED = "undecided"
+    """The latest session did not decide."""
+    UNFIT = "unfit"
+    """A session found it out of tolerance."""
+    SERVICED = "serviced"
+    """No session has shown it since its last service."""
+    UNMEASURED = "unmeasured"
+    """No session has shown it."""
+
+
+@dataclass(frozen=True)
+class DueBasis:
+    """What set a date: the one fact that every sentence about the date is made from."""
+
+    rule: DueRule
+    at: datetime | None = None
+    """Of the session or the service that the rule starts from."""
+    interval_days: float | None = None
+    """Of `DueRule.INTERVAL` and `DueRule.NO_TREND`."""
+    risk: float | None = None
+    """The level, of `DueRule.RISK` and `DueRule.MAY_BE_OUT`."""
+    sensor: str | None = None
+    """That adds most to the risk, of the same two."""
+    parameter: str | None = None
+    because: str = ""
+    """Why the session did not decide, in a sentence, of `DueRule.UNDECIDED`."""
+
+
 @dataclass(frozen=True)
 class FoundChange:
     """A change of one parameter that chance does not explain."""
@@ -155,8 +194,12 @@ class UnitOutlook:
     action: Action = Action.CALIBRATE
     learned_from: int = 0
     """Histories of its type that the forecast rests on; 0 where it rests on units in general."""
+    failed: str = ""
+    """That it could not be worked out with the latest records, why and who must act; empty else."""
     rests_on: str = ""
     """Hash of those histories: another one means that the type has more to tell."""
+    basis: DueBasis | None = None
+    """What set the date; None in an outlook of an earlier version."""
 
     def risk_by(self, at: datetime) -> float | None:
         """Chance that any parameter is out of tolerance by a date; None where there is no trend."""

@@ -15,6 +15,8 @@ class Doubt(StrEnum):
     """No causes could be looked for."""
     PENDING = "pending"
     """Causes are still being looked for: told to programs, which read a list; people are told in the verdict."""
+    TEMPERATURE = "temperature"
+    """It was measured far from the temperatures of the unit's reference and earlier sessions."""
     CAUSE = "cause"
     """A named cause is large beside the tolerance."""
     OTHER_MODEL = "other-model"

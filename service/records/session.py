@@ -53,6 +53,16 @@ class StoredSession:
 
 
 @dataclass(frozen=True)
+class Digests:
+    """By which a session is recognised, whatever its file's bytes."""
+
+    content_digest: str
+    """Of everything that it says."""
+    readings_digest: str
+    """Of its readings alone."""
+
+
+@dataclass(frozen=True)
 class ParameterValue:
     """One parameter of one sensor as a session measured it."""
 

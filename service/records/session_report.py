@@ -24,3 +24,5 @@ class SessionReport:
     """What became of it since it was received, oldest first; empty where it was accepted and remained so."""
     diagnosis: DiagnosisSummary | None = None
     """In one line; None while it is still to be made."""
+    failed: str = ""
+    """Why the last try to make it failed; empty where none did."""

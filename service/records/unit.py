@@ -102,8 +102,8 @@ class UnitSummary:
     """For whom it is calibrated."""
     is_undated: bool = False
     """Whether ``due`` and its outlook are still to be worked out with its latest records."""
-    is_given_up: bool = False
-    """Whether no process outlived that: it is tried again with the unit's next session, or at another start."""
+    failed: str = ""
+    """Why what follows from its latest records could not be worked out; empty where it was, or still is."""
 
     @property
     def last_at_ms(self) -> int | None:

@@ -25,6 +25,8 @@ class Label:
     unit_type: str
     due: str
     """Empty where it was not wanted."""
+    why: str
+    """The rule that set the date; empty where the label states none."""
     stated: str
     """The day on which it was printed: the due date is that of this day."""
     address: str
@@ -41,6 +43,7 @@ def label_of(unit: UnitSummary, base: str, now: datetime, *, with_due: bool) -> 
         serial=unit.serial,
         unit_type=unit.unit_type,
         due=_due(unit.due, now) if with_due else "",
+        why=unit.due_reason if with_due and unit.due is not None else "",
         stated=day_of(now),
         address=address,
         code=segno.make_qr(address, error="l").svg_inline(border=QUIET, omitsize=True),

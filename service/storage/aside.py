@@ -9,7 +9,7 @@ from pathlib import Path
 from service.records.received import Content, Landed
 from service.storage.faults import disk_faults
 from service.storage.files import Files, content_hash
-from service.storage.folders import make_folder
+from service.storage.folders import make_folder, named_in
 from service.storage.parts import written_whole
 
 FOLDER = "aside"
@@ -114,4 +114,4 @@ def _prefix(owner: str) -> str:
 
 def _path(files: Files, owner: str, digest: str) -> Path:
     """Made from hashes alone, whatever a form brings."""
-    return files.folder / FOLDER / f"{_prefix(owner)}{sha256(digest.encode()).hexdigest()}"
+    return named_in(files.folder / FOLDER, f"{_prefix(owner)}{sha256(digest.encode()).hexdigest()}")

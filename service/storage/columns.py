@@ -8,8 +8,9 @@ from sqlalchemy.types import TypeDecorator
 
 IS_OPEN, IS_WAITING, IS_QUESTIONED = "state <> 'resolved'", "state = 'waiting'", "state = 'questioned'"
 IS_AT_WORK = "ended_at IS NULL"
-"""Rows of flags, of deliveries, of sessions and of jobs that are looked for all the time: few of many, so each has an
-index of its own."""
+IS_FAILED = "state = 'failed'"
+"""Rows of flags, of deliveries, of sessions, of jobs and of diagnoses that are looked for all the time: few of many, so
+each has an index of its own."""
 BYTES = BigInteger().with_variant(Integer(), "sqlite")
 """Size of a file: of 2 GiB too. SQLite's integers have 64 bits anyway."""
 

@@ -19,9 +19,11 @@ from estimator.diagnosis.results import (
     Structure,
     Transfer,
 )
+from estimator.moments import in_utc
 from service.records.diagnosis import Diagnosed
 from service.records.model import Evidence, Pooled
 from service.storage.calibration_document import calibration_from_dict, residuals_from_dict
+from service.storage.json_text import json_text
 from service.words.diagnosis import NOT_APPLICABLE
 
 
@@ -40,7 +42,7 @@ def inapplicable_to_dict(unit: str) -> dict[str, Any]:
 
 def written(document: dict[str, Any]) -> str:
     """The document as it is stored and handed out."""
-    return json.dumps(document, separators=(",", ":"), allow_nan=False)
+    return json_text(document)
 
 
 def read_diagnosis(text: str) -> Diagnosed | None:
@@ -87,7 +89,8 @@ def _pooled(entry: dict[str, Any] | None) -> Pooled | None:
     if entry is None:
         return None
     words = tuple(entry.get("words", ()))  # absent from earlier versions
-    return Pooled(**entry | {"spread": tuple(entry["spread"]), "words": words})
+    moments = {name: in_utc(entry[name]) for name in ("first", "last", "since")}
+    return Pooled(**entry | moments | {"spread": tuple(entry["spread"]), "words": words})
 
 
 def finite(value: Any) -> Any:
@@ -138,7 +141,9 @@ def _finding(entry: dict[str, Any]) -> Finding:
 
 
 def _over_sessions(entry: dict[str, Any] | None) -> OverSessions | None:
-    return None if entry is None else OverSessions(**entry | {"spread": _numbers(entry["spread"])})
+    if entry is None:
+        return None
+    return OverSessions(**entry | {"spread": _numbers(entry["spread"]), "since": in_utc(entry["since"])})
 
 
 def _separation(entry: dict[str, Any]) -> Separation:
@@ -185,7 +190,7 @@ def _gain(entry: dict[str, Any]) -> Gain:
 
 
 def _transfer(entry: dict[str, Any]) -> Transfer:
-    return Transfer(entry["started_at"], _score(entry["before"]), _score(entry["after"]))
+    return Transfer(in_utc(entry["started_at"]), _score(entry["before"]), _score(entry["after"]))
 
 
 def _score(entry: dict[str, Any]) -> Score:

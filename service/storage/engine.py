@@ -15,6 +15,7 @@ from sqlalchemy.pool import ConnectionPoolEntry
 from service.errors import ServiceError
 from service.storage.faults import PRIMARY
 from service.storage.folders import make_folder
+from service.storage.json_text import json_text
 from service.storage.waits import Waits, connect_within
 
 LOOK_AGAIN = 0.02
@@ -56,14 +57,16 @@ def open_engine(url: str, waits: Waits | None = None) -> Engine:
     """
     parsed, waits = normal_url(url), waits or Waits()
     if parsed.get_backend_name() != "sqlite":
-        engine = create_engine(parsed, hide_parameters=True, pool_pre_ping=True, pool_timeout=waits.lock)
+        engine = create_engine(
+            parsed, hide_parameters=True, json_serializer=json_text, pool_pre_ping=True, pool_timeout=waits.lock
+        )
         event.listen(engine, "do_connect", _connecting(waits))
         event.listen(engine, "checkin", _end_transaction)
         return engine
     if not parsed.database or parsed.database == ":memory:":
         raise _unknown("It names no file")
     make_folder(Path(parsed.database).absolute().parent)
-    engine = create_engine(parsed, hide_parameters=True, pool_timeout=waits.lock)
+    engine = create_engine(parsed, hide_parameters=True, json_serializer=json_text, pool_timeout=waits.lock)
     event.listen(engine, "connect", _preparing(waits))
     event.listen(engine, "begin", _beginning(waits))
     event.listen(engine, "checkin", _end_transaction)

@@ -5,7 +5,7 @@ import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError, SQLAlchemyError
+from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeout
 
 from service.errors import AwayError, NoSpaceError, ServiceError
@@ -20,8 +20,6 @@ PRIMARY = 0xFF
 """The bits of an SQLite error code that say what it is; the others say where."""
 FULL_ERRNOS = frozenset({errno.ENOSPC, errno.EDQUOT})
 """The disk, or what the service may use of it, is full."""
-DATABASE_FAULTS = (SQLAlchemyError,)
-"""Whatever else the database, or what speaks to it, refuses."""
 NO_SPACE = "The disk is full: nothing was stored. Free some space and send it again."
 NO_DATABASE = "The database's file is damaged, or is not an SQLite database."
 NOT_WRITABLE = (

@@ -10,7 +10,7 @@ from service.errors import DamagedError, NotFoundError
 from service.log import log
 from service.records.received import Content, Landed
 from service.storage.faults import disk_faults
-from service.storage.folders import make_folder, sync_folder
+from service.storage.folders import make_folder, named_in, sync_folder
 from service.storage.landing import IN_MEMORY, Landings, landings
 from service.storage.parts import PART, named_durably, sweep, written_whole
 
@@ -43,7 +43,7 @@ class Files:
 
     def path(self, digest: str) -> Path:
         """Where the bytes of a hash are kept; made from the hash alone, never from an uploaded name."""
-        return self.folder / digest[:2] / digest
+        return named_in(self.folder / digest[:2], digest)
 
     def keep(self, content: Content) -> str:
         """Stores the bytes so that they survive a power cut, and returns their hash.

@@ -6,8 +6,10 @@ from typing import Any
 from estimator.diagnosis.results import Limit
 from estimator.groups import GroupDiagnosis
 from estimator.groups.results import EmpiricalTerm, GroupFinding, GroupGain, Moved, PoolLimit, Rival, SessionAmplitude
+from estimator.moments import in_utc
 from service.records.group import Group, GroupShown, Members
 from service.storage.diagnosis_document import finite
+from service.storage.json_text import json_text
 from service.words.group import NO_SESSION
 
 
@@ -16,7 +18,7 @@ def group_document(group: Group, found: GroupDiagnosis | None, members: Members)
     document = _empty(group) if found is None else finite(found.to_dict())
     left = [{"session": m.session, "reason": m.why} for m in members.without]
     whole = document | {"left_out": members.left_out, "not_pooled": left}
-    return json.dumps(whole, separators=(",", ":"), allow_nan=False)
+    return json_text(whole)
 
 
 def read_group(text: str) -> GroupShown:
@@ -24,8 +26,8 @@ def read_group(text: str) -> GroupShown:
     document = json.loads(text)
     return GroupShown(
         sessions=document["sessions"],
-        first=document["first"],
-        last=document["last"],
+        first=in_utc(document["first"]),
+        last=in_utc(document["last"]),
         left_out=document["left_out"],
         findings=tuple(map(_finding, document["findings"])),
         limits=tuple(map(_limit, document["limits"])),
@@ -37,14 +39,14 @@ def read_group(text: str) -> GroupShown:
 
 
 def _finding(entry: dict[str, Any]) -> GroupFinding:
-    """Lists are the tuples that they were."""
+    """Lists are the tuples that they were; moments are in UTC."""
     own: dict[str, Any] = {name: tuple(value) if isinstance(value, list) else value for name, value in entry.items()}
     own["rivals"] = tuple(Rival(**rival | {"sensors": tuple(rival["sensors"])}) for rival in entry["rivals"])
     own["sessions"] = tuple(
-        SessionAmplitude(s["started_at"], s["unit"], tuple(s["amplitude"]), tuple(s["sigma"]))
+        SessionAmplitude(in_utc(s["started_at"]), s["unit"], tuple(s["amplitude"]), tuple(s["sigma"]))
         for s in entry["sessions"]
     )
-    return GroupFinding(**own)
+    return GroupFinding(**own | {"since": in_utc(entry["since"])})
 
 
 def _term(entry: dict[str, Any]) -> EmpiricalTerm:

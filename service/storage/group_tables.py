@@ -5,7 +5,7 @@ A group is a unit, a unit type or a stand: ``level`` says which, ``group_id`` is
 
 from datetime import datetime
 
-from sqlalchemy import ForeignKey, Index, String
+from sqlalchemy import ForeignKey, Index, String, Text
 from sqlalchemy.orm import Mapped, mapped_column
 
 from service.storage.tables import Base
@@ -56,6 +56,8 @@ class AskedRow:
     asked_at: Mapped[datetime]
     claimed_until: Mapped[datetime | None]
     attempts: Mapped[int]
+    failed: Mapped[str | None] = mapped_column(Text)
+    """Why the last try failed; NULL where none did."""
 
 
 class PendingGroupRow(AskedRow, Base):

@@ -12,8 +12,11 @@ from estimator.health.pooled import Evidence
 SHAPE = (len(WALKS), len(PARTS))
 """Of the log evidence of one history."""
 LAWS = len(FREEDOMS)
-MARK = np.full(1, np.nan, dtype="<f4")
-"""Rows without it were written before they told of tails."""
+MARK = np.full(1, np.inf, dtype="<f4")
+"""Rows without it were written before aging that comes to an end was told from aging that goes on; those behind a NaN
+tell of tails too, older ones do not."""
+EARLIER = SHAPE[1] - 2
+"""Parts of the log evidence of those."""
 
 
 def packed(histories: Sequence[Evidence]) -> bytes:
@@ -25,10 +28,14 @@ def packed(histories: Sequence[Evidence]) -> bytes:
 def unpacked(content: bytes) -> tuple[Evidence, ...]:
     """The histories that were written."""
     numbers = np.frombuffer(content, dtype="<f4").astype(float)
-    laws = LAWS if np.isnan(numbers[:1]).any() else 0
-    rows = numbers[1 if laws else 0 :].reshape(-1, 1 + laws + SHAPE[0] * SHAPE[1])
+    is_marked = not np.isfinite(numbers[:1]).all()
+    parts = SHAPE[1] if np.isinf(numbers[:1]).any() else EARLIER
+    laws = LAWS if is_marked else 0
+    rows = numbers[is_marked:].reshape(-1, 1 + laws + SHAPE[0] * parts)
     tails = rows[:, 1 : 1 + laws] if laws else np.zeros((len(rows), LAWS))
-    evidence = rows[:, 1 + laws :].reshape(-1, *SHAPE)
+    evidence = rows[:, 1 + laws :].reshape(-1, SHAPE[0], parts)
+    if parts == EARLIER:  # of which end was open: as likely by one as by the other
+        evidence = np.concatenate([evidence, evidence[..., -2:]], axis=2)
     return tuple(
         Evidence(float(row[0]), *own) for row, own in zip(rows, zip(evidence, tails, strict=True), strict=True)
     )

@@ -6,7 +6,7 @@ from typing import Any
 from sqlalchemy import JSON, Index, String, false
 from sqlalchemy.orm import Mapped, mapped_column
 
-from service.storage.columns import BYTES, IS_AT_WORK, only_where
+from service.storage.columns import BYTES, IS_AT_WORK, IS_FAILED, only_where
 from service.storage.tables import Base
 
 
@@ -14,7 +14,10 @@ class JobRow(Base):
     """One job: what it is, how far it has come, who is at it, and what it made."""
 
     __tablename__ = "jobs"
-    __table_args__ = (Index("ix_jobs_open", "turn_at", "id", **only_where(IS_AT_WORK)),)
+    __table_args__ = (
+        Index("ix_jobs_open", "turn_at", "id", **only_where(IS_AT_WORK)),
+        Index("ix_jobs_failed", "state", **only_where(IS_FAILED)),
+    )
     id: Mapped[int] = mapped_column(primary_key=True)
     kind: Mapped[str] = mapped_column(String(20))
     scope: Mapped[str] = mapped_column(String(20))

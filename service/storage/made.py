@@ -5,7 +5,7 @@ from pathlib import Path
 from service.errors import NotFoundError
 from service.storage.faults import disk_faults
 from service.storage.files import Files, content_hash
-from service.storage.folders import make_folder, sync_folder
+from service.storage.folders import make_folder, named_in, sync_folder
 from service.storage.parts import written_whole
 
 FOLDER = "made"
@@ -41,4 +41,4 @@ def drop_made(files: Files, id: int) -> None:
 
 
 def _path(files: Files, id: int) -> Path:
-    return files.folder / FOLDER / str(id)
+    return named_in(files.folder / FOLDER, str(id))

@@ -3,7 +3,7 @@
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import JSON, ForeignKey, Index, String
+from sqlalchemy import JSON, ForeignKey, Index, String, Text
 from sqlalchemy.orm import Mapped, mapped_column
 
 from service.storage.columns import IS_WAITING, only_where
@@ -22,5 +22,7 @@ class RecomputationRow(Base):
     claimed_until: Mapped[datetime | None]
     attempts: Mapped[int]
     """Claims that ended without a word: the process died."""
+    failed: Mapped[str | None] = mapped_column(Text)
+    """Why the last try failed; NULL where none did."""
     done_at: Mapped[datetime | None]
     outcome: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))

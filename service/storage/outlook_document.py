@@ -6,6 +6,8 @@ from typing import Any
 
 from service.records.outlook import (
     Action,
+    DueBasis,
+    DueRule,
     FanPoint,
     FoundChange,
     ParameterTrend,
@@ -40,7 +42,15 @@ def outlook_from_dicts(document: dict[str, Any], drawn: dict[str, Any] | None = 
     own["trends"] = tuple(_trend(entry, fan) for entry, fan in zip(document["trends"], fans, strict=True))
     own["risk"] = tuple(RiskPoint(_at(point), point["risk"]) for point in (drawn or {}).get("risk", ()))
     own |= {"together": tuple(document["together"]), "action": Action(document["action"])}
+    own["basis"] = _basis(document.get("basis"))
     return UnitOutlook(**own)
+
+
+def _basis(entry: dict[str, Any] | None) -> DueBasis | None:
+    """None of a document that an earlier version wrote."""
+    if entry is None:
+        return None
+    return DueBasis(**{**entry, "rule": DueRule(entry["rule"]), "at": _time(entry["at"])})
 
 
 def _trend(entry: dict[str, Any], fan: list[dict[str, Any]]) -> ParameterTrend:

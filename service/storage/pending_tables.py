@@ -1,8 +1,8 @@
-"""The table of the diagnoses that are still to be made; a line goes when its diagnosis is stored."""
+"""The tables of what is still to be made, and of why that failed; a line goes when it is made."""
 
 from datetime import UTC, datetime
 
-from sqlalchemy import ForeignKey, String
+from sqlalchemy import ForeignKey, String, Text
 from sqlalchemy.orm import Mapped, mapped_column
 
 from service.storage.tables import Base
@@ -25,6 +25,8 @@ class PendingRow(Base):
     claimed_until: Mapped[datetime | None]
     attempts: Mapped[int]
     """Claims that ended without a word: the process died."""
+    failed: Mapped[str | None] = mapped_column(Text)
+    """Why the last try failed; NULL where none did."""
 
 
 class PendingOutlookRow(Base):
@@ -39,3 +41,13 @@ class PendingOutlookRow(Base):
     """`NEVER` where no process outlived it: then it waits for the unit's history to change, or for another start."""
     attempts: Mapped[int]
     """Claims that ended without a word: the process died."""
+    failed: Mapped[str | None] = mapped_column(Text)
+    """Why the last try failed; NULL where none did."""
+
+
+class FailedDerivationRow(Base):
+    """A unit whose sessions could not be judged again after its records changed, and why."""
+
+    __tablename__ = "failed_derivations"
+    unit_id: Mapped[int] = mapped_column(ForeignKey("units.id"), primary_key=True, autoincrement=False)
+    failed: Mapped[str] = mapped_column(Text)

@@ -4,11 +4,12 @@ import json
 import zlib
 
 from estimator.groups import SessionStatistics
+from service.storage.json_text import json_text
 
 
 def packed(record: SessionStatistics) -> bytes:
     """What `unpacked` reads."""
-    return zlib.compress(json.dumps(record.to_dict(), separators=(",", ":")).encode())
+    return zlib.compress(json_text(record.to_dict(), finite=False).encode())
 
 
 def unpacked(content: bytes) -> SessionStatistics:

@@ -14,6 +14,7 @@ from service.storage.queries.calibrations import Calibrations
 from service.storage.queries.certificates import Certificates
 from service.storage.queries.derivations import Derivations
 from service.storage.queries.diagnoses import Diagnoses
+from service.storage.queries.failures import Failures
 from service.storage.queries.flags import Flags
 from service.storage.queries.fleet import Fleet
 from service.storage.queries.fleet_rows import FleetRows
@@ -110,6 +111,11 @@ class Store:
     def pending(self) -> PendingDiagnoses:
         """Diagnoses that are still to be made."""
         return PendingDiagnoses(self._session)
+
+    @cached_property
+    def failures(self) -> Failures:
+        """Work beside the requests that has failed."""
+        return Failures(self._session)
 
     @cached_property
     def pending_outlooks(self) -> PendingOutlooks:

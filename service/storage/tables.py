@@ -30,7 +30,7 @@ from typing import Any
 from sqlalchemy import JSON, ForeignKey, Index, LargeBinary, MetaData, String, UniqueConstraint, false
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
-from service.storage.columns import BYTES, IS_OPEN, IS_QUESTIONED, IS_WAITING, UtcDateTime, only_where
+from service.storage.columns import BYTES, IS_FAILED, IS_OPEN, IS_QUESTIONED, IS_WAITING, UtcDateTime, only_where
 
 
 class Base(DeclarativeBase):
@@ -131,6 +131,7 @@ class SessionRow(Base):
     state: Mapped[str] = mapped_column(String(20), default="accepted")
     superseded_by: Mapped[str | None] = mapped_column(String(20))
     content_digest: Mapped[str | None] = mapped_column(String(64), index=True)
+    readings_digest: Mapped[str | None] = mapped_column(String(64), index=True)
     basis: Mapped[str | None] = mapped_column(String(160), index=True)
     tells: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
     temperature: Mapped[float | None]
@@ -224,6 +225,7 @@ class DiagnosisRow(Base):
     """What the simulation gets wrong about a session: imu-diagnosis/1, deflated, or why there is none."""
 
     __tablename__ = "diagnoses"
+    __table_args__ = (Index("ix_diagnoses_failed", "state", **only_where(IS_FAILED)),)
     session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), primary_key=True)
     model_revision: Mapped[int]
     state: Mapped[str] = mapped_column(String(20))
@@ -350,6 +352,7 @@ class DeliveryRow(Base):
     __table_args__ = (
         UniqueConstraint("webhook_id", "notice_id"),
         Index("ix_deliveries_next_at", "next_at", **only_where(IS_WAITING)),
+        Index("ix_deliveries_failed", "state", **only_where(IS_FAILED)),
     )
     id: Mapped[int] = mapped_column(primary_key=True)
     notice_id: Mapped[int] = mapped_column(ForeignKey("notices.id"))

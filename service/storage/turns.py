@@ -14,16 +14,18 @@ class Turns:
 
     def __init__(self, patience: float) -> None:
         self._patience = patience
-        """Seconds after which one that waits gives up."""
-        self._own, self._line = Lock(), deque[Lock]()
+        """Seconds without anybody's turn ending after which one that waits gives up: a long line is no fault."""
+        self._own, self._line, self._ended = Lock(), deque[Lock](), 0
 
     @contextmanager
     def taken(self) -> Iterator[None]:
-        """A turn; AwayError where those before take too long."""
-        place = self._come()
+        """A turn; AwayError where whoever has it takes too long."""
+        place, ended = self._come(), self._ended
         try:
-            if not place.acquire(timeout=self._patience):
-                raise AwayError(AWAY)
+            while not place.acquire(timeout=self._patience):
+                if self._ended == ended:
+                    raise AwayError(AWAY)
+                ended = self._ended
             yield
         finally:
             self._leave(place)
@@ -42,6 +44,7 @@ class Turns:
         with self._own:
             was_first = self._line[0] is place
             self._line.remove(place)
+            self._ended += was_first
             if was_first and self._line:
                 self._line[0].release()
 

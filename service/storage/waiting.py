@@ -10,7 +10,7 @@ from service.records.job import Sent
 from service.records.received import Content, Landed
 from service.storage.faults import disk_faults
 from service.storage.files import Files, file_hash
-from service.storage.folders import make_folder, sync_folder
+from service.storage.folders import is_name, make_folder, named_in, sync_folder
 from service.storage.parts import named_durably, written_whole
 
 FOLDER = "waiting"
@@ -51,7 +51,9 @@ def whole_file(files: Files, digest: str, places: Sequence[str]) -> Path:
 
 
 def drop_waiting(files: Files, sent: Sent) -> None:
-    """Removes what is left of it."""
+    """Removes what is left of it; nothing of ours lies under another kind of name."""
+    if not is_name(sent.place):
+        return
     with disk_faults():
         _path(files, sent.place).unlink(missing_ok=True)
 
@@ -65,4 +67,4 @@ def drop_unasked(files: Files, known: frozenset[str], now: datetime) -> None:
 
 
 def _path(files: Files, place: str) -> Path:
-    return files.folder / FOLDER / place
+    return named_in(files.folder / FOLDER, place)

@@ -88,7 +88,7 @@ def _spread(
     before: Calibration, after: Calibration, then: SensorCalibration, now: SensorCalibration, parameter: str
 ) -> float | None:
     if parameter == "axis":
-        return _axis_spread(before, after, now.name)
+        return _axis_spread(_axis_repeatability(before, then), _axis_repeatability(after, now))
     one: Estimate | None = getattr(then, parameter)
     other: Estimate | None = getattr(now, parameter)
     if one is None or other is None or one.repeatability is None or other.repeatability is None:
@@ -97,18 +97,18 @@ def _spread(
     return float(np.hypot(one.repeatability, other.repeatability)) / size if size else None
 
 
-def _axis_spread(before: Calibration, after: Calibration, sensor: str) -> float | None:
-    """Along the direction in which the axis is known least, rad."""
-    parts = [_axis_repeatability(calibration, sensor) for calibration in (before, after)]
-    if any(part is None or not np.isfinite(part).all() for part in parts):
+def _axis_spread(before: Array | None, after: Array | None) -> float | None:
+    """Along the direction in which the change of the axis is known least, rad; of both covariances (3, 3), rad²."""
+    if before is None or after is None:
         return None
-    return float(np.sqrt(np.linalg.eigvalsh(sum(part for part in parts if part is not None))[-1]))
+    return float(np.sqrt(np.linalg.eigvalsh(before + after)[-1]))
 
 
-def _axis_repeatability(calibration: Calibration, sensor: str) -> Array | None:
-    """(2, 2) along the axis' tangents, rad²; None where the session does not tell it."""
-    names = [f"{sensor}.axis_1", f"{sensor}.axis_2"]
+def _axis_repeatability(calibration: Calibration, sensor: SensorCalibration) -> Array | None:
+    """(3, 3) in block axes, rad²: each session has tangents of its own. None where it does not tell it."""
+    names = [f"{sensor.name}.axis_1", f"{sensor.name}.axis_2"]
     if not set(names) <= set(calibration.names):
         return None
     places = [calibration.names.index(name) for name in names]
-    return calibration.repeatability[np.ix_(places, places)]
+    own = sensor.axis_tangents @ calibration.repeatability[np.ix_(places, places)] @ sensor.axis_tangents.T
+    return np.asarray(own) if np.isfinite(own).all() else None

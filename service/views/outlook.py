@@ -12,6 +12,7 @@ from service.errors import NotFoundError
 from service.records.fleet import Population
 from service.records.outlook import ParameterTrend, UnitOutlook
 from service.storage.store import Store
+from service.words.failed import unit_failed
 
 
 def outlook_of(store: Store, serial: str, now: datetime) -> UnitOutlook:
@@ -20,8 +21,9 @@ def outlook_of(store: Store, serial: str, now: datetime) -> UnitOutlook:
     if own is None:
         if not store.units.exists(serial):
             raise NotFoundError(f"There is no unit {serial!r}.")
-        return nothing_known(serial)
-    return compared(own, store.populations.of_type(own.unit_type), now)
+        own = nothing_known(serial)
+    why = store.pending_outlooks.failed(serial)
+    return replace(compared(own, store.populations.of_type(own.unit_type), now), failed=unit_failed(why) if why else "")
 
 
 def dated(outlook: UnitOutlook | None, now: datetime) -> UnitOutlook | None:

@@ -7,7 +7,7 @@ from service.storage.store import Store
 
 def session_report(store: Store, id: str) -> SessionReport:
     """The session, its calibration and its decisions."""
-    session, diagnosis, calibration = store.calibrations.with_session(id)
+    session, diagnosis, failed, calibration = store.calibrations.with_session(id)
     decisions, motions = store.sessions.judged(id)
     states = store.states.of(RecordKind.SESSION, id)
-    return SessionReport(session, calibration, decisions, motions, states, diagnosis)
+    return SessionReport(session, calibration, decisions, motions, states, diagnosis, failed)

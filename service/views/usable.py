@@ -18,6 +18,7 @@ from service.storage.store import Store
 from service.views.traceability import traceability_of
 from service.views.unit_report import unit_report
 from service.words import usable as words
+from service.words.failed import session_failed, unit_failed
 from service.words.names import day_of
 
 FIT = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
@@ -40,7 +41,7 @@ def usable(store: Store, serial: str, now: datetime) -> Usable:
     told = session or reference
     coarse = () if reference is None else _left_uncertain(store, report, reference)
     against = (*coarse, *_against(report, told, flags, now))
-    undated = (_undated(report),) if report.summary.is_undated else ()
+    undated = (_undated(report),) if report.summary.is_undated or report.summary.failed else ()
     return Usable(
         usable=not against,
         why=against[0] if against else _yes(report, session, _at(told)),
@@ -109,13 +110,13 @@ def _against(
     yield from (words.flagged(flag) for flag in flags if flag.matter in FORBIDDING)
     due = report.summary.due
     if due is not None and due < now:
-        yield words.OVERDUE.format(due=day_of(due))
+        yield words.OVERDUE.format(due=day_of(due), reason=report.summary.due_reason)
     elif due is None and session is not None and (session.is_reference or session.verdict in FIT):
-        yield _undated(report) if report.summary.is_undated else words.NO_DUE
+        yield _undated(report) if report.summary.is_undated or report.summary.failed else words.NO_DUE
 
 
 def _undated(report: UnitReport) -> str:
-    return words.DATES_FAILED if report.summary.is_given_up else words.DATES_PENDING
+    return unit_failed(report.summary.failed) if report.summary.failed else words.DATES_PENDING
 
 
 def _nothing_judged(report: UnitReport, now: datetime) -> str:
@@ -144,7 +145,8 @@ def _reservations(store: Store, session: StoredSession | None, flags: tuple[Flag
         if chain.has_expired:
             yield chain.text
         if session.reservations is None:
-            yield words.on(words.NOT_DIAGNOSED, session.started_at)
+            failed = store.pending.failed(session.id)
+            yield session_failed(failed) if failed else words.on(words.NOT_DIAGNOSED, session.started_at)
         yield from (words.reserved(one) for one in session.reservations or ())
     yield from (words.flagged(flag) for flag in flags if flag.matter not in (*FORBIDDING, Matter.OVERDUE))
 

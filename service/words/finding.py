@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import datetime
 from math import floor, isfinite, log10
 
 from estimator.causes import find
 from estimator.causes.noise import ExcessNoise
 from estimator.diagnosis import Finding
 from estimator.diagnosis.results import OverSessions, ParitySplit
+from estimator.moments import moment
 from service.measures import HARD, number
 from service.records.model import ModelRevision
 from service.words.amplitudes import amplitudes_of, shape_of
@@ -116,7 +116,9 @@ def evidence_together(strength: float, over: OverSessions) -> str:
 def since_together(over: OverSessions) -> str:
     """Whether earlier sessions had it."""
     if over.since is not None:
-        return f"It began on {day_of(datetime.fromisoformat(over.since))}."
+        return f"It began on {day_of(moment(over.since))}."
+    if over.form == "since":
+        return "It began in one of the earlier sessions."
     if over.form == "varying":
         return "It was there in the earlier sessions too, but different every time."
     return _since(False)

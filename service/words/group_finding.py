@@ -3,10 +3,10 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from datetime import datetime
 
 from estimator.groups import GroupFinding
 from estimator.groups.results import PoolLimit, Rival, SessionAmplitude
+from estimator.moments import moment
 from estimator.session import ACCELEROMETER
 from service.records.group import GroupAnswer, GroupShown
 from service.records.model import SCOPES, ModelRevision
@@ -25,7 +25,7 @@ FORMS = {
 MOMENT = re.compile(r"\d{4}-\d\d-\d\dT[\d:.]+(?:Z|[+-]\d\d:\d\d)?")
 """A moment as files state it, ISO 8601."""
 BLIND = "–"
-"""In place of a size that no number of such sessions shows."""
+"""In place of a size that no number of such sessions shows, and of a date that is not known."""
 
 
 RULE_OUT = "These sessions do not rule the others out. Take the measurement that would, before you act on one of them."
@@ -102,7 +102,6 @@ def group_view(answer: GroupAnswer, shown: GroupShown, accepted: Sequence[ModelR
 
 
 def _effect(finding: GroupFinding, accepted: Sequence[ModelRevision]) -> LastingEffect:
-    since = FORMS.get(finding.form) or f"since {day_in_words(finding.since or '')}"
     scope = SCOPES[finding.level]
     return LastingEffect(
         cause=finding.cause,
@@ -111,7 +110,7 @@ def _effect(finding: GroupFinding, accepted: Sequence[ModelRevision]) -> Lasting
         accepted=tuple(r.id for r in accepted if holds(r, finding)),
         statement=statement(finding),
         amplitudes=tuple(amplitudes_of(finding)),
-        since=since,
+        since=since_in_words(finding.form, finding.since),
         evidence=f"{standard_errors(finding.strength)} over all of them",
         advice=RULE_OUT if finding.alternatives else finding.advice,
         choices=tuple(map(_choice, finding.rivals)),
@@ -136,7 +135,8 @@ def _choice(rival: Rival) -> Choice:
 
 def _row(finding: GroupFinding, one: SessionAmplitude) -> ForestRow:
     own = replace(finding, amplitude=one.amplitude, sigma=one.sigma)
-    return ForestRow(day_in_words(one.started_at), one.unit, "; ".join(amplitudes_of(own)) or BLIND)
+    day = BLIND if one.started_at is None else day_in_words(one.started_at)
+    return ForestRow(day, one.unit, "; ".join(amplitudes_of(own)) or BLIND)
 
 
 def _limit(limit: PoolLimit) -> tuple[str, str, str]:
@@ -149,6 +149,11 @@ def with_days(note: str) -> str:
     return MOMENT.sub(lambda found: day_in_words(found.group()), note)
 
 
+def since_in_words(form: str, since: str | None) -> str:
+    """In which of the sessions an effect is."""
+    return FORMS.get(form) or ("since one of these sessions" if since is None else f"since {day_in_words(since)}")
+
+
 def day_in_words(started_at: str) -> str:
     """``3 May 2026`` of what a file states."""
-    return day_of(datetime.fromisoformat(started_at))
+    return day_of(moment(started_at))

@@ -7,6 +7,7 @@ from math import floor, log10
 from service.measures import COVERAGE, HARD, THIN, deviation_measure, in_words, signed
 from service.records.outlook import Action, ParameterTrend, UnitOutlook
 from service.words.changes import changes_of, place_of
+from service.words.due import foreseen
 from service.words.names import day_of
 
 FAR = 5.0
@@ -32,6 +33,9 @@ class NextCalibration:
     tone: str
     headline: str
     reason: str
+    """The rule that set the date."""
+    foreseen: str
+    """Which parameter reaches its tolerance first; empty where nothing tells."""
     moving: tuple[str, ...]
     """Which parameters drift or changed suddenly."""
     together: tuple[str, ...]
@@ -45,6 +49,7 @@ def next_calibration(outlook: UnitOutlook, now: datetime) -> NextCalibration:
         tone="fail" if outlook.overdue else TONES.get(outlook.action, "reference"),
         headline=_headline(outlook),
         reason=outlook.reason,
+        foreseen=foreseen(outlook),
         moving=_moving(outlook.trends),
         together=outlook.together,
         waits=_waits(outlook, now),

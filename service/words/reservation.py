@@ -5,10 +5,11 @@ from collections.abc import Sequence
 from estimator.causes import find
 from estimator.diagnosis import Finding
 from estimator.diagnosis.results import Structure
-from service.measures import COVERAGE, THIN, deviation_measure, in_measure, measured, number
+from service.measures import COVERAGE, HARD, THIN, deviation_measure, in_measure, measured, number
 from service.records.decision import Verdict
 from service.words.causes import cause_on, choice_of
 from service.words.conditions import condition_of
+from service.words.names import PARAMETER_NAMES
 from service.words.structures import MIXED_UP, UNEXPLAINED
 
 REPEAT = "repeat the session"
@@ -74,6 +75,38 @@ def size_in_words(kind: str, parameter: str, size: tuple[float, float | None], t
     if sigma is None:
         return f"about {number(float(f'{value * measure.factor:.2g}'))}{THIN}{measure.label}, {allowed}"
     return f"{measured(value, COVERAGE * sigma, measure)}, {allowed}"
+
+
+def elsewhere(outside: float, now: float, covered: tuple[float, float], worth: str) -> str:
+    """``it was measured at 35 °C, 13 °C above its reference and earlier sessions (19–22 °C)``, and what that means."""
+    here, by, at = _degrees(now), _degrees(abs(outside)), _between(*covered)
+    if outside > 0:
+        away = f"it was measured at {here}, {by} above its reference and earlier sessions ({at})"
+    else:
+        away = f"it was measured at {here}, {by} below its reference and earlier sessions ({at})"
+    if worth:
+        return f"{away}, and the temperature alone may be worth {worth}"
+    return f"{away}, and the temperature alone can make or hide a change"
+
+
+def worth_in(parameter: str, sensor: str, size: str) -> str:
+    """``A2 bias: 80 ± 10 µg, tolerance 50 µg``."""
+    return f"{sensor} {PARAMETER_NAMES[parameter]}: {size}"
+
+
+def _between(lowest: float, highest: float) -> str:
+    """``19–22 °C``."""
+    low, high = number(lowest, 0), number(highest, 0)
+    return _degrees(lowest) if low == high else f"{low}–{_degrees(highest)}"
+
+
+def at_about(celsius: float) -> str:
+    """Where to measure again."""
+    return f"measure again at about {_degrees(celsius)}, or calibrate over temperature"
+
+
+def _degrees(celsius: float) -> str:
+    return f"{number(celsius, 0)}{HARD}°C"
 
 
 def within(sentence: str) -> str:

@@ -20,17 +20,13 @@ NOTHING_JUDGED = "None of its sessions counts as a calibration: calibrate the un
 SINCE_SERVICE = "Nothing was measured since the service of {day}: calibrate the unit, which sets its new reference."
 NOT_FIT = "Not fit by its session of {day}: {reason}"
 UNDECIDED = "Not decided by its session of {day}: {reason}"
-OVERDUE = "Its calibration was due on {due}: calibrate it."
+OVERDUE = "Its calibration was due on {due}: calibrate it. {reason}"
 NO_DUE = "It is not known when its calibration is due: calibrate it."
 FUTURE = "Its session is dated {day}, which is still to come: put the date right."
 FLAGGED = "Flag {id} is open: {summary}"
 CLOSE = "Within tolerance, but by less than the uncertainty of the measurement: {reason}"
 WAITS = "The session of {day} waits for an engineer and does not count yet: accept it, correct it or withdraw it."
 DATES_PENDING = "Its dates are being worked out with its latest records: ask again in some seconds."
-DATES_FAILED = (
-    "The program failed at its dates, several times: a fault of the program. Its next session, or another start of the "
-    "service, tries again."
-)
 NOT_DIAGNOSED = "The session of {day} is not diagnosed yet: ask again in a minute."
 
 

@@ -4,7 +4,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from threading import Condition, Thread
+from threading import Condition, Event, Thread
+
+from tests.patience import LONG
 
 
 @dataclass(frozen=True)
@@ -23,6 +25,8 @@ class Receiver:
     host: str
     statuses: list[int] = field(default_factory=list)
     messages: list[Message] = field(default_factory=list)
+    held: Event | None = None
+    """Until it is set nothing is answered."""
     _came: Condition = field(default_factory=Condition)
 
     @property
@@ -30,10 +34,10 @@ class Receiver:
         """Where it listens."""
         return f"http://{self.host}/hook"
 
-    def wait_for(self, count: int, seconds: float = 30.0) -> list[Message]:
+    def wait_for(self, count: int) -> list[Message]:
         """What it got, once that is so much."""
         with self._came:
-            enough = self._came.wait_for(lambda: len(self.messages) >= count, seconds)
+            enough = self._came.wait_for(lambda: len(self.messages) >= count, LONG)
         assert enough, f"{len(self.messages)} of {count} messages came"
         return self.messages
 
@@ -52,6 +56,8 @@ def receiver() -> Iterator[Receiver]:
         def do_POST(self) -> None:
             body = self.rfile.read(int(self.headers["Content-Length"]))
             found.keep(Message(self.path, dict(self.headers), body))
+            if found.held is not None:
+                found.held.wait(60.0)
             status = found.statuses.pop(0) if found.statuses else 204
             self.send_response(status)
             if 300 <= status < 400:

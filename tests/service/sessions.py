@@ -4,6 +4,7 @@ import json
 from dataclasses import replace
 from hashlib import sha256
 from typing import Any
+from zlib import crc32
 
 from tests.builders import accelerometer_block, true_sensors
 
@@ -13,10 +14,12 @@ MICRO_G = 9.80665e-6
 def session_bytes(
     *, seed: int = 1, unit: str = "BA-017", month: int = 3, a3_moved: float = 0.0, m: int = 6, **changes: Any
 ) -> bytes:
-    """A session of 2026; ``a3_moved`` is the change of A3's bias in µg; ``changes`` replace fields of the file."""
+    """A session of 2026, each unit with noise of its own; ``a3_moved`` is the change of A3's bias in µg; ``changes``
+    replace fields of the file."""
     sensors = true_sensors(m, bias=1e-3, quadratic=1e-6, tilt=1e-4)
     sensors[2] = replace(sensors[2], bias=sensors[2].bias + a3_moved * MICRO_G)
-    document = accelerometer_block(m, seed=seed, unit=unit, sensors=sensors, positions=24)
+    noise = seed if unit == "BA-017" else seed + 1000 * crc32(unit.encode())
+    document = accelerometer_block(m, seed=noise, unit=unit, sensors=sensors, positions=24)
     return json.dumps(document | {"started_at": f"2026-{month:02d}-01T09:00:00Z"} | changes).encode()
 
 

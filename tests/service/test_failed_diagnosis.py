@@ -19,8 +19,8 @@ from service.app import create_app
 from service.background import read_diagnosis
 from service.background.bell import Bell
 from service.background.diagnose_waiting import CLAIM, MOST_ATTEMPTS, Diagnosing, diagnose_next
-from service.background.guard import AT_FAULT
 from service.background.helper import Helper
+from service.flows.guard import AT_FAULT
 from service.metrics import Metrics
 from service.records.diagnosis import DiagnosisState
 from service.records.pending import Claim
@@ -151,6 +151,7 @@ def test_what_the_program_fails_at_is_tried_some_times_beside_the_requests(
     assert reasons == [AT_FAULT] * MOST_ATTEMPTS
 
 
+@pytest.mark.usefixtures("patient_readers")
 def test_one_failure_does_not_keep_the_next_from_its_diagnosis(spoilt: Storage, settings: Settings) -> None:
     with http_client(create_app(settings.model_copy(update={"diagnosis_workers": 1}))) as client:
         for content in (LATER, REFERENCE):

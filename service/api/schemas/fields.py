@@ -9,7 +9,7 @@ from fastapi import Depends, Path, Query
 from pydantic import AfterValidator, BeforeValidator, StringConstraints
 
 from service.records.decision import Verdict
-from service.records.instants import EPOCH, MILLISECOND
+from service.records.instants import EARLIEST, EPOCH, LATEST, MILLISECOND, aware, in_utc
 
 TEXT = r"^[^\x00]*$"
 """PostgreSQL keeps any character but NUL."""
@@ -18,18 +18,6 @@ FEWEST_MS = 100_000_000_000
 """In milliseconds a day of March 1973, long before anything was measured; in seconds the year 5138."""
 MOST_MS = 7_258_118_400_000
 """The start of 2200, after which nothing is kept."""
-EARLIEST, LATEST = datetime(1900, 1, 1, tzinfo=UTC), datetime(2200, 1, 1, tzinfo=UTC)
-
-
-def _aware(moment: datetime) -> datetime:
-    return moment if moment.tzinfo else moment.replace(tzinfo=UTC)
-
-
-def _in_utc(moment: datetime) -> datetime:
-    aware = _aware(moment)
-    if not EARLIEST <= aware < LATEST:
-        raise ValueError("must lie between 1900 and 2200")
-    return aware.astimezone(UTC)
 
 
 def _counted(given: object) -> object:
@@ -44,7 +32,7 @@ def _counted(given: object) -> object:
 
 def _bounded(moment: datetime) -> datetime:
     """Nothing is kept from before 1900 or after 2200: a bound beyond asks for the same."""
-    return min(max(_aware(moment), EARLIEST), LATEST).astimezone(UTC)
+    return min(max(aware(moment), EARLIEST), LATEST).astimezone(UTC)
 
 
 def _written(given: object) -> object:
@@ -60,7 +48,7 @@ def _day_written(given: object) -> object:
     return given
 
 
-Moment = Annotated[datetime, BeforeValidator(_written), AfterValidator(_in_utc)]
+Moment = Annotated[datetime, BeforeValidator(_written), AfterValidator(in_utc)]
 """A time; without a zone it is UTC."""
 Bound = Annotated[datetime, BeforeValidator(_counted), AfterValidator(_bounded)]
 """A time that a list begins or ends at; without a zone it is UTC. Also as milliseconds since 1970."""

@@ -10,6 +10,7 @@ from estimator.errors import Problem
 from service.api.schemas.fields import Text
 from service.api.schemas.problem import Fault
 from service.records.arrival import under_way
+from service.records.failure import FailedKind
 from service.records.job import Job, JobKind, JobState
 from service.records.model import Scope
 
@@ -21,6 +22,28 @@ class NewRecalibration(BaseModel):
     scope: Scope | None = Field(None, description="One unit, one unit type or one stand; none for the whole fleet.")
     subject: Text = Field("", description="Its serial number or name; empty for the whole fleet.")
     by: Text = Field("", description="Who asks, where nobody signs in.")
+
+
+class FailedWorkSchema(BaseModel):
+    """One piece of work beside the requests that has failed."""
+
+    model_config = ConfigDict(from_attributes=True)
+    kind: FailedKind = Field(description="What is done.")
+    of: str = Field(description="Session, unit, group, job or address.")
+    why: str = Field(description="Why it failed, in short; the log says more.")
+
+
+class FailedWorkPage(BaseModel):
+    """Work beside the requests that has failed."""
+
+    counts: dict[FailedKind, int] = Field(description="How much of each kind; kinds without any are left out.")
+    failed: list[FailedWorkSchema] = Field(description="By kind and name.")
+
+
+class RetriedSchema(BaseModel):
+    """What is tried again."""
+
+    retried: int = Field(description="How many pieces of work.")
 
 
 class NewReport(BaseModel):

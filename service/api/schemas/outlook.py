@@ -5,7 +5,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from service.records.outlook import Action
+from service.records.outlook import Action, DueRule
 
 
 class FoundChangeSchema(BaseModel):
@@ -69,6 +69,19 @@ class RiskPointSchema(BaseModel):
     risk: float = Field(description="Chance that any parameter has reached its tolerance by then.")
 
 
+class DueBasisSchema(BaseModel):
+    """The rule that set the date, with its parts."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    rule: DueRule = Field(description="The rule that decided.")
+    at: datetime | None = Field(description="Of the session or the service that it starts from.")
+    interval_days: float | None = Field(description="Longest interval, where the rule is one.")
+    risk: float | None = Field(description="Chance of being out of tolerance at the date, where that set it.")
+    sensor: str | None = Field(description="The sensor that adds most to that chance.")
+    parameter: str | None = Field(description="Its parameter.")
+
+
 class OutlookSchema(BaseModel):
     """When a unit must be calibrated next, why, and what waiting costs."""
 
@@ -82,7 +95,13 @@ class OutlookSchema(BaseModel):
     )
     action: Action = Field(description="What the unit needs next.")
     overdue: bool = Field(description="Whether that has passed.")
-    reason: str = Field(description="Why then, in one sentence.")
+    reason: str = Field(description="Why then, in one sentence, made from `basis`.")
+    basis: DueBasisSchema | None = Field(
+        description="The rule that set the date; null in an outlook that an earlier version made, until it is renewed."
+    )
+    failed: str = Field(
+        description="That it could not be worked out with the latest records, why and who must act; empty where it was."
+    )
     sensor: str | None = Field(description="The sensor that reaches its tolerance first.")
     parameter: str | None = Field(description="Its parameter.")
     reach_50: datetime | None = Field(description="By then it is reached with 50 % probability.")

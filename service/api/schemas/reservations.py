@@ -21,10 +21,11 @@ class ReservationSchema(BaseModel):
 
     kind: Doubt = Field(
         description="`record`: the file is wrong. `not-checked`: no causes could be looked for. `pending`: they are "
-        "still being looked for; ask again. `cause`: a named cause takes more than a third of a tolerance. "
-        "`other-model`: the verdict is another under a model that the readings leave standing. "
-        "`unexplained`: so does structure that no known cause explains. `stated-errors`: the readings "
-        "contradict the standard errors of the file."
+        "still being looked for; ask again. `temperature`: it was measured far from the temperatures of the unit's "
+        "reference and earlier sessions, which can make or hide a change. `cause`: a named cause takes more than a "
+        "third of a tolerance. `other-model`: the verdict is another under a model that the readings leave standing. "
+        "`unexplained`: so does structure that no known cause explains. `stated-errors`: the readings contradict the "
+        "standard errors of the file."
     )
     text: str = Field(description="What is the matter, as a clause that stands after `but`.")
     advice: str = Field(description="What to do about it, as a clause.")

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from estimator.reading.bounds import WITHIN
 from estimator.reading.keys import SIGMA
 
 JsonSchema = dict[str, Any]
@@ -14,8 +15,9 @@ def _text(description: str) -> JsonSchema:
     return {"type": "string", "minLength": 1, "description": description}
 
 
-def _number(description: str, **bounds: float) -> JsonSchema:
-    return {"type": "number", "description": description} | bounds
+def _number(description: str, field: str) -> JsonSchema:
+    within = WITHIN[field]
+    return {"type": "number", "description": description, "minimum": within.low, "maximum": within.high}
 
 
 def _vector(description: str) -> JsonSchema:
@@ -38,9 +40,9 @@ SITE: JsonSchema = {
     "description": "Where it was measured.",
     "properties": _optional(
         {
-            "latitude_deg": _number("Geodetic latitude, degrees.", minimum=-90, maximum=90),
-            "height_m": _number("Height above the ellipsoid, m; 0 unless given.", minimum=-500, maximum=9000),
-            "gravity_m_s2": _number("Measured gravity, m/s², in place of the formula's.", minimum=9.7, maximum=9.9),
+            "latitude_deg": _number("Geodetic latitude, degrees.", "site.latitude_deg"),
+            "height_m": _number("Height above the ellipsoid, m; 0 unless given.", "site.height_m"),
+            "gravity_m_s2": _number("Measured gravity, m/s², in place of the formula's.", "site.gravity_m_s2"),
         }
     ),
 }
@@ -50,14 +52,20 @@ STAND: JsonSchema = {
     "properties": _optional(
         {
             "id": _text("Name or number of the stand."),
-            "alpha_deg": _number("Elevation of the head's axis above the horizon, degrees; for accelerometers."),
-            "chi_deg": _number("Its elevation above the plane orthogonal to the Earth's axis; for gyroscopes."),
+            "alpha_deg": _number(
+                "Elevation of the head's axis above the horizon, degrees; for accelerometers.", "stand.alpha_deg"
+            ),
+            "chi_deg": _number(
+                "Its elevation above the plane orthogonal to the Earth's axis; for gyroscopes.", "stand.chi_deg"
+            ),
             "sigma_arcsec": {
                 "type": "object",
                 "description": "One-sigma errors of the stand, arc seconds; 0 unless given.",
-                "properties": _optional({name: _number("One sigma, arc seconds.", minimum=0) for name in SIGMA}),
+                "properties": _optional(
+                    {name: _number("One sigma, arc seconds.", "stand.sigma_arcsec") for name in SIGMA}
+                ),
             },
-            "sigma_count_time_s": _number("One-sigma error of the count time, s.", minimum=0),
+            "sigma_count_time_s": _number("One-sigma error of the count time, s.", "stand.sigma_count_time_s"),
         }
     ),
 }
@@ -68,18 +76,18 @@ SENSOR: JsonSchema = {
         "name": _text("Name of the sensor and of its column."),
         "nominal_axis": _vector("Unit vector of the input axis, block axes."),
         "nominal_scale": _number(
-            "Reading units per m/s² or rad/s; of a pulse gyro pulses per rad.", exclusiveMinimum=0
+            "Reading units per m/s² or rad/s; of a pulse gyro pulses per rad.", "sensors[].nominal_scale"
         ),
         "reading_unit": _text("Unit of the readings, such as V, mA or count."),
     }
     | _optional(
         {
             "kind": {"enum": KINDS, "description": "Where it differs from `block`."},
-            "nominal_offset": _number("Reading at zero input, reading units."),
+            "nominal_offset": _number("Reading at zero input, reading units.", "sensors[].nominal_offset"),
             "bias_repeatability_m_s2": _number(
-                "One sigma of an accelerometer's zero from position to position.", minimum=0
+                "One sigma of an accelerometer's zero from position to position.", "sensors[].bias_repeatability_m_s2"
             ),
-            "bias_repeatability_rad_s": _number("The same of a gyroscope.", minimum=0),
+            "bias_repeatability_rad_s": _number("The same of a gyroscope.", "sensors[].bias_repeatability_rad_s"),
             "position_m": _vector("Where the sensor sits, m, block axes."),
         }
     ),
@@ -135,10 +143,10 @@ SESSION_FILE: JsonSchema = {
                 "type": "array", "items": _vector("A row."), "minItems": 3, "maxItems": 3,
                 "description": "Rotation from platform axes to block axes; identity unless given.",
             },
-            "count_time_s": _number("Readings of gyros are pulse counts over this time, s.", exclusiveMinimum=0),
+            "count_time_s": _number("Readings of gyros are pulse counts over this time, s.", "count_time_s"),
             "counter": {"enum": ["free-running", "reset"], "description": "How pulses are counted."},
-            "sample_rate_hz": _number("The rows are samples at this rate, Hz.", exclusiveMinimum=0),
-            "direction_sigma_deg": _number("One sigma of the stated directions, degrees.", exclusiveMinimum=0),
+            "sample_rate_hz": _number("The rows are samples at this rate, Hz.", "sample_rate_hz"),
+            "direction_sigma_deg": _number("One sigma of the stated directions, degrees.", "direction_sigma_deg"),
         }
     ),
 }  # fmt: skip

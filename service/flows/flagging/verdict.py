@@ -1,12 +1,11 @@
 """Step: what the decisions of a session tell of its unit's flags, and that its unit's verdict is another one now."""
 
-from collections.abc import Iterable
 from datetime import datetime
 
-from service.flows.flagging.settle import SERVICE, Occasion, resolve_as_done
+from service.flows.flagging.settle import SERVICE, Occasion
 from service.records.decision import Decision, Judged, Verdict, worst_of
 from service.records.derivation import Told
-from service.records.flag import Concern, Flag, Matter, NoticeKind
+from service.records.flag import Concern, Matter, NoticeKind
 from service.records.session import StoredSession
 from service.storage.queries.fleet import Refreshed
 from service.storage.store import Store
@@ -61,13 +60,3 @@ def _concern(sensor: str, failed: tuple[Decision, ...]) -> Concern:
     others = [d.parameter for d in failed if d is not worst_of(failed)]
     more = f" Also out of tolerance: {', '.join(others)}." if others else ""
     return Concern(Matter.TOLERANCE, sensor, severity, reason(failed) + more)
-
-
-def no_longer_overdue(store: Store, occasion: Occasion, latest: StoredSession, opened: Iterable[Flag]) -> None:
-    """The one matter that resolves itself: the calibration that was due has been done, and the next is not yet due."""
-    overdue = [flag for flag in opened if flag.matter is Matter.OVERDUE]
-    outlook = store.outlooks.of_unit(latest.unit) if overdue else None
-    if outlook is None or (outlook.due is not None and outlook.due < occasion.at):
-        return
-    for flag in overdue:
-        resolve_as_done(store, occasion, flag, f"Calibrated on {day_of(latest.started_at)}.")

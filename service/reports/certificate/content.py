@@ -1,7 +1,7 @@
 """What a certificate states, as one hash: another number is due when it changes, and only then."""
 
 import json
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from datetime import UTC, datetime
 from hashlib import sha256
 
@@ -15,9 +15,13 @@ UNISSUED = Issue("", "", 0, datetime(1970, 1, 1, tzinfo=UTC), "", None, "")
 
 
 def statement_of(found: CertifiedSession) -> Statement:
-    """What is about to be issued: the words of the paper, and every number in full that paper or XML rests on."""
+    """What is about to be issued: the words of the paper, and every number in full that paper or XML rests on.
+
+    When its records were received is no part of it: the same records state the same, in whatever order they came.
+    """
     session = found.report.session
-    words = certificate(found, UNISSUED)
+    report = replace(found.report, session=replace(session, uploaded_at=UNISSUED.issued_at))
+    words = certificate(replace(found, report=report), UNISSUED)
     parts = (
         json.dumps(asdict(words), sort_keys=True).encode(),
         found.calibration_json,

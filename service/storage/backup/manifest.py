@@ -12,9 +12,9 @@ import zipfile
 import zlib
 from datetime import datetime
 from pathlib import Path
-from typing import IO, Literal
+from typing import IO, Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError
 
 from service.errors import ServiceError
 
@@ -29,6 +29,9 @@ UNREADABLE = (
     RuntimeError,  # a member that claims to be encrypted, or packed in a way that a changed byte made up
 )
 """What reading a changed backup ends in."""
+
+
+Hash = Annotated[str, StringConstraints(pattern=HASH)]
 
 
 class _Part(BaseModel):
@@ -61,7 +64,7 @@ class Manifest(_Part):
     made_at: datetime
     tables: tuple[TableContents, ...]
     """In an order in which rows can be put in: what is referred to comes first."""
-    files: tuple[str, ...]
+    files: tuple[Hash, ...]
     """Hashes of the uploaded files."""
     lost: tuple[str, ...]
     """Hashes of files that sessions name, but that were missing or damaged when the backup was made."""

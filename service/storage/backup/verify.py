@@ -7,6 +7,7 @@ from pathlib import Path
 
 from service.errors import DamagedError
 from service.storage.backup.manifest import UNREADABLE, Manifest, TableContents, file_member, opened, read_manifest
+from service.storage.backup.names import faulty_names
 
 
 def verified(file: Path) -> Manifest:
@@ -25,6 +26,8 @@ def _faults(archive: zipfile.ZipFile, manifest: Manifest) -> Iterator[str]:
     for table in manifest.tables:
         if not _is_table(archive, table):
             yield f"table {table.name} was changed or is missing"
+        else:
+            yield from faulty_names(archive, table)
     for digest in manifest.files:
         if not _is_file(archive, digest):
             yield f"file {digest} was changed or is missing"

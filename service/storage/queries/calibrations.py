@@ -14,6 +14,7 @@ from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState, DiagnosisSummary
 from service.records.session import StoredSession
 from service.storage.calibration_document import Packed, calibration_from_dict, pack
+from service.storage.pending_tables import PendingRow
 from service.storage.queries.base import Queries
 from service.storage.queries.sessions import session_record, session_rows, worst_columns
 from service.storage.tables import CalibrationRow, DiagnosisRow, SessionRow
@@ -54,16 +55,19 @@ class Calibrations(Queries):
             raise NotFoundError(f"There is no calibration of session {session!r}{under}.")
         return zlib.decompress(deflated)
 
-    def with_session(self, id: str) -> tuple[StoredSession, DiagnosisSummary | None, Calibration]:
-        """A session, its diagnosis in one line where it is made, and its calibration in force; in one query."""
+    def with_session(self, id: str) -> tuple[StoredSession, DiagnosisSummary | None, str, Calibration]:
+        """A session, its diagnosis in one line where it is made, why the last try to make it failed, and its
+        calibration in force; in one query."""
         own = (CalibrationRow.session_id == SessionRow.id) & (CalibrationRow.revision == SessionRow.revision)
-        query = session_rows().add_columns(DiagnosisRow.state, DiagnosisRow.summary, CalibrationRow.document)
-        row = self._session.execute(query.join(CalibrationRow, own).where(SessionRow.id == id)).one_or_none()
+        line = (DiagnosisRow.state, DiagnosisRow.summary, PendingRow.failed)
+        query = session_rows().add_columns(*line, CalibrationRow.document).join(CalibrationRow, own)
+        whole = query.outerjoin(PendingRow, PendingRow.session_id == SessionRow.id)
+        row = self._session.execute(whole.where(SessionRow.id == id)).one_or_none()
         if row is None:
             raise NotFoundError(f"There is no session {id!r}.")
-        *session, state, summary, document = row
+        *session, state, summary, failed, document = row
         made = None if state is None else DiagnosisSummary(DiagnosisState(state), summary)
-        return session_record(*session), made, _read(zlib.decompress(document))
+        return session_record(*session), made, failed or "", _read(zlib.decompress(document))
 
     def in_force(self, sessions: Iterable[str]) -> dict[str, Calibration]:
         """The calibrations in force of some sessions, in one query."""

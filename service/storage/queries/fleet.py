@@ -33,7 +33,7 @@ from service.records.state import RecordState
 from service.records.unit import FleetCondition, UnitKnown, UnitSummary
 from service.storage.fleet_tables import FleetTallyRow
 from service.storage.outlook_tables import OutlookRow
-from service.storage.pending_tables import NEVER, PendingOutlookRow
+from service.storage.pending_tables import FailedDerivationRow, PendingOutlookRow
 from service.storage.queries.accepted import IS_ACCEPTED, IS_BREAK
 from service.storage.queries.base import Queries
 from service.storage.queries.outlooks import outlook_of
@@ -241,7 +241,7 @@ def _summaries(*, measured: bool = True) -> Summaries:
             DiagnosisRow,
             OutlookRow.due,
             PendingOutlookRow.ticket,
-            PendingOutlookRow.claimed_until,
+            func.coalesce(PendingOutlookRow.failed, FailedDerivationRow.failed),
             OutlookRow.reason,
         )
         .options(load_only(*LAST, raiseload=True), load_only(*FOUND, raiseload=True))
@@ -251,6 +251,7 @@ def _summaries(*, measured: bool = True) -> Summaries:
         .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
         .outerjoin(OutlookRow, OutlookRow.unit_id == UnitRow.id)
         .outerjoin(PendingOutlookRow, PendingOutlookRow.unit_id == UnitRow.id)
+        .outerjoin(FailedDerivationRow, FailedDerivationRow.unit_id == UnitRow.id)
     )
 
 
@@ -302,7 +303,7 @@ def _summary(row: Sequence[Any]) -> UnitSummary:
         reservations=_reservations(row[4]),
         customer=Customer(unit.customer, unit.customer_address),
         is_undated=row[6] is not None,
-        is_given_up=row[7] == NEVER,
+        failed=row[7] or "",
         due_reason=row[8] or "",
     )
 

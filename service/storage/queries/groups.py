@@ -3,12 +3,14 @@
 import zlib
 from datetime import datetime
 
-from sqlalchemy import ColumnElement, Select, and_, bindparam, delete, func, or_, select, update
+from sqlalchemy import ColumnElement, Select, and_, bindparam, delete, exists, func, or_, select, tuple_, update
+from sqlalchemy.orm import aliased
 
 from estimator.groups.statistics import FORMAT
 from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
 from service.records.group import Group, GroupAnswer, Level, Member, Members
+from service.records.state import RecordState
 from service.storage.group_tables import GroupDiagnosisRow, PendingGroupRow, SessionStatisticsRow
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
@@ -81,16 +83,18 @@ class Groups(Queries):
         row = self._session.get(GroupDiagnosisRow, (group.level.value, group.key))
         return None if row is None else _answer(row)
 
-    def known(self, level: Level, name: str) -> tuple[Group, GroupAnswer | None, bool]:
-        """A group by its name, what is stored of it, and whether it is asked for again since; in one query."""
+    def known(self, level: Level, name: str) -> tuple[Group, GroupAnswer | None, bool, str]:
+        """A group by its name, what is stored of it, whether it is asked for again since, and why that failed; in one
+        query."""
         row, asked, number = GroupDiagnosisRow, PendingGroupRow, KEYS[level]
-        again = select(asked.id).where(asked.level == row.level, asked.group_id == row.group_id).exists()
+        own = (asked.level == level.value, asked.group_id == number)
+        again, failed = select(asked.id).where(*own).exists(), select(func.max(asked.failed)).where(*own)
         stored = and_(row.level == level.value, row.group_id == number)
-        query = select(number, row, again).select_from(number.class_).outerjoin(row, stored)
+        query = select(number, row, again, failed.scalar_subquery()).select_from(number.class_).outerjoin(row, stored)
         found = self._session.execute(query.where(CALLED[level] == name)).one_or_none()
         if found is None:
             raise NotFoundError(f"There is no {WORDS[level]} {name!r}.")
-        return Group(level, found[0], name), None if found[1] is None else _answer(found[1]), found[2]
+        return Group(level, found[0], name), None if found[1] is None else _answer(found[1]), found[2], found[3] or ""
 
     def put(self, group: Group, answer: GroupAnswer) -> None:
         """Stores what was found of a group in place of what was."""
@@ -118,7 +122,15 @@ _OF_UNIT = (
     .distinct()
     .order_by(StandRow.id)
 )
-_COUNTS = (IS_ACCEPTED, SessionRow.programme.in_(CALIBRATIONS))
+_Earlier = aliased(SessionRow)
+_IS_COPY = exists().where(
+    _Earlier.readings_digest == SessionRow.readings_digest,
+    _Earlier.unit_id != SessionRow.unit_id,
+    _Earlier.state == RecordState.ACCEPTED,
+    tuple_(_Earlier.uploaded_at, _Earlier.id) < tuple_(SessionRow.uploaded_at, SessionRow.id),
+)
+"""Whether the same readings are stored already, of another unit that was accepted all the same: they count once."""
+_COUNTS = (IS_ACCEPTED, SessionRow.programme.in_(CALIBRATIONS), ~_IS_COPY)
 
 
 def _answer(row: GroupDiagnosisRow) -> GroupAnswer:

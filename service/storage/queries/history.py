@@ -1,11 +1,11 @@
 """Parameters through time, one row a session, sensor and parameter."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import ColumnElement, delete, func, select
+from sqlalchemy import ColumnElement, delete, func, select, true
 
 from service.records.history import HistoryPoint
 from service.records.session import ParameterValue, StoredSession
@@ -104,6 +104,28 @@ class History(Queries):
         own = (ParameterRow.session_id == newest.c.id) & (ParameterRow.revision == newest.c.revision)
         rows = self._session.scalars(select(ParameterRow).join(newest, own).where(IS_JUDGED))
         return tuple(_parameter_value(row) for row in rows)
+
+    def references_by_unit(
+        self, name: str, most: int, serials: Sequence[str] | None = None
+    ) -> dict[str, dict[tuple[str, str], ParameterValue]]:
+        """The parameters of the newest reference sessions of a type's units, or of some of them, by serial number,
+        sensor and parameter."""
+        wanted = (
+            select(SessionRow.id, SessionRow.revision, UnitRow.serial)
+            .join(UnitRow, UnitRow.id == SessionRow.unit_id)
+            .join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+            .where(UnitTypeRow.name == name, SessionRow.is_reference, IS_ACCEPTED)
+            .where(UnitRow.serial.in_(serials) if serials is not None else true())
+            .order_by(SessionRow.started_at.desc(), SessionRow.id)
+            .limit(most)
+            .subquery()
+        )
+        own = (ParameterRow.session_id == wanted.c.id) & (ParameterRow.revision == wanted.c.revision)
+        rows = self._session.execute(select(wanted.c.serial, ParameterRow).join(wanted, own).where(IS_JUDGED))
+        found: dict[str, dict[tuple[str, str], ParameterValue]] = {}
+        for serial, row in rows:
+            found.setdefault(serial, {}).setdefault((row.sensor, row.parameter), _parameter_value(row))
+        return found
 
 
 def _rows(unit: int, record: StoredSession, values: Iterable[ParameterValue]) -> Iterator[dict[str, Any]]:

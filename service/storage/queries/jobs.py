@@ -112,7 +112,7 @@ class Jobs(Queries):
         """How often its next piece was begun since a claim ended with a word; None where another is at it."""
         own = update(JobRow).where(JobRow.id == id, *self._is_free(now))
         begun = {"state": JobState.RUNNING, "begun_at": func.coalesce(JobRow.begun_at, now), "turn_at": now}
-        claimed = own.values(claimed_until=until, attempts=JobRow.attempts + 1, **begun)
+        claimed = own.values(claimed_until=until, attempts=JobRow.attempts + 1, is_storing=False, **begun)
         return self._session.scalar(claimed.returning(JobRow.attempts))
 
     def extend(self, id: int, until: datetime) -> None:
@@ -121,11 +121,11 @@ class Jobs(Queries):
 
     def give_back(self, id: int) -> None:
         """The program failed or its process died: the next one may take it at once."""
-        self._put(id, claimed_until=None)
+        self._put(id, claimed_until=None, is_storing=False)
 
     def put_off(self, id: int, until: datetime | None) -> None:
         """Gives it back after a word of why: nobody begins the next piece before a time."""
-        self._put(id, claimed_until=until, attempts=0)
+        self._put(id, claimed_until=until, attempts=0, is_storing=False)
 
     def hold_up(self, id: int, reason: str) -> None:
         """Says why it waits."""

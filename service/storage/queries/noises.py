@@ -9,6 +9,7 @@ from sqlalchemy import select
 
 from estimator.allan.results import TERMS, BlockNoise
 from service.records.session import StoredSession
+from service.storage.json_text import json_text
 from service.storage.noise_tables import SessionNoiseRow
 from service.storage.queries.base import Queries
 from service.storage.tables import ParameterRow
@@ -28,7 +29,7 @@ class Noises(Queries):
 
     def put_once(self, unit: int, record: StoredSession, found: BlockNoise, version: str, at: datetime) -> None:
         """Stores it with its terms, unless somebody else did meanwhile."""
-        document = zlib.compress(json.dumps(found.to_dict(), separators=(",", ":")).encode())
+        document = zlib.compress(json_text(found.to_dict(), finite=False).encode())
         values = {"document": document, "estimator_version": version, "made_at": at}
         if not self.insert_once(SessionNoiseRow, session_id=record.id, **values):
             return

@@ -34,6 +34,10 @@ class PendingDiagnoses(Queries):
         found = self._session.execute(query).one_or_none()
         return None if found is None else Pending(*found)
 
+    def failed(self, session: str) -> str:
+        """Why the last try failed; empty where none did."""
+        return self._session.scalar(select(PendingRow.failed).where(PendingRow.session_id == session)) or ""
+
     def waiting(self, now: datetime, limit: int) -> tuple[str, ...]:
         """Sessions that nobody is at, the one that was asked for first before all."""
         due = or_(PendingRow.not_before.is_(None), PendingRow.not_before <= now)
@@ -61,6 +65,15 @@ class PendingDiagnoses(Queries):
         """Gives a session back, after a word of why: nobody begins it before a time unless somebody reads it."""
         given = {"claimed_by": None, "claimed_until": None, "not_before": until, "attempts": 0}
         self._session.execute(_of(claim).values(given))
+
+    def hold_up(self, session: str, why: str) -> None:
+        """Keeps why a try failed."""
+        self._session.execute(update(PendingRow).where(PendingRow.session_id == session).values(failed=why))
+
+    def try_again(self) -> int:
+        """What failed is tried at once; how many that are."""
+        own = update(PendingRow).where(PendingRow.failed.is_not(None)).values(not_before=None, failed=None)
+        return len(self._session.scalars(own.returning(PendingRow.session_id)).all())
 
     def give_back(self, claim: Claim) -> None:
         """Gives a session back whose process died: the next one may take it at once."""

@@ -6,7 +6,9 @@ from datetime import datetime
 from sqlalchemy import ColumnElement, delete, func, insert, or_, select, update
 
 from service.records.group import Group, Level
+from service.storage.failed import AT_FAULT
 from service.storage.group_tables import AskedRow, PendingGroupRow, PendingSummaryRow
+from service.storage.pending_tables import NEVER
 from service.storage.queries.base import Queries
 from service.storage.queries.groups import Groups
 
@@ -18,9 +20,13 @@ class PendingGroups(Queries):
 
     def ask(self, groups: Iterable[Group], now: datetime) -> None:
         """Asks for what groups show; what is being made of them now is looked at again."""
-        rows = [{"level": g.level.value, "group_id": g.key, "asked_at": now, "attempts": 0} for g in groups]
+        asked = tuple(groups)
+        rows = [{"level": g.level.value, "group_id": g.key, "asked_at": now, "attempts": 0} for g in asked]
         if rows:
             self._session.execute(insert(self._row), rows)
+        for group in asked:
+            failed = update(self._row).where(*self._of(group), self._row.failed.is_not(None))
+            self._session.execute(failed.values(claimed_until=None, attempts=0))
 
     def asked(self, group: Group) -> tuple[int, ...]:
         """Who asks for a group now: to be read before its sessions are."""
@@ -56,6 +62,25 @@ class PendingGroups(Queries):
     def put_off(self, group: Group, until: datetime | None) -> None:
         """Gives a group back after a word of why: nobody begins it before a time."""
         self._session.execute(update(self._row).where(*self._of(group)).values(claimed_until=until, attempts=0))
+
+    def hold_up(self, group: Group, why: str) -> None:
+        """Keeps why a try failed."""
+        self._session.execute(update(self._row).where(*self._of(group)).values(failed=why))
+
+    def failed(self, group: Group) -> str:
+        """Why the last try failed; empty where none did."""
+        return self._session.scalar(select(func.max(self._row.failed)).where(*self._of(group))) or ""
+
+    def give_up(self, group: Group) -> None:
+        """No try succeeded: the next asking tries again, another start, or whoever wants that."""
+        why = func.coalesce(self._row.failed, AT_FAULT)
+        self._session.execute(update(self._row).where(*self._of(group)).values(claimed_until=NEVER, failed=why))
+
+    def try_again(self) -> int:
+        """What failed is tried at once; how many groups that are."""
+        own = update(self._row).where(self._row.failed.is_not(None)).values(claimed_until=None, attempts=0, failed=None)
+        found = self._session.execute(own.returning(self._row.level, self._row.group_id))
+        return len({(level, key) for level, key in found})
 
     def blame_none(self, group: Group) -> None:
         """What died was at fault for another reason that is known now: the tries are counted anew."""

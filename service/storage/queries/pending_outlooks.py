@@ -3,8 +3,9 @@
 from datetime import datetime
 from uuid import uuid4
 
-from sqlalchemy import ColumnElement, Update, case, delete, or_, select, update
+from sqlalchemy import ColumnElement, Update, case, delete, func, or_, select, update
 
+from service.storage.failed import AT_FAULT
 from service.storage.pending_tables import NEVER, PendingOutlookRow
 from service.storage.queries.base import Queries
 from service.storage.tables import UnitRow
@@ -14,12 +15,13 @@ class PendingOutlooks(Queries):
     """Of units whose history has changed."""
 
     def ask(self, unit: int, now: datetime) -> None:
-        """Asks for a unit's outlook; what is being made of it now is made again."""
+        """Asks for a unit's outlook; what is being made of it now is made again, and what failed is tried at once."""
         new = self._upsert(PendingOutlookRow).values(unit_id=unit, asked_at=now, ticket=uuid4().hex, attempts=0)
         again = {
             "ticket": new.excluded.ticket,
-            "claimed_until": case((_IS_GIVEN_UP, None), else_=PendingOutlookRow.claimed_until),
-            "attempts": case((_IS_GIVEN_UP, 0), else_=PendingOutlookRow.attempts),
+            "claimed_until": case((_IS_FAILED, None), else_=PendingOutlookRow.claimed_until),
+            "attempts": case((_IS_FAILED, 0), else_=PendingOutlookRow.attempts),
+            "failed": None,
         }
         self._session.execute(new.on_conflict_do_update(index_elements=["unit_id"], set_=again))
 
@@ -29,10 +31,14 @@ class PendingOutlooks(Queries):
         return self._session.scalar(query.where(UnitRow.serial == serial))
 
     def is_coming(self, serial: str) -> bool:
-        """Whether a unit's is asked for and was not given up."""
+        """Whether a unit's is asked for and has not failed."""
         query = select(PendingOutlookRow.unit_id).join(UnitRow, UnitRow.id == PendingOutlookRow.unit_id)
-        is_held = or_(PendingOutlookRow.claimed_until.is_(None), ~_IS_GIVEN_UP)
-        return self._session.scalar(query.where(UnitRow.serial == serial, is_held)) is not None
+        return self._session.scalar(query.where(UnitRow.serial == serial, ~_IS_FAILED)) is not None
+
+    def failed(self, serial: str) -> str:
+        """Why a unit's could not be worked out; empty where it is there, or is still being made."""
+        query = select(PendingOutlookRow.failed).join(UnitRow, UnitRow.id == PendingOutlookRow.unit_id)
+        return self._session.scalar(query.where(UnitRow.serial == serial)) or ""
 
     def waiting(self, now: datetime, limit: int) -> tuple[str, ...]:
         """Serial numbers of units that nobody is at, the one that was asked for first before all."""
@@ -58,14 +64,21 @@ class PendingOutlooks(Queries):
         """Gives a unit back after a word of why: nobody begins it before a time."""
         self._session.execute(_of(serial).values(claimed_until=until, attempts=0))
 
-    def give_up(self, serial: str) -> None:
-        """No process outlived it: it is tried again when the unit's history changes, or at another start."""
-        self._session.execute(_of(serial).values(claimed_until=NEVER))
+    def hold_up(self, serial: str, why: str) -> None:
+        """Keeps why a try failed."""
+        self._session.execute(_of(serial).values(failed=why))
 
-    def try_again(self) -> None:
-        """At a start: this may be another version, or a machine that has what the last one lacked."""
-        own = update(PendingOutlookRow).where(_IS_GIVEN_UP)
-        self._session.execute(own.values(claimed_until=None, attempts=0))
+    def give_up(self, serial: str) -> None:
+        """No try succeeded: it is tried again when the unit's history changes, at another start, or when somebody asks
+        for that."""
+        why = func.coalesce(PendingOutlookRow.failed, AT_FAULT)
+        self._session.execute(_of(serial).values(claimed_until=NEVER, failed=why))
+
+    def try_again(self) -> int:
+        """At a start, or when somebody asks for it: this may be another version, or a machine that has what the last
+        one lacked. How many that are."""
+        own = update(PendingOutlookRow).where(_IS_FAILED).values(claimed_until=None, attempts=0, failed=None)
+        return len(self._session.scalars(own.returning(PendingOutlookRow.unit_id)).all())
 
     def holds(self, unit: int, ticket: str) -> bool:
         """Whether a unit is still asked for under a ticket; held until the transaction ends."""
@@ -77,7 +90,7 @@ class PendingOutlooks(Queries):
         self._session.execute(delete(PendingOutlookRow).where(PendingOutlookRow.unit_id == unit))
 
 
-_IS_GIVEN_UP = PendingOutlookRow.claimed_until == NEVER
+_IS_FAILED = PendingOutlookRow.failed.is_not(None)
 
 
 def _of(serial: str) -> Update:

@@ -59,6 +59,16 @@ class Recomputations(Queries):
         own = update(RecomputationRow).where(*_of(task))
         self._session.execute(own.values(claimed_until=until, attempts=0))
 
+    def hold_up(self, task: Task, why: str) -> None:
+        """Keeps why a try failed."""
+        self._session.execute(update(RecomputationRow).where(*_of(task)).values(failed=why))
+
+    def try_again(self) -> int:
+        """What failed and was not given up is tried at once; how many units that are."""
+        own = (RecomputationRow.state == Progress.WAITING, RecomputationRow.failed.is_not(None))
+        free = update(RecomputationRow).where(*own).values(claimed_until=None, attempts=0, failed=None)
+        return len(self._session.scalars(free.returning(RecomputationRow.unit_id)).all())
+
     def give_up(self, task: Task, now: datetime) -> None:
         """No process outlived it: its sessions keep what they have."""
         own = update(RecomputationRow).where(*_of(task))

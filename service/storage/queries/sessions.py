@@ -1,5 +1,6 @@
 """Sessions and their decisions."""
 
+from collections.abc import Collection
 from dataclasses import asdict, fields, replace
 from datetime import datetime
 from typing import Any
@@ -12,7 +13,7 @@ from service.errors import NotFoundError
 from service.records.decision import Decision, Verdict
 from service.records.diagnosis import DiagnosisState
 from service.records.received import DEMONSTRATION
-from service.records.session import StoredSession
+from service.records.session import Digests, StoredSession
 from service.records.session_list import SessionQuery
 from service.records.state import RecordState
 from service.storage.queries.accepted import IS_ACCEPTED
@@ -111,11 +112,18 @@ class Sessions(Queries):
         """The session that others of the block, epoch and programmes are judged against."""
         return self._session.scalar(reference_query(unit, block, since, until, programmes))
 
-    def add(self, record: StoredSession, unit: int, stand: int | None, block: str, digest: str) -> None:
+    def of_readings(self, digest: str, but_unit: int, but: Collection[str]) -> StoredSession | None:
+        """The first session of another unit that counts and has the same readings, other than ``but``."""
+        same = SessionRow.readings_digest == digest, SessionRow.unit_id != but_unit, SessionRow.id.not_in(but)
+        query = session_rows().where(*same, IS_ACCEPTED).order_by(SessionRow.uploaded_at, SessionRow.id).limit(1)
+        found = self._session.execute(query).one_or_none()
+        return None if found is None else session_record(*found)
+
+    def add(self, record: StoredSession, unit: int, stand: int | None, block: str, digests: Digests) -> None:
         """Stores a session that is still to be judged; its hash is unique."""
         values = asdict(record)
         del values["unit"], values["stand"], values["reservations"]
-        own = {"unit_id": unit, "stand_id": stand, "block": block, "content_digest": digest, "basis": NOT_JUDGED}
+        own = {"unit_id": unit, "stand_id": stand, "block": block, **asdict(digests), "basis": NOT_JUDGED}
         self.insert_many(SessionRow, ({**values, **own},))
 
     def set_stage(self, id: str, stage: str | None) -> None:

@@ -1,11 +1,12 @@
 """Units and stands by name."""
 
-from sqlalchemy import select, update
+from sqlalchemy import exists, select, update
 
 from service.errors import NotFoundError
 from service.records.paper import Customer
+from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
-from service.storage.tables import StandRow, UnitRow, UnitTypeRow
+from service.storage.tables import SessionRow, StandRow, UnitRow, UnitTypeRow
 
 
 class Units(Queries):
@@ -57,6 +58,13 @@ class Units(Queries):
     def every(self) -> tuple[str, ...]:
         """Serial numbers of all units, in order."""
         return tuple(self._session.scalars(select(UnitRow.serial).order_by(UnitRow.serial)))
+
+    def accepted(self, *, simulated: bool) -> tuple[tuple[str, str], ...]:
+        """Serial number and type of every unit, measured or simulated, with a session that counts."""
+        counts = exists().where(SessionRow.unit_id == UnitRow.id, IS_ACCEPTED)
+        query = select(UnitRow.serial, UnitTypeRow.name).join(UnitTypeRow, UnitTypeRow.id == UnitRow.unit_type_id)
+        rows = self._session.execute(query.where(counts, UnitRow.simulated.is_(simulated)).order_by(UnitRow.id))
+        return tuple((serial, kind) for serial, kind in rows)
 
     def add_once(self, serial: str, unit_type: str, simulated: bool) -> None:
         """Stores a new unit; one of that serial number that is there already stays as it is."""

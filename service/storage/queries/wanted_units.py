@@ -16,7 +16,7 @@ from service.records.fleet import FleetQuery, Order
 from service.storage.outlook_tables import OutlookRow
 from service.storage.tables import ConditionRow, DiagnosisRow, SessionRow, StandRow, UnitRow, UnitTypeRow
 
-Summaries = Select[UnitRow, str, ConditionRow, SessionRow, DiagnosisRow, datetime | None, str, datetime | None, str]
+Summaries = Select[UnitRow, str, ConditionRow, SessionRow, DiagnosisRow, datetime | None, str, str, str]
 
 Columns = TypeVarTuple("Columns")
 """Of whatever is asked of units."""

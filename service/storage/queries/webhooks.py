@@ -1,9 +1,10 @@
 """Addresses that are told of notices, and the outbox of what is on its way to them."""
 
+from collections.abc import Collection
 from dataclasses import replace
 from datetime import datetime
 
-from sqlalchemy import select, update
+from sqlalchemy import ColumnElement, select, update
 
 from service.errors import NotFoundError
 from service.records.flag import Matter
@@ -68,20 +69,20 @@ class Webhooks(Queries):
             for row, notice, serial in self._session.execute(query.limit(limit))
         )
 
-    def is_due(self, now: datetime) -> bool:
-        """Whether anything in the outbox is due; asked without keeping writers waiting."""
-        due = select(DeliveryRow.id).where(DeliveryRow.state == DeliveryState.WAITING, DeliveryRow.next_at <= now)
-        return self._session.scalar(due.limit(1)) is not None
+    def is_due(self, now: datetime, but: Collection[int] = ()) -> bool:
+        """Whether anything in the outbox is due, but for some webhooks; asked without keeping writers waiting."""
+        return self._session.scalar(select(DeliveryRow.id).where(*_due(now, but)).limit(1)) is not None
 
-    def claim(self, now: datetime, until: datetime, limit: int) -> tuple[Outgoing, ...]:
-        """What is due, oldest first, claimed until a time: nobody else sends it before, and then somebody does."""
+    def claim(self, now: datetime, until: datetime, limit: int, but: Collection[int] = ()) -> tuple[Outgoing, ...]:
+        """What is due, oldest first, but for some webhooks; claimed until a time: nobody else sends it before, and then
+        somebody does."""
         query = (
             select(DeliveryRow, WebhookRow, NoticeRow, UnitRow.serial, FlagRow)
             .join(WebhookRow, WebhookRow.id == DeliveryRow.webhook_id)
             .join(NoticeRow, NoticeRow.id == DeliveryRow.notice_id)
             .join(UnitRow, UnitRow.id == NoticeRow.unit_id)
             .outerjoin(FlagRow, FlagRow.id == NoticeRow.flag_id)
-            .where(DeliveryRow.state == DeliveryState.WAITING, DeliveryRow.next_at <= now)
+            .where(*_due(now, but))
             .order_by(DeliveryRow.id)
             .limit(limit)
             .with_for_update(of=DeliveryRow, skip_locked=True)
@@ -102,6 +103,12 @@ class Webhooks(Queries):
             .where(DeliveryRow.id == delivery, DeliveryRow.state == DeliveryState.WAITING)
             .values(state=state, outcome=outcome, next_at=next_at)
         )
+
+
+def _due(now: datetime, but: Collection[int]) -> tuple[ColumnElement[bool], ...]:
+    """Rows that are due, but for those of some webhooks."""
+    own = (DeliveryRow.state == DeliveryState.WAITING, DeliveryRow.next_at <= now)
+    return (*own, DeliveryRow.webhook_id.not_in(tuple(but))) if but else own
 
 
 def _webhook(row: WebhookRow) -> Webhook:

@@ -4,7 +4,6 @@ import json
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
-from time import sleep
 
 import httpx
 import numpy as np
@@ -19,6 +18,7 @@ from service.storage.landing import ARRIVING
 from tests import builders
 from tests.databases import one_engine
 from tests.estimator.test_reading_csv import csv_of
+from tests.patience import until
 from tests.service.ingest.test_formats import parquet_bytes
 from tests.serving import http_client
 
@@ -162,8 +162,4 @@ def test_a_sender_who_leaves_in_the_middle_leaves_nothing(few_cells, settings: S
     with pytest.raises((ConnectionError, httpx.HTTPError)):
         client.post("/api/v1/sessions", content=cut())
     assert client.get("/api/v1/sessions").json()["sessions"] == []
-    for _ in range(100):  # the service learns of it a moment after the sender
-        if not arriving(settings):
-            break
-        sleep(0.05)
-    assert arriving(settings) == []
+    until(lambda: not arriving(settings))  # the service learns of it a moment after the sender

@@ -17,7 +17,7 @@ from tests.serving import http_client
 
 def test_the_service_is_alive_and_ready(client: httpx.Client) -> None:
     assert client.get("/healthz").json() == {"status": "ok"}
-    assert client.get("/readyz").json() == {"status": "ready", "reasons": []}
+    assert client.get("/readyz").json() == {"status": "ready", "reasons": [], "failed": {}}
 
 
 def test_a_schema_of_another_version_is_not_ready(client: httpx.Client, store_url: str) -> None:

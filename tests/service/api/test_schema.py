@@ -12,6 +12,7 @@ from schemathesis import GenerationMode
 
 from tests.conftest import StockOf
 from tests.databases import ENGINES
+from tests.patience import LONG
 from tests.service.sessions import session_bytes
 from tests.serving import serving
 
@@ -32,7 +33,7 @@ def address(request: pytest.FixtureRequest, stock_of: StockOf) -> Iterator[str]:
 @pytest.fixture(scope="module")
 def description(address: str) -> schemathesis.BaseSchema:
     """What the service says of itself."""
-    return schemathesis.openapi.from_url(f"{address}/openapi.json", timeout=60)
+    return schemathesis.openapi.from_url(f"{address}/openapi.json", timeout=LONG)
 
 
 @pytest.mark.parametrize(
@@ -79,7 +80,7 @@ def assert_conforming(operation: schemathesis.APIOperation, mode: GenerationMode
     @given(case=operation.as_strategy(generation_mode=mode))
     def conforms(case: schemathesis.Case) -> None:
         # What a schema cannot say of a session file, a unit that exists or a time in the past is refused with 4xx.
-        case.call_and_validate(excluded_checks=[schemathesis.checks.positive_data_acceptance], timeout=60)
+        case.call_and_validate(excluded_checks=[schemathesis.checks.positive_data_acceptance], timeout=LONG)
 
     conforms()
 

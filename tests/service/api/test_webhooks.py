@@ -5,6 +5,8 @@ import hmac
 import json
 from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
+from threading import Event
+from threading import enumerate as enumerate_threads
 
 import httpx
 import pytest
@@ -14,6 +16,7 @@ from service.background.deliver_messages import CLAIM, MOST_ATTEMPTS, deliver_du
 from service.flows.receive import upload
 from service.flows.register_webhook import fault_of, register_webhook
 from service.flows.remove_webhook import remove_webhook
+from service.metrics import Metrics
 from service.records.webhook import DeliveryState
 from service.settings import Settings
 from service.storage import Storage
@@ -61,6 +64,33 @@ def test_a_flag_and_a_verdict_are_told_signed(
         assert client.delete(path, params={"by": "K. Ito"}).status_code == 204
         assert client.get("/api/v1/webhooks").json() == {"webhooks": []}
         assert client.get(f"{path}/deliveries").status_code == 404
+
+
+def test_a_receiver_that_does_not_answer_keeps_neither_the_others_waiting_nor_the_stop(
+    settings: Settings, hook: Receiver, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.background.deliver_messages.LOOK_EVERY", 0.01)
+    with receiver() as slow:
+        slow.held = Event()
+        allowed = settings.model_copy(update={"webhook_hosts": (slow.host, hook.host)})
+        with http_client(create_app(allowed)) as client:
+            for one in (slow, hook):
+                assert client.post("/api/v1/webhooks", json=body(one)).status_code == 201
+            for content in FAILED:
+                client.post("/api/v1/sessions", content=content).raise_for_status()
+            hook.wait_for(2)
+            slow.wait_for(1)
+            assert len(slow.messages) == 1
+        assert "outbox" not in {thread.name for thread in enumerate_threads()}
+        slow.held.set()
+
+
+def test_an_attempt_ends_in_time_whatever_the_receiver_does(outbox: "Outbox", monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("service.background.deliver_messages.LONGEST_ATTEMPT", 0.05)
+    outbox.hook.held = Event()
+    assert outbox.deliver() == 2
+    outbox.hook.held.set()
+    assert {outcome for _, _, outcome in outbox.states()} == {"no answer within 0.05 s"}
 
 
 def test_without_an_allowed_host_nothing_can_be_registered(client: httpx.Client, hook: Receiver) -> None:
@@ -120,8 +150,7 @@ class Outbox:
     def deliver(self, hosts: tuple[str, ...] | None = None) -> int:
         """Attempts what is due now."""
         allowed = (self.hook.host,) if hosts is None else hosts
-        with httpx.Client(follow_redirects=False, trust_env=False) as http:
-            return deliver_due(self.storage, allowed, lambda: self.now, http)
+        return deliver_due(self.storage, allowed, lambda: self.now, Metrics())
 
     def states(self) -> list[tuple[DeliveryState, int, str]]:
         """State, attempts and outcome of every delivery, oldest first."""
@@ -191,7 +220,6 @@ def test_a_receiver_that_is_away_keeps_no_upload_waiting(storage: Storage) -> No
     register_webhook(storage, ("127.0.0.1:9",), nowhere, SECRET, who="K. Ito", now=NOW)
     for content in FAILED:
         assert upload(storage, content, "a.json", NOW).created
-    with httpx.Client(trust_env=False) as http:
-        assert deliver_due(storage, ("127.0.0.1:9",), lambda: NOW, http) == 2
+    assert deliver_due(storage, ("127.0.0.1:9",), lambda: NOW, Metrics()) == 2
     with storage.database.reading() as store:
         assert all("ConnectError" in d.outcome for d in store.webhooks.deliveries(1, 10))

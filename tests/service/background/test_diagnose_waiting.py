@@ -19,9 +19,10 @@ from service.background.diagnose_waiting import (
     ask_for_missing,
     diagnose_next,
 )
-from service.background.guard import Failure
 from service.background.helper import DIED, Helper, Still
 from service.background.read_diagnosis import Reader
+from service.errors import AwayError
+from service.flows.guard import Failure
 from service.flows.receive import upload
 from service.metrics import Metrics
 from service.records.diagnosis import DiagnosisState
@@ -128,6 +129,28 @@ def test_a_process_that_is_killed_at_its_work_costs_nothing(own: Diagnosing, hel
 
 
 @one_engine
+def test_an_answer_that_nobody_took_is_never_that_of_the_next_job(own: Diagnosing, helper: Helper) -> None:
+    lost, sound = stored(own.storage, 1), stored(own.storage, 2)
+    with own.storage.database.reading() as store:
+        own.storage.files.path(store.sessions.get(lost).sha256).unlink()
+    helper.start()
+    assert helper._process is not None
+    pid, asked = helper._process.pid, iter([True])
+    os.kill(pid, signal.SIGSTOP)  # it has not answered yet when somebody looks whether to go on
+
+    def breaks() -> bool:
+        if not next(asked, False):
+            os.kill(pid, signal.SIGCONT)
+            raise AwayError("The database does not answer.")
+        return True
+
+    with pytest.raises(AwayError):
+        helper.diagnose(lost, NOW, breaks)
+    assert helper.diagnose(sound, NOW, lambda: True) is None
+    assert state_of(own.storage, sound) is DiagnosisState.NOTHING
+
+
+@one_engine
 def test_what_no_process_outlives_is_given_up_and_says_so(own: Diagnosing, helper: Helper) -> None:
     id = stored(own.storage)
     for _ in range(MOST_ATTEMPTS):
@@ -191,6 +214,7 @@ def test_what_somebody_waits_for_comes_first(own: Diagnosing, helper: Helper) ->
     assert (waiting(own.storage), state_of(own.storage, second)) == ((first,), DiagnosisState.NOTHING)
 
 
+@pytest.mark.usefixtures("patient_readers")
 def test_two_services_on_one_database_make_each_diagnosis_once(settings: Settings, storage: Storage) -> None:
     worked = settings.model_copy(update={"diagnosis_workers": 1})
     ids = [stored(storage, seed) for seed in range(4)]

@@ -12,11 +12,11 @@ import pytest
 from service.background.bell import Bell
 from service.background.claimed import Work, work_next
 from service.background.diagnose_waiting import MOST_ATTEMPTS, Diagnosing
-from service.background.guard import AT_FAULT, Failure
 from service.background.helper import Helper, Still
 from service.background.pool_waiting import GROUPS
 from service.background.recompute_waiting import MODELS
 from service.background.refresh_waiting import OUTLOOKS
+from service.flows.guard import AT_FAULT, Failure
 from service.flows.receive import upload
 from service.flows.refresh_group import current
 from service.metrics import Metrics
@@ -26,8 +26,8 @@ from service.records.recomputation import Progress
 from service.settings import Settings
 from service.storage import Storage
 from service.views.usable import usable
+from service.words.failed import unit_failed
 from service.words.group import FAILED
-from service.words.usable import DATES_FAILED
 from tests.databases import one_engine
 from tests.service.grouped import GROUP
 from tests.service.sessions import session_id
@@ -82,7 +82,7 @@ def test_an_outlook_is_given_up_until_its_unit_s_history_changes(
     assert tries(diagnosing(settings, two), helper, OUTLOOKS) == MOST_ATTEMPTS + 1
     with two.database.reading() as store:
         assert not store.pending_outlooks.is_coming(UNIT)
-        assert DATES_FAILED in usable(store, UNIT, NOW).reservations
+        assert unit_failed("The process died at the outlook of BA-017.") in usable(store, UNIT, NOW).reservations
     upload(two, GROUP[2], "a.json", NOW, is_dated_later=True)
     with two.database.reading() as store:
         assert store.pending_outlooks.waiting(NOW, 10) == (UNIT,)

@@ -5,8 +5,8 @@ import zlib
 
 import pytest
 
-from service.background.guard import AT_FAULT, Failure, Guard, ending_here, unforeseen
 from service.errors import NotFoundError
+from service.flows.guard import AT_FAULT, Failure, Guard, ending_here, unforeseen
 from service.metrics import Metrics
 from tests.service.test_log import lines
 

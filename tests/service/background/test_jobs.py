@@ -9,12 +9,12 @@ import pytest
 from service.background.bell import Bell
 from service.background.claimed import Work, work_next
 from service.background.diagnose_waiting import CLAIM, MOST_ATTEMPTS, Diagnosing
-from service.background.guard import AT_FAULT, Failure
 from service.background.helper import Helper, Still
 from service.background.job_waiting import JOBS, work_on_next
 from service.background.work_job import work_piece
 from service.errors import ConflictError
 from service.flows.ask_job import ask_job, cancel_job, drop_outlived, file_of, tell_job
+from service.flows.guard import AT_FAULT, Failure
 from service.flows.receive import upload
 from service.flows.recompute import recompute
 from service.metrics import Metrics

@@ -100,6 +100,7 @@ def test_a_process_of_its_own_works_it_out(settings: Settings, storage: Storage,
 
 
 @one_engine
+@pytest.mark.usefixtures("patient_readers")
 def test_whoever_asks_whether_a_unit_may_be_used_waits_for_its_dates(settings: Settings) -> None:
     with http_client(create_app(settings.model_copy(update={"diagnosis_workers": 1}), lambda: NOW)) as client:
         for month in (9, 10):

@@ -219,3 +219,23 @@ def test_too_many_are_asked_to_come_again_and_leave_nothing(storage: Storage, mo
     with pytest.raises(BusyError):
         asked(storage)
     assert waiting(storage) == []
+
+
+@pytest.mark.parametrize("ended", ["give_back", "put_off", "claim"])
+def test_a_job_whose_storing_ended_without_a_session_can_be_cancelled(storage: Storage, ended: str) -> None:
+    job = asked(storage)
+    with storage.database.writing() as store:
+        store.upload_jobs.claim(job.id, NOW, NOW)
+        store.jobs.begin_storing(job.id)
+    with pytest.raises(ConflictError):
+        cancel_job(storage, job.id, EVERYBODY, "K. Ito", NOW)
+    later = NOW + timedelta(minutes=5)
+    with storage.database.writing() as store:
+        if ended == "give_back":
+            store.upload_jobs.give_back(job.id)
+        elif ended == "put_off":
+            store.upload_jobs.put_off(job.id, later)
+        else:
+            store.upload_jobs.claim(job.id, later, later)
+    cancel_job(storage, job.id, EVERYBODY, "K. Ito", NOW)
+    assert read(storage, job.id).state is JobState.CANCELLED

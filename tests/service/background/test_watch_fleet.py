@@ -15,6 +15,7 @@ from service.records.flag import Matter
 from service.storage import Storage
 from service.storage.queries.flags import FlagQuery
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
+from tests.patience import LONG
 from tests.service.dated import upload_and_date
 from tests.service.sessions import session_bytes
 from tests.service.test_log import lines
@@ -22,8 +23,6 @@ from tests.service.views.test_stands import measure
 
 LATE = datetime(2029, 1, 1, tzinfo=UTC)
 """Every unit of these tests is overdue by then."""
-ENOUGH = 30.0
-"""Seconds that a thread is waited for."""
 
 
 def spoil(storage: Storage, statement: str, **values: str) -> None:
@@ -51,7 +50,7 @@ def watched(storage: Storage, metrics: Metrics) -> Iterator[tuple[Thread, Event]
     thread.start()
     yield thread, twice
     stop.set()
-    thread.join(ENOUGH)
+    thread.join(LONG)
 
 
 @pytest.fixture
@@ -65,7 +64,7 @@ def test_a_unit_whose_outlook_is_damaged_does_not_end_the_watch(two_units: Stora
     spoil(two_units, "UPDATE outlooks SET document = '{}' WHERE unit_id = (SELECT min(id) FROM units)")
     metrics = Metrics()
     with watched(two_units, metrics) as (thread, twice):
-        assert twice.wait(ENOUGH)
+        assert twice.wait(LONG)
         assert thread.is_alive()
         assert flagged(two_units, Matter.OVERDUE) == {("BA-1", "")}
     assert b'imu_health_background_faults_total{fault="KeyError",work="due dates"}' in metrics.text()

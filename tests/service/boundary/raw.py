@@ -5,6 +5,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 from urllib.parse import urlsplit
 
+from tests.patience import LONG
+
 
 @dataclass(frozen=True)
 class Answer:
@@ -15,7 +17,7 @@ class Answer:
     body: bytes
 
 
-def connected(address: str, patience: float = 20) -> socket.socket:
+def connected(address: str, patience: float = LONG) -> socket.socket:
     """An open connection."""
     at = urlsplit(address)
     return socket.create_connection((at.hostname, at.port), timeout=patience)

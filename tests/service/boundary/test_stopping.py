@@ -9,6 +9,7 @@ from pathlib import Path
 
 import httpx
 
+from tests.patience import LONG
 from tests.service.boundary.raw import answer, connected, head
 from tests.service.cli.conftest import COMMAND, READY, ROOT
 from tests.service.sessions import session_bytes
@@ -48,14 +49,14 @@ def refused(address: str) -> httpx.Response:
 
 def test_the_upload_at_hand_is_stored_and_the_next_one_is_refused(tmp_path: Path) -> None:
     content = session_bytes()
-    with service(tmp_path, seconds=30) as (process, address), connected(address) as connection:
+    with service(tmp_path, seconds=LONG) as (process, address), connected(address) as connection:
         connection.sendall(upload_head(content) + content[:1000])
         assert httpx.get(f"{address}/readyz").status_code == 200
         process.send_signal(signal.SIGTERM)
         last = refused(address)
         connection.sendall(content[1000:])
         found = answer(connection)
-        assert process.wait(timeout=30) in (0, -signal.SIGTERM)
+        assert process.wait(timeout=LONG) in (0, -signal.SIGTERM)
     assert (last.status_code, last.headers["retry-after"]) == (503, "5")
     assert (found.status, json.loads(found.body)["unit"]) == (201, "BA-017")
 
@@ -66,11 +67,11 @@ def test_the_end_comes_in_time_whatever_is_at_hand(tmp_path: Path) -> None:
         connection.sendall(upload_head(content) + content[:1000])
         assert httpx.get(f"{address}/healthz").status_code == 200
         process.send_signal(signal.SIGTERM)
-        process.wait(timeout=20)
+        process.wait(timeout=LONG)
 
 
 def test_without_anything_at_hand_the_end_comes_at_once(tmp_path: Path) -> None:
     with service(tmp_path, seconds=3000, diagnosing=1) as (process, address):
         assert httpx.get(f"{address}/healthz").status_code == 200
         process.send_signal(signal.SIGTERM)
-        process.wait(timeout=20)
+        process.wait(timeout=LONG)

@@ -14,6 +14,7 @@ import pytest
 
 from service.cli import main
 from tests.builders import Document, accelerometer_block
+from tests.patience import LONG
 
 COMMAND = Path(sys.executable).parent / "imu-health"
 ROOT = Path(__file__).parents[3]
@@ -92,4 +93,4 @@ def started(*command: object, **environment: str) -> Iterator[str]:
             yield line.removeprefix(READY)
         finally:
             process.send_signal(signal.SIGINT)
-            process.wait(timeout=20)
+            process.wait(timeout=LONG)

@@ -14,7 +14,7 @@ from service.storage import Storage
 from tests.conftest import StockOf
 from tests.databases import Databases
 from tests.service.cli.conftest import Run
-from tests.service.identity.staff import PASSWORD, staffed, with_password
+from tests.service.identity.staff import PASSWORD, staffed
 from tests.service.identity.test_audit import tampered
 from tests.service.sessions import FAILED, session_id
 from tests.serving import serving
@@ -79,8 +79,7 @@ def test_a_certificate_is_signed_at_the_terminal(
     run: Run, sqlite: Databases, stock_of: StockOf, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with stock_of(sqlite).holding(*FAILED) as settings, stores(settings) as storage:
-        staff = staffed(storage, datetime.now(UTC))
-        with_password(storage, "engineer", datetime.now(UTC))
+        staff = staffed(storage, datetime.now(UTC), signing=("engineer",))
         monkeypatch.setenv("IMU_HEALTH_TOKEN", staff.tokens[Role.ENGINEER])
         id = session_id(FAILED[-1])
         with serving(settings) as address:

@@ -13,6 +13,7 @@ from service.app import create_app
 from service.settings import Settings
 from tests.conftest import SettingsHolding
 from tests.databases import Databases, one_engine
+from tests.patience import LONG
 from tests.service.cli.conftest import COMMAND, Run
 from tests.service.sessions import FAILED
 from tests.service.storage.whole import files, rows
@@ -99,7 +100,7 @@ def test_at_a_terminal_the_answer_decides(full: Settings, answer: str, code: int
     command = [sys.executable, str(COMMAND), "db", "downgrade", "0003", "--no-backup", *map(str, where(full))]
     with subprocess.Popen(command, stdin=theirs, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as asked:
         os.write(ours, f"{answer}\n".encode())
-        assert asked.wait(timeout=60) == code
+        assert asked.wait(timeout=LONG) == code
     os.close(ours)
     os.close(theirs)
     assert not list(full.data_folder.glob("*.backup"))

@@ -1,16 +1,22 @@
 """`imu-health flags` against a running service."""
 
 from collections.abc import Iterator
+from datetime import UTC, datetime
 from pathlib import Path
 
 import httpx
 import pytest
 
+from service.flows.flagging.settle import Occasion, raise_flag
+from service.records.flag import Concern, Matter
 from tests.conftest import StockOf
 from tests.databases import Databases
 from tests.service.cli.conftest import Run
 from tests.service.sessions import FAILED, session_id
 from tests.serving import serving
+from tests.stock import stores
+
+NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
 
 
 @pytest.fixture
@@ -24,6 +30,17 @@ def test_open_flags_are_shown(run: Run, address: str) -> None:
     ran = run("flags", "--format", "table", "--server", address)
     assert ran.code == 0
     assert ran.out.splitlines()[1].split()[:3] == ["1", "BA-017", "raised"]
+
+
+def test_more_open_flags_than_a_page_holds_are_all_shown(run: Run, sqlite: Databases, stock_of: StockOf) -> None:
+    with stock_of(sqlite).holding(*FAILED) as settings:
+        with stores(settings) as storage, storage.database.writing() as store:
+            occasion = Occasion(store.units.key("BA-017"), None, NOW)
+            for number in range(1000):
+                raise_flag(store, occasion, Concern(Matter.CAUSE, str(number), 1, "seen"))
+        with serving(settings) as address:
+            assert len(run("flags", "--json", "--server", address).documents) == 1001
+            assert len(run("flags", "--state", "raised", "--json", "--server", address).documents) == 1001
 
 
 def test_a_flag_is_handled_and_then_no_longer_open(run: Run, address: str) -> None:

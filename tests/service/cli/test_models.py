@@ -1,15 +1,23 @@
 """`imu-health models` against a running service."""
 
 from collections.abc import Iterator
+from datetime import UTC, datetime
 
 import pytest
 
+from service.records.model import ModelRevision, Scope
 from tests.conftest import StockOf
 from tests.databases import Databases
 from tests.service.cli.conftest import Run
 from tests.service.grouped import CUBIC, cubic_session
+from tests.service.sessions import session_id
 from tests.serving import serving
+from tests.stock import stores
 
+REVISION = ModelRevision(
+    0, Scope.UNIT, "BA-017", "warm-up", ("A2",), session_id(cubic_session(0, cubic=4 * CUBIC)), None, "K. Ito", "",
+    datetime(2026, 11, 21, 12, tzinfo=UTC),
+)  # fmt: skip
 GROUP = tuple(cubic_session(number, cubic=4 * CUBIC) for number in range(4))
 
 
@@ -34,3 +42,12 @@ def test_what_they_do_not_show_is_refused_on_one_line(run: Run, address: str) ->
     ran = run("models", "accept", "unit", "BA-017", "hysteresis", "--by", "K. Ito", "--server", address)
     assert (ran.code, ran.out, ran.err.count("\n")) == (1, "", 1)
     assert "not among the causes that these sessions show together" in ran.err
+
+
+def test_more_revisions_than_a_page_holds_are_all_shown(run: Run, sqlite: Databases, stock_of: StockOf) -> None:
+    with stock_of(sqlite).holding(GROUP[0]) as settings:
+        with stores(settings) as storage, storage.database.writing() as store:
+            for _ in range(1001):
+                store.models.add(REVISION)
+        with serving(settings) as address:
+            assert len(run("models", "--json", "--server", address).documents) == 1001

@@ -28,7 +28,7 @@ def replicas(postgresql: PostgresDatabases, tmp_path_factory: pytest.TempPathFac
 def test_what_one_stores_the_other_shows(replicas: tuple[str, str]) -> None:
     one, other = replicas
     content = session_bytes()
-    stored = httpx.post(f"{one}/api/v1/sessions", content=content, timeout=60).json()["id"]
+    stored = httpx.post(f"{one}/api/v1/sessions", content=content).json()["id"]
     assert httpx.get(f"{other}/api/v1/sessions/{stored}/file").content == content
     assert httpx.get(f"{other}/readyz").json()["status"] == "ready"
 
@@ -37,7 +37,7 @@ def test_the_same_session_sent_to_both_at_once_is_stored_once(replicas: tuple[st
     content = session_bytes(seed=2)
 
     def send(address: str) -> httpx.Response:
-        return httpx.post(f"{address}/api/v1/sessions", content=content, timeout=60)
+        return httpx.post(f"{address}/api/v1/sessions", content=content)
 
     with ThreadPoolExecutor(2) as both:
         answers = list(both.map(send, replicas))

@@ -1,5 +1,7 @@
 """`imu-health serve` and `db`, as processes of their own."""
 
+import re
+import signal
 import subprocess
 from pathlib import Path
 
@@ -76,3 +78,25 @@ def test_a_setting_that_makes_no_sense_is_named(run: Run, monkeypatch: pytest.Mo
     ran = run("db", "upgrade")
     assert ran.code == 1
     assert "port" in ran.err
+
+
+def printed_at_a_start(folder: Path) -> str:
+    """Everything that a service prints from its start to its end."""
+    command = [COMMAND, "serve", "--port", "0", "--data-folder", folder]
+    environment = {"PATH": f"{COMMAND.parent}:/usr/bin:/bin", "IMU_HEALTH_DIAGNOSIS_WORKERS": "0"}
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment
+    ) as process:
+        assert process.stdout is not None
+        first = process.stdout.readline()
+        process.send_signal(signal.SIGINT)
+        return first + process.stdout.read()
+
+
+def test_a_start_prints_a_link_only_until_somebody_has_an_account(run: Run, tmp_path: Path) -> None:
+    link = re.search(r"make the first account: http://127\.0\.0\.1:\d+/sign-in/\S{43}", printed_at_a_start(tmp_path))
+    assert link is not None
+    assert run("user", "add", "k.ito", "--role", "admin", "--data-folder", tmp_path).code == 0
+    printed = printed_at_a_start(tmp_path)
+    assert "imu-health is ready" in printed
+    assert "sign-in/" not in printed

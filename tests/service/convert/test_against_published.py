@@ -26,7 +26,7 @@ def test_published_parameters_leave_more_than_ours_on_the_same_positions(name, w
     assert np.all(rms(triads(recording), recording.session, recording.g) < known)
 
 
-@pytest.mark.parametrize(("name", "count"), [("imu-tk", 1), ("mpu9150-five", 6), ("ctu-mat", 1), ("kth-mimu", 3)])
+@pytest.mark.parametrize(("name", "count"), [("imu-tk", 1), ("mpu9150-five", 6), ("ctu-mat", 1), ("kth-mimu", 6)])
 def test_held_out_positions_are_met_as_well_as_by_the_usual_fit(name, count):
     found = recordings(name)
     assert len(found) == count
@@ -61,7 +61,7 @@ def test_six_labelled_positions_give_the_published_result_within_our_uncertainty
 
 
 def test_twenty_four_accelerometers_of_one_board_repeat_from_session_to_session():
-    first, second, _ = (triads(r) for r in recordings("kth-mimu"))
+    first, second = (triads(r) for r in recordings("kth-mimu")[:2])
     change = np.array([b.scale / a.scale - 1 for a, b in zip(first, second, strict=True)])
     assert change.std() < 4e-4
 

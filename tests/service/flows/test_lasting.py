@@ -3,7 +3,7 @@ is kept."""
 
 import json
 from dataclasses import replace
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 
 import pytest
 
@@ -19,6 +19,7 @@ from service.records.group import Group, Level
 from service.records.model import ModelRevision, NewLasting, Scope
 from service.records.recomputation import Progress, Recomputation
 from service.storage import Storage
+from service.storage.diagnosis_document import evidence_from_dict, evidence_to_dict
 from tests.conftest import Filled
 from tests.databases import one_engine
 from tests.service.grouped import CUBIC, cubic_session
@@ -151,6 +152,14 @@ def test_a_type_s_and_a_stand_s_units_are_all_asked_for(four: Storage, accepted:
 def test_what_began_at_a_date_is_not_in_the_sessions_before(four: Storage, accepted: ModelRevision) -> None:
     revision = since(accepted, "2023-05-01T09:00:00Z")
     before, after = (model_of([revision], datetime(2023, month, 1, 12, tzinfo=UTC)) for month in (4, 5))
+    assert (len(before.fixed), len(after.fixed)) == (0, 1)
+
+
+@one_engine
+def test_what_an_earlier_version_accepted_without_a_date_is_in_the_sessions_after_it(accepted: ModelRevision) -> None:
+    undated = since(accepted, "")
+    revision = replace(undated, evidence=evidence_from_dict(evidence_to_dict(undated.evidence)))
+    before, after = (model_of([revision], NOW + timedelta(days)) for days in (-1, 1))
     assert (len(before.fixed), len(after.fixed)) == (0, 1)
 
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from estimator import calibrate, read_session
 from service.errors import ConflictError
 from service.flows.accept_session import accept_session
 from service.flows.correct_session import correct_session
@@ -153,14 +154,14 @@ def test_a_unit_that_is_merely_out_of_tolerance_is_judged(storage: Storage) -> N
 
 @pytest.mark.parametrize("slip", ["mV for V", "one channel in mV", "per g", "sign", "exchange"])
 def test_a_corrected_file_is_made_and_stands_for_the_questioned_one(reception: Reception, slip: str) -> None:
-    right = upload(reception.storage, session_bytes(unit="RIGHT"), "right.json", NOW)
+    right = calibrate(read_session(json.loads(session_bytes())))
     asked = upload(reception.storage, slipped(SLIPS[slip][0]), "slip.json", NOW)
     made = correct_session(reception, asked.id, "K. Ito", NOW)
     assert (made.state, made.is_reference) == (RecordState.ACCEPTED, True)
     with reception.storage.database.reading() as store:
         assert store.sessions.get(asked.id).superseded_by == made.id
         assert "Corrected: " in store.sessions.get(made.id).notes
-        scales = [[s.scale.value for s in store.calibrations.get(id).sensors] for id in (made.id, right.id)]
+        scales = [[s.scale.value for s in one.sensors] for one in (store.calibrations.get(made.id), right)]
     assert scales[0] == pytest.approx(scales[1], rel=1e-9)
 
 

@@ -1,16 +1,19 @@
 """Two sessions of a unit beside each other."""
 
+import json
 import re
 
 import httpx
 import numpy as np
 import pytest
 
+from estimator.results import Calibration
 from service.flows.receive import upload
 from service.records.event import Service
 from service.storage import Storage
 from service.views.comparison import compare
 from service.words.comparison import in_common
+from tests.builders import accelerometer_block, true_sensors
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.pages.records import NOON, session_report
@@ -42,6 +45,31 @@ def test_the_change_is_the_difference_and_less_uncertain_on_one_stand(storage: S
     parts = [c.sensor("A3").bias.repeatability or 0 for c in (found.before, found.after)]
     assert found.own["A3", "bias"] == pytest.approx(np.hypot(*parts))
     assert all(own <= (decisions[key].uncertainty or 0) * (1 + 1e-9) for key, own in found.own.items())
+
+
+def diagonal_session(seed: int) -> bytes:
+    """A session whose A2 points along (1, 1, 1)/√3, where the tangents of nearly equal axes may lie far apart."""
+    document = accelerometer_block(8, seed=seed, sensors=true_sensors(8), positions=24)
+    return json.dumps(document | {"started_at": f"2026-0{seed}-01T09:00:00Z"}).encode()
+
+
+def simulated_axes(found: Calibration, rng: np.random.Generator) -> np.ndarray:
+    """(n, 3) what A2's axis could have come out as, by the session's own covariance."""
+    a2, first = found.sensor("A2"), found.names.index("A2.axis_1")
+    own = found.repeatability[first : first + 2, first : first + 2]
+    turns = rng.multivariate_normal(np.zeros(2), own, 40_000, method="cholesky")
+    return np.asarray(a2.axis + turns @ a2.axis_tangents.T)
+
+
+def test_covariances_of_two_axes_are_added_in_one_frame(storage: Storage) -> None:
+    ids = [upload(storage, diagonal_session(seed), "a.json", NOW).id for seed in (1, 3)]
+    with storage.database.reading() as store:
+        found = compare(store, *ids, 2.0)
+    frames = [c.sensor("A2").axis_tangents for c in (found.before, found.after)]
+    assert np.abs(frames[0] - frames[1]).max() > 0.5
+    rng = np.random.default_rng(7)
+    change = simulated_axes(found.after, rng) - simulated_axes(found.before, rng)
+    assert found.own["A2", "axis"] == pytest.approx(np.sqrt(np.linalg.eigvalsh(np.cov(change.T))[-1]), rel=0.02)
 
 
 def test_sessions_on_two_stands_have_no_stand_in_common() -> None:

@@ -14,7 +14,7 @@ SAID = {"by": "K. Ito", "why": "all seen"}
 
 SESSIONS = tuple(
     session_bytes(seed=month, month=month, unit=unit, a3_moved=moved)
-    for unit in ("BA-1", "BA-2", "BB-1")
+    for unit in ("BA-1", "BA-2", "XC-7")
     for month, moved in ((1, 0.0), (4, 200.0))
 )
 

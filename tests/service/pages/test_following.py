@@ -45,6 +45,7 @@ def test_a_session_that_is_diagnosed_is_not_followed(holding: Holding) -> None:
     assert "data-follow" not in text
 
 
+@pytest.mark.usefixtures("patient_readers")
 def test_session_and_card_follow_until_the_diagnosis_is_there(settings: Settings) -> None:
     with stores(settings) as storage:
         upload(storage, CONTENT, "a.json", NOW)

@@ -19,7 +19,7 @@ from tests.service.sessions import session_bytes
 from tests.service.views.test_queries import queries
 
 NOW = datetime(2026, 11, 21, 12, tzinfo=UTC)
-FORMULA = '=HYPERLINK("http://127.0.0.1/","BA-018")'
+FORMULA = '=HYPERLINK("mailto:x","BA-018")'
 
 
 @pytest.fixture
@@ -127,3 +127,11 @@ def test_histories_share_the_sheet_alike(storage: Storage, monkeypatch: pytest.M
         content = fleet_xlsx(store, fleet_report(store, NOW))
     shown = pl.read_excel(io.BytesIO(content), sheet_name="Histories")
     assert sorted(set(shown["Measured, UTC"].to_list())) == [datetime(2026, 4, 1, 9), datetime(2026, 5, 1, 9)]
+
+
+def test_a_simulated_unit_among_measured_ones_is_marked_on_paper(fleet: httpx.Client) -> None:
+    simulated = session_bytes(unit="SIM-1", seed=4, origin="simulated")
+    assert fleet.post("/api/v1/sessions", content=simulated).status_code == 201
+    text = text_of(paper(fleet))
+    assert text.count("SIMULATED") >= 1
+    assert "; 1 of them simulated." in text

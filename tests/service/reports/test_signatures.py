@@ -46,10 +46,7 @@ def storage(settings: Settings) -> Iterator[Storage]:
 @pytest.fixture
 def staff(storage: Storage) -> Staff:
     """One of every role, with passwords."""
-    found = staffed(storage)
-    for login in ("crew", "engineer", "admin"):
-        with_password(storage, login)
-    return found
+    return staffed(storage, signing=("crew", "engineer", "admin"))
 
 
 @pytest.fixture

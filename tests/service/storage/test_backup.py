@@ -34,7 +34,7 @@ from service.storage.schema import upgrade
 from tests.builders import raw_log
 from tests.conftest import SettingsFilled
 from tests.databases import ENGINES, Databases, one_engine
-from tests.service.identity.staff import PASSWORD, staffed, with_password
+from tests.service.identity.staff import PASSWORD, staffed
 from tests.service.sessions import FAILED, session_bytes
 from tests.service.storage.whole import files, rows
 from tests.serving import http_client
@@ -318,8 +318,7 @@ def test_numbers_go_on_after_the_largest(full: Settings, other: Databases, tmp_p
 def test_nobody_is_signed_in_after_a_restore_and_tokens_are_told(
     settings: Settings, storage: Storage, other: Databases, tmp_path: Path
 ) -> None:
-    staff = staffed(storage, NOW)
-    with_password(storage, "crew", NOW)
+    staff = staffed(storage, NOW, signing=("crew",))
     secret, link = sign_in(storage, "crew", PASSWORD, NOW), make_link(storage, "viewer", NOW, "test")
     for revoke, status in ((False, 200), (True, 401)):
         new = Settings(database_url=other.empty(), data_folder=tmp_path / str(revoke), sign_in="required")

@@ -19,6 +19,7 @@ from service.storage.diagnosis_document import (
     read_diagnosis,
     written,
 )
+from service.words.finding import since_together
 from tests.service.diagnosed import ALIASES, TEMPERATURE, UNEXPLAINED, drawn
 from tests.service.findings import earlier_document
 
@@ -54,6 +55,15 @@ def test_a_mixed_up_record_a_course_and_wrong_standard_errors_come_back() -> Non
 def test_an_earlier_version_gave_one_shape_for_all_sensors() -> None:
     (finding,) = read().findings
     assert finding.nonlinear_each == ({"row": 14.0},)
+
+
+@pytest.mark.parametrize(("stored", "read_as"), [("", None), ("2026-03-01T01:30:00+03:00", "2026-02-28T22:30:00Z")])
+def test_an_earlier_version_kept_moments_as_files_state_them(stored: str, read_as: str | None) -> None:
+    together = {"sessions": 9, "e_value": 1e6, "form": "since", "since": stored, "spread": [0.0], "here": 0.99}
+    (finding,) = read(over_sessions=together).findings
+    assert finding.over_sessions is not None
+    assert finding.over_sessions.since == read_as
+    assert since_together(finding.over_sessions).startswith("It began ")
 
 
 def test_an_earlier_version_looked_at_no_session_before() -> None:

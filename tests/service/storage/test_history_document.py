@@ -18,8 +18,16 @@ def test_histories_are_read_as_they_were_written() -> None:
         assert read.log_evidence == pytest.approx(one.log_evidence - one.log_evidence.max(), abs=1e-5)
 
 
+def test_what_was_written_before_leaves_open_whether_aging_ends() -> None:
+    rows = [np.concatenate([[one.span], one.log_tails, one.log_evidence[:, :-2].ravel()]) for one in TOLD]
+    read = unpacked(np.full(1, np.nan, dtype="<f4").tobytes() + np.asarray(rows, dtype="<f4").tobytes())
+    assert read[3].log_tails == pytest.approx(TOLD[3].log_tails)
+    assert read[3].log_evidence[:, :-2] == pytest.approx(TOLD[3].log_evidence[:, :-2])
+    assert np.array_equal(read[3].log_evidence[:, -2:], read[3].log_evidence[:, -4:-2])
+
+
 def test_what_was_written_before_tells_nothing_of_tails() -> None:
-    rows = [np.append(one.span, one.log_evidence) for one in TOLD]
+    rows = [np.append(one.span, one.log_evidence[:, :-2]) for one in TOLD]
     read = unpacked(np.asarray(rows, dtype="<f4").tobytes())
     assert [one.span for one in read] == pytest.approx([one.span for one in TOLD])
     assert not np.any([one.log_tails for one in read])

@@ -1,6 +1,6 @@
 """Those who write come in the order in which they came, and nobody waits for ever."""
 
-from threading import Thread
+from threading import Event, Thread
 from time import sleep
 
 import pytest
@@ -39,6 +39,26 @@ def test_who_waits_too_long_gives_up_and_the_next_comes_all_the_same() -> None:
         pass
     with turns.taken():
         assert len(turns) == 1
+
+
+def test_who_waits_in_a_long_line_that_moves_is_not_refused() -> None:
+    turns, seen = Turns(1.5), list[int]()
+    ends = [Event() for _ in range(8)]
+
+    def take(name: int) -> None:
+        with turns.taken():
+            ends[name].wait(0.25)  # all of them together outlast the patience of one
+            seen.append(name)
+
+    with turns.taken():
+        threads = [Thread(target=take, args=(name,)) for name in range(8)]
+        for place, thread in enumerate(threads, 2):
+            thread.start()
+            while len(turns) < place:
+                sleep(0)
+    for thread in threads:
+        thread.join()
+    assert seen == list(range(8))
 
 
 def test_a_turn_that_ends_in_an_error_is_over() -> None:

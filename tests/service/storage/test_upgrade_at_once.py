@@ -10,6 +10,7 @@ from service.errors import ServiceError
 from service.storage import Database
 from service.storage.schema import upgrade
 from tests.databases import Databases
+from tests.patience import LONG
 
 SCRIPT = """
 import multiprocessing, sys
@@ -33,7 +34,7 @@ for process in processes:
 def test_processes_that_upgrade_an_empty_database_together_all_succeed(databases: Databases) -> None:
     url = databases.empty()
     command = [sys.executable, "-c", SCRIPT, url]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=LONG, check=True)
     assert (done.stdout.split(), done.stderr) == (["0"] * 4, "")
     database = Database(url)
     database.require_ready()

@@ -19,12 +19,13 @@ from service.storage.faults import database_faults
 from service.storage.schema import alone
 from service.storage.waits import Waits
 from tests.databases import Databases, PostgresDatabases
+from tests.patience import LONG
 from tests.service.sessions import session_bytes
 from tests.serving import http_client
 
 SHORT = Waits(lock=0.3, statement=0.5, connect=2.0)
-LONGEST = 8.0
-"""Seconds in which even a busy machine gives up what it gives up after one."""
+LONGEST = LONG / 2
+"""Seconds: what is given up after one is given up within these on any machine."""
 
 
 @contextmanager

@@ -44,7 +44,8 @@ def test_a_drift_brings_the_unit_back_before_its_tolerance(storage: Storage) -> 
     assert found.due < found.reach_50
     assert datetime(2026, 11, 1, tzinfo=UTC) < found.reach_50 < datetime(2027, 9, 1, tzinfo=UTC)
     assert found.risk_at_due == pytest.approx(0.05, abs=0.01)
-    assert found.reason.startswith("A3 bias reaches its tolerance with 10 % probability before")
+    assert found.reason.startswith("The chance that it is out of tolerance reaches 5 % on ")
+    assert found.reason.endswith("A3 bias contributes most.")
 
 
 def test_a_stable_unit_comes_back_after_the_longest_interval_at_the_latest(storage: Storage) -> None:
@@ -114,3 +115,14 @@ def test_a_production_lot_is_recorded_and_taken_back(client: httpx.Client) -> No
     lots = [client.put("/api/v1/units/BA-017/lot", json={"lot": lot}).json()["lot"] for lot in ("2024-07", None)]
     assert lots == ["2024-07", None]
     assert client.put("/api/v1/units/none/lot", json={"lot": "x"}).status_code == 404
+
+
+@one_engine
+def test_a_service_recorded_late_leaves_no_rate_that_two_sessions_made_up(storage: Storage) -> None:
+    """The new reference was read some µg too high, and all that follow lie as much below it: an offset, no drift."""
+    measure(storage, {1: 0.0, 3: 0.0, 5: 0.0, 7: 30.0, 9: 25.0, 10: 25.0})
+    record_service(storage, "BA-017", NewService("adjustment", datetime(2026, 6, 15, tzinfo=UTC)), NOW)
+    trend = next(t for t in outlook(storage, NOW).trends if (t.sensor, t.parameter) == ("A3", "bias"))
+    rate, sigma = trend.rate_per_year / trend.tolerance, trend.rate_sigma / trend.tolerance
+    assert abs(rate) < 0.1
+    assert abs(rate) < sigma

@@ -35,7 +35,7 @@ PAGES: dict[str, tuple[int, Page]] = {
     "sessions": (1, lambda store: store.sessions.page(None, 0, 100)),
     "flags": (1, lambda store: store.flags.page(FlagQuery())),
     "flags of a unit": (1, lambda store: store.flags.page(FlagQuery("BA-000"))),
-    "outlook": (2, lambda store: outlook_of(store, "BA-000", NOW)),
+    "outlook": (4, lambda store: outlook_of(store, "BA-000", NOW)),
     "due dates": (1, lambda store: store.outlooks.due(100)),
     "standouts": (1, lambda store: fleet_standouts(store, 6)),
     "stands": (1, stand_conditions),

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from estimator.planning import Missing
-from service.words.due import why_due
+from service.records.outlook import DueBasis, DueRule
+from service.words.due import reason_of
 from service.words.missing import missing_in_words
 
 
@@ -18,4 +19,5 @@ def test_positions_that_are_done(done: int, said: str) -> None:
 
 @pytest.mark.parametrize(("days", "said"), [(1.0, "every 1 day at least"), (90.0, "every 90 days at least")])
 def test_days_between_calibrations(days: float, said: str) -> None:
-    assert said in why_due([], None, datetime(2026, 1, 1, tzinfo=UTC), days, is_longest=True)
+    basis = DueBasis(DueRule.INTERVAL, datetime(2026, 1, 1, tzinfo=UTC), interval_days=days)
+    assert said in reason_of(basis, None)

@@ -13,13 +13,11 @@ from estimator.errors import SessionError
 from service.errors import ServiceError
 from service.log import log
 from service.metrics import Metrics
-from service.storage.faults import DATABASE_FAULTS
+from service.storage.failed import AT_FAULT
 
-FORESEEN = (ServiceError, SessionError, *DATABASE_FAULTS)
-"""A store that is away or refuses, a file that cannot be read: told in one line."""
-AT_FAULT = "the program failed at it: see the log"
-"""In place of Python's words."""
-
+FORESEEN = (ServiceError, SessionError)
+"""A store that is away or full, a file that cannot be read: told in one line. What else a database refuses is a fault
+of the program."""
 Alone = Callable[[str, str], AbstractContextManager[None]]
 """How one piece of work is done: what is done, and on which stand or unit."""
 
@@ -63,6 +61,19 @@ def ending_here(doing: str, place: str) -> Iterator[Met]:
         outcome.failure = met.failure
     except FORESEEN as fault:
         outcome.failure = Failure(type(fault).__name__, str(fault))
+
+
+@contextmanager
+def kept(keep: Callable[[str], None]) -> Iterator[None]:
+    """A piece of work whose failure is kept with its reason, and then goes its way."""
+    try:
+        yield
+    except FORESEEN as fault:
+        keep(str(fault))
+        raise
+    except Exception:
+        keep(AT_FAULT)
+        raise
 
 
 class Guard:

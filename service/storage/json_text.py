@@ -1,0 +1,20 @@
+"""JSON as the database keeps it: the one place where what the estimator found becomes text."""
+
+import json
+from typing import Any
+
+import numpy as np
+
+
+def json_text(document: Any, *, finite: bool = True) -> str:
+    """The document without spaces, a scalar of numpy as the plain bool, int or float that it is.
+
+    ValueError where a number is not finite, which PostgreSQL does not take, unless ``finite`` is false.
+    """
+    return json.dumps(document, separators=(",", ":"), allow_nan=not finite, default=_plain)
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, np.generic):
+        return value.item()
+    raise TypeError(f"{type(value).__name__} is not kept as JSON")

@@ -1,0 +1,27 @@
+"""Many who upload at once to one SQLite database: each waits for its turn, and nobody is refused."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import httpx
+
+from service.settings import Settings
+from tests.databases import one_engine
+from tests.service.sessions import session_bytes
+from tests.serving import TLS, serving
+
+CLIENTS, EACH = 32, 2
+
+
+@one_engine
+def test_nobody_of_thirty_two_is_refused(settings: Settings) -> None:
+    def send(number: int) -> list[int]:
+        unit = f"BA-{number:03}"
+        with httpx.Client(base_url=address, timeout=None, verify=TLS) as client:
+            return [
+                client.post("/api/v1/sessions", content=session_bytes(unit=unit, seed=k, month=k, m=3)).status_code
+                for k in range(1, EACH + 1)
+            ]
+
+    with serving(settings) as address, ThreadPoolExecutor(CLIENTS) as pool:
+        answers = list(pool.map(send, range(CLIENTS)))
+    assert answers == [[201] * EACH] * CLIENTS
