@@ -13,7 +13,7 @@ unexport PYTHONDONTWRITEBYTECODE
 # Tests wait now and then, for a browser or a process: one worker more than cores keeps these at work.
 WORKERS ?= $(shell n=$$(nproc 2>/dev/null || echo 2); echo $$((n < 7 ? n + 1 : 8)))
 
-.PHONY: setup run test lint format words bench papers study backtest stands tails pictures docs browser lock clean
+.PHONY: setup run test lint format words bench papers study backtest dates stands tails lives fuzz-numbers pictures docs browser lock clean
 
 setup: $(STAMP)
 
@@ -68,11 +68,22 @@ study: setup
 backtest: setup
 	$(BIN)/python -m benchmarks.backtest --seed 9
 
+dates: setup
+	$(BIN)/python -m benchmarks.backtest.dates --seed 9
+
 stands: setup
 	$(BIN)/python -m benchmarks.stands
 
 tails: setup
 	$(BIN)/python -m benchmarks.tails
+
+fuzz-numbers: setup
+	$(BIN)/python -m benchmarks.fuzz.numbers
+
+# Whole lives of a running service by chance, on both databases side by side.
+MINUTES ?= 60
+lives: setup
+	$(BIN)/python -m tests.lives --minutes $(MINUTES)
 
 pictures: setup browser
 	IMU_HEALTH_PICTURES=1 $(BIN)/pytest tests/end_to_end/browser/test_pictures.py tests/docs

@@ -4,19 +4,24 @@ import gc
 import os
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
-from functools import cache
+from functools import cache, partialmethod
 
 import httpx
 import pytest
 from argon2 import PasswordHasher
 from argon2.profiles import CHEAPEST
+from hypothesis import HealthCheck
+from hypothesis import settings as hypothesis_settings
 
 from service.app import create_app
+from service.background.read_diagnosis import Reader
+from service.background.read_group import GroupReader
 from service.identity import passwords
 from service.settings import Settings
 from service.storage import Storage
 from tests.databases import ENGINES, Databases, PostgresDatabases, postgres_databases, sqlite_databases
 from tests.memory import write_into_memory
+from tests.patience import LONG
 from tests.serving import http_client
 from tests.stock import Fill, Stock, stores
 
@@ -32,8 +37,17 @@ Filled = Callable[[Callable[[Storage], object]], Storage]
 StockOf = Callable[[Databases], Stock]
 
 
+def be_patient() -> None:
+    """Where nothing else is said httpx gives up after 5 s, and Hypothesis after 0.2 s; from now on neither does."""
+    for phase in ("connect", "read", "write", "pool"):
+        setattr(httpx._config.DEFAULT_TIMEOUT_CONFIG, phase, LONG)
+    hypothesis_settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+    hypothesis_settings.load_profile("patient")
+
+
 def pytest_configure(config: pytest.Config) -> None:
-    """The first process chooses for all workers."""
+    """How long is waited; where is written is chosen by the first process for all workers."""
+    be_patient()
     if not hasattr(config, "workerinput"):
         write_into_memory()
 
@@ -51,6 +65,14 @@ def light_passwords() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(passwords, "_hasher", cache(lambda: PasswordHasher.from_parameters(CHEAPEST)))
         yield
+
+
+@pytest.fixture
+def patient_readers(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whoever asks for what the workers make is let wait until it is there; the service itself asks the clients of a
+    slow machine to come again."""
+    for reader, name in ((Reader, "read"), (Reader, "until_dated"), (GroupReader, "read")):
+        monkeypatch.setattr(reader, name, partialmethod(getattr(reader, name), patience=LONG))
 
 
 @pytest.fixture(scope="session")

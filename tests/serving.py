@@ -14,6 +14,7 @@ from fastapi import FastAPI
 from service.app import create_app
 from service.boundary.server import address_of, server_config
 from service.settings import Settings
+from tests.patience import LONG
 
 TLS = ssl.create_default_context()
 """Read once: every client that reads the certificates of this machine anew takes longer for it than for its test."""
@@ -79,5 +80,5 @@ def serving(settings: Settings) -> Iterator[str]:
 @contextmanager
 def http_client(app: FastAPI) -> Iterator[httpx.Client]:
     """HTTP to a running application."""
-    with running(app) as address, httpx.Client(base_url=address, timeout=60, verify=TLS) as client:
+    with running(app) as address, httpx.Client(base_url=address, timeout=LONG, verify=TLS) as client:
         yield client

@@ -60,8 +60,8 @@ No file that somebody uploads may end, freeze or bloat the service. Five things 
 * **Nothing long is held.** An upload of more than {IN_MEMORY // 1024} KiB goes to disk as it comes, hashed and
   counted on the way; the file that is kept is that one, synced and renamed. The reading process opens it there. What
   was not kept is removed with the request, or by the hourly look.
-* **Few at once.** So many files are read at the same time; some more wait up to ten seconds; the others are answered
-  503 with `Retry-After`.
+* **Few at once.** So many files are read at the same time, one place fewer for one account or address; some more wait
+  up to ten seconds; the others are answered 503 with `Retry-After`.
 * **The bytes stay.** What is stored is the upload, unchanged, under its hash.
 
 The process is a fork of one that has the readers loaded. An ordinary file of 240 rows is read in {_times(ordinary)}
@@ -97,6 +97,7 @@ How long things take depends on the machine and on what else it does; memory doe
 
 `tests/service/ingest/test_hostile.py` damages valid files of every format at random: each is read, or refused with a
 reason. `python -m benchmarks.fuzz` does the same guided by the code that it reaches, for as long as it is let.
+`make fuzz-numbers` puts extreme numbers into every field ([bounds](../session-file.md#which-numbers-are-taken)).
 """
 
 

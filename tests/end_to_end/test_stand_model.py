@@ -3,8 +3,7 @@ on it is computed again beside the requests, and the pages say what that changed
 
 import json
 import re
-from collections.abc import Callable, Iterator
-from time import monotonic, sleep
+from collections.abc import Iterator
 from typing import Any
 
 import httpx
@@ -18,13 +17,12 @@ from tests.blind.world import Effect
 from tests.blind.write import session_file
 from tests.databases import one_engine
 from tests.estimator.groups.cases import worlds
+from tests.patience import until
 from tests.serving import http_client
 
 UNITS = ("BB-1", "BB-2")
 SIZE = 2.5e-5
 ECCENTRIC = [Effect("beta-eccentricity", (SIZE, -SIZE))]
-PATIENCE = 120.0
-"""Seconds: eight diagnoses and the pooling take some ten on a free machine."""
 
 
 def contents() -> Iterator[bytes]:
@@ -33,15 +31,6 @@ def contents() -> Iterator[bytes]:
         readings = measure(world, ECCENTRIC, np.random.default_rng(80 + number))[0]
         document = session_file(world, readings)
         yield json.dumps(document | {"unit": UNITS[number % 2], "unit_type": "BB"}).encode()
-
-
-def awaited(look: Callable[[], Any]) -> Any:
-    """What a look gives once it gives something."""
-    end = monotonic() + PATIENCE
-    while not (found := look()):
-        assert monotonic() < end
-        sleep(0.2)
-    return found
 
 
 @pytest.fixture
@@ -67,16 +56,16 @@ def test_found_accepted_computed_again_and_shown(bench: httpx.Client) -> None:
         told: dict[str, Any] = bench.get(answer).json()
         return told if told.get("sessions") == 8 else None
 
-    (finding,) = awaited(found)["findings"]
+    (finding,) = until(found)["findings"]
     assert (finding["cause"], finding["level"]) == ("beta-eccentricity", "stand")
-    assert f"The sessions on stand {stand} show together" in awaited(lambda: bench.get("/api/v1/flags").text)
+    assert f"The sessions on stand {stand} show together" in until(lambda: bench.get("/api/v1/flags").text)
     made = bench.post(f"{answer}/accept", json={"cause": finding["cause"], "by": "K. Ito"}).raise_for_status().json()
 
     def done() -> list[dict[str, Any]] | None:
         each: list[dict[str, Any]] = bench.get(f"/api/v1/models/{made['id']}").json()["recomputations"]
         return each if all(one["state"] == "done" for one in each) else None
 
-    assert [(one["unit"], one["outcome"]["recomputed"]) for one in awaited(done)] == [("BB-1", 4), ("BB-2", 4)]
+    assert [(one["unit"], one["outcome"]["recomputed"]) for one in until(done)] == [("BB-1", 4), ("BB-2", 4)]
     page = words(bench, f"/models/{made['id']}")
     assert "8 sessions of 2 of 2 units computed again" in page
     assert re.search(r"BB-1 4 of 4 [a-z ]+ of \S+ by .*?BB-2 4 of 4", page)

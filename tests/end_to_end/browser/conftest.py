@@ -16,6 +16,7 @@ from service.flows.receive import upload as receive
 from tests.builders import Document, accelerometer_block, arbitrary_orientations, gyro_block, true_sensors
 from tests.conftest import StockOf
 from tests.databases import Databases
+from tests.patience import LONG
 from tests.service.diagnosed import swaying_stand
 from tests.service.recordings import recording_document
 from tests.service.sessions import session_bytes
@@ -70,7 +71,7 @@ def earlier() -> Iterator[Document]:
 
 def upload(url: str, document: Document) -> str:
     """Uploads a session and returns its id."""
-    answer = httpx.post(f"{url}/api/v1/sessions", content=json.dumps(document), timeout=60)
+    answer = httpx.post(f"{url}/api/v1/sessions", content=json.dumps(document))
     assert answer.status_code == 201, answer.text
     return str(answer.json()["id"])
 
@@ -126,6 +127,7 @@ class Witness:
 def opened(browser: Browser, width: int = 1280, **options: object) -> Iterator[tuple[BrowserContext, Page]]:
     """A fresh browser context with one page."""
     context = browser.new_context(viewport={"width": width, "height": 900}, **options)  # type: ignore[arg-type]
+    context.set_default_timeout(1000 * LONG)
     yield context, context.new_page()
     context.close()
 

@@ -84,7 +84,7 @@ def send(page: Page, heading: str, **fields: str) -> None:
 
 
 def test_readings_in_mv_are_put_right_by_one_button(crew: str, page: Page) -> None:
-    uploaded(page, crew, slipped(times(1000.0), unit="MV-1"))
+    uploaded(page, crew, slipped(times(1000.0), unit="MILLI-1"))
     assert "Questioned" in head(page)
     assert "the readings are in another unit than the file says, such as mV for V" in head(page)
     send(page, "Put the file right")
@@ -92,24 +92,24 @@ def test_readings_in_mv_are_put_right_by_one_button(crew: str, page: Page) -> No
 
 
 def test_a_faulty_file_as_the_first_session_sets_no_reference(crew: str, page: Page) -> None:
-    uploaded(page, crew, slipped(exchanged, unit="FF-1"))
+    uploaded(page, crew, slipped(exchanged, unit="EXCH-1"))
     assert "Questioned" in head(page)
     assert "their channels are exchanged" in head(page)
-    page.goto(f"{crew}/units/FF-1")
+    page.goto(f"{crew}/units/EXCH-1")
     assert "No session of this unit is accepted" in page.locator("main").inner_text()
-    uploaded(page, crew, session_bytes(unit="FF-1", seed=2, month=4))
+    uploaded(page, crew, session_bytes(unit="EXCH-1", seed=2, month=4))
     assert "Reference set" in head(page)
 
 
 def test_a_first_session_that_turns_out_bad_gives_way_to_a_better_reference(crew: str, page: Page) -> None:
     for month, moved in ((1, 300.0), (3, 0.0), (5, 0.0)):
-        uploaded(page, crew, session_bytes(unit="BF-1", seed=month, month=month, a3_moved=moved))
+        uploaded(page, crew, session_bytes(unit="FIRST-1", seed=month, month=month, a3_moved=moved))
     assert "Unfit" in head(page)
-    page.goto(f"{crew}/units/BF-1")
+    page.goto(f"{crew}/units/FIRST-1")
     page.locator("#sessions tbody th a").nth(1).click()
     send(page, "Make this session the reference", why="the first was measured warm")
     assert "Chosen as the reference" in head(page)
-    page.goto(f"{crew}/units/BF-1")
+    page.goto(f"{crew}/units/FIRST-1")
     assert "Fit" in head(page)
     assert "The session of 1 Mar 2026 is the reference that A3 is judged against now." in page.inner_text("main")
 
@@ -149,7 +149,7 @@ def test_a_corrected_file_that_names_nothing_is_asked_which_of_the_two_counts(cr
 
 def test_a_unit_mounted_otherwise_by_two_degrees_is_fit(crew: str, page: Page) -> None:
     for month, turn in ((3, Rotation.identity()), (5, LEANING)):
-        uploaded(page, crew, seated(turn, "RM-1", month, month, "S9"))
+        uploaded(page, crew, seated(turn, "RM-1", month, 90 + month, "S9"))
     assert "Fit" in head(page)
     said = page.locator("p.line", has_text="The whole block turned by").inner_text()
     assert "turned by 1.9999" in said or "turned by 2.0000" in said

@@ -14,7 +14,9 @@ pytestmark = pytest.mark.browser
 @pytest.mark.parametrize("width", [1280, 390])
 def test_a_workbook_of_ones_own_becomes_a_session(chromium: Browser, site: Site, tmp_path: Path, width: int) -> None:
     own, witness = tmp_path / "own.xlsx", Witness()
-    own.write_bytes(tables.xlsx_table(tables.own_document()))
+    document = tables.own_document()
+    document["table"]["A1"][0] += width * 1e-9  # the same readings under another serial number would be asked about
+    own.write_bytes(tables.xlsx_table(document))
     with opened(chromium, width) as (_, page):
         witness.watch(page)
         page.goto(f"{site.url}/upload")

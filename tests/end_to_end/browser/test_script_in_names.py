@@ -68,7 +68,7 @@ UNIT = f"U {SCRIPT} {TEMPLATE}"
 @pytest.fixture
 def planted(settings: Settings) -> Iterator[Planted]:
     """A service that holds nothing but hostile names."""
-    with serving(settings) as url, httpx.Client(base_url=url, timeout=60) as client:
+    with serving(settings) as url, httpx.Client(base_url=url) as client:
         ids = []
         for month in (1, 3, 5):
             content = json.dumps(hostile(UNIT, f"2026-0{month}-01T09:00:00Z"))
@@ -120,7 +120,7 @@ def test_the_tip_of_a_mark_shows_a_name_as_text(chromium: Browser, planted: Plan
 
 def test_a_paper_prints_a_name_as_it_is(planted: Planted) -> None:
     for path in planted.papers:
-        answer = httpx.get(planted.url + path, timeout=60)
+        answer = httpx.get(planted.url + path)
         assert answer.status_code == 200, path
         reader = PdfReader(BytesIO(answer.content))
         printed = "".join(page.extract_text() for page in reader.pages)

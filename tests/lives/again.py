@@ -1,0 +1,117 @@
+"""The same records once more: uploaded in order of their dates to a fresh service, and restored from a backup."""
+
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from service.app import utc_now
+from service.background.watch_fleet import look
+from service.metrics import Metrics
+from service.settings import Settings
+from tests.databases import Databases
+from tests.lives.quiet import differences, state, wait_until_quiet
+from tests.lives.service import Service
+from tests.lives.world import FindError, World, opened
+from tests.stock import stores
+
+BY = {"by": "K. Ito", "why": "as before"}
+MOST = 12
+"""Differences that are told of one comparison."""
+
+
+def settle(world: World) -> None:
+    """Takes back what depends on when it was said: tolerances hold from then on, and so do models. Then what is done
+    every hour is done at once, and once more, for the first time tells types what their units teach."""
+    for session in world.sessions("questioned"):
+        world.send(f"/sessions/{session['id']}/withdraw", BY)
+    for model in world.listed("models"):
+        world.send(f"/models/{model['id']}/withdraw", BY)
+    wait_until_quiet(world)
+    if world.is_dated:
+        for serial in world.units():
+            world.send(f"/units/{quote(serial, safe='')}/recalibrate")
+        wait_until_quiet(world)
+    settings = Settings(database_url=world.service.database, data_folder=world.service.folder / "data")
+    with stores(settings) as storage:
+        for _ in range(2):
+            if not look(storage, utc_now, Metrics()):
+                raise FindError("the hourly look at the fleet failed")
+    wait_until_quiet(world)
+
+
+def same_of_the_records(world: World, databases: Databases, folder: Path) -> None:
+    """What is known is a function of the accepted records, whatever their order and detours."""
+    settle(world)
+    url = databases.migrated()
+    with opened(Service(url, folder / "fresh"), world.chance.randrange(2**31)) as fresh:
+        _replay(world, fresh)
+        _replay_types(world, fresh)
+        fresh.is_dated = world.is_dated
+        settle(fresh)
+        _compare(state(world), state(fresh), "the same records in order of their dates")
+        world.service.processor += fresh.service.count_processor()
+    databases.drop(url)
+
+
+def same_of_the_backup(world: World, databases: Databases, folder: Path) -> None:
+    """A backup that is made while the service runs is whole, and restores to the same."""
+    file, url = folder / "life.backup", databases.empty()
+    before, restored = state(world), Service(url, folder / "restored")
+    steps = (
+        ("backup", str(file), *world.service.where),
+        ("backup", "verify", str(file)),
+        ("restore", str(file), *restored.where),
+    )
+    for arguments in steps:
+        code, told = world.service.command(*arguments)
+        if code:
+            raise FindError(f"imu-health {' '.join(arguments)} → {code}: {told}")
+    with opened(restored, 0) as again:
+        again.http.headers.update({k: v for k, v in world.http.headers.items() if k == "authorization"})
+        wait_until_quiet(again)
+        _compare(before, state(again), "restored from a backup")
+        world.service.processor += restored.count_processor()
+    databases.drop(url)
+
+
+def _compare(one: dict[str, Any], other: dict[str, Any], what: str) -> None:
+    found = differences(one, other)
+    if found:
+        raise FindError(f"{what}: {len(found)} differences\n" + "\n".join(found[:MOST]))
+
+
+def _replay(world: World, fresh: World) -> None:
+    counted = sorted(world.sessions("accepted"), key=lambda one: (one["started_at"] or "", one["id"]))
+    for session in counted:
+        content = world.ask("GET", f"/api/v1/sessions/{session['id']}/file").content
+        params = {"check": "true"} if session["is_check"] else {}
+        answer = fresh.ask("POST", "/api/v1/sessions", files={"file": (session["filename"], content)}, params=params)
+        if answer.status_code != 201 or answer.json()["id"] != session["id"]:
+            raise FindError(f"{session['id']} uploaded again → {answer.status_code}: {answer.text[:400]}")
+        _bring_to_state(fresh, session)
+    for unit, service in world.services.values():
+        if unit in fresh.units():
+            fresh.send(f"/units/{quote(unit, safe='')}/services", service)
+    known = {session["id"] for session in counted}
+    for id in (id for id in world.chosen if id in known):
+        unit = next(session["unit"] for session in counted if session["id"] == id)
+        fresh.send(f"/units/{quote(unit, safe='')}/reference", BY | {"session": id})
+
+
+def _bring_to_state(fresh: World, session: dict[str, Any]) -> None:
+    now = fresh.get(f"/sessions/{session['id']}")
+    if now["state"] == "questioned":
+        fresh.send(f"/sessions/{session['id']}/accept", BY)
+    if now["stage"] != session["stage"]:
+        fresh.send(f"/sessions/{session['id']}/stage", {"by": BY["by"], "stage": session["stage"]}, "PUT")
+
+
+def _replay_types(world: World, fresh: World) -> None:
+    for kind in world.listed("unit-types"):
+        path = f"/unit-types/{quote(kind['name'], safe='')}"
+        new = {name: kind[name] for name in ("tolerances", "gyro_tolerances", "maximum_interval_days")}
+        if new["tolerances"] is not None:
+            fresh.send(path, new, "PUT")
+    for serial in fresh.units():
+        lot = world.get(f"/units/{quote(serial, safe='')}")["summary"]["lot"]
+        fresh.send(f"/units/{quote(serial, safe='')}/lot", {"lot": lot}, "PUT")

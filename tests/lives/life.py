@@ -1,0 +1,103 @@
+"""One life: a machine that takes steps by chance on a running service, and what must hold after each and at the end."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from hypothesis import HealthCheck, Phase, assume, seed, settings
+from hypothesis import strategies as st
+from hypothesis.stateful import initialize, invariant, run_state_machine_as_test
+
+from tests.databases import Databases
+from tests.lives.again import same_of_the_backup, same_of_the_records
+from tests.lives.invariants import log_is_clean, look_around, pages_agree, walk
+from tests.lives.quiet import wait_until_quiet
+from tests.lives.records import Records
+from tests.lives.service import Service
+from tests.lives.uploads import Uploads
+from tests.lives.works import Works
+from tests.lives.world import World, opened
+from tests.service.receiver import receiver
+
+NOBODY = "127.0.0.1:9"
+"""Where nobody listens."""
+FIRST = (("LV-101", 0), ("LV-101", 2), ("FL-790", 0))
+"""What is on record when a life begins."""
+LOOKS = 4
+"""Addresses that are read after every step."""
+
+
+@dataclass(frozen=True)
+class Size:
+    """How much is lived, and how much of it is looked at in the end."""
+
+    steps: int
+    pages: int
+    """And as many answers to programs."""
+    ends: tuple[Callable[[World, Databases, Path], None], ...] = (same_of_the_backup, same_of_the_records)
+    """With what it is compared in the end."""
+    prints: bool = True
+    """Whether papers are looked at."""
+
+
+LONG = Size(40, 500)
+SHORT = Size(8, 12, (same_of_the_records,), prints=False)
+RESTORED = replace(SHORT, ends=(same_of_the_backup,))
+"""As short, with the other end."""
+
+
+class Life(Uploads, Records, Works):
+    """A service's life, step by step."""
+
+    @initialize(drawn=st.integers(0, 2**32))
+    def begins(self, drawn: int) -> None:
+        """Hypothesis begins with the plainest of all lives, in which every step is the first rule."""
+        assume(drawn)
+        for serial, number in FIRST:
+            self.sends(serial=serial, number=number, kind="json", odd=[], is_check=False)
+
+    @invariant()
+    def holds(self) -> None:
+        """After every step."""
+        self.world.counts["steps"] += 1
+        pages_agree(self.world)
+        look_around(self.world, LOOKS)
+        log_is_clean(self.world)
+
+
+def live(world: World, number: int, size: Size) -> None:
+    """So many steps by the seed of a number."""
+    machine = seed(number)(type("OneLife", (Life,), {"world": world}))
+    chosen = settings(
+        max_examples=1,
+        stateful_step_count=size.steps,
+        phases=[Phase.generate],
+        database=None,
+        deadline=None,
+        suppress_health_check=list(HealthCheck),
+    )
+    run_state_machine_as_test(machine, settings=chosen)
+
+
+def end(world: World, databases: Databases, folder: Path, size: Size) -> None:
+    """All that must hold once a life is over."""
+    wait_until_quiet(world)
+    walk(world, size.pages)
+    pages_agree(world, everything=True)
+    log_is_clean(world)
+    for compared in size.ends:
+        compared(world, databases, folder)
+    log_is_clean(world)
+
+
+def whole_life(databases: Databases, folder: Path, number: int, size: Size, told: Callable[[World], None]) -> None:
+    """A life and its end on a database of its own; whoever wants to know of it is told of its world."""
+    url = databases.migrated()
+    try:
+        with receiver() as hook, opened(Service(url, folder / "life", (hook.host, NOBODY)), number) as world:
+            told(world)
+            world.is_short = not size.prints
+            live(world, number, size)
+            end(world, databases, folder, size)
+    finally:
+        databases.drop(url)
