@@ -128,7 +128,7 @@ def simulate_files(
     alpha: Alpha = 40.0,
     positions: Annotated[int, typer.Option("--positions", "-n", min=3, max=360, help="Positions a run.")] = 24,
     sessions: Annotated[int, typer.Option(min=1, max=500, help="Sessions, two months apart.")] = 1,
-    seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same files.")] = 1,
+    seed: Annotated[int, typer.Option(min=0, help="The same seed and serial number give the same files.")] = 1,
     noise: Noise = None,
     drift: Drifts = None,
     lever_arm: Levers = None,
@@ -142,10 +142,10 @@ def simulate_files(
 ) -> None:
     """Write session files of a simulated block: six accelerometers on a two-axis stand unless told otherwise.
 
-    `in-service` is a flight of the block that the same seed puts on the stand, a month after each of its sessions;
-    its drift shows from the first on. `arbitrary-orientations` is of accelerometers and as many rate gyros, held still
-    in so many positions. `rotation-alignment` and `rate-table` are of three accelerometers and three gyros on a
-    turntable; there only the bias drifts, of A1 and A2, the axes x and y. --json prints the truth.
+    `in-service` is a flight of the block that the same seed and serial number put on the stand, a month after each of
+    its sessions; its drift shows from the first on. `arbitrary-orientations` is of accelerometers and as many rate
+    gyros, held still in so many positions. `rotation-alignment` and `rate-table` are of three accelerometers and three
+    gyros on a turntable; there only the bias drifts, of A1 and A2, the axes x and y. --json prints the truth.
 
     --hide puts a cause of the catalogue into the last session, for `imu-health diagnose` to find. Neither the file nor
     --json tells it; --answer does, and with the same options and seed it can be had later. Every file says that it is
@@ -167,7 +167,7 @@ def simulate_files(
     if warming and programme != TWO_AXIS_STAND:
         raise typer.BadParameter(f"--warming: {programme} records no temperature; {TWO_AXIS_STAND} does")
     wish = read_wish(hide, strength, sensor, answer, programme)
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng([seed, *unit.encode()])
     if programme == ARBITRARY_ORIENTATIONS:
         schedule = orientations(unit, sensors, positions, rng)
     else:

@@ -16,13 +16,10 @@ from service.words.conditions import Condition, condition_of
 from service.words.finding import standard_errors
 from service.words.group import over
 from service.words.group_finding import since_in_words
-from service.words.recomputations import CANCELLED, GIVEN_UP, moved_in_words, progress_of
+from service.words.recomputations import left_in_words, moved_in_words, progress_of
 
 HOMES = {Scope.UNIT: "/units/", Scope.UNIT_TYPE: "/unit-types/", Scope.STAND: "/stands/"}
 """Where the page of a subject is."""
-
-WHY_NOT = {Progress.GIVEN_UP: GIVEN_UP, Progress.CANCELLED: CANCELLED}
-"""Why a unit's sessions are as before."""
 
 
 @dataclass(frozen=True)
@@ -115,6 +112,6 @@ def _moved(found: Sequence[Recomputation]) -> Iterator[MovedRow]:
 def _unit(one: Recomputation) -> UnitRow:
     told = one.outcome
     if told is None:
-        return UnitRow(one.unit, one.state.value, WHY_NOT.get(one.state, ""))
+        return UnitRow(one.unit, one.state.value, left_in_words(one))
     left = f", {told.left} cannot be" if told.left else ""
     return UnitRow(one.unit, f"{told.recomputed} of {told.sessions}{left}", moved_in_words(told.furthest))

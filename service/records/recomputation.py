@@ -79,3 +79,5 @@ class Recomputation:
     done_at: datetime | None
     outcome: Recomputed | None
     """None until it is done."""
+    failed: str
+    """Why the last try failed; empty where none did."""

@@ -6,7 +6,11 @@ from service.measures import COVERAGE, HARD, THIN, Measure, decimals, deviation_
 from service.records.recomputation import MovedParameter, Progress, Recomputation
 from service.words.names import PARAMETER_NAMES
 
-GIVEN_UP = "The program failed at it, several times: its sessions keep what they had."
+GIVEN_UP = (
+    "The program failed at it, several times: its sessions keep what they had. An administrator can try again: see "
+    "Failed work on the page Jobs."
+)
+AGAIN = "The last try failed: {why}. It is tried again by itself."
 CANCELLED = "Cancelled before its turn: its sessions keep what they had."
 UNTOUCHED = "no parameter moved"
 
@@ -22,6 +26,17 @@ def progress_of(found: Sequence[Recomputation]) -> str:
     verdicts = f"the verdict of {_counted(moved, 'session')} is another" if moved else "no verdict moved"
     still = f" {_counted(waiting, 'unit')} still to come." if waiting else ""
     return f"{_counted(sessions, 'session')} of {units} computed again: {verdicts}.{still}"
+
+
+def left_in_words(one: Recomputation) -> str:
+    """Why a unit's sessions are as before; empty where its turn has not come."""
+    match one.state:
+        case Progress.GIVEN_UP:
+            return GIVEN_UP
+        case Progress.CANCELLED:
+            return CANCELLED
+        case _:
+            return AGAIN.format(why=one.failed.rstrip(".")) if one.failed else ""
 
 
 def moved_in_words(moved: MovedParameter | None) -> str:

@@ -154,6 +154,7 @@ class RecomputationSchema(BaseModel):
     state: Progress = Field(description="`waiting`, `done`, or `given up`: then its sessions keep what they had.")
     done_at: datetime | None = Field(description="When, UTC; null while it waits.")
     outcome: RecomputedSchema | None = Field(description="What became of its sessions; null until it is done.")
+    failed: str = Field(description="Why the last try failed; empty where none did.")
 
 
 class ModelAndRecomputations(ModelSchema):

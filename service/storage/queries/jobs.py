@@ -152,6 +152,8 @@ class Jobs(Queries):
         if row is None:  # asked for before jobs were kept
             return
         job = _record(row)
+        if job.done >= job.total:  # a unit that was given up, and tried again
+            return
         self.advance(job, job.cursor, piece)
         if job.is_open and job.done + 1 >= job.total:
             self.end(job.id, JobState.DONE, now)

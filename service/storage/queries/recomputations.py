@@ -64,9 +64,11 @@ class Recomputations(Queries):
         self._session.execute(update(RecomputationRow).where(*_of(task)).values(failed=why))
 
     def try_again(self) -> int:
-        """What failed and was not given up is tried at once; how many units that are."""
-        own = (RecomputationRow.state == Progress.WAITING, RecomputationRow.failed.is_not(None))
-        free = update(RecomputationRow).where(*own).values(claimed_until=None, attempts=0, failed=None)
+        """What failed is tried at once, also what was given up; how many units that are."""
+        failed = (RecomputationRow.state == Progress.WAITING) & RecomputationRow.failed.is_not(None)
+        own = failed | (RecomputationRow.state == Progress.GIVEN_UP)
+        anew = {"state": Progress.WAITING, "claimed_until": None, "attempts": 0, "failed": None, "done_at": None}
+        free = update(RecomputationRow).where(own).values(**anew)
         return len(self._session.scalars(free.returning(RecomputationRow.unit_id)).all())
 
     def give_up(self, task: Task, now: datetime) -> None:
@@ -94,7 +96,13 @@ class Recomputations(Queries):
         query = select(RecomputationRow, UnitRow.serial).join(UnitRow, UnitRow.id == RecomputationRow.unit_id)
         rows = self._session.execute(query.where(RecomputationRow.revision == revision).order_by(UnitRow.serial))
         return tuple(
-            Recomputation(serial, Progress(row.state), row.done_at, None if row.outcome is None else _read(row.outcome))
+            Recomputation(
+                serial,
+                Progress(row.state),
+                row.done_at,
+                None if row.outcome is None else _read(row.outcome),
+                row.failed or "",
+            )
             for row, serial in rows
         )
 

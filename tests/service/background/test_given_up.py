@@ -19,6 +19,7 @@ from service.background.refresh_waiting import OUTLOOKS
 from service.flows.guard import AT_FAULT, Failure
 from service.flows.receive import upload
 from service.flows.refresh_group import current
+from service.flows.retry_failed import retry_failed
 from service.metrics import Metrics
 from service.records.group import Level
 from service.records.model import Evidence, ModelRevision, Scope
@@ -28,6 +29,7 @@ from service.storage import Storage
 from service.views.usable import usable
 from service.words.failed import unit_failed
 from service.words.group import FAILED
+from service.words.recomputations import GIVEN_UP, left_in_words
 from tests.databases import one_engine
 from tests.service.grouped import GROUP
 from tests.service.sessions import session_id
@@ -119,8 +121,14 @@ def test_sessions_keep_what_they_had_where_no_process_outlives_their_model(
         store.recomputations.ask(revision.id, Scope.UNIT, UNIT, NOW)
     assert tries(diagnosing(settings, two), helper, MODELS) == MOST_ATTEMPTS + 1
     with two.database.reading() as store:
-        assert [one.state for one in store.recomputations.of(revision.id)] == [Progress.GIVEN_UP]
+        given_up = store.recomputations.of(revision.id)
+        assert [one.state for one in given_up] == [Progress.GIVEN_UP]
         assert store.sessions.get(session_id(GROUP[0])).revision == 0
+    assert left_in_words(given_up[0]) == GIVEN_UP
+    assert retry_failed(two, NOW, "A. Weber") == 1
+    assert work_next(diagnosing(settings, two), helper, Event(), MODELS)
+    with two.database.reading() as store:
+        assert [one.state for one in store.recomputations.of(revision.id)] == [Progress.DONE]
 
 
 def accepted() -> ModelRevision:

@@ -30,6 +30,14 @@ def test_the_same_seed_gives_the_same_bytes_and_another_seed_others(run: Run, tm
     assert first == again != other
 
 
+def test_two_units_with_the_same_seed_are_two_units(run: Run, tmp_path: Path) -> None:
+    first, other = (
+        json.loads(Path(run("simulate", "--unit", unit, "--out", tmp_path, "--json").documents[0]["file"]).read_text())
+        for unit in ("BA-101", "BA-102")
+    )
+    assert first["table"]["A1"] != other["table"]["A1"]
+
+
 def test_a_long_series_ends_where_a_short_one_does(run: Run, tmp_path: Path) -> None:
     def dates(sessions: int) -> list[str]:
         own = ("--sessions", sessions, "-n", 3, "--json", "--out", tmp_path / str(sessions))

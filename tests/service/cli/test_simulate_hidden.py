@@ -73,8 +73,10 @@ def test_the_answer_counts_rows_as_the_diagnosis_does(run: Run, tmp_path: Path) 
     ran = run("simulate", "--out", tmp_path, "--hide", "reading-outlier", "--answer", answer)
     told = json.loads(answer.read_text())
     changed = read_session(ran.out.strip())
-    run("simulate", "--out", tmp_path, "--unit", "PLAIN")
-    [row] = np.flatnonzero(np.abs(changed.readings - read_session(tmp_path / "PLAIN-001.json").readings).max(axis=1))
+    run("simulate", "--out", tmp_path / "plain")
+    [row] = np.flatnonzero(
+        np.abs(changed.readings - read_session(tmp_path / "plain" / "SIM-001-001.json").readings).max(axis=1)
+    )
     assert (told["shape"], told["shape_units"]) == ([row + 1], ["row"])
 
 
