@@ -2,13 +2,11 @@
 
 from datetime import datetime
 
-from service.flows.flagging.overdue import no_longer_overdue
+from service.flows.flagging.overdue import no_longer_overdue, overdue_by
 from service.flows.flagging.settle import Occasion, raise_flag
 from service.flows.guard import Alone, plainly
-from service.records.flag import Concern, Matter
+from service.records.flag import Matter
 from service.storage import Storage
-from service.views.outlook import dated
-from service.words.due import was_due
 
 
 def flag_overdue(storage: Storage, now: datetime, alone: Alone = plainly) -> None:
@@ -24,7 +22,7 @@ def flag_overdue(storage: Storage, now: datetime, alone: Alone = plainly) -> Non
 def _settle(storage: Storage, serial: str, now: datetime) -> None:
     with storage.database.writing() as store:
         occasion = Occasion(store.units.hold(serial), None, now)
-        outlook = dated(store.outlooks.of_unit(serial), now)
-        opened = no_longer_overdue(store, occasion, outlook)
-        if not opened and outlook is not None and outlook.overdue and outlook.due is not None:
-            raise_flag(store, occasion, Concern(Matter.OVERDUE, "", 1, was_due(outlook.due, outlook.reason)))
+        outlook = store.outlooks.of_unit(serial)
+        concern = overdue_by(outlook, now)
+        if not no_longer_overdue(store, occasion, outlook) and concern is not None:
+            raise_flag(store, occasion, concern)

@@ -1,4 +1,7 @@
-"""Step: another line of a session's life, its state and the audit, within one transaction."""
+"""Step: another line of a session's life, its state and the audit, within one transaction.
+
+A questioned session is diagnosed by itself alone. Once it is accepted it is diagnosed beside its unit's earlier ones.
+"""
 
 from service.records.doubt import Remedies
 from service.records.session import StoredSession
@@ -24,7 +27,13 @@ def change(
     remedies: Remedies | None = None,
 ) -> None:
     """Writes down what becomes of a session, by whom and why; what follows from it is derived afterwards."""
+    if state is RecordState.ACCEPTED and _was_questioned(store, session.id):
+        store.pending.add(store.derivations.forget_diagnosis(session.id), step.at)
     store.states.put_session(session.id, state, superseded_by)
     store.states.add(RecordKind.SESSION, session.id, state, step, superseded_by=superseded_by, remedies=remedies)
     details = {"unit": session.unit, "before": session.state.value, "why": step.why, "superseded_by": superseded_by}
     store.audit.write(step.at, step.who, DONE[state], session.id, details)
+
+
+def _was_questioned(store: Store, id: str) -> bool:
+    return any(line.state is RecordState.QUESTIONED for line in store.states.of(RecordKind.SESSION, id))

@@ -96,7 +96,7 @@ def derive_again(
     now, later = _shared(stale, touched, way.at_once)
     store.derivations.wait([p.session.id for p in later])
     _judge_all(way, serial, known, now)
-    _ask_again(way, known, since, [p.session.id for p in now], touched)
+    _ask_again(way, known, since, [p.session.id for p in now], _as_before(known, since, touched))
     for place in now:
         if place.session.id in known.records.diagnosed:
             weigh_again(store, way.files, place.session.id)
@@ -113,16 +113,23 @@ def _placed(known: KnownUnit) -> tuple[Place, ...]:
     return placed(own.counted, own.breaks, own.choices, known.is_blind)
 
 
+def _as_before(known: KnownUnit, since: datetime, touched: Collection[str]) -> tuple[str, ...]:
+    """Sessions whose diagnosis looks at nothing that has changed: a change of a record is none for itself, and another
+    calibration is none for any."""
+    own = known.records.diagnosed
+    return tuple(id for id in touched if id in known.made or (id in own and own[id] <= since))
+
+
 def _ask_again(
-    way: Deriving, known: KnownUnit, since: datetime, judged: Collection[str], touched: Collection[str]
+    way: Deriving, known: KnownUnit, since: datetime, judged: Collection[str], same: Collection[str]
 ) -> None:
     """Diagnoses that looked at what has changed are asked for again, and those that are being made look again."""
     store, own = known.store, known.records
     store.fleet.touch(known.unit)
     if any(at >= since or id in judged for id, at in own.waiting.items() if id not in known.made):
         store.pending.look_again(known.unit, since, judged)
-    if any(at >= since and id not in touched for id, at in own.diagnosed.items()):
-        store.pending.add(store.derivations.forget_diagnoses(known.unit, since, touched), way.at)
+    if any(at >= since and id not in same for id, at in own.diagnosed.items()):
+        store.pending.add(store.derivations.forget_diagnoses(known.unit, since, same), way.at)
 
 
 def _shared(

@@ -20,6 +20,7 @@ from service.records.reservation import Reservation
 from service.records.session import StoredSession
 from service.storage import Files
 from service.storage.files import LOST
+from service.storage.queries.unit_types import held_at
 from service.storage.store import Store
 
 MOST_EARLIER = 50
@@ -51,9 +52,10 @@ class Weighed:
 
 
 def weighing_of(store: Store, id: str, block: str) -> Weighing:
-    """What a session of a block was judged by."""
+    """What a session of a block was judged by; a reference by the tolerances that held when it was computed, too."""
     stored, decisions = store.sessions.get(id), store.sessions.decisions(id)
-    unit_type = store.unit_types.of_unit(stored.unit)
+    computed = store.derivations.computed_at([id])[id]
+    unit_type = held_at(store.unit_types.of_unit_through_time(stored.unit), computed)
     unit = store.units.key(stored.unit)
     found = reference_of(store, unit, block, stored.programme, stored.started_at)
     is_judged = bool(decisions) and found.session is not None and not stored.is_reference

@@ -1,5 +1,6 @@
 """The end of a life: nothing waits for ever, the state follows from the records alone, and a backup restores to it."""
 
+import re
 from time import monotonic
 from typing import Any
 from urllib.parse import quote
@@ -12,6 +13,7 @@ IDLE = 2.0
 AT_WORK = 1800.0
 """Seconds of computing after which the same things that still wait are taken as never coming."""
 OPEN = ("waiting", "running")
+FLAG = re.compile(r"\bFlag \d+")
 
 
 def pending(world: World) -> frozenset[str]:
@@ -86,9 +88,18 @@ def _unit(world: World, serial: str) -> dict[str, Any]:
         "sessions": sorted(([one[name] for name in told] for one in _counted(world, serial)), key=lambda one: one[0]),
         "history": [_without(point, "revision") for point in points],
         "outlook": outlook,
-        "usable": _without(usable, "as_of"),
+        "usable": _without_numbers(_without(usable, "as_of")),
         "flags": sorted((one["matter"], one["summary"], one["proposal"]) for one in flags),
     }
+
+
+def _without_numbers(told: Any) -> Any:
+    """Flags are counted as they are raised."""
+    if isinstance(told, dict):
+        return {name: _without_numbers(value) for name, value in told.items()}
+    if isinstance(told, list):
+        return [_without_numbers(one) for one in told]
+    return FLAG.sub("Flag", told) if isinstance(told, str) else told
 
 
 def _without(found: dict[str, Any], *names: str) -> dict[str, Any]:

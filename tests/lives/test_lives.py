@@ -9,10 +9,6 @@ from tests.lives.life import RESTORED, SHORT, Size, whole_life
 from tests.lives.world import FindError, World
 
 
-@pytest.mark.xfail(
-    reason="open: whether a reference's own finding is a reservation depends on the order in which its records came",
-    strict=False,
-)
 @pytest.mark.parametrize(
     ("databases", "number", "size"), [("sqlite", 3, SHORT), ("postgresql", 8, RESTORED)], indirect=["databases"]
 )

@@ -138,6 +138,11 @@ class Derivations(Queries):
         gone = delete(DiagnosisRow).where(DiagnosisRow.session_id.in_(later)).returning(DiagnosisRow.session_id)
         return tuple(sorted(self._session.scalars(gone)))
 
+    def forget_diagnosis(self, id: str) -> tuple[str, ...]:
+        """The same of one session; none where it has none."""
+        gone = delete(DiagnosisRow).where(DiagnosisRow.session_id == id).returning(DiagnosisRow.session_id)
+        return tuple(self._session.scalars(gone))
+
 
 def _changed(table: type[SessionRow] | type[CalibrationRow], *names: str) -> Update:
     """An update of columns by parameters of their names."""

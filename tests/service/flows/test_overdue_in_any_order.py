@@ -46,3 +46,19 @@ def test_no_flag_stays_open_where_nothing_is_due(settings: Settings, order: tupl
         assert [one["due"] for one in client.get("/api/v1/units").json()["units"]] in ([None], [])
         flags = client.get(f"/api/v1/units/{UNIT}/flags").json()["flags"]
         assert "overdue" not in [flag["matter"] for flag in flags if flag["state"] != "resolved"]
+
+
+@one_engine
+@pytest.mark.parametrize("looks", ["only before", "before and after"])
+def test_an_open_flag_says_what_is_due_now(settings: Settings, looks: str) -> None:
+    with http_client(create_app(settings, lambda: NOW)) as client, stores(settings) as storage:
+        brought(client, "January")
+        flag_overdue(storage, NOW)
+        service = {"kind": "repair", "at": "2026-05-01T09:00:00Z", "by": "R. Lind"}
+        client.post(f"/api/v1/units/{UNIT}/services", json=service).raise_for_status()
+        if looks == "before and after":
+            flag_overdue(storage, NOW)
+        flags = client.get(f"/api/v1/units/{UNIT}/flags").json()["flags"]
+        assert [(flag["matter"], flag["summary"]) for flag in flags] == [
+            ("overdue", "Calibration was due on 1 May 2026. Serviced on 1 May 2026: measure it again.")
+        ]
