@@ -17,6 +17,7 @@ from service.app import create_app
 from service.background.read_diagnosis import Reader
 from service.background.read_group import GroupReader
 from service.identity import passwords
+from service.lock_order import WATCHED
 from service.settings import Settings
 from service.storage import Storage
 from tests.databases import ENGINES, Databases, PostgresDatabases, postgres_databases, sqlite_databases
@@ -27,6 +28,7 @@ from tests.stock import Fill, Stock, stores
 
 os.environ.setdefault("IMU_HEALTH_DIAGNOSIS_WORKERS", "0")
 os.environ.setdefault("IMU_HEALTH_DIAGNOSIS_NICENESS", "0")
+os.environ[WATCHED] = "yes"
 """Diagnoses are made when they are read: a test that looks at none does not pay for it. Those of the processes that
 make them say how many they want."""
 

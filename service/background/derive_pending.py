@@ -4,7 +4,8 @@ from collections.abc import Callable
 from datetime import datetime
 from threading import Event
 
-from service.flows.derive_again import Deriving, derive_batch
+from service.flows.derive_again import Deriving
+from service.flows.follow import derive_waiting_of
 from service.flows.guard import Alone, Guard, kept, plainly
 from service.flows.refresh_beside import date
 from service.metrics import Metrics
@@ -15,7 +16,7 @@ LOOK_EVERY = 2.0
 RETRY = 60.0
 """Seconds after a look in which something failed: what fails for good is told once a minute."""
 BATCH = 10
-"""Sessions of one transaction, some tenths of a second: an upload of the same unit waits no longer."""
+"""Sessions that are worked out before they are put down together."""
 
 
 def derive_pending(
@@ -56,6 +57,5 @@ def _derive_unit(
     left = 1
     while left and not stop.is_set():
         way = Deriving(storage.files, coverage_factor, clock())
-        with storage.database.writing() as store:
-            left = derive_batch(store, way, serial, BATCH)
-        date(storage, way, serial)
+        left = derive_waiting_of(storage, way, serial, BATCH)
+    date(storage, way, serial)

@@ -3,7 +3,7 @@
 from service.errors import ConflictError
 from service.flows.change_state import change
 from service.flows.derive_again import Derived, Deriving, derive_again
-from service.flows.refresh_beside import date
+from service.flows.follow import follow
 from service.records.session import StoredSession
 from service.records.state import RecordState, Step
 from service.storage import Storage
@@ -18,9 +18,9 @@ def accept_session(storage: Storage, way: Deriving, id: str, step: Step) -> tupl
         _require_possible(store, session)
         change(store, session, RecordState.ACCEPTED, step)
         derived = derive_again(store, way, session.unit, session.started_at, (id,))
-        accepted = store.sessions.get(id)
-    date(storage, way, accepted.unit)
-    return accepted, derived
+    follow(storage, way, session.unit, derived)
+    with storage.database.reading() as store:
+        return store.sessions.get(id), derived
 
 
 def _require_possible(store: Store, session: StoredSession) -> None:

@@ -3,7 +3,7 @@
 from estimator.session import IN_SERVICE
 from service.errors import ConflictError
 from service.flows.derive_again import Derived, Deriving, derive_again
-from service.flows.refresh_beside import date
+from service.flows.follow import follow
 from service.records.session import StoredSession
 from service.records.state import RecordState, Step
 from service.storage import Storage
@@ -20,9 +20,9 @@ def choose_reference(storage: Storage, way: Deriving, id: str, step: Step) -> tu
         store.states.choose(unit, id, step)
         store.audit.write(step.at, step.who, "choose reference", id, {"unit": session.unit, "why": step.why})
         derived = derive_again(store, way, session.unit, session.started_at, (id,))
-        chosen = store.sessions.get(id)
-    date(storage, way, chosen.unit)
-    return chosen, derived
+    follow(storage, way, session.unit, derived)
+    with storage.database.reading() as store:
+        return store.sessions.get(id), derived
 
 
 def _require_possible(store: Store, session: StoredSession) -> None:

@@ -1,51 +1,32 @@
 """Step: everything that is derived of a unit's accepted records, brought in line with them after a change.
 
-References, verdicts with their decisions and common motions, the unit's line in the fleet and its open flags; the
-outlook is asked for, and made after the transaction. Every flow that changes which records count ends with it, within
-its own transaction. A session whose verdict rests on what it must rest on is left alone, so an ordinary upload judges
-one session.
+References, verdicts with their decisions and common motions, the unit's line in the fleet and its open flags. Every
+flow that changes which records count ends with it, within its own transaction, and nothing is computed in that: what
+was foreseen is put down, what remains is left to be judged, and `service.flows.follow` does it next. A session whose
+verdict rests on what it must rest on is left alone, so an ordinary upload judges one session.
 """
 
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
 from datetime import datetime
 
-from estimator.errors import SessionError
-from estimator.parity import parity_check
-from estimator.parity.as_calibration import parity_calibration
-from estimator.results import Calibration
-from estimator.session import IN_SERVICE
 from service.flows.flagging.drift import flag_drift
 from service.flows.flagging.fold import settle_sessions
 from service.flows.flagging.overdue import no_longer_overdue
 from service.flows.flagging.settle import Occasion
-from service.flows.flagging.verdict import tell_verdict, told_by
-from service.flows.refresh_outlook import END_OF_TIME
-from service.flows.summarise import ask_for_summaries
-from service.flows.weigh import weigh_again
-from service.ingest import read_upload
-from service.judging.calibrate import Comparison
-from service.judging.epochs import Place, needs_judging, placed
-from service.judging.judge import judge, judge_recording
-from service.judging.known_unit import Foreseen, KnownUnit, known_unit
-from service.judging.parameter_values import parameter_values
-from service.records.decision import Judged, Opening
-from service.records.derivation import Counted, Decided
+from service.flows.flagging.verdict import tell_verdict
+from service.flows.judge_again import Foreseen, fitting, judging, places_of, put
+from service.judging.epochs import Place, needs_judging
+from service.judging.known_unit import KnownUnit, known_unit
 from service.records.group import Level
 from service.records.session import StoredSession
-from service.records.unit import UnitType
 from service.storage import Files
-from service.storage.files import LOST
-from service.storage.queries.sessions import NOT_JUDGED
-from service.storage.queries.unit_types import TypeThroughTime, held_at
 from service.storage.store import Store
 
 AT_ONCE = 20
 """Sessions that are judged within the request that changed a record, about a second; of more, all but the request's
 own are judged after it."""
-NOTHING_TO_COMPARE = (
-    "No calibration of the unit is accepted in this epoch, and a recording in service is compared with one."
-)
+NOTHING_FORESEEN = Foreseen()
 
 
 @dataclass(frozen=True)
@@ -68,10 +49,16 @@ class Derived:
     """What a derivation did and left."""
 
     judged: tuple[str, ...]
+    """Before the answer."""
     waiting: int
     """Sessions that are to be judged after the answer."""
     latest: StoredSession | None
-    """The unit's latest session that counts."""
+    """The unit's latest session that counts; None where that is still to be looked at."""
+    is_left: bool = False
+    """Whether anything is to be judged or weighed after the transaction."""
+
+
+NOTHING_LEFT = Derived((), 0, None)
 
 
 def derive_again(
@@ -82,35 +69,41 @@ def derive_again(
     touched: Sequence[str] = (),
     *,
     known: KnownUnit | None = None,
+    foreseen: Foreseen = NOTHING_FORESEEN,
 ) -> Derived:
     """Derives what is known of a unit after its records changed from a date on; ``touched`` are judged in any case.
 
-    ``known``: what this transaction has read of the unit, where nothing of it changed since.
+    ``known``: what this transaction has read of the unit, where nothing of it changed since. ``foreseen``: what was
+    worked out before it; the rest is left to `service.flows.follow`.
     """
     known = known or known_unit(store, store.units.hold(serial))
-    places = _placed(known)
+    places = places_of(known)
     stale = needs_judging(places, since)
     references = {p.session.id for p in places if p.is_reference}
     if references != known.records.references:
         store.derivations.put_references(known.unit, references)
-    now, later = _shared(stale, touched, way.at_once)
-    store.derivations.wait([p.session.id for p in later])
-    _judge_all(way, serial, known, now)
-    _ask_again(way, known, since, [p.session.id for p in now], _as_before(known, since, touched))
-    for place in now:
-        if place.session.id in known.records.diagnosed:
-            weigh_again(store, way.files, place.session.id)
-    latest = _sum_up(store, way, serial, touched)
+    now = _fitting(way, serial, known, stale, foreseen)
+    diagnosed = _ask_again(way, known, since, [p.session.id for p in now], _as_before(known, since, touched))
+    put(known, now, foreseen, diagnosed)
+    left = [p for p in stale if p not in now]
+    store.derivations.wait([p.session.id for p in left])
+    own = _own(left, touched, way.at_once)
+    is_left = bool(left) or any(p.session.id in diagnosed for p in now)
+    latest = sum_up(store, way, serial) if not is_left or len(own) < len(left) else None
     groups = store.groups.of_unit(serial)
     store.pending_groups.ask(groups, way.at)
     store.pending_summaries.ask((group for group in groups if group.level is not Level.UNIT), way.at)
-    return Derived(tuple(p.session.id for p in now), len(later), latest)
+    return Derived((*(p.session.id for p in now), *own), len(left) - len(own), latest, is_left)
 
 
-def _placed(known: KnownUnit) -> tuple[Place, ...]:
-    """The unit's accepted sessions, each with its reference."""
-    own = known.records
-    return placed(own.counted, own.breaks, own.choices, known.is_blind)
+def _fitting(
+    way: Deriving, serial: str, known: KnownUnit, stale: Sequence[Place], foreseen: Foreseen
+) -> tuple[Place, ...]:
+    """Of the sessions that are to be judged those that were judged so before the transaction."""
+    found = [p for p in stale if p.session.id in foreseen.outcomes]
+    if not found:
+        return ()
+    return fitting(judging(known, serial, found, way.files, way.coverage_factor, way.at), found, foreseen)
 
 
 def _as_before(known: KnownUnit, since: datetime, touched: Collection[str]) -> tuple[str, ...]:
@@ -122,132 +115,27 @@ def _as_before(known: KnownUnit, since: datetime, touched: Collection[str]) -> t
 
 def _ask_again(
     way: Deriving, known: KnownUnit, since: datetime, judged: Collection[str], same: Collection[str]
-) -> None:
-    """Diagnoses that looked at what has changed are asked for again, and those that are being made look again."""
+) -> frozenset[str]:
+    """Diagnoses that looked at what has changed are asked for again, and those that are being made look again; the
+    sessions that keep theirs."""
     store, own = known.store, known.records
     store.fleet.touch(known.unit)
     if any(at >= since or id in judged for id, at in own.waiting.items() if id not in known.made):
         store.pending.look_again(known.unit, since, judged)
+    gone: tuple[str, ...] = ()
     if any(at >= since and id not in same for id, at in own.diagnosed.items()):
-        store.pending.add(store.derivations.forget_diagnoses(known.unit, since, same), way.at)
+        gone = store.derivations.forget_diagnoses(known.unit, since, same)
+        store.pending.add(gone, way.at)
+    return frozenset(own.diagnosed.keys() - {*gone})
 
 
-def _shared(
-    stale: Sequence[Place], touched: Sequence[str], most: int | None
-) -> tuple[tuple[Place, ...], tuple[Place, ...]]:
-    """What is judged now and what later."""
-    if most is None or len(stale) <= most:
-        return tuple(stale), ()
-    return (
-        tuple(p for p in stale if p.session.id in touched),
-        tuple(p for p in stale if p.session.id not in touched),
-    )
+def _own(left: Sequence[Place], touched: Sequence[str], most: int | None) -> tuple[str, ...]:
+    """Which of those that are left whoever changed the records judges."""
+    few = most is None or len(left) <= most
+    return tuple(p.session.id for p in left if few or p.session.id in touched)
 
 
-def derive_batch(store: Store, way: Deriving, serial: str, most: int) -> int:
-    """Judges the first of the sessions that wait, and returns how many still do."""
-    known = known_unit(store, store.units.hold(serial))
-    waiting = tuple(p for p in _placed(known) if p.session.basis == NOT_JUDGED)
-    ids = [p.session.id for p in waiting[:most]]
-    store.pending.look_again(known.unit, END_OF_TIME, ids)
-    _judge_all(way, serial, known, waiting[:most])
-    for id in ids:
-        weigh_again(store, way.files, id)
-    left = max(len(waiting) - most, 0)
-    if not left:
-        store.failures.settle_derivation(known.unit)
-        _sum_up(store, way, serial, ())
-        ask_for_summaries(store, serial, way.at)
-    return left
-
-
-@dataclass(frozen=True)
-class _Judging:
-    """What sessions of a unit are judged by."""
-
-    way: Deriving
-    serial: str
-    known: KnownUnit
-    computed: Mapping[str, datetime]
-    """When each calibration was computed."""
-    of_type: TypeThroughTime
-
-    def unit_type(self, id: str) -> UnitType:
-        """With the tolerances that held when the calibration of a session was computed."""
-        return held_at(self.of_type, self.computed.get(id, self.way.at))
-
-
-def _judge_all(way: Deriving, serial: str, known: KnownUnit, places: Sequence[Place]) -> None:
-    """Sessions judged as their places say, with what they tell of flags."""
-    if not places:
-        return
-    store, ids = known.store, [p.session.id for p in places]
-    computed = store.derivations.computed_at([id for id in ids if id not in known.made])
-    known.read_all([*ids, *(p.reference.id for p in places if p.reference is not None)])
-    by = _Judging(way, serial, known, computed, store.unit_types.of_unit_through_time(serial))
-    store.derivations.put_judged([_decided(by, place) for place in places])
-
-
-def _decided(by: _Judging, place: Place) -> Decided:
-    """A session with what was decided of it."""
-    own = place.session
-    judged = _recording(by, place) if own.programme == IN_SERVICE else None
-    if judged is None:
-        judged = _calibration(by, place)
-    told = told_by(own.at, judged)
-    return Decided(own.id, own.revision, judged, place.basis, told, is_first=own.id in by.known.made)
-
-
-def foresee(store: Store, way: Deriving, serial: str, new: Counted, calibration: Calibration) -> Foreseen | None:
-    """How a calibration that is to be stored is judged if nothing changes until then; None where that is soon done:
-    it is a unit's first, or becomes a reference."""
-    unit = store.units.find(serial)
-    if unit is None or new.programme == IN_SERVICE:
-        return None
-    found = known_unit(store, unit, {new.id: calibration})
-    counted = tuple(sorted((*found.records.counted, new), key=lambda one: (one.at, one.id)))
-    known = replace(found, records=replace(found.records, counted=counted))
-    place = next(p for p in _placed(known) if p.session.id == new.id)
-    if place.is_reference or place.reference is None:
-        return None
-    by = _Judging(way, serial, known, {}, store.unit_types.of_unit_through_time(serial))
-    judged, against = _calibration(by, place), known.calibration(place.reference.id)
-    return Foreseen(place.basis, by.unit_type(new.id), judged, place.reference, against)
-
-
-def _calibration(by: _Judging, place: Place) -> Judged:
-    """By the tolerances that held when it was computed."""
-    known, unit_type, foreseen = by.known, by.unit_type(place.session.id), by.known.foreseen
-    is_foreseen = foreseen is not None and place.session.id in known.made
-    if foreseen is not None and is_foreseen and (foreseen.basis, foreseen.unit_type) == (place.basis, unit_type):
-        return foreseen.judged
-    own, k = known.calibration(place.session.id), by.way.coverage_factor
-    against = None if place.is_reference or place.reference is None else known.calibration(place.reference.id)
-    opening = Opening.CHOSEN if place.is_chosen else Opening.SERVICE if place.since is not None else Opening.FIRST
-    return judge(own, against, unit_type, k, opening=opening)
-
-
-def _recording(by: _Judging, place: Place) -> Judged:
-    """A recording in service moves the calibration that it is compared with, so it is compared anew."""
-    store, id = by.known.store, place.session.id
-    session, own = store.sessions.get(id), by.known.calibration(id)
-    store.history.drop(session)
-    if place.reference is None:
-        return Judged(own, (), NOTHING_TO_COMPARE, is_reference=False)
-    try:
-        source = read_upload(by.way.files.content(session.sha256), session.filename)
-    except (*LOST, SessionError) as lost:
-        return Judged(own, (), f"It cannot be compared: {lost}", is_reference=False)
-    reference = by.known.calibration(place.reference.id)
-    found = Comparison(reference, parity_check(source, reference))
-    moved = parity_calibration(found.result, reference)
-    judged = judge_recording(moved, found, by.unit_type(id), by.way.coverage_factor)
-    store.calibrations.put(id, session.revision, judged.calibration)
-    store.history.add(by.known.unit, ((session, parameter_values(judged.calibration)),))
-    return judged
-
-
-def _sum_up(store: Store, way: Deriving, serial: str, touched: Sequence[str]) -> StoredSession | None:
+def sum_up(store: Store, way: Deriving, serial: str) -> StoredSession | None:
     """The outlook, the unit's line and its flags; the latest session that counts."""
     unit = store.units.key(serial)
     was = store.fleet.refresh(unit)

@@ -12,17 +12,18 @@ from estimator import diagnose as find_causes
 from estimator.errors import SessionError
 from estimator.results import COVERAGE
 from estimator.session import DIAGNOSED, CalibrationSession
-from service.flows.derive_again import Deriving
+from service.flows.derive_again import NOTHING_LEFT, Derived, Deriving
 from service.flows.earlier_records import as_evidence, kept_before
 from service.flows.flagging.diagnosis import flag_diagnosis
+from service.flows.follow import follow
 from service.flows.keep_noise import keep_noise
 from service.flows.keep_statistics import keep_statistics
 from service.flows.question_session import question_diagnosed
-from service.flows.refresh_beside import date
 from service.flows.weigh import Weighed, weigh, weighing_of
 from service.ingest import read_upload
 from service.ingest.checked import dated
 from service.judging.reservations import UNCHECKED
+from service.lock_order import outside_writing
 from service.log import log
 from service.records.diagnosis import DiagnosisState, StoredDiagnosis, state_of
 from service.records.session import StoredSession
@@ -70,9 +71,9 @@ def diagnose(storage: Storage, id: str, now: datetime, coverage_factor: float = 
             task, asked = task_of(store, id), store.pending.of(id)
         made = _made(storage, task, now)
         with storage.database.writing() as store:
-            is_kept = _keep(store, way, task.session.unit, made, None if asked is None else asked.ticket)
-        if is_kept:
-            date(storage, way, task.session.unit)
+            kept = _keep(store, way, task.session.unit, made, None if asked is None else asked.ticket)
+        if kept is not None:
+            follow(storage, way, task.session.unit, kept)
             keep_noise(storage, id, now)
             if made.state is not DiagnosisState.FAILED:
                 keep_statistics(storage, id, now)
@@ -89,18 +90,20 @@ def give_up(storage: Storage, id: str, now: datetime) -> None:
         _keep(store, way, task.session.unit, made, None if asked is None else asked.ticket)
 
 
-def _keep(store: Store, way: Deriving, unit: str, made: StoredDiagnosis, ticket: str | None) -> bool:
-    """Whether it is of what is known now; then it is stored, unless another one was made meanwhile."""
+def _keep(store: Store, way: Deriving, unit: str, made: StoredDiagnosis, ticket: str | None) -> Derived | None:
+    """Where it is of what is known now it is stored, unless another one was made meanwhile, and what is left of what
+    follows is returned; None where it is not."""
     store.units.hold(unit)
     if not store.pending.settle(made.session, ticket):
-        return False
+        return None
+    derived = None
     if store.diagnoses.add_once(made):
         details = {"state": made.state.value, "summary": made.summary}
         store.audit.write(way.at, "diagnosis", "diagnose", made.session, details)
         flag_diagnosis(store, made, way.at)
         if made.found is not None:
-            question_diagnosed(store, way, made.session, made.found)
-    return True
+            derived = question_diagnosed(store, way, made.session, made.found)
+    return derived or NOTHING_LEFT
 
 
 def known_of(store: Store, id: str) -> StoredDiagnosis | None:
@@ -110,6 +113,7 @@ def known_of(store: Store, id: str) -> StoredDiagnosis | None:
     return None if failed_before else found
 
 
+@outside_writing
 def _made(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
     """Reads the stored bytes again and looks for causes, where the programme is one that can show any."""
     if task.session.programme not in DIAGNOSED:

@@ -1,7 +1,7 @@
 """Step: a session that cannot be as its file says tells nothing of its unit until an engineer accepts it."""
 
 from service.flows.change_state import change
-from service.flows.derive_again import Deriving, derive_again
+from service.flows.derive_again import Derived, Deriving, derive_again
 from service.flows.flagging.settle import SERVICE
 from service.records.decision import Judged
 from service.records.derivation import Decided
@@ -27,14 +27,14 @@ def question(store: Store, way: Deriving, session: StoredSession, why: str, reme
     store.derivations.put_judged((Decided(session.id, session.revision, unjudged, NOT_JUDGED, None),))
 
 
-def question_diagnosed(store: Store, way: Deriving, id: str, found: Diagnosed) -> None:
+def question_diagnosed(store: Store, way: Deriving, id: str, found: Diagnosed) -> Derived | None:
     """Questions an accepted session whose diagnosis finds it written down otherwise than it was done.
 
-    One that an engineer accepted stays so.
+    One that an engineer accepted stays so. What is left of what follows; None where nothing changed.
     """
     named = [finding for finding in found.findings if finding.cause in OTHERWISE_WRITTEN]
     session = store.sessions.get(id)
     if not named or session.state is not RecordState.ACCEPTED or store.states.of(RecordKind.SESSION, id):
-        return
+        return None
     question(store, way, session, " ".join(finding.sentence for finding in named))
-    derive_again(store, way, session.unit, session.started_at, (id,))
+    return derive_again(store, way, session.unit, session.started_at, (id,))

@@ -7,9 +7,11 @@ from datetime import datetime
 from estimator.errors import SessionError
 from estimator.results import Calibration
 from estimator.session import IN_SERVICE
-from service.flows.derive_again import Deriving, derive_again
+from service.flows.derive_again import NOTHING_FORESEEN, Derived, Deriving, derive_again
+from service.flows.follow import follow
+from service.flows.foresee import foresee_revisions
+from service.flows.judge_again import Foreseen
 from service.flows.keep import Made, keep, made
-from service.flows.refresh_beside import date
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
 from service.judging.calibrate import Basis, calibrate, rests_on_model
@@ -71,13 +73,22 @@ def recalibrate(
     outcomes = [_recalibrated(storage, source) for source in sources]
     stored = [source.session for source in sources]
     new = [one for one in outcomes if isinstance(one, _Recomputed)]
-    way = Deriving(storage.files, coverage_factor, now, at_once=None)
+    way, derived = Deriving(storage.files, coverage_factor, now, at_once=None), None
+    foreseen = _foreseen(storage, way, serial, new)
     with storage.database.writing() as store:
-        moved = _put_in_force(store, way, serial, new, who) if new else ()
-        done = _told(serial, stored, outcomes, moved)
+        if new:
+            store.units.hold(serial)
+        before = {session.id: session for session in store.sessions.of_unit(serial)}
+        put = [replace(one, session=before[one.session.id]) for one in new]
+        put = [one for one in put if one.session.revision < one.model.revision]
+        if put:
+            derived = _put_in_force(store, way, serial, put, foreseen)
+        after = {session.id: session for session in store.sessions.of_unit(serial)}
+        _write_down(store, way, [(before[one.session.id], after[one.session.id]) for one in put], who)
+        done = _told(serial, stored, outcomes, tuple(moved_verdicts(before, tuple(after.values()))))
         then(store, done)
-    if new:
-        date(storage, way, serial)
+    if derived is not None:
+        follow(storage, way, serial, derived)
     return done
 
 
@@ -166,27 +177,28 @@ def _recalibrated(storage: Storage, source: _Source) -> _Recomputed | LeftSessio
     return _Recomputed(stored, model, own, tuple(moved_parameters(stored.id, source.values, own.values)))
 
 
-def _put_in_force(
-    store: Store, way: Deriving, serial: str, made: Sequence[_Recomputed], who: str
-) -> tuple[MovedVerdict, ...]:
-    """Other calibrations beside the ones before, in force from now on, with what follows from them; what moved, also
-    of sessions that are judged against one of them."""
-    unit = store.units.hold(serial)
-    before = {session.id: session for session in store.sessions.of_unit(serial)}
-    new = [one for one in made if before[one.session.id].revision < one.model.revision]
+def _foreseen(storage: Storage, way: Deriving, serial: str, new: Sequence[_Recomputed]) -> Foreseen:
     if not new:
-        return ()
+        return NOTHING_FORESEEN
+    made = {one.session.id: (one.model.revision, one.made.calibration) for one in new}
+    with storage.database.reading() as store:
+        return foresee_revisions(store, way, serial, made, min(one.session.started_at for one in new))
+
+
+def _put_in_force(store: Store, way: Deriving, serial: str, new: Sequence[_Recomputed], foreseen: Foreseen) -> Derived:
+    """Other calibrations beside the ones before, in force from now on, with what follows from them, also of sessions
+    that are judged against one of them."""
+    unit = store.units.key(serial)
     revisions = {one.session.id: one.model.revision for one in new}
     store.derivations.put_revisions(revisions)
-    records = [(replace(before[one.session.id], revision=one.model.revision), one.made) for one in new]
-    keep(store, unit, records, way.at)
+    keep(store, unit, [(replace(one.session, revision=one.model.revision), one.made) for one in new], way.at)
     store.noises.carry(revisions)
-    touched = [one.session.id for one in made]
-    known = known_unit(store, unit, {one.session.id: one.made.calibration for one in new})
-    derive_again(store, way, serial, min(one.session.started_at for one in new), touched, known=known)
-    after = {session.id: session for session in store.sessions.of_unit(serial)}
-    for one in new:
-        was, now = before[one.session.id], after[one.session.id]
+    made = {one.session.id: one.made.calibration for one in new}
+    known, since = known_unit(store, unit, made, foreseen.references), min(one.session.started_at for one in new)
+    return derive_again(store, way, serial, since, tuple(made), known=known, foreseen=foreseen)
+
+
+def _write_down(store: Store, way: Deriving, changed: Sequence[tuple[StoredSession, StoredSession]], who: str) -> None:
+    for was, now in changed:
         details = {"revision": now.revision, "verdict": now.verdict.value, "before": was.verdict.value}
         store.audit.write(way.at, who, "recalibrate", now.id, details)
-    return tuple(moved_verdicts(before, tuple(after.values())))

@@ -4,37 +4,37 @@ The one entry of the API and of the pages. The diagnosis is asked for within the
 beside the requests.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
 from estimator.errors import SessionError
 from service.errors import RefusedError
 from service.flows.course import UNFOLLOWED, Course
-from service.flows.derive_again import Deriving, derive_again, foresee
+from service.flows.derive_again import Derived, Deriving, derive_again
+from service.flows.follow import follow
+from service.flows.foresee import foresee_upload
+from service.flows.judge_again import Foreseen
 from service.flows.keep import Made, keep, made
 from service.flows.question_session import question
-from service.flows.refresh_beside import date
 from service.flows.refuse import refuse
-from service.flows.supersede_session import give_way, supersede
+from service.flows.supersede_session import give_way, settled_by, supersede
 from service.ingest import in_turn
 from service.ingest.checked import Checked, check, plain_filename
 from service.ingest.digest import content_digest
 from service.judging.calibrate import Calibrated, basis_of, calibrate
-from service.judging.known_unit import Foreseen, KnownUnit, known_unit
+from service.judging.known_unit import KnownUnit, known_unit
 from service.judging.model_in_force import model_for
 from service.judging.origin import require_one_origin
 from service.judging.plausible import doubts
 from service.judging.tolerances import type_of
 from service.metrics import Metrics
 from service.records.decision import Verdict
-from service.records.derivation import Counted
 from service.records.doubt import remedies_among
 from service.records.received import Content, Received, Replaced, SentFile, where
 from service.records.session import Digests, Receipt, StoredSession
 from service.storage import Storage
 from service.storage.files import content_hash
-from service.storage.queries.sessions import NOT_JUDGED
 from service.storage.store import Store
 
 ID_DIGITS = 20
@@ -126,35 +126,37 @@ def upload(
         storage.files.put_back(content)
         return _known(storage, way, known, replaces)
     try:
-        ready = _ready(storage, way, received, _calibrated(storage, _checked(storage, content, received)))
+        new = _calibrated(storage, _checked(storage, content, received))
     except SessionError as fault:
         raise refuse(storage, received, fault.problems, course) from fault
     course.keeping()
     storage.files.keep(content)
+    ready = _ready(storage, way, received, new, replaces)
     with storage.database.writing() as store:
-        receipt = _store(store, way, received, ready, replaces)
+        receipt, derived = _store(store, way, received, ready, replaces)
         course.stored(store, receipt)
-    _date(storage, way, receipt.id, replaces)
-    return receipt
+    return _followed(storage, way, receipt, derived)
 
 
-def _date(storage: Storage, way: Deriving, id: str, replaces: Replaced | None) -> None:
-    """The unit of a session, and that of the one that gave way to it."""
-    concerned = (id,) if replaces is None else (id, replaces.session)
+def _followed(storage: Storage, way: Deriving, receipt: Receipt, derived: Mapping[str, Derived]) -> Receipt:
+    """The receipt once all that follows is derived."""
+    for serial, own in sorted(derived.items()):
+        follow(storage, way, serial, own)
+    if not any(own.is_left for own in derived.values()):
+        return receipt
     with storage.database.reading() as store:
-        serials = {store.sessions.get(one).unit for one in concerned}
-    date(storage, way, *sorted(serials))
+        return receipt_of(store.sessions.get(receipt.id), created=receipt.created)
 
 
 def _known(storage: Storage, way: Deriving, known: StoredSession, replaces: Replaced | None) -> Receipt:
     """The receipt of a session that was stored before; also that replaces the one named now."""
+    receipt = receipt_of(known, created=False)
     if replaces is None:
-        return receipt_of(known, created=False)
+        return receipt
+    settled = settled_by(storage, replaces.session, known.id)
     with storage.database.writing() as store:
-        supersede(store, way, replaces, store.sessions.get(known.id))
-        receipt = receipt_of(store.sessions.get(known.id), created=False)
-    _date(storage, way, known.id, replaces)
-    return receipt
+        derived = supersede(store, way, replaces, store.sessions.get(known.id), settled)
+    return _followed(storage, way, receipt, derived)
 
 
 def _checked(storage: Storage, content: Content, received: Received) -> Checked:
@@ -181,59 +183,64 @@ class _Ready:
     new: Calibrated
     digests: Digests
     made: Made
-    foreseen: Foreseen | None
+    foreseen: Foreseen
+    settled: str | None
+    """Where its content is stored already, of `settled_by`."""
 
 
-def _ready(storage: Storage, way: Deriving, received: Received, new: Calibrated) -> _Ready:
+def _ready(storage: Storage, way: Deriving, received: Received, new: Calibrated, replaces: Replaced | None) -> _Ready:
     """With no transaction open that others wait for."""
-    record, session = _record(received, new), new.checked.session
-    own = (record.id, session.block, record.programme, record.started_at, record.revision)
+    digests = Digests(content_digest(new.checked.session), new.checked.readings_digest)
     with storage.database.reading() as store:
-        counted = Counted(*own, is_reference=False, basis=NOT_JUDGED)
-        foreseen = foresee(store, way, record.unit, counted, new.calibration)
-    digests = Digests(content_digest(session), new.checked.readings_digest)
-    return _Ready(new, digests, made(new.calibration), foreseen)
+        same = None if replaces is None else store.sessions.same(received.sha256, digests.content_digest)
+        but = None if replaces is None else replaces.session
+        foreseen = foresee_upload(store, way, _record(received, new), new, but)
+    settled = None if same is None or replaces is None else settled_by(storage, replaces.session, same.id)
+    return _Ready(new, digests, made(new.calibration), foreseen, settled)
 
 
-def _store(store: Store, way: Deriving, received: Received, ready: _Ready, replaces: Replaced | None) -> Receipt:
-    """The record, and everything that follows from it, within one transaction."""
+def _store(
+    store: Store, way: Deriving, received: Received, ready: _Ready, replaces: Replaced | None
+) -> tuple[Receipt, dict[str, Derived]]:
+    """The record, and everything that follows from it, within one transaction; by unit, what is left of that."""
     new = ready.new
     unit = _unit(store, received, new)
-    known = store.sessions.same(received.sha256, ready.digests.content_digest)
-    if known is not None:
-        if replaces is not None:
-            supersede(store, way, replaces, known)
-        return receipt_of(store.sessions.get(known.id), created=False)
+    same = store.sessions.same(received.sha256, ready.digests.content_digest)
+    if same is not None:
+        derived = {} if replaces is None else supersede(store, way, replaces, same, ready.settled)
+        return receipt_of(store.sessions.get(same.id), created=False), derived
     record = _record(received, new)
     stand = store.units.stand_key(record.stand)
     store.sessions.add(record, unit, stand, new.checked.session.block, ready.digests)
     store.pending.add((record.id,), received.at)
     keep(store, unit, ((record, ready.made),), received.at)
-    stored = _derived(
-        way, known_unit(store, unit, {record.id: new.calibration}, ready.foreseen), record, new.checked, replaces
-    )
+    known = known_unit(store, unit, {record.id: new.calibration}, ready.foreseen.references)
+    derived = _derived(way, known, record, ready, replaces)
+    latest = derived[record.unit].latest
+    stored = latest if latest is not None and latest.id == record.id else store.sessions.get(record.id)
     details = {"unit": stored.unit, "verdict": stored.verdict.value, "revision": stored.revision}
     store.audit.write(received.at, received.who, "upload", stored.id, details)
-    return receipt_of(stored, created=True)
+    return receipt_of(stored, created=True), derived
 
 
 def _derived(
-    way: Deriving, known: KnownUnit, record: StoredSession, new: Checked, replaces: Replaced | None
-) -> StoredSession:
-    """The stored session with its verdict, after all that follows from it."""
+    way: Deriving, known: KnownUnit, record: StoredSession, ready: _Ready, replaces: Replaced | None
+) -> dict[str, Derived]:
+    """All that follows from a new session, by unit."""
     store, shared = known.store, {record.id} | ({replaces.session} if replaces else set())
-    doubted = doubts(known, new, known.calibration(record.id), shared)
+    doubted = doubts(known, ready.new.checked, known.calibration(record.id), shared)
     if doubted:
         question(store, way, record, " ".join(doubt.text for doubt in doubted), remedies_among(doubted))
     old = None if replaces is None else give_way(store, way.at, replaces, record)
-    since = record.started_at
+    since, derived = record.started_at, dict[str, Derived]()
     if old is not None and old.unit == record.unit:
         since = min(since, old.started_at)
     elif old is not None:
-        derive_again(store, way, old.unit, old.started_at, (old.id,))
-    unchanged = None if doubted or replaces else known
-    latest = derive_again(store, way, record.unit, since, (record.id,), known=unchanged).latest
-    return latest if latest is not None and latest.id == record.id else store.sessions.get(record.id)
+        derived[old.unit] = derive_again(store, way, old.unit, old.started_at, (old.id,))
+    if doubted or replaces:
+        known = known_unit(store, known.unit, known.made, ready.foreseen.references)
+    own = derive_again(store, way, record.unit, since, (record.id,), known=known, foreseen=ready.foreseen)
+    return derived | {record.unit: own}
 
 
 def _unit(store: Store, received: Received, new: Calibrated) -> int:

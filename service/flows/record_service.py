@@ -6,7 +6,7 @@ from datetime import datetime
 from estimator.errors import Problem
 from service.errors import RefusedError
 from service.flows.derive_again import Derived, Deriving, derive_again
-from service.flows.refresh_beside import date
+from service.flows.follow import follow
 from service.ingest.checked import CLOCK_LEEWAY
 from service.records.event import NewService, Service
 from service.records.state import RecordKind, RecordState, Step
@@ -40,7 +40,7 @@ def record_service(
         store.audit.write(now, who, "service", serial, details)
         derived = derive_again(store, way, serial, new.at)
         recorded = store.services.get(number)
-    date(storage, way, serial)
+    follow(storage, way, serial, derived)
     return recorded, derived
 
 

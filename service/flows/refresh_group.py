@@ -20,6 +20,7 @@ from service.flows.own_of_group import tell_own
 from service.flows.refresh_outlook import END_OF_TIME
 from service.ingest import read_upload
 from service.ingest.checked import dated
+from service.lock_order import outside_writing
 from service.log import log
 from service.records.group import Group, GroupAnswer, Level, Member, Members
 from service.records.model import SCOPES
@@ -105,6 +106,7 @@ def give_up(storage: Storage, group: Group, now: datetime) -> None:
         store.pending_groups.settle(asked)
 
 
+@outside_writing
 def _answered(
     files: Files, group: Group, members: Members, records: dict[str, SessionStatistics], now: datetime
 ) -> GroupAnswer:

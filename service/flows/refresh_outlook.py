@@ -9,6 +9,7 @@ from hashlib import sha256
 from estimator.health.pooled import Prior, learn
 from service.judging.forecast import Past, forecast
 from service.judging.histories import Histories, histories
+from service.lock_order import outside_writing
 from service.measures import COVERAGE
 from service.records.outlook import UnitOutlook
 from service.storage.history_document import unpacked
@@ -60,6 +61,7 @@ def gathered(store: Store, serial: str, known: Histories) -> Sources:
     return Sources(past, known, of_type(store, unit), tuple(line.text for line in together))
 
 
+@outside_writing
 def worked_out(sources: Sources) -> UnitOutlook:
     """The numerical part, with no store at hand."""
     told = sources.told

@@ -6,7 +6,7 @@ from estimator.errors import SessionError
 from service.errors import ConflictError
 from service.flows.change_state import change
 from service.flows.derive_again import Derived, Deriving, derive_again
-from service.flows.refresh_beside import date
+from service.flows.follow import follow
 from service.ingest import read_upload
 from service.ingest.checked import as_checked
 from service.judging.known_unit import known_unit
@@ -24,34 +24,55 @@ REPLACEABLE = (RecordState.ACCEPTED, RecordState.QUESTIONED)
 
 def supersede_session(storage: Storage, way: Deriving, replaced: Replaced, by: str) -> tuple[StoredSession, Derived]:
     """Says that a stored session stands for another one; ConflictError where either does not count."""
+    settled = settled_by(storage, replaced.session, by)
     with storage.database.writing() as store:
-        derived = supersede(store, way, replaced, store.sessions.get(by))
-        own, unit = store.sessions.get(replaced.session), store.sessions.get(by).unit
-    date(storage, way, *{own.unit: 0, unit: 0})
-    return own, derived
+        derived = supersede(store, way, replaced, store.sessions.get(by), settled)
+    for serial, own in derived.items():
+        follow(storage, way, serial, own)
+    with storage.database.reading() as store:
+        session = store.sessions.get(replaced.session)
+        return session, derived[session.unit]
 
 
-def supersede(store: Store, way: Deriving, replaced: Replaced, by: StoredSession) -> Derived:
-    """The same within a transaction; derives what is known of the unit of the session that gives way."""
-    is_settled = _is_settled(store, way, replaced.session, by)
+def supersede(
+    store: Store, way: Deriving, replaced: Replaced, by: StoredSession, settled: str | None
+) -> dict[str, Derived]:
+    """The same within a transaction; derives what is known of the units concerned.
+
+    ``settled``: the doubt that the other session is in and that this answers, of `settled_by`.
+    """
+    is_settled = _is_in_doubt_for(store, by, settled)
     known = give_way(store, way.at, replaced, by)
+    touched = (known.id, by.id)
     if is_settled:
         change(store, by, RecordState.ACCEPTED, Step(replaced.who, way.at, replaced.why))
-    return derive_again(store, way, known.unit, known.started_at, (known.id, by.id))
+    derived = {known.unit: derive_again(store, way, known.unit, known.started_at, touched)}
+    if is_settled and by.unit != known.unit:
+        derived[by.unit] = derive_again(store, way, by.unit, by.started_at, touched)
+    return derived
 
 
-def _is_settled(store: Store, way: Deriving, replaced: str, by: StoredSession) -> bool:
-    """Whether a questioned session was in doubt for nothing but the session that it stands for now."""
-    if by.state is not RecordState.QUESTIONED:
-        return False
+def settled_by(storage: Storage, replaced: str, by: str) -> str | None:
+    """The one doubt that a questioned session is in, where it is that it is the session which it stands for now."""
+    with storage.database.reading() as store:
+        session = store.sessions.get(by)
+    if session.state is not RecordState.QUESTIONED:
+        return None
     try:
-        source = read_upload(way.files.content(by.sha256), by.filename)
+        source = read_upload(storage.files.content(session.sha256), session.filename)
     except (*LOST, SessionError):
+        return None
+    with storage.database.reading() as store:
+        known = known_unit(store, store.units.key(session.unit))
+        found = doubts(known, as_checked(source, session.started_at, session.unit), known.calibration(by), (by,))
+    return found[0].text if [doubt.stands_for for doubt in found] == [replaced] else None
+
+
+def _is_in_doubt_for(store: Store, session: StoredSession, why: str | None) -> bool:
+    """Whether a session is questioned for a reason and no other."""
+    if why is None or session.state is not RecordState.QUESTIONED:
         return False
-    known = known_unit(store, store.units.key(by.unit))
-    found = doubts(known, as_checked(source, by.started_at, by.unit), known.calibration(by.id), (by.id,))
-    asked = store.states.of(RecordKind.SESSION, by.id)[-1].why
-    return [doubt.stands_for for doubt in found] == [replaced] and asked == found[0].text
+    return store.states.of(RecordKind.SESSION, session.id)[-1].why == why
 
 
 def give_way(store: Store, at: datetime, replaced: Replaced, by: StoredSession) -> StoredSession:

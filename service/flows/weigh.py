@@ -14,11 +14,13 @@ from service.judging.reservations import UNCHECKED, Doubted, reservations_of
 from service.judging.standing import Basis, Otherwise, verdicts_under_alternatives
 from service.judging.temperatures import Covered, covered_by, worth_of
 from service.judging.tolerances import tolerances_of
+from service.lock_order import outside_writing
 from service.records.decision import Verdict, nominal_factor_of
+from service.records.derivation import Counted
 from service.records.diagnosis import Diagnosed
 from service.records.reservation import Reservation
 from service.records.session import StoredSession
-from service.storage import Files
+from service.storage import Storage
 from service.storage.files import LOST
 from service.storage.queries.unit_types import held_at
 from service.storage.store import Store
@@ -87,6 +89,7 @@ def _temperatures(
     return replace(seen, changes=changes, references=references)
 
 
+@outside_writing
 def weigh(session: CalibrationSession, found: Diagnosed, by: Weighing) -> Weighed:
     """The numerical part, with no store at hand."""
     after = by.basis.verdict_of(found.calibration) if by.basis is not None and found.findings else None
@@ -111,16 +114,43 @@ def weigh(session: CalibrationSession, found: Diagnosed, by: Weighing) -> Weighe
     return Weighed(after, reservations_of(doubted))
 
 
-def weigh_again(store: Store, files: Files, id: str) -> None:
+@dataclass(frozen=True)
+class Weighable:
+    """What a diagnosis is weighed beside, as far as it changes."""
+
+    basis: str | None
+    document: str | None
+    """The diagnosis; None where there is none, or where it found nothing to weigh."""
+
+
+@dataclass(frozen=True)
+class WeighedAgain:
+    """What a verdict is to be said with."""
+
+    id: str
+    of: Weighable
+    reservations: tuple[Reservation, ...] | None
+    """None where there is nothing to weigh."""
+
+
+def weighable(store: Store, session: Counted) -> Weighable:
+    """As it is now."""
+    made = store.diagnoses.get(session.id)
+    return Weighable(session.rests_on, None if made is None or made.found is None else made.document)
+
+
+def weighed_again(storage: Storage, session: Counted) -> WeighedAgain:
     """After another calibration or verdict of a session came into force: what it is said with; where its file is lost
-    or can no longer be read, that nobody could look."""
-    session, made = store.sessions.get(id), store.diagnoses.get(id)
+    or can no longer be read, that nobody could look. No transaction is open."""
+    id = session.id
+    with storage.database.reading() as store:
+        of, stored, made = weighable(store, session), store.sessions.get(id), store.diagnoses.get(id)
     if made is None or made.found is None:
-        return
+        return WeighedAgain(id, of, None)
     try:
-        source = read_upload(files.content(session.sha256), session.filename)
+        source = read_upload(storage.files.content(stored.sha256), stored.filename)
     except (*LOST, SessionError):
-        store.diagnoses.put_reservations(id, UNCHECKED)
-        return
-    weighed = weigh(source, made.found, weighing_of(store, id, source.block))
-    store.diagnoses.put_reservations(id, weighed.reservations)
+        return WeighedAgain(id, of, UNCHECKED)
+    with storage.database.reading() as store:
+        by = weighing_of(store, id, source.block)
+    return WeighedAgain(id, of, weigh(source, made.found, by).reservations)

@@ -2,7 +2,7 @@
 
 from service.errors import ConflictError
 from service.flows.derive_again import Derived, Deriving, derive_again
-from service.flows.refresh_beside import date
+from service.flows.follow import follow
 from service.records.event import Service
 from service.records.state import RecordKind, RecordState, Step
 from service.storage import Storage
@@ -21,5 +21,5 @@ def withdraw_service(storage: Storage, way: Deriving, number: int, step: Step) -
         store.audit.write(step.at, step.who, "withdraw service", service.unit, details)
         derived = derive_again(store, way, service.unit, service.at)
         withdrawn = store.services.get(number)
-    date(storage, way, withdrawn.unit)
+    follow(storage, way, withdrawn.unit, derived)
     return withdrawn, derived

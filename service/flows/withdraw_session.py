@@ -3,7 +3,7 @@
 from service.errors import ConflictError
 from service.flows.change_state import change
 from service.flows.derive_again import Derived, Deriving, derive_again
-from service.flows.refresh_beside import date
+from service.flows.follow import follow
 from service.records.session import StoredSession
 from service.records.state import RecordState, Step
 from service.storage import Storage
@@ -21,6 +21,6 @@ def withdraw_session(storage: Storage, way: Deriving, id: str, step: Step) -> tu
             raise ConflictError(f"Session {id} is {session.state} already.")
         change(store, session, RecordState.WITHDRAWN, step)
         derived = derive_again(store, way, session.unit, session.started_at, (id,))
-        withdrawn = store.sessions.get(id)
-    date(storage, way, withdrawn.unit)
-    return withdrawn, derived
+    follow(storage, way, session.unit, derived)
+    with storage.database.reading() as store:
+        return store.sessions.get(id), derived

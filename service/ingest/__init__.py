@@ -14,6 +14,7 @@ from estimator.reading import read_session
 from estimator.reading.source import LARGEST_FILE
 from estimator.session import CalibrationSession
 from service.ingest.formats import BINARY, is_binary
+from service.lock_order import outside_writing
 
 if TYPE_CHECKING:
     from service.ingest.apart import read_apart, turn
@@ -27,6 +28,7 @@ LONG = 1024 * 1024
 """Bytes of text that are read here: a tenth of a second at most, and 40 MB. A session of positions has a hundredth."""
 
 
+@outside_writing
 def read_upload(content: bytes | Path, filename: str) -> CalibrationSession:
     """The session that the content, or a file, holds; raises SessionError with every problem, named after the file.
 
@@ -44,6 +46,7 @@ def read_first_rows(content: bytes | Path, filename: str) -> CalibrationSession:
     return read_session(content, name=filename, most=in_force().extent, part=True)
 
 
+@outside_writing
 @contextmanager
 def in_turn(content: bytes | Path) -> Iterator[None]:
     """Around all that is done with an upload: only so many that are read apart are held in memory at once."""

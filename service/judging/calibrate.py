@@ -14,6 +14,7 @@ from estimator.results import Calibration
 from estimator.session import CALIBRATIONS, IN_SERVICE, CalibrationSession
 from service.ingest.checked import Checked
 from service.judging.reference import calibration_to_compare_with
+from service.lock_order import outside_writing
 from service.records.model import Model
 from service.storage.store import Store
 
@@ -53,6 +54,7 @@ def basis_of(store: Store, new: Checked, model: Model) -> Basis:
     return Basis(model, calibration_to_compare_with(store, new) if is_recording else None)
 
 
+@outside_writing
 def calibrate(new: Checked, basis: Basis) -> Calibrated:
     """The numerical part, with no store at hand; SessionError where the session cannot tell what it should."""
     if basis.compared_with is None:

@@ -82,7 +82,7 @@ def _is_stale(place: Place, since: datetime, moved: set[tuple[str, datetime | No
     own = place.session
     if own.basis is None:
         return own.at >= since or (own.block, place.since) in moved
-    return own.basis != place.basis
+    return own.rests_on != place.basis
 
 
 def _group(one: Counted, breaks: Sequence[datetime]) -> Group:

@@ -11,6 +11,7 @@ from estimator.health.rule import RULE
 from estimator.results import Calibration
 from service.judging.calibrate import Comparison
 from service.judging.tolerances import tolerances_of
+from service.lock_order import outside_writing
 from service.records.decision import Decision, Judged, Opening, Verdict
 from service.records.unit import UnitType
 from service.words.advice import too_few
@@ -18,6 +19,7 @@ from service.words.in_service import reason as recording_in_words
 from service.words.verdict import first_in_words, reason
 
 
+@outside_writing
 def judge(
     calibration: Calibration,
     reference: Calibration | None,
@@ -52,6 +54,7 @@ def decisions_of(
     return judge(calibration, reference, unit_type, coverage_factor).decisions
 
 
+@outside_writing
 def judge_recording(moved: Calibration, found: Comparison, unit_type: UnitType, coverage_factor: float) -> Judged:
     """Every parameter that parity sees, judged, and the recording by its worst."""
     tolerances = tolerances_of(unit_type)

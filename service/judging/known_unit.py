@@ -1,37 +1,17 @@
 """Step: what a transaction has read of a unit that it holds, so that nothing is read twice."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
 
 from estimator.results import Calibration
 from service.judging.reference import alike
-from service.records.decision import Judged
 from service.records.derivation import Counted, UnitRecords
-from service.records.unit import UnitType
 from service.storage.queries.services import epoch
 from service.storage.store import Store
 from service.words.advice import too_few
 
-
-@dataclass(frozen=True)
-class Foreseen:
-    """How a new session is judged if nothing changes until its transaction: judging takes longer than storing, and
-    nobody else can store meanwhile."""
-
-    basis: str
-    """What it was judged by, as its place says."""
-    unit_type: UnitType
-    judged: Judged
-    reference: Counted
-    """Which it was judged against."""
-    against: Calibration
-    """That of the reference, which never changes under one revision."""
-
-    def is_against(self, records: UnitRecords) -> bool:
-        """Whether the reference still speaks for the same calibration."""
-        own = (self.reference.id, self.reference.revision)
-        return any((one.id, one.revision) == own for one in records.counted)
+NOTHING_READ: Mapping[tuple[str, int], Calibration] = {}
 
 
 @dataclass(frozen=True)
@@ -45,8 +25,8 @@ class KnownUnit:
     """Calibrations that this transaction stores: nothing was decided of them before."""
     read: dict[str, Calibration] = field(default_factory=dict)
     """Calibrations in force that it has read."""
-    foreseen: Foreseen | None = None
-    """Of the only session that it stores."""
+    files: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    """Of sessions that are not stored yet."""
 
     def calibration(self, id: str) -> Calibration:
         """The one in force of a session."""
@@ -55,6 +35,13 @@ class KnownUnit:
         if id not in self.read:
             self.read[id] = self.store.calibrations.get(id)
         return self.read[id]
+
+    def file(self, id: str) -> tuple[str, str]:
+        """The hash and the name of a session's file."""
+        if id in self.files:
+            return self.files[id]
+        session = self.store.sessions.get(id)
+        return session.sha256, session.filename
 
     def read_all(self, ids: Collection[str]) -> None:
         """Reads those of several sessions at once."""
@@ -83,10 +70,14 @@ class KnownUnit:
 
 
 def known_unit(
-    store: Store, unit: int, made: dict[str, Calibration] | None = None, foreseen: Foreseen | None = None
+    store: Store,
+    unit: int,
+    made: dict[str, Calibration] | None = None,
+    references: Mapping[tuple[str, int], Calibration] = NOTHING_READ,
 ) -> KnownUnit:
-    """A unit as its rows are now, with calibrations that were stored just before."""
-    known = KnownUnit(store, unit, store.derivations.records(unit), made or {}, foreseen=foreseen)
-    if foreseen is not None and foreseen.is_against(known.records):
-        known.read[foreseen.reference.id] = foreseen.against
-    return known
+    """A unit as its rows are now, with calibrations that were stored just before, and with those of references that
+    were read already, by session and revision."""
+    records = store.derivations.records(unit)
+    current = {(one.id, one.revision) for one in records.counted}
+    read = {id: found for (id, revision), found in references.items() if (id, revision) in current}
+    return KnownUnit(store, unit, records, made or {}, read)

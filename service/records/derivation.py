@@ -7,6 +7,9 @@ from datetime import datetime
 from service.records.decision import Judged
 from service.records.flag import Concern
 
+UNWEIGHED = "~"
+"""Heads the basis of a verdict beside which a diagnosis is still to be weighed."""
+
 
 @dataclass(frozen=True)
 class Counted:
@@ -19,7 +22,18 @@ class Counted:
     revision: int
     is_reference: bool
     basis: str | None
-    """What its verdict rests on; empty where it is to be judged, None where it was judged before this was kept."""
+    """What its verdict rests on; empty where it is to be judged, None where it was judged before this was kept. Heads
+    by `UNWEIGHED` where its diagnosis is still to be weighed beside the verdict."""
+
+    @property
+    def is_unweighed(self) -> bool:
+        """Whether what its verdict is said with may be that of the verdict before."""
+        return self.basis is not None and self.basis.startswith(UNWEIGHED)
+
+    @property
+    def rests_on(self) -> str | None:
+        """The basis alone."""
+        return self.basis if self.basis is None else self.basis.removeprefix(UNWEIGHED)
 
 
 @dataclass(frozen=True)

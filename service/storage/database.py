@@ -1,4 +1,7 @@
-"""The database: the only place that commits. One transaction a request."""
+"""The database: the only place that commits. One transaction a request.
+
+In which order locks are taken, and what is not done while one is held, says `service.lock_order`.
+"""
 
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
@@ -9,6 +12,7 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from service.errors import AwayError
+from service.lock_order import writing
 from service.storage.engine import WRITES, open_engine
 from service.storage.faults import database_faults
 from service.storage.revisions import unfit
@@ -46,7 +50,7 @@ class Database:
         SQLite has one writer at a time, and forgets who waited longest: those of this process come in turn.
         """
         turn = nullcontext() if self._turns is None else self._turns.taken()
-        with database_faults(), turn, Session(self._writing_engine) as session:
+        with database_faults(), writing(), turn, Session(self._writing_engine) as session:
             store = Store(session, self._account)
             yield store
             store.tallies.settle()

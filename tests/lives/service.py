@@ -12,13 +12,19 @@ from types import ModuleType
 import psutil
 
 from service.cli import main
+from service.lock_order import WATCHED
 from tests.patience import until
 
 READY = "imu-health is ready: open "
 forking = multiprocessing.get_context("forkserver")
 forking.set_forkserver_preload(["service.cli", "service.commands.serve", "service.commands.backup"])
 """Every start would load the program anew otherwise, a second and more of work."""
-QUIET = {"OPENBLAS_NUM_THREADS": "1", "IMU_HEALTH_DIAGNOSIS_WORKERS": "1", "IMU_HEALTH_DIAGNOSIS_NICENESS": "0"}
+QUIET = {
+    WATCHED: "yes",
+    "OPENBLAS_NUM_THREADS": "1",
+    "IMU_HEALTH_DIAGNOSIS_WORKERS": "1",
+    "IMU_HEALTH_DIAGNOSIS_NICENESS": "0",
+}
 
 
 def run_command(arguments: tuple[str, ...], output: Path, environment: dict[str, str]) -> None:

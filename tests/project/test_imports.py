@@ -11,7 +11,7 @@ import pytest
 from tests.project.source import PACKAGES, Module, modules
 
 SERVICE_LAYERS = (
-    {"settings", "errors", "languages", "records", "measures", "log"},
+    {"settings", "errors", "languages", "records", "measures", "log", "lock_order"},
     {"client", "identity", "metrics", "words"},
     {"ingest", "storage", "planning"},
     {"judging"},

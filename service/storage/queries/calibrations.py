@@ -13,7 +13,7 @@ from service.errors import NotFoundError
 from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState, DiagnosisSummary
 from service.records.session import StoredSession
-from service.storage.calibration_document import Packed, calibration_from_dict, pack
+from service.storage.calibration_document import Packed, calibration_from_dict
 from service.storage.pending_tables import PendingRow
 from service.storage.queries.base import Queries
 from service.storage.queries.sessions import session_record, session_rows, worst_columns
@@ -39,9 +39,8 @@ class Calibrations(Queries):
         ]  # fmt: skip
         self.insert_many(CalibrationRow, rows)
 
-    def put(self, session: str, revision: int, calibration: Calibration) -> None:
+    def put(self, session: str, revision: int, packed: Packed) -> None:
         """Stores another calibration in place of the one of a session and revision."""
-        packed = pack(calibration)
         own = (CalibrationRow.session_id == session, CalibrationRow.revision == revision)
         values = {"method": packed.method, "document": packed.document}
         self._session.execute(update(CalibrationRow).where(*own).values(**values))

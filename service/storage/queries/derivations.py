@@ -7,11 +7,11 @@ from typing import Any
 from sqlalchemy import Table, Update, bindparam, delete, func, select, update
 
 from service.records.decision import Judged
-from service.records.derivation import Counted, Decided, Told, UnitRecords
+from service.records.derivation import UNWEIGHED, Counted, Decided, Told, UnitRecords
 from service.records.flag import Concern, FlagState, Matter, NoticeKind
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
-from service.storage.queries.sessions import NOT_JUDGED, worst_columns
+from service.storage.queries.sessions import NOT_JUDGED, is_waiting, worst_columns
 from service.storage.queries.unit_records import unit_records
 from service.storage.tables import (
     CalibrationRow,
@@ -76,16 +76,23 @@ class Derivations(Queries):
         self._session.expire_all()
 
     def waiting(self) -> tuple[str, ...]:
-        """Serial numbers of units with accepted sessions that are to be judged."""
+        """Serial numbers of units with accepted sessions that are to be judged or weighed."""
         query = select(UnitRow.serial).join(SessionRow, SessionRow.unit_id == UnitRow.id)
-        query = query.where(SessionRow.basis == NOT_JUDGED, IS_ACCEPTED)
+        query = query.where(is_waiting(SessionRow.basis), IS_ACCEPTED)
         return tuple(self._session.scalars(query.distinct().order_by(UnitRow.serial)))
 
     def waiting_of(self, serial: str) -> int:
-        """How many accepted sessions of a unit are to be judged."""
+        """How many accepted sessions of a unit are to be judged or weighed."""
         query = select(func.count()).select_from(SessionRow).join(UnitRow, UnitRow.id == SessionRow.unit_id)
-        own = (UnitRow.serial == serial, SessionRow.basis == NOT_JUDGED, IS_ACCEPTED)
+        own = (UnitRow.serial == serial, is_waiting(SessionRow.basis), IS_ACCEPTED)
         return self._session.scalar(query.where(*own)) or 0
+
+    def put_weighed(self, ids: Collection[str]) -> None:
+        """Nothing more is to be done about the verdicts of sessions."""
+        own = SessionRow.id.in_(tuple(ids)), SessionRow.basis.startswith(UNWEIGHED)
+        weighed = func.substr(SessionRow.basis, len(UNWEIGHED) + 1)
+        self._session.execute(update(SessionRow).where(*own).values(basis=weighed))
+        self._session.expire_all()
 
     def put_judged(self, decided: Sequence[Decided]) -> None:
         """What was decided of sessions under their revisions, in place of what was; the calibrations stay."""

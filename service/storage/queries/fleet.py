@@ -37,7 +37,7 @@ from service.storage.pending_tables import FailedDerivationRow, PendingOutlookRo
 from service.storage.queries.accepted import IS_ACCEPTED, IS_BREAK
 from service.storage.queries.base import Queries
 from service.storage.queries.outlooks import outlook_of
-from service.storage.queries.sessions import NOT_JUDGED, session_record, session_rows
+from service.storage.queries.sessions import is_waiting, session_record, session_rows
 from service.storage.queries.unit_types import unit_type_of
 from service.storage.queries.wanted_units import Summaries, beyond, keys, matching
 from service.storage.reservation_document import reservations_from_list
@@ -256,8 +256,8 @@ def _summaries(*, measured: bool = True) -> Summaries:
 
 
 def _waiting() -> ScalarSelect[int]:
-    """How many accepted sessions of a unit are to be judged."""
-    own = (Other.unit_id == UnitRow.id, Other.basis == NOT_JUDGED, Other.state == RecordState.ACCEPTED)
+    """How many accepted sessions of a unit are to be judged or weighed."""
+    own = (Other.unit_id == UnitRow.id, is_waiting(Other.basis), Other.state == RecordState.ACCEPTED)
     return select(func.count()).select_from(Other).where(*own).scalar_subquery()
 
 

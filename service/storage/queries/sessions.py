@@ -5,12 +5,14 @@ from dataclasses import asdict, fields, replace
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import Select, and_, bindparam, or_, select, update
+from sqlalchemy import ColumnElement, Select, and_, bindparam, or_, select, update
+from sqlalchemy.orm import InstrumentedAttribute
 
 from estimator.health.common_motion import CommonMotion
 from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
 from service.records.decision import Decision, Verdict
+from service.records.derivation import UNWEIGHED
 from service.records.diagnosis import DiagnosisState
 from service.records.received import DEMONSTRATION
 from service.records.session import Digests, StoredSession
@@ -35,6 +37,11 @@ NOT_JUDGED = ""
 """What the verdict rests on of a session that is still to be judged, or judged again."""
 ELSEWHERE = ("unit", "stand", "verdict", "state", "reservations")
 """Fields of a session that are no plain column of its row."""
+
+
+def is_waiting(basis: InstrumentedAttribute[str | None]) -> ColumnElement[bool]:
+    """Whether a session is to be judged, or to be weighed beside its verdict."""
+    return or_(basis == NOT_JUDGED, basis.startswith(UNWEIGHED))
 
 
 class Sessions(Queries):

@@ -39,10 +39,15 @@ class UnitTypes(Queries):
 
     def get(self, name: str) -> UnitType:
         """The type with the tolerances that hold now."""
-        found = self._session.execute(_with_tolerances().where(UnitTypeRow.name == name)).one_or_none()
+        found = self.find(name)
         if found is None:
             raise _missing(name)
-        return unit_type_of(*found)
+        return found
+
+    def find(self, name: str) -> UnitType | None:
+        """The same, where there is one of that name."""
+        found = self._session.execute(_with_tolerances().where(UnitTypeRow.name == name)).one_or_none()
+        return None if found is None else unit_type_of(*found)
 
     def of_unit(self, serial: str) -> UnitType:
         """The type of a unit with the tolerances that hold now."""

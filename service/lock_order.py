@@ -1,0 +1,48 @@
+"""The order in which a thread takes locks, and that it computes nothing while it writes.
+
+First a place to read a large file, then the turn to write, then rows: a unit's before those of what belongs to it.
+While a write transaction is open nothing is read from files, calibrated, judged, weighed, diagnosed or forecast: on
+SQLite everybody else's writing waits for its end, on PostgreSQL everybody's who writes to the same unit. What is to be
+stored is worked out before, and put down where it still holds, or is left to be worked out after.
+
+Tests hold it by the environment variable `IMU_HEALTH_WATCH_WRITING`. A service that somebody relies on is slow rather
+than broken.
+"""
+
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import wraps
+from threading import local
+from typing import ParamSpec, TypeVar
+
+WATCHED = "IMU_HEALTH_WATCH_WRITING"
+Given = ParamSpec("Given")
+Result = TypeVar("Result")
+_own = local()
+
+
+class ComputedWhileWritingError(Exception):
+    """A mistake of the program: others wait for a transaction that computes."""
+
+
+@contextmanager
+def writing() -> Iterator[None]:
+    """This thread's transaction is open until the block ends."""
+    _own.is_writing = True
+    try:
+        yield
+    finally:
+        _own.is_writing = False
+
+
+def outside_writing(function: Callable[Given, Result]) -> Callable[Given, Result]:
+    """Of a function that takes long: nobody calls it in a write transaction."""
+
+    @wraps(function)
+    def watched(*args: Given.args, **kwargs: Given.kwargs) -> Result:
+        if getattr(_own, "is_writing", False) and WATCHED in os.environ:
+            raise ComputedWhileWritingError(f"{function.__qualname__} is called in a write transaction")
+        return function(*args, **kwargs)
+
+    return watched
