@@ -5,7 +5,7 @@ While a write transaction is open nothing is read from files, calibrated, judged
 SQLite everybody else's writing waits for its end, on PostgreSQL everybody's who writes to the same unit. What is to be
 stored is worked out before, and put down where it still holds, or is left to be worked out after.
 
-Tests hold it by the environment variable `IMU_HEALTH_WATCH_WRITING`. A service that somebody relies on is slow rather
+Tests hold it by the environment variable `IMU_WATCH_WRITING`. A service that somebody relies on is slow rather
 than broken.
 """
 
@@ -16,7 +16,7 @@ from functools import wraps
 from threading import local
 from typing import ParamSpec, TypeVar
 
-WATCHED = "IMU_HEALTH_WATCH_WRITING"
+WATCHED = "IMU_WATCH_WRITING"
 Given = ParamSpec("Given")
 Result = TypeVar("Result")
 _own = local()

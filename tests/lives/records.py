@@ -79,9 +79,9 @@ class Records(Steps):
             return
         path = f"/unit-types/{quote(kind['name'], safe='')}"
         self.tries(f"{path}/preview", new)
-        if not self.world.tolerances_change:
-            new = {name: kind[name] for name in new}
-        self.tries(path, new | {"maximum_interval_days": interval}, "PUT")
+        self.world.is_dated = True
+        if told := self.tries(path, new | {"maximum_interval_days": interval}, "PUT"):
+            self.world.tolerances[kind["name"], told["revision"]] = new
 
     @rule(which=WHICH, lot=st.sampled_from(["2024-07", None]), customer=st.sampled_from(["ООО «Курс»", ""]))
     def says_whose_it_is(self, which: int, lot: str | None, customer: str) -> None:

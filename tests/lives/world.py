@@ -52,9 +52,8 @@ class World:
     """Why uploads were not taken."""
     services: dict[int, tuple[str, dict[str, Any]]] = field(default_factory=dict)
     """Recorded services that count: the unit, and what was said of it, by number."""
-    tolerances_change: bool = False
-    """Whether this is a life in which engineers set others: a session is judged by those of the day it was computed, so
-    that the same records on other days tell another state."""
+    tolerances: dict[tuple[str, int], dict[str, Any]] = field(default_factory=dict)
+    """What was set of unit types, by name and revision."""
     is_dated: bool = False
     """Whether something was said that holds from then on: a cause in a model."""
     is_short: bool = False

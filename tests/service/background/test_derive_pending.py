@@ -2,12 +2,23 @@
 
 from threading import Event
 
+import httpx
+import pytest
+
+from service.app import create_app
 from service.background.derive_pending import derive_waiting
 from service.flows.choose_reference import choose_reference
+from service.flows.derive_again import derive_again
 from service.flows.receive import upload
+from service.settings import Settings
 from service.storage import Storage
+from tests.conftest import SettingsHolding
+from tests.patience import until
+from tests.service.doubtful import MISTAKEN
 from tests.service.records import NOW, state_of, step, way
-from tests.service.sessions import session_bytes
+from tests.service.sessions import session_bytes, session_id
+from tests.serving import http_client
+from tests.stock import stores
 
 UNIT = "BA-017"
 
@@ -38,3 +49,39 @@ def test_who_is_the_reference_already_is_chosen_without_judging_the_others(stora
     ids = filled(storage)
     _, derived = choose_reference(storage, way(storage), ids[0], step())
     assert derived.judged == (ids[0],)  # says from now on that it was chosen
+
+
+def said(client: httpx.Client, id: str) -> tuple[bool, list[str]]:
+    """Whether a session is the reference, and what its verdict is said with."""
+    found = client.get(f"/api/v1/sessions/{id}").json()
+    return found["is_reference"], [one["kind"] for one in found["reservations"]]
+
+
+def waits(client: httpx.Client) -> int:
+    """How many sessions are to be judged or weighed."""
+    return int(client.get(f"/api/v1/units/{UNIT}/derivation").json()["waiting"])
+
+
+@pytest.fixture
+def working(settings_holding: SettingsHolding) -> Settings:
+    """Of a service with workers, that holds a reference and a session out of tolerance for a jump that is named."""
+    return settings_holding(*MISTAKEN, diagnosed=True).model_copy(update={"diagnosis_workers": 1})
+
+
+def test_another_reference_is_answered_with_what_verdicts_are_said_with_then(working: Settings) -> None:
+    id = session_id(MISTAKEN[-1])
+    with http_client(create_app(working)) as client:
+        assert said(client, id) == (False, ["cause", "other-model", "stated-errors"])
+        chosen = {"session": id, "by": "K. Ito", "why": "the first one was cold"}
+        client.post(f"/api/v1/units/{UNIT}/reference", json=chosen).raise_for_status()
+        assert (waits(client), said(client, id)) == (0, (True, ["cause"]))
+
+
+def test_what_a_killed_service_left_is_weighed_after_its_next_start(working: Settings) -> None:
+    id = session_id(MISTAKEN[-1])
+    with stores(working) as storage, storage.database.writing() as store:
+        store.states.choose(store.units.hold(UNIT), id, step())
+        derive_again(store, way(storage), UNIT, store.sessions.get(id).started_at, (id,))
+    with http_client(create_app(working)) as client:
+        until(lambda: waits(client) == 0)
+        assert said(client, id) == (True, ["cause"])
