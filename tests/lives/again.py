@@ -23,9 +23,11 @@ MOST = 12
 
 
 def settle(world: World) -> None:
-    """Takes back what depends on when it was said, as models do. Then what is done
-    every hour is done at once, and once more, for the first time tells types what their units teach."""
-    for session in world.sessions("questioned"):
+    """Takes back what depends on when it was said: models hold from then on, and a file without a date has that of its
+    upload. Then what is done every hour is done at once, and once more, for the first time tells types what their units
+    teach."""
+    undated = [one for one in world.sessions("accepted") if one["started_at"] == one["uploaded_at"]]
+    for session in [*world.sessions("questioned"), *undated]:
         world.send(f"/sessions/{session['id']}/withdraw", BY)
     for model in world.listed("models"):
         world.send(f"/models/{model['id']}/withdraw", BY)
@@ -44,8 +46,6 @@ def settle(world: World) -> None:
 
 def same_of_the_records(world: World, databases: Databases, folder: Path) -> None:
     """What is known is a function of the accepted records, whatever their order and detours."""
-    if world.tolerances_change:
-        return
     settle(world)
     url = databases.migrated()
     with opened(Service(url, folder / "fresh"), world.chance.randrange(2**31)) as fresh:

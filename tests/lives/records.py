@@ -65,7 +65,7 @@ class Records(Steps):
 
     @rule(which=WHICH, factor=st.sampled_from([0.2, 0.7, 1.5, 4.0]), interval=st.sampled_from([None, 90.0, 730.0]))
     def changes_tolerances(self, which: int, factor: float, interval: float | None) -> None:
-        """Of a unit type, tried first; or its longest calibration interval alone."""
+        """Of a unit type, tried first."""
         found = self.world.listed("unit-types")
         if not found:
             return
