@@ -195,6 +195,6 @@ def unit_type_of(row: UnitTypeRow, tolerances: ToleranceRow) -> UnitType:
         nominal_scales=tuple(row.nominal_scales),
         tolerances=of_block,
         gyro_tolerances=gyro,
-        revision=row.revision,
+        revision=tolerances.revision,
         maximum_interval_days=row.maximum_interval_days,
     )

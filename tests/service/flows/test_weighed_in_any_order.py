@@ -89,3 +89,14 @@ def test_a_questioned_session_is_looked_at_again_once_it_is_accepted(holding: Ho
         done(client, id, "accept")
         found.append(looked_at(client, id))
     assert found[0] == found[1]
+
+
+def test_a_session_that_is_judged_again_names_the_tolerances_that_it_is_judged_by(holding: Holding) -> None:
+    client = holding(REFERENCE)
+    id = sent(client, MOVED)
+    [reference] = [one["id"] for one in client.get("/api/v1/sessions").json()["sessions"] if one["is_reference"]]
+    four_times_as_wide(client)
+    chosen(client, id)
+    decided = client.get(f"/api/v1/sessions/{reference}").json()["decisions"]
+    assert {one["rule"].split()[-1] for one in decided} == {"1)"}
+    assert max(one["tolerance"] for one in decided if one["parameter"] == "scale") == 1e-4
