@@ -181,6 +181,13 @@ class Settings(BaseSettings):
         description="How far those processes stand back behind requests where all cores are busy, as `nice` counts: 10 "
         "leaves them about a tenth of a core that requests want too, 0 half of it.",
     )
+    work_seconds: float = Field(
+        default=600.0,
+        gt=0,
+        le=86_400,
+        description="Longest that one piece of work beside the requests may take, such as a diagnosis: then its "
+        "process is ended, and it counts as failed, s.",
+    )
     coverage_factor: float = Field(
         default=2.0, gt=0, le=5, description="k: expanded uncertainty and guard band are k times the standard one."
     )

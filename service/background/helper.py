@@ -31,19 +31,19 @@ from service.records.group import Group
 from service.records.recomputation import Task
 from service.settings import Settings
 from service.storage import Storage, open_storage
+from service.storage.failed import too_long
 
 LOOK_EVERY = 0.25
 """Seconds between two looks whether the service is stopping while a diagnosis is made."""
-LONGEST = 600
-"""Seconds by the clock that a diagnosis may take; then its process is ended. The largest that is allowed takes tens."""
 ANSWERS = multiprocessing.get_context("forkserver")
 """How processes are started."""
 
 
 Still = Callable[[], bool]
 """Whether the service goes on; asked now and then while something is made."""
-DIED = "ProcessDied"
-"""As the figures name a process that ended before it answered."""
+DIED, LATE = "ProcessDied", "TookTooLong"
+"""As the figures name a process that ended before it answered, and one that was ended because it was not done in time.
+"""
 
 
 class StoppingError(ServiceError):
@@ -125,11 +125,19 @@ class Helper:
             answer: Failure | None = self._pipe.recv()
             answered = True
         except (EOFError, OSError):
-            return Failure(DIED, f"The process died at the {job} of {of}.", is_foreseen=False)
+            return self._ended(job, of)
         finally:
             if not answered:  # its answer would be taken for that of the next job
                 self.end()
         return answer
+
+    def _ended(self, job: Job, of: str | int | Group | Task) -> Failure:
+        """Why it answers no more."""
+        assert self._process is not None
+        self._process.join()
+        if self._process.exitcode == -signal.SIGALRM:
+            return Failure(LATE, too_long(self._settings.work_seconds), is_foreseen=False)
+        return Failure(DIED, f"The process died at the {job} of {of}.", is_foreseen=False)
 
     def end(self) -> None:
         """Ends it, whatever it is at: a transaction of its is undone."""
@@ -153,9 +161,9 @@ def work(pipe: Connection, settings: Settings) -> None:
     with suppress(EOFError, BrokenPipeError, ConnectionResetError):
         while True:
             job, of, now = pipe.recv()
-            signal.alarm(LONGEST)
+            signal.setitimer(signal.ITIMER_REAL, settings.work_seconds)  # ends the process, whatever it is at
             answer = _made(storage, job, of, now, settings.coverage_factor)
-            signal.alarm(0)
+            signal.setitimer(signal.ITIMER_REAL, 0)
             pipe.send(answer)
 
 

@@ -10,6 +10,7 @@ from service.reports.fleet_file import fleet_file
 from service.storage import Storage
 from service.storage.made import drop_made, put_made
 from service.storage.store import Store
+from service.words.failed import with_last_try
 from service.words.jobs import AT_FAULT, left_in_words
 
 
@@ -34,11 +35,12 @@ def skip_piece(storage: Storage, id: int, now: datetime) -> None:
     """The program failed at it, or no process outlived it: it is listed, and the next one follows."""
     with storage.database.writing() as store:
         job = store.jobs.get(id)
+        reason = with_last_try(AT_FAULT, job.held_up)
         unit = store.jobs.next_unit(job) if job.kind is JobKind.RECALIBRATION else None
         if unit is None:
-            store.jobs.fail(id, JobFailure(job.subject, AT_FAULT), now)
+            store.jobs.fail(id, JobFailure(job.subject, reason), now)
         else:
-            store.jobs.advance(job, unit[0], Piece(failure=JobFailure(unit[1], AT_FAULT)))
+            store.jobs.advance(job, unit[0], Piece(failure=JobFailure(unit[1], reason)))
 
 
 def _report(storage: Storage, job: Job, now: datetime) -> None:

@@ -34,6 +34,7 @@ from service.storage.diagnosis_document import diagnosis_to_dict, inapplicable_t
 from service.storage.files import LOST
 from service.storage.store import Store
 from service.words.diagnosis import NOT_APPLICABLE, cannot_be_diagnosed, fault_of_the_program, summary_of
+from service.words.failed import with_last_try
 
 MOST_EARLIER = 10
 """Earlier sessions of the unit that a diagnosis looks at."""
@@ -83,9 +84,9 @@ def diagnose(storage: Storage, id: str, now: datetime, coverage_factor: float = 
 def give_up(storage: Storage, id: str, now: datetime) -> None:
     """Stores of a session that the program failed at its diagnosis; this version does not try again."""
     with storage.database.reading() as store:
-        task, asked = task_of(store, id), store.pending.of(id)
+        task, asked, why = task_of(store, id), store.pending.of(id), store.pending.failed(id)
     log.error("diagnosis given up", session=id, estimator_version=VERSION)
-    made, way = _failed(task, fault_of_the_program(id), now), Deriving(storage.files, COVERAGE, now)
+    made, way = _failed(task, with_last_try(fault_of_the_program(id), why), now), Deriving(storage.files, COVERAGE, now)
     with storage.database.writing() as store:
         _keep(store, way, task.session.unit, made, None if asked is None else asked.ticket)
 

@@ -29,6 +29,7 @@ from service.storage import Files, Storage
 from service.storage.files import LOST
 from service.storage.group_document import group_document, read_group
 from service.storage.store import Store
+from service.words.failed import with_last_try
 from service.words.group import FAILED, summary_of_group
 
 RULE = b"4"
@@ -101,7 +102,8 @@ def give_up(storage: Storage, group: Group, now: datetime) -> None:
     """Stores of a group that the program failed at its answer; this version does not try again with these sessions."""
     with storage.database.writing() as store:
         asked = store.pending_groups.asked(group)
-        answer = GroupAnswer(digest(members_of(store, group)), 0, FAILED, "", None, VERSION, now)
+        summary = with_last_try(FAILED, store.pending_groups.failed(group))
+        answer = GroupAnswer(digest(members_of(store, group)), 0, summary, "", None, VERSION, now)
         store.groups.put(group, answer)
         store.pending_groups.settle(asked)
 

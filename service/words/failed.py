@@ -23,6 +23,11 @@ NAMES = {
 }
 
 
+def with_last_try(text: str, why: str) -> str:
+    """What was given up, and how its last try ended where that is known."""
+    return f"{text} The last try: {why.rstrip('.')}." if why else text
+
+
 def unit_failed(reason: str) -> str:
     """Of a unit."""
     return UNIT.format(why=reason.rstrip("."))

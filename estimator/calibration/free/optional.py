@@ -80,7 +80,10 @@ def lowest(run: Run, found: Solution, others: list[Unknowns]) -> Solution:
 
 
 def around(found: Solution) -> list[Unknowns]:
-    """Points `FAR` standard errors up and down the least known directions, each orientation turned to suit."""
+    """Points `FAR` standard errors up and down the least known directions, each orientation turned to suit; none where
+    the search has not ended, since standard errors mean nothing there."""
+    if not found.converged:
+        return []
     order = np.argsort(found.knowledge.variances)
     steps = [s for s in FAR * scaled(found.knowledge)[:, order[-VALLEYS:]].T if np.linalg.norm(s) > STRAIGHT]
     if not steps:

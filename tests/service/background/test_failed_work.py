@@ -83,6 +83,27 @@ def test_a_forecast_that_fails_is_told_everywhere(settings: Settings, workers: i
     assert "Несделанная работа" in jobs  # the language stays
 
 
+@pytest.mark.usefixtures("patient_readers")
+@one_engine
+def test_work_that_takes_too_long_is_ended_and_says_so(settings: Settings) -> None:
+    """Whatever it is at: nothing keeps a process beside the requests for ever."""
+    id, late = session_id(FIRST), "it was not done within 0.001 s, the longest that it may take"
+    with served(settings.model_copy(update={"work_seconds": 0.001}), 1) as client:
+        assert send(client, FIRST) == 201
+        diagnosis = client.get(f"/api/v1/sessions/{id}/diagnosis").json()
+        outlook = dated_outlook(client, DAMAGED)
+        in_russian = client.get(f"/sessions/{id}?lang=ru", headers={"Accept": "text/html"}).text
+        figures = client.get("/metrics").text
+    assert diagnosis["detail"].endswith(f"The last try: {late}.")
+    assert late in outlook["failed"]
+    assert "не сделано за 0.001 с" in in_russian
+    assert 'fault="TookTooLong",work="pending diagnoses"} 3.0' in figures
+    with served(settings, 1) as client:
+        assert client.post("/api/v1/jobs/failed/retry").json()["retried"] > 0
+        assert client.get(f"/api/v1/sessions/{id}/diagnosis").status_code == 200
+        assert not dated_outlook(client, DAMAGED)["failed"]
+
+
 def test_what_failed_is_tried_again(settings: Settings) -> None:
     with served(settings, 0) as client:
         fail_a_forecast(client, settings)

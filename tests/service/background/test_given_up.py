@@ -27,7 +27,7 @@ from service.records.recomputation import Progress
 from service.settings import Settings
 from service.storage import Storage
 from service.views.usable import usable
-from service.words.failed import unit_failed
+from service.words.failed import unit_failed, with_last_try
 from service.words.group import FAILED
 from service.words.recomputations import GIVEN_UP, left_in_words
 from tests.databases import one_engine
@@ -106,7 +106,8 @@ def test_a_group_is_given_up_with_these_sessions_and_says_so(settings: Settings,
         group = store.groups.find(Level.UNIT, UNIT)
         answer = current(store, group)
     assert answer is not None
-    assert (answer.summary, answer.document) == (FAILED, None)
+    died = "The process died at the outlook of BA-017."
+    assert (answer.summary, answer.document) == (with_last_try(FAILED, died), None)
     upload(two, GROUP[2], "a.json", NOW, is_dated_later=True)
     with two.database.reading() as store:
         assert current(store, group) is None
