@@ -1,5 +1,6 @@
 """Zeros of several sensors that step at one row of a session: a bump, a power glitch, a block seated anew."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -7,8 +8,8 @@ import numpy as np
 
 from tests.blind.draw import Arrangement, draw_mounting, draw_noise, draw_site, draw_stand, draw_unit
 from tests.blind.effects_sensor import across
-from tests.blind.physics import measure
-from tests.blind.pose import gravity
+from tests.blind.physics import measure, reference_vectors
+from tests.blind.pose import believed, gravity
 from tests.blind.schedule import Wanted, draw_schedule
 from tests.blind.strength import Lens, orthonormal
 from tests.blind.world import Array, Noise, Session
@@ -71,6 +72,49 @@ def draw_steps(block: Block, strengths: Array, rng: np.random.Generator, *, apar
     return Stepped(_file(block, world, up, added, rng), names, tuple((row + 1).tolist()), tuple(size.tolist()))
 
 
+def draw_others(block: Block, kind: str, strength: float, rng: np.random.Generator) -> Stepped:
+    """What may look like a step of all zeros and is none, of so many standard errors: ``kind`` of `OTHERS`."""
+    world, up = _session(block, rng), _directions(rng)
+    rows, m = world.schedule.rows if block.stand else ORIENTATIONS, world.unit.size
+    added = OTHERS[kind](world, rows, rng)
+    common = kind == TURNED
+    for own in (range(m),) if common else ((i,) for i in range(m)):
+        columns = np.zeros((rows, m, 1))
+        columns[:, list(own), 0] = added[:, list(own)]
+        added[:, list(own)] *= strength / float(_left(block, world, up, columns)[0])
+    return Stepped(_file(block, world, up, added, rng), tuple(world.unit.names), (), ())
+
+
+def _walks(world: Session, rows: int, rng: np.random.Generator) -> Array:
+    """(R, m) every zero walks by itself."""
+    return np.cumsum(rng.standard_normal((rows, world.unit.size)), axis=0)
+
+
+def _ramps(world: Session, rows: int, rng: np.random.Generator) -> Array:
+    """(R, m) every zero begins to drift at a row of its own."""
+    m = world.unit.size
+    begun = rng.integers(0, rows - SAFE, m)
+    return np.maximum(np.arange(rows)[:, None] - begun, 0) * rng.choice([-1.0, 1.0], m)
+
+
+def _turned(world: Session, rows: int, rng: np.random.Generator) -> Array:
+    """(R, m) the block turns in its mounting at one row."""
+    row, turn, pose = int(rng.integers(SAFE, rows - SAFE)), rng.standard_normal(3), believed(world)
+    turned = replace(pose, turn=1e-6 * turn * (np.arange(rows)[:, None] >= row))
+    moved = [x - y for x, y in zip(reference_vectors(world, turned), reference_vectors(world, pose), strict=True)]
+    n = np.where(world.unit.gyro[:, None], moved[1][:, None, :], moved[0][:, None, :])
+    return np.asarray(np.einsum("rmk,mk->rm", n, world.unit.axis))
+
+
+WALKS, RAMPS, TURNED = "walks", "ramps", "turned"
+OTHERS: dict[str, Callable[[Session, int, np.random.Generator], Array]] = {
+    WALKS: _walks,
+    RAMPS: _ramps,
+    TURNED: _turned,
+}
+"""A block that turns is seen on a stand only: in orientations nothing is known of how it was held."""
+
+
 def _session(block: Block, rng: np.random.Generator) -> Session:
     unit = draw_unit(Arrangement(block.accelerometers, block.gyros), rng)
     site = draw_site(rng)
@@ -90,11 +134,17 @@ def _strength(block: Block, world: Session, up: Array, sensor: int, steps: Array
     """(S,) standard errors of steps (R, S) of one unit, m/s² or rad/s, beside what the calibration absorbs."""
     columns = np.zeros((steps.shape[0], world.unit.size, steps.shape[1]))
     columns[:, sensor] = steps
+    return _left(block, world, up, columns)
+
+
+def _left(block: Block, world: Session, up: Array, columns: Array) -> Array:
+    """(S,) standard errors of what is added (R, m, S) to the input, beside what the calibration absorbs."""
+    S = columns.shape[2]
     if block.stand:
         columns = columns * world.unit.scale[:, None]
-        return np.asarray(np.linalg.norm(Lens(world).left(columns.reshape(-1, steps.shape[1])), axis=0))
+        return np.asarray(np.linalg.norm(Lens(world).left(columns.reshape(-1, S)), axis=0))
     absorbed = orthonormal(_absorbed(world, up))
-    white = (columns / world.noise.reading[:, None]).reshape(-1, steps.shape[1])
+    white = (columns / world.noise.reading[:, None]).reshape(-1, S)
     return np.asarray(np.linalg.norm(white - absorbed @ (absorbed.T @ white), axis=0))
 
 

@@ -18,15 +18,21 @@ from estimator.diagnosis.selection.noise_claim import (
 from estimator.diagnosis.selection.refinement import with_refined_shapes
 from estimator.diagnosis.selection.search import search
 from estimator.diagnosis.selection.search_state import SearchState
+from estimator.diagnosis.selection.shared_event import shared_event
 from estimator.diagnosis.signatures.noise import NoiseClaim
 
 
 def accepted(start: SearchState) -> SearchState:
-    """The causes that hold, the stated noise believed or, where readings contradict it, known up to a factor only."""
+    """The causes that hold, the stated noise believed or, where readings contradict it, known up to a factor only.
+
+    An event of most sensors makes all of them scatter. It is one shape with a size of each, which cannot stand in for
+    noise: where it leaves readings that scatter as stated, the stated noise is right.
+    """
     claims, state = doubted(start), None
-    if not claims:
+    if not claims or shared_event(start):
         state = believed(start)
-        claims = doubted(state)
+        if not claims or any(f.event for f in state.found):
+            claims = doubted(state)
     rival = whatever_the_scale(start, claims) if claims else None
     return without_names_of_tails(without_names_in_no_noise(borne_out(start, rival or state or believed(start))))
 

@@ -121,11 +121,13 @@ def with_events(start: SearchState, state: SearchState) -> SearchState:
 
 def own_log_evidence(start: SearchState, state: SearchState) -> float:
     """ln evidence of what was found, scatter beyond the stated noise included, against nothing; ``start``: nothing
-    found."""
-    if not state.scatter:
-        return weighed(state)
+    found, in the noise by which all that is compared is weighed.
+
+    Where noise is not known it is what the findings leave: what explains more also leaves less of it.
+    """
     begun, seen = settled(start, state, state.baseline.unstated)
-    plain, _ = settled(start, state, start.baseline.unstated)
+    same = begun.history == start.history
+    plain = start if same else begun_with(replace(start, history=begun.history), start.baseline)
     return weighed(seen) + weighed_noise(state, begun, plain)
 
 

@@ -8,13 +8,14 @@ Theory
 The event adds k_i·h(r; ψ) at the input of every sensor i of a set S, with one ψ. Let X(ψ) be the whitened traces of the
 sensors side by side, what the calibration absorbs projected out, and X̂ an orthonormal basis of them: T = |X̂'z|² is χ²
 without the event, with as many degrees of freedom as sensors (the traces of sensors overlap where a row's β error or an
-unknown direction is common to them). ψ is where T of all sensors is largest, of the n_ψ that are tried. There a sensor
-belongs to the event by what the others leave: with k of m sensors in, of mean square size g, a further one with T_i
-joins by the odds
+unknown direction is common to them). ψ is where T of all sensors is largest, of the n_ψ that are tried. Which
+sensors belong to the event is chosen there jointly, for the traces of sensors that only follow others overlap with
+theirs: with A = X'X of k of m sensors, each trace of length one, and y = X'z, sizes that are N(0, g) give the set
 
-    (k + 1)/(m − k) · exp(½·T_i·g/(1 + g))/√(1 + g)          (rule of succession; amplitude ~ N(0, g))
+    ln p(S) = ½ y'(A + I/g)⁻¹y − ½ ln|I + g·A| − ln C(m, k),        mean over g     (every k equally likely beforehand)
 
-The event is weighed as one finding against what was found sensor by sensor, and against a free course of every sensor.
+The event is weighed as one finding against what was found sensor by sensor, and against zeros that wander, each by
+itself (`wandering.py`).
 Any cause may be shared: those with a sentence for it (`Cause.shared_sentence`) can be named, the others are rivals.
 """
 
@@ -27,18 +28,20 @@ from scipy.special import chdtrc
 
 from estimator.arrays import eigh
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
-from estimator.diagnosis.selection.backward import FURTHER, backward_elimination
+from estimator.diagnosis.selection.backward import backward_elimination
 from estimator.diagnosis.selection.forward import forward_selection, with_structures
 from estimator.diagnosis.selection.ranking import extended_basis, scores_given
 from estimator.diagnosis.selection.search_state import LEVEL, Found, SearchState
-from estimator.diagnosis.signatures.autocorrelation import autocorrelation
 from estimator.diagnosis.signatures.scores import bayes_factor, rescored
 from estimator.diagnosis.signatures.traces import INVISIBLE, Scored, Traces
+from estimator.diagnosis.signatures.wandering import log_marginal, log_mean, log_wandering, marginal
 from estimator.session import Array
 
 SURE = float(np.log(19))
-"""ln odds by which a sensor joins an event: one in twenty that joined last is a bystander. Known to fail beside a jump
-of eighty standard errors, where another sensor seems to have one of four: the turns of the block are not linear."""
+"""ln odds by which a sensor joins an event: one in twenty that joined last is a bystander."""
+
+SIZES = 4.0 ** np.arange(1, 9)
+"""g: mean square sizes of an event's sensors, standard errors, from 2 to 256 of them; all equally likely."""
 
 SCREEN = 0.01
 """p-value of the best moment, all moments together, below which it is looked at closely; it names nothing."""
@@ -108,9 +111,10 @@ def shared_event(start: SearchState) -> tuple[Found, ...]:
     best = np.argsort(-bayes_factor(energy, freedom), kind="stable")[:CLOSEST]
     if chdtrc(freedom[best[0]], energy[best[0]]) * len(every) > SCREEN:
         return ()
-    tried = [joined(start, every[k], len(every)) for k in best]
-    event = max(tried, key=whole_log_evidence)
-    if len(event) < 2 or family_p_value(start, event) >= LEVEL or courses_explain_more(start, event):
+    tried = [(every[k], *joined(start, every[k])) for k in best]
+    course, chosen, _ = max(tried, key=lambda one: one[2])
+    event = priced(start, course, chosen, len(every)) if len(chosen) > 1 else ()
+    if not event or family_p_value(start, event) >= LEVEL or wanders(start, course.of(chosen), len(every)):
         return ()
     return ranked(start, event)
 
@@ -151,58 +155,54 @@ def unit_traces(course: Course) -> Array:
     return np.asarray(flat / np.where(norms > 0, norms, 1.0))
 
 
-def joined(start: SearchState, course: Course, moments: int) -> tuple[Scored, ...]:
-    """The sensors that a course acts on, each scored on what those before it leave.
+def joined(start: SearchState, course: Course) -> tuple[list[int], float]:
+    """Numbers of the shapes of the sensors that a course acts on, and the ln of how likely they are.
 
-    They are chosen one after another, and by leaving out one after another: where what sensors show overlaps, many may
-    together show what none does alone. The likelier choice stands. The first pays for the choice of one of so many
-    ``moments``, and of the sensors.
+    The likeliest set is climbed to from none and from all: where what sensors show overlaps, one of them may show what
+    others do, and many together what none does alone.
     """
-    sets = {tuple(sorted(chosen(start, course))) for chosen in (one_by_one, all_but_bystanders)}
-    return max((priced(start, course, own, moments) for own in sorted(sets)), key=whole_log_evidence)
-
-
-def whole_log_evidence(event: Sequence[Scored]) -> float:
-    """ln evidence of an event."""
-    return sum(s.log_evidence for s in event)
-
-
-def one_by_one(start: SearchState, course: Course) -> list[int]:
-    """Numbers of the shapes that join one after another, the strongest first."""
-    basis, left = np.zeros((len(start.residuals.z), 0)), list(course.numbers)
-    found, statistics = list[int](), list[float]()
-    while left:
-        tried = [rescored(start.residuals, course.scored(k), basis) for k in left]
-        best = int(np.argmax([s.statistic for s in tried]))
-        if found and not joins(tried[best].statistic, statistics, start.sensor_count):
-            break
-        basis = extended_basis(basis, tried[best].trace)
-        statistics.append(tried[best].statistic)
-        found.append(left.pop(best))
-    return found
-
-
-def all_but_bystanders(start: SearchState, course: Course) -> list[int]:
-    """Numbers of the shapes that are left when those go that show nothing beside all others, the weakest first."""
-    kept = list(course.numbers)
-    while len(kept) > 1:
-        statistics = statistics_beside(start.residuals, course.of(kept))
-        weakest = int(np.argmin(statistics))
-        if joins(statistics[weakest], np.delete(statistics, weakest).tolist(), start.sensor_count):
-            break
-        kept.pop(weakest)
-    return kept
-
-
-def statistics_beside(residuals: WhitenedResiduals, course: Course) -> Array:
-    """(k,) T of every sensor of a course beside all others; the traces of a sensor are of one amplitude."""
     unit = unit_traces(course)
-    inverse = np.linalg.pinv(unit.T @ unit, rcond=OVERLAP, hermitian=True)
-    return np.asarray((inverse @ (unit.T @ residuals.z)) ** 2 / np.maximum(np.diagonal(inverse), 1e-300))
+    gram, along = unit.T @ unit, unit.T @ start.residuals.z / noise_beside(start.residuals, course, unit)
+    everyone = frozenset(range(len(along)))
+    climbed = [likeliest_set(gram, along, start.sensor_count, begun) for begun in (frozenset[int](), everyone)]
+    best, value = max(climbed, key=lambda found: found[1])
+    return [course.numbers[k] for k in sorted(best)], value
+
+
+def likeliest_set(gram: Array, along: Array, m: int, begun: frozenset[int]) -> tuple[frozenset[int], float]:
+    """The sensors, one joining or leaving at a time from those ``begun`` with, and the ln of how likely they are."""
+    best, value = begun, log_likely(gram, along, m, begun)
+    while True:
+        near = [best ^ {k} for k in range(len(along))]
+        values = [log_likely(gram, along, m, one) for one in near]
+        if max(values) <= value:
+            return best, value
+        value = max(values)
+        best = near[values.index(value)]
+
+
+def log_likely(gram: Array, along: Array, m: int, chosen: frozenset[int]) -> float:
+    """ln p of a set of sensors, of m, less what every one that joins must be surer; ``gram`` (k, k), ``along`` (k,) of
+    traces of length one."""
+    own = sorted(chosen)
+    power, size = marginal(gram[np.ix_(own, own)], along[own], SIZES)
+    return log_mean(0.5 * (power - size)) - float(np.log(comb(m, len(own)))) - SURE * max(len(own) - 1, 0)
+
+
+def noise_beside(residuals: WhitenedResiduals, course: Course, unit: Array) -> Array:
+    """(k,) scatter of a course's sensors beside it, standard errors: 1 where the noise is known."""
+    size, turn = eigh(unit.T @ unit)
+    basis = unit @ (turn[:, size > OVERLAP] / np.sqrt(size[size > OVERLAP]))
+    left, N = (residuals.z - basis @ (basis.T @ residuals.z)) ** 2, residuals.rows
+    freedom, sensors = residuals.row_freedom - (basis[:N] ** 2).sum(axis=1), course.traces.sensor[list(course.numbers)]
+    of_sensor = residuals.sensor_of_row[:N] == sensors[:, None]
+    ratio = (of_sensor @ left[:N]) / np.maximum(of_sensor @ freedom, 1.0)
+    return np.asarray(np.where(residuals.baseline.unstated[sensors], np.sqrt(ratio), 1.0))
 
 
 def priced(start: SearchState, course: Course, numbers: Sequence[int], moments: int) -> tuple[Scored, ...]:
-    """Sensors of an event, each scored on what those before it leave; the first pays for the choice."""
+    """Sensors of an event, each scored on what those before it leave; the first pays for the choice of them, and of
+    one of so many ``moments``."""
     basis, found = np.zeros((len(start.residuals.z), 0)), list[Scored]()
     for k in numbers:
         found.append(rescored(start.residuals, course.scored(k), basis))
@@ -213,28 +213,18 @@ def priced(start: SearchState, course: Course, numbers: Sequence[int], moments: 
     return (first, *found[1:])
 
 
-def joins(statistic: float, others: Sequence[float], m: int) -> bool:
-    """Whether a sensor shares the event of others, by their statistics; of m sensors."""
-    k, g = len(others), max(float(np.mean(others)) - 1, 1e-3)
-    return float(np.log((k + 1) / (m - k)) + 0.5 * statistic * g / (1 + g) - 0.5 * np.log1p(g)) > SURE
-
-
 def family_p_value(start: SearchState, event: Sequence[Scored]) -> float:
     """p-value of an event or anything as strong in the catalogue, at any moment, on any sensors (Bonferroni)."""
     power, freedom = sum(s.statistic for s in event), sum(s.freedom for s in event)
     return min(1.0, float(chdtrc(freedom, power)) * event[0].places * start.families)
 
 
-def courses_explain_more(start: SearchState, event: Sequence[Scored]) -> bool:
-    """Whether free courses of its sensors, each its own misfortune, explain more than the event; each sensor is looked
-    at beside the event of the others."""
-    m, gained = start.sensor_count, FURTHER * (len(event) - 1) - float(np.log(event[0].places))
-    for own in event:
-        attributed, (i,) = beside_others(start, event, own), own.sensors
-        course = autocorrelation(start.residuals, attributed, i, known=not start.baseline.unstated[i])
-        step = rescored(start.residuals, replace(own, places=1), attributed).log_evidence
-        gained += step - (0.0 if course is None else max(course.log_evidence - float(np.log(m)), 0.0))
-    return gained < 0
+def wanders(start: SearchState, course: Course, moments: int) -> bool:
+    """Whether courses of all zeros, each its own, are likelier than an event of a course's sensors at one of so many
+    ``moments``."""
+    m, k = start.sensor_count, len(course.numbers)
+    event = log_mean(log_marginal(start.residuals, unit_traces(course), SIZES))
+    return event - float(np.log(moments * m * comb(m, k))) < log_wandering(start.residuals)
 
 
 def beside_others(start: SearchState, event: Sequence[Scored], own: Scored) -> Array:
