@@ -62,9 +62,9 @@ def draw_steps(block: Block, strengths: Array, rng: np.random.Generator, *, apar
     alone = np.array([_strength_alone(world, i, after) for i in range(m)])
     able = np.flatnonzero((seen > SHOWN * alone).all(axis=0))
     able = able[(able >= SAFE) & (able <= rows - SAFE)]
-    if not len(able):
+    if len(able) < (len(strengths) if apart else 1):
         return draw_steps(block, strengths, rng, apart=apart)
-    row = rng.choice(able, len(sensors)) if apart else np.full(len(sensors), rng.choice(able))
+    row = rng.choice(able, len(sensors), replace=False) if apart else np.full(len(sensors), rng.choice(able))
     size = rng.choice([-1.0, 1.0], len(sensors)) * strengths / seen[sensors, row]
     added = np.zeros((rows, m))
     added[:, sensors] = after[:, row] * size

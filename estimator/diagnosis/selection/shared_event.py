@@ -15,7 +15,7 @@ theirs: with A = X'X of k of m sensors, each trace of length one, and y = X'z, s
     ln p(S) = ½ y'(A + I/g)⁻¹y − ½ ln|I + g·A| − ln C(m, k),        mean over g     (every k equally likely beforehand)
 
 The event is weighed as one finding against what was found sensor by sensor, and against zeros that wander, each by
-itself (`wandering.py`).
+itself, or a block that turned (`wandering.py`).
 Any cause may be shared: those with a sentence for it (`Cause.shared_sentence`) can be named, the others are rivals.
 """
 
@@ -34,7 +34,7 @@ from estimator.diagnosis.selection.ranking import extended_basis, scores_given
 from estimator.diagnosis.selection.search_state import LEVEL, Found, SearchState
 from estimator.diagnosis.signatures.scores import bayes_factor, rescored
 from estimator.diagnosis.signatures.traces import INVISIBLE, Scored, Traces
-from estimator.diagnosis.signatures.wandering import log_marginal, log_mean, log_wandering, marginal
+from estimator.diagnosis.signatures.wandering import log_marginal, log_mean, log_turning, log_wandering, marginal
 from estimator.session import Array
 
 SURE = float(np.log(19))
@@ -114,7 +114,7 @@ def shared_event(start: SearchState) -> tuple[Found, ...]:
     tried = [(every[k], *joined(start, every[k])) for k in best]
     course, chosen, _ = max(tried, key=lambda one: one[2])
     event = priced(start, course, chosen, len(every)) if len(chosen) > 1 else ()
-    if not event or family_p_value(start, event) >= LEVEL or wanders(start, course.of(chosen), len(every)):
+    if not event or family_p_value(start, event) >= LEVEL or otherwise(start, course.of(chosen), len(every)):
         return ()
     return ranked(start, event)
 
@@ -219,12 +219,13 @@ def family_p_value(start: SearchState, event: Sequence[Scored]) -> float:
     return min(1.0, float(chdtrc(freedom, power)) * event[0].places * start.families)
 
 
-def wanders(start: SearchState, course: Course, moments: int) -> bool:
-    """Whether courses of all zeros, each its own, are likelier than an event of a course's sensors at one of so many
-    ``moments``."""
+def otherwise(start: SearchState, course: Course, moments: int) -> bool:
+    """Whether something else is likelier than an event of a course's sensors at one of so many ``moments``: zeros that
+    wander, each by itself, or the whole block turned at one moment."""
     m, k = start.sensor_count, len(course.numbers)
-    event = log_mean(log_marginal(start.residuals, unit_traces(course), SIZES))
-    return event - float(np.log(moments * m * comb(m, k))) < log_wandering(start.residuals)
+    event = log_mean(log_marginal(start.residuals, unit_traces(course), SIZES)) - float(np.log(moments))
+    rivals = log_wandering(start.residuals), log_turning(start.residuals, SIZES)
+    return event - float(np.log(m * comb(m, k))) < max(rivals)
 
 
 def beside_others(start: SearchState, event: Sequence[Scored], own: Scored) -> Array:

@@ -1,4 +1,4 @@
-"""Every zero wanders by itself: what an event that sensors share is held against.
+"""Every zero wanders by itself, or the block turns: what an event that sensors share is held against.
 
 Theory
 ------
@@ -10,13 +10,16 @@ projected out, and amplitudes N(0, g),
     ln B = ½ z'X(X'X + I/g)⁻¹X'z − ½ ln|I + g·X'X|,        mean over g
 
 against no effect in known noise. In noise known up to a factor from ν degrees of freedom, with Q twice the first term,
-it is −½ ν ln(1 − Q/z'z) instead.
+it is −½ ν ln(1 − Q/z'z) instead. The same of the three amplitudes of a block that turned before one of the rows, a
+mean over rows: every sensor shows that too, by its axis.
 """
 
 import numpy as np
 
 from estimator.arrays import eigh
+from estimator.causes.fixture import turned
 from estimator.diagnosis.residuals.whitened import WhitenedResiduals
+from estimator.diagnosis.signatures.traces import INVISIBLE
 from estimator.session import Array
 
 SPREADS = 4.0 ** np.arange(-3, 9)
@@ -37,6 +40,18 @@ def log_wandering(residuals: WhitenedResiduals) -> float:
         trace = residuals.trace(columns.reshape(rows, m, -1), 0.0)
         found.append(log_mean(log_marginal(residuals, trace, SPREADS)))
     return max(found)
+
+
+def log_turning(residuals: WhitenedResiduals, sizes: Array) -> float:
+    """ln evidence of a block that turned before one of the rows against no effect; ``sizes`` (G,) g."""
+    setting, found = residuals.baseline.setting, []
+    whole = setting.through(turned(setting.n))
+    for row in range(1, setting.rows):
+        trace = residuals.trace(whole * (np.arange(setting.rows) >= row)[:, None, None], 0.0)
+        size = np.linalg.norm(trace, axis=0)
+        seen = size > INVISIBLE * np.linalg.norm(residuals.whitened(whole), axis=0)
+        found.append(log_mean(log_marginal(residuals, trace[:, seen] / size[seen], sizes)) if seen.any() else 0.0)
+    return log_mean(np.array(found))
 
 
 def log_marginal(residuals: WhitenedResiduals, trace: Array, sizes: Array) -> Array:
