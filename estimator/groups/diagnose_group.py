@@ -55,7 +55,8 @@ def diagnose_statistics(
     """The same from what was kept of every session, oldest first.
 
     ``sessions``: the same sessions, where they are at hand. Without them nothing is said of the measurement that would
-    tell rivals apart, of what moved, or of learned terms.
+    tell rivals apart, of what moved, or of learned terms, and beside every name stands that it may be something
+    ``unexplained``: only the readings tell whether something outside the catalogue fits better.
     """
     if level not in LEVELS:
         raise ValueError(f"a group is one of {', '.join(LEVELS)}, not {level}")
@@ -64,7 +65,7 @@ def diagnose_statistics(
     layout = Layout.of(statistics, level)
     selection = names_that_predict(select(layout))
     group = Group(selection, tuple(sessions))
-    selection = names_that_fit(group) if sessions else selection
+    selection = names_that_fit(group)
     each = [told(selection, f) for f in selection.found]
     separator = Separator(tuple(sessions))
     found = [finding_of(selection, one, separator.measurements(selection, one)) for one in each]

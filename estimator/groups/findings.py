@@ -18,6 +18,9 @@ from estimator.groups.selection import Found, Selection, concerns
 from estimator.groups.weighing import Scale
 from estimator.session import GYROSCOPE, Array
 
+DIFFERENT = 0.01
+"""p-value below which sessions differ in the size of what one amplitude should describe."""
+
 FORM_WORDS = ("same", "varying", "since")
 LARGEST = 700.0
 """ln of the largest number that a double holds, about."""
@@ -69,7 +72,7 @@ def finding_of(selection: Selection, one: Told, measurements: Sequence[tuple[str
     weighed = one.scale.weighed[f.place[0]]
     date = selection.layout.parts[f.since].statistics.started_at
     others = dict.fromkeys(n.hypothesis.cause for n in one.rivals if n.hypothesis.cause != h.cause)
-    doubted = h.group in selection.doubted or any(concerns(h, s) for s, _ in selection.structures)
+    doubted = h.group in selection.doubted or differs(one) or any(concerns(h, s) for s, _ in selection.structures)
     beside = [UNEXPLAINED] if doubted else []
     return GroupFinding(
         cause=h.cause,
@@ -93,6 +96,11 @@ def finding_of(selection: Selection, one: Told, measurements: Sequence[tuple[str
         advice=known.advice,
         sessions=forest(selection, one),
     )
+
+
+def differs(one: Told) -> bool:
+    """Whether sessions have it in different sizes: a cause is one constant, and what no catalogue has looks so too."""
+    return one.found.form == VARYING or one.mean.cochran < DIFFERENT
 
 
 def strength_of(one: Told, pooled: float) -> float:

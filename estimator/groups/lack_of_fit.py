@@ -27,16 +27,27 @@ class Group:
 
     selection: Selection
     sessions: tuple[CalibrationSession, ...]
+    """The latest ones, as many as are at hand."""
+
+    @property
+    def first(self) -> int:
+        """Number in the group of the first that is at hand."""
+        return len(self.selection.layout.parts) - len(self.sessions)
 
     @cached_property
     def fitted(self) -> tuple[Fitted, ...]:
-        """Every session as its record took it."""
-        parts = [p.statistics for p in self.selection.layout.parts]
-        scales = self.selection.scale.tolist()
+        """Every session at hand as its record took it."""
+        parts = [p.statistics for p in self.selection.layout.parts[self.first :]]
+        scales = self.selection.scale[self.first :].tolist()
         return tuple(
             Fitted(record, as_kept(session, record), scale)
             for session, record, scale in zip(self.sessions, parts, scales, strict=True)
         )
+
+    def __contains__(self, where: Where) -> bool:
+        """Whether a session at hand has a place."""
+        parts = self.selection.layout.parts[self.first :]
+        return any(where.concerns(p.statistics) for p in parts)
 
     def moments(self, state: Selection, where: Where) -> Moments:
         """Causes and terms of a place over its sessions, what was found elsewhere left free."""
@@ -44,7 +55,8 @@ class Group:
         beside = [(Where.of(f.hypothesis), key_of(f.hypothesis)) for f in state.found]
         beside += [_at(state, place) for place in state.nameless]
         whole = [(w, key) for w, key in beside if w != where]
-        own = [[*whole, *(_at(state, p) for j, p in (*state.own, *state.aside) if j == k)] for k in numbers]
+        alone = [*state.own, *state.aside]
+        own = [[*whole, *(_at(state, p) for j, p in alone if j == k + self.first)] for k in numbers]
         return moments_at(where, [self.fitted[k] for k in numbers], [[x for x in o if x[0] != where] for o in own])
 
 
@@ -55,13 +67,17 @@ def _at(state: Selection, place: Place) -> tuple[Where, Key]:
 
 
 def names_that_fit(group: Group) -> Selection:
-    """The findings that the library does not describe better; what it describes as well is doubted."""
+    """The findings that the library does not describe better; what it describes as well is doubted.
+
+    So is every name of a place of which no session is at hand: a record holds the catalogue's scores, and the library's
+    would make it ten times as large.
+    """
     state, settled = group.selection, dict[Where, tuple[Hypothesis, Judgement]]()
     while True:
         each = [
             (where, names, judged(group.moments(state, where), names))
             for where, names in by_place(state)
-            if where not in settled
+            if where not in settled and where in group
         ]
         wrong = [(where, says) for where, _, says in each if not says.fits]
         if not wrong or len(settled) == MOST:
@@ -69,7 +85,9 @@ def names_that_fit(group: Group) -> Selection:
         where, says = max(wrong, key=lambda x: x[1].statistic)
         settled[where] = (Hypothesis(*where[:2], TERMS, *where[2:], None, 0, says.words), says)
         state = searched_again(state, where, says)
-    doubted = frozenset(f.hypothesis.group for _, names, says in each if says.doubtful for f in names)
+    unasked = [f for f in state.found if Where.of(f.hypothesis) not in group]
+    doubtful = [*unasked, *(f for _, names, says in each if says.doubtful for f in names)]
+    doubted = frozenset(f.hypothesis.group for f in doubtful)
     own = tuple((h, says.statistic) for h, says in settled.values())
     gone = tuple((f, h) for h, says in settled.values() for f in says.taken_back)
     structures, misfits = (*state.structures, *own), (*state.misfits, *gone)

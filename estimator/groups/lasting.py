@@ -17,6 +17,7 @@ from estimator.causes.contract import Cause
 from estimator.diagnosis.results import Rival
 from estimator.groups.evidence import log_sum
 from estimator.groups.findings import Told, finding_of, told
+from estimator.groups.lack_of_fit import Group, names_that_fit
 from estimator.groups.layout import UNIT, Layout
 from estimator.groups.predicts import names_that_predict
 from estimator.groups.random_effects import mean_of
@@ -24,6 +25,7 @@ from estimator.groups.results import GroupFinding
 from estimator.groups.selection import select
 from estimator.groups.statistics import SessionStatistics
 from estimator.groups.terms import predictive
+from estimator.session import CalibrationSession
 
 SURE = 0.9
 """Probability that the latest session has an effect, from which on it is named there: at strength 3 in each of eleven
@@ -51,13 +53,19 @@ class Lasting:
     """It and what the pool does not tell from it, likeliest first."""
 
 
-def lasting(records: Sequence[SessionStatistics], catalogue: Sequence[Cause]) -> list[Lasting]:
-    """What the sessions of a unit, oldest first, show together of what the latest of them can tell."""
+def lasting(
+    records: Sequence[SessionStatistics], catalogue: Sequence[Cause], sessions: Sequence[CalibrationSession]
+) -> list[Lasting]:
+    """What the sessions of a unit, oldest first, show together of what the latest of them can tell.
+
+    ``sessions``: of the latest records, as many as are at hand. By them every name is held against what no catalogue
+    has.
+    """
     layout = Layout.of(records, UNIT)
     known = {cause.identifier for cause in catalogue}
     tables = layout.hypotheses.values()
     barred = frozenset(h.group for table in tables for h in table if not h.nameless and h.cause not in known)
-    selection = names_that_predict(select(layout, barred))
+    selection = names_that_fit(Group(names_that_predict(select(layout, barred)), tuple(sessions)))
     found = []
     for f in selection.found:
         one = told(selection, f)

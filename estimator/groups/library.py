@@ -1,7 +1,8 @@
 """The library of empirical terms: products of up to two of what a session knows of each reading.
 
 Of one sensor: a, |a|, sign a, p·n, o·n (as part of the applied vector), T − T̄, dT/dt, T late by some time, t − t̄, the
-run (±1), the input of the row before, waves of β, and the squares of a, T − T̄ and t − t̄. Of the applied vector: δα and
+run (±1), the input of the row before, waves of β, and the squares of a, T − T̄ and t − t̄; and a⁵ and its like of even
+order, which only strong effects let be told from a³. Of the applied vector: δα and
 δβ as waves of β, as courses of temperature and time, alike and opposite in the two runs. A wave has two amplitudes, and
 so have its products. The catalogue's causes lie in the span, so that what is learned beside them is what the catalogue
 lacks.
@@ -117,6 +118,12 @@ def products(factors: list[Factor]) -> Iterator[Factor]:
         yield Factor(words, unit, (f.values[:, :, None] * g.values[:, None, :]).reshape(len(f.values), -1))
 
 
+def high_powers(a: Array) -> Iterator[Factor]:
+    """Odd powers of the input ``a`` (R,), as part of the applied vector, beyond those of two factors."""
+    yield Factor(("a⁵",), "", a[:, None] ** 5)
+    yield Factor(("sign a·a⁴",), "", (np.sign(a) * a**4)[:, None])
+
+
 def library(baseline: Baseline, sensor: str) -> list[Term]:
     """Every term of a sensor by its name, or with an empty name of the applied vector, in one session."""
     setting, names = baseline.setting, [s.name for s in baseline.session.sensors]
@@ -125,7 +132,8 @@ def library(baseline: Baseline, sensor: str) -> list[Term]:
     i = names.index(sensor)
     unit = "m/s²" if setting.kinds[i] == "accelerometer" else "rad/s"
     terms = []
-    for f in products(list(factors_of_sensor(setting, i, baseline.session.sensors[i].nominal_axis))):
+    factors = list(factors_of_sensor(setting, i, baseline.session.sensors[i].nominal_axis))
+    for f in (*products(factors), *high_powers(setting.a[:, i] / setting.norm[i])):
         columns = np.zeros((setting.rows, len(names), len(f.words)))
         columns[:, i, :] = f.values
         terms.append(Term(f.words, f"{unit}/({f.unit})" if f.unit else unit, variable_of(f), columns))
@@ -145,4 +153,4 @@ def _of_vector(setting: Setting) -> Iterator[Term]:
 
 def variable_of(factor: Factor) -> str:
     """What a term is drawn over: β where it has a wave in it, else its first factor."""
-    return "β" if "β" in factor.words[0] else factor.words[0].split("·")[0].strip("²⁴")
+    return "β" if "β" in factor.words[0] else factor.words[0].split("·")[0].strip("²⁴⁵")

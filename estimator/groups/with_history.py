@@ -66,7 +66,8 @@ def diagnose(
     if not records or any(s.of_record for s in own.structures):
         return own
     now = kept(begun.right.session, about_its_flip(begun.right), ())
-    return with_lasting(begun, own, lasting([*records, now], catalogue), catalogue)
+    sessions = (*history, begun.right.session)[-len(records) - 1 :]
+    return with_lasting(begun, own, lasting([*records, now], catalogue, sessions), catalogue)
 
 
 @remembered
