@@ -42,19 +42,23 @@ sensor, or common to all, the name is taken back and the group is *unexplained*.
 
 A name also says that the cause fits, not that it is the nearest of the catalogue. So at its place it is weighed against
 a library of empirical terms, some two hundred products of what a session knows of each reading (input, its size, sign
-and square, what is across it, temperature, its square, its rate, what follows it late, time, waves of β, the row
+and powers, what is across it, temperature, its square, its rate, what follows it late, time, waves of β, the row
 before), less those that a cause of the catalogue describes too:
 
 * Where the terms are at least 20 times as likely, or are as sure beside the name as a name must be, the name is taken
   back: *unexplained*, with the equation that was learned. What a name describes nearly, to 5 % of what it explains,
   stays its own.
-* Where they are within 200 to 1, `unexplained` stands among the alternatives of the name.
+* Where they are within 200 to 1, `unexplained` stands among the alternatives of the name. So it does where the sessions
+  have the name in different sizes (the form `varying`, or Cochran's test at 1 %): a cause is one constant, and what is
+  in no catalogue looks so too.
 * Every name beyond the first on one sensor pays as much as an independent misfortune is rare, ln 100.
 * A place whose names were taken back is left free in every session, and the search is made again: what is named
   elsewhere holds whatever that place does.
 
-Names are only taken back in this way, so that a group without an effect keeps its bound. It takes the sessions
-themselves: `diagnose_statistics` without them weighs names by waves of β and by prediction alone.
+Names are only taken back in this way, so that a group without an effect keeps its bound. It takes the readings: what
+is kept of a session holds the scores of the catalogue, and those of the library would make it five times as large.
+Without sessions `diagnose_statistics` weighs names by waves of β and by prediction alone, and `unexplained` stands
+among the alternatives of each.
 
 ## What an answer holds
 
@@ -113,12 +117,13 @@ imu-health models withdraw 7 --by "K. Ito" --why "encoder aligned on 3 May"
 
 ## In the diagnosis of one session
 
-`diagnose(session, history)` pools the session with its unit's earlier ones, by the rules of a group. What they show
-together and the session by itself does not name is named in it too, with the amplitude of all of them, where the
-session's own readings bear out that it is there: n earlier sessions that have it make the odds n + 1 beforehand, the
-readings multiply them by p(readings | amplitude of the others) / p(readings | none), and a name needs nine in ten. Then
-it is taken out of every session at the amplitude that the others found, and the search is made anew: what is left is
-the session's own, and the gain rests on an amplitude that its readings had no part in. Below one in twenty the
+`diagnose(session, history)` pools the session with its unit's earlier ones, by the rules of a group; names are held
+against the library by the readings of the session and its history, also where records of earlier ones are pooled. What
+they show together and the session by itself does not name is named in it too, with the amplitude of all of them, where
+the session's own readings bear out that it is there: n earlier sessions that have it make the odds n + 1 beforehand,
+the readings multiply them by p(readings | amplitude of the others) / p(readings | none), and a name needs nine in ten.
+Then it is taken out of every session at the amplitude that the others found, and the search is made anew: what is left
+is the session's own, and the gain rests on an amplitude that its readings had no part in. Below one in twenty the
 diagnosis says that it has ended, and the history, whose parameters had absorbed it, is freed of it. A finding of this
 kind has `over_sessions`: how many speak of it, their e-value, and the probability that this session has it.
 
@@ -142,7 +147,7 @@ that has just ended outlasts its end by a session in one case of nine: at streng
 
 From Python: `statistics_of(session)` is the record, with `to_dict` and `from_dict` (`imu-session-statistics/2`);
 `diagnose_statistics(records, level, sessions)` pools records, oldest first. Without `sessions` no measurement is
-proposed and no term learned. `diagnose_group(sessions, level)` is both at once.
+proposed, no term learned and no name sure. `diagnose_group(sessions, level)` is both at once.
 
 ## Real recordings
 

@@ -70,7 +70,7 @@ def names_that_fit(group: Group) -> Selection:
     """The findings that the library does not describe better; what it describes as well is doubted.
 
     So is every name of a place of which no session is at hand: a record holds the catalogue's scores, and the library's
-    would make it ten times as large.
+    would make it five times as large.
     """
     state, settled = group.selection, dict[Where, tuple[Hypothesis, Judgement]]()
     while True:

@@ -6,7 +6,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from estimator import CalibrationSession, diagnose_group, statistics_of
+from estimator import CalibrationSession, diagnose, diagnose_group, diagnose_statistics, statistics_of
+from estimator.causes.catalogue import UNEXPLAINED
 from estimator.groups.evidence import SAME
 from estimator.groups.lack_of_fit import Group, names_that_fit
 from estimator.groups.layout import TERMS, UNIT, Layout
@@ -55,6 +56,41 @@ def test_what_is_taken_back_is_told_with_the_terms_that_fit_better() -> None:
     assert (found.findings, found.unexplained) == ((), True)
     assert "|a|·(T − T̄) fits better: it has no name" in " ".join(found.notes)
     assert [term.words for term in found.terms] == [("|a|·(T − T̄)",)]
+
+
+FIFTH = [Effect("a·a⁴", (3e-4,), (1,)), Effect("sign a·a⁴", (3e-4,), (1,))]
+
+
+@pytest.mark.parametrize("effect", FIFTH, ids=lambda e: e.cause)
+def test_a_power_that_the_catalogue_lacks_is_not_surely_the_one_that_it_has(effect: Effect) -> None:
+    (found,) = diagnose_group(sessions(effect)).findings
+    assert found.cause == "cubic-nonlinearity"
+    assert UNEXPLAINED in found.alternatives
+
+
+def test_what_differs_every_time_may_be_outside_the_catalogue() -> None:
+    sizes = (1.0, -1.0, 0.2, 1.4, -0.7, 0.9, 0.0, 1.3)
+    acting = [replace(CUBIC, amplitude=(x * CUBIC.k,)) for x in sizes]
+    own = [measured(w, [effect], 400 + k) for k, (w, effect) in enumerate(zip(worlds(8), acting, strict=True))]
+    (found,) = diagnose_group(own).findings
+    assert (found.cause, found.form) == ("cubic-nonlinearity", "varying")
+    assert UNEXPLAINED in found.alternatives
+
+
+def test_records_alone_do_not_make_a_name_sure() -> None:
+    whole, kept = sessions(CUBIC), [statistics_of(s) for s in sessions(CUBIC)]
+    assert [UNEXPLAINED in f.alternatives for f in diagnose_statistics(kept).findings] == [True]
+    assert [UNEXPLAINED in f.alternatives for f in diagnose_statistics(kept, sessions=whole).findings] == [False]
+
+
+@pytest.mark.parametrize("at_hand", [7, 4])
+def test_the_history_of_a_diagnosis_is_held_against_the_library(at_hand: int) -> None:
+    """``at_hand`` of seven earlier sessions, records of all."""
+    for effect, causes in ((WARM, set()), (CUBIC, {"cubic-nonlinearity"})):
+        *earlier, latest = sessions(effect)
+        found = diagnose(latest, earlier[-at_hand:], records=[statistics_of(s) for s in earlier])
+        assert {f.cause for f in found.findings if f.over_sessions} == causes
+        assert not any(UNEXPLAINED in f.alternatives for f in found.findings)
 
 
 def test_a_name_by_which_other_sessions_are_less_likely_is_none() -> None:
