@@ -26,6 +26,7 @@ from estimator.diagnosis.record.earlier import earlier_baseline
 from estimator.diagnosis.record.implausible import ImplausibleAxes, implausible_axes
 from estimator.diagnosis.record.nominal import wrong_entry
 from estimator.diagnosis.record.record_error import RecordError
+from estimator.diagnosis.record.silent import refuse_silent
 from estimator.diagnosis.record.turned import expected_axes
 from estimator.diagnosis.record.undo import undo_record_errors
 from estimator.diagnosis.residuals.baseline import Baseline
@@ -57,7 +58,7 @@ def diagnose(
 
     Raises
     ------
-    ScheduleError : the session cannot be calibrated at all.
+    ScheduleError : the session cannot be calibrated at all, or a channel reads the same in every row.
     """
     if session.programme == ROTATION_ALIGNMENT:
         return diagnose_alignment(session)
@@ -83,6 +84,7 @@ def put_right(
 ) -> PutRight:
     """The session and its history fitted, the session's record put right first."""
     rows = averaged(session)
+    refuse_silent(rows)
     clips, whole = unclipped(rows, catalogue)
     earlier = tuple(earlier_baseline(h, tuple(catalogue)) for h in history)
     errors, right = undo_record_errors(baseline_of(whole), earlier, catalogue)

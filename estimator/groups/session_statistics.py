@@ -17,6 +17,7 @@ from scipy.special import chdtr, chdtrc
 from estimator.calibration.calibrate import averaged
 from estimator.causes.catalogue import CATALOGUE
 from estimator.diagnosis.record.clipping import unclipped
+from estimator.diagnosis.record.silent import refuse_silent
 from estimator.diagnosis.record.undo import undo_record_errors
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
@@ -82,14 +83,16 @@ def statistics_of(session: CalibrationSession) -> SessionStatistics:
 
     Raises
     ------
-    ScheduleError : the session cannot be calibrated at all.
+    ScheduleError : the session cannot be calibrated at all, or a channel reads the same in every row.
     """
     return kept(session, *put_right(session))
 
 
 def put_right(session: CalibrationSession) -> tuple[Baseline, tuple[str, ...]]:
     """A session fitted with its record put right, and what was put right, in words."""
-    clips, whole = unclipped(averaged(session), CATALOGUE)
+    rows = averaged(session)
+    refuse_silent(rows)
+    clips, whole = unclipped(rows, CATALOGUE)
     errors, right = undo_record_errors(baseline_of(whole), (), CATALOGUE)
     words = [f"{session.sensors[c.sensor].name} clipped" for c in clips]
     words += [e.undone.cause.identifier for e in errors]

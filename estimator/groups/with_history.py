@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from estimator.calibration.calibrate import averaged
 from estimator.causes.catalogue import CATALOGUE, cause
 from estimator.causes.contract import Cause
 from estimator.content import remembered
@@ -19,6 +20,7 @@ from estimator.diagnosis.diagnose import diagnose as by_itself
 from estimator.diagnosis.explanation.extended_model import enlarged
 from estimator.diagnosis.explanation.naming import merged, named_cause
 from estimator.diagnosis.record.earlier import earlier_baseline
+from estimator.diagnosis.record.silent import silent_channels
 from estimator.diagnosis.record.undo import undo_record_errors
 from estimator.diagnosis.residuals.baseline import Baseline
 from estimator.diagnosis.residuals.fitted import baseline_of
@@ -47,15 +49,17 @@ def diagnose(
     Parameters
     ----------
     session : of a programme that calibrates a block; of an alignment on a turntable, where lever arms are looked for.
-    history : earlier sessions of the unit, oldest first.
+    history : earlier sessions of the unit, oldest first; one with a channel that reads the same in every row is passed
+        over.
     catalogue : the causes to consider.
     records : what `statistics_of` kept of earlier sessions, oldest first, of the history and of sessions before it;
         None where it is to be made of the history.
 
     Raises
     ------
-    ScheduleError : the session cannot be calibrated at all.
+    ScheduleError : the session cannot be calibrated at all, or a channel reads the same in every row.
     """
+    history = [h for h in history if not silent_channels(averaged(h))]
     pooled = session.programme in CALIBRATIONS and (records if records is not None else history)
     if not pooled:
         return by_itself(session, history, catalogue=catalogue)

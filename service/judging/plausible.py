@@ -12,8 +12,10 @@ from collections.abc import Collection, Iterator, Sequence
 import numpy as np
 
 from estimator.applied_vector import STANDARD_GRAVITY
+from estimator.calibration.calibrate import averaged
+from estimator.diagnosis.record.silent import dead_channels
 from estimator.results import Calibration, SensorCalibration
-from estimator.session import CALIBRATIONS, Array, Sensor
+from estimator.session import CALIBRATIONS, Array, CalibrationSession, Sensor
 from service.ingest.checked import Checked
 from service.judging.beside_type import MOST, beside_type, type_of_references
 from service.judging.known_unit import KnownUnit
@@ -57,6 +59,7 @@ def _of_calibration(known: KnownUnit, new: Checked, calibration: Calibration) ->
     reference = known.reference(new.session.block, new.session.programme, new.measured_at)
     beyond = (*_of_scale(found, "nominal value", {s.name: s.nominal_scale for s, _ in found}), *_of_axes(found))
     yield from beyond
+    yield from _of_dead(new.session)
     if not beyond and reference is None:
         yield from _beside_its_type(known.store, new, found, calibration)
     elif not beyond and reference is not None:
@@ -66,6 +69,13 @@ def _of_calibration(known: KnownUnit, new: Checked, calibration: Calibration) ->
     if fit.dof > 0 and 0 < fit.chi2 / fit.dof < TOO_QUIET and new.session.standard_errors is not None:
         times = (fit.dof / fit.chi2) ** 0.5
         yield Doubt(f"The readings scatter {times:.0f} times less than their standard errors", "another unit is stated")
+
+
+def _of_dead(session: CalibrationSession) -> Iterator[Doubt]:
+    """Channels that read the same at every position of a stand."""
+    for name in dead_channels(averaged(session)):
+        what = f"{name} reads the same in every row, although its input changes"
+        yield Doubt(what, "it is dead, or its channel is not connected")
 
 
 Found = list[tuple[Sensor, SensorCalibration]]

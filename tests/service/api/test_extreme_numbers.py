@@ -68,6 +68,20 @@ def test_a_channel_at_one_huge_value_did_not_answer_to_the_turns(
     assert "A3 did not answer to the turns" in message
 
 
+@pytest.mark.parametrize(("programme", "name"), [("two-axis-stand", "A1"), ("pulse gyroscopes", "G1")])
+@one_engine
+def test_a_channel_that_reads_the_same_at_every_position_is_questioned(
+    client: httpx.Client, programme: str, name: str
+) -> None:
+    """A dead one became the unit's reference, and its diagnosis was full of nulls."""
+    case = Case(programme, ("table", name), "1e6", whole=True)
+    stored = client.post("/api/v1/sessions", content=case.content("EX-1")).json()
+    assert (stored["state"], stored["is_reference"]) == ("questioned", False)
+    assert f"{name} reads the same in every row, although its input changes: it is dead" in stored["reason"]
+    told = client.get(f"/api/v1/sessions/{stored['id']}/diagnosis").json()["detail"]
+    assert f"{name}: reads the same in every row, so that nothing can be told of it" in told
+
+
 @pytest.mark.parametrize("programme", list(programmes()))
 @one_engine
 def test_extreme_numbers_are_taken_or_refused(client: httpx.Client, programme: str) -> None:

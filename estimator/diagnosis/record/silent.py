@@ -1,0 +1,53 @@
+"""Channels that read the same in every row: they take no part in a calibration, and nothing can be diagnosed of them.
+
+Along the axis that a stand turns about, in one run, a sensor that is alive does so too; a dead one does where its input
+changes.
+"""
+
+import numpy as np
+
+from estimator.applied_vector import stand_geometry
+from estimator.calibration.analytic import answers
+from estimator.errors import Problem, ScheduleError
+from estimator.forward import measured, response
+from estimator.parameters import nominal
+from estimator.session import TWO_AXIS_STAND, Array, CalibrationSession
+
+LEAST_CHANGE = 0.05
+"""Part of gravity (of the Earth's rate) by which the input along the nominal axis must change over the rows for a
+constant reading to tell of a dead channel: 3°, more than axes are mounted off."""
+
+LEAST_COUNTS = 2.0
+"""Counts by which a reading in whole counts must be expected to change: fewer may round to the same."""
+
+SAME = "reads the same in every row, so that nothing can be told of it"
+
+
+def refuse_silent(session: CalibrationSession) -> None:
+    """ScheduleError where a channel of an averaged session on a stand reads the same in every row."""
+    names = silent_channels(session)
+    if names:
+        raise ScheduleError([Problem(name, SAME) for name in names])
+
+
+def silent_channels(session: CalibrationSession) -> tuple[str, ...]:
+    """Sensors of an averaged session on a stand that read the same in every row."""
+    if session.programme != TWO_AXIS_STAND:
+        return ()
+    return _named(session, ~answers(measured(session)[0]))
+
+
+def dead_channels(session: CalibrationSession) -> tuple[str, ...]:
+    """Sensors of an averaged session on a stand that read the same in every row, although their input changes."""
+    if session.programme != TWO_AXIS_STAND:
+        return ()
+    geometry, like = stand_geometry(session), nominal(session.sensors)
+    expected = np.ptp(response(like, geometry.n), axis=0)
+    in_counts = np.all(session.readings == np.round(session.readings), axis=0)
+    counts = expected * (1.0 if session.count_time is None else session.count_time)
+    moved = (expected > LEAST_CHANGE * like.scale * geometry.norm) & ~(in_counts & (counts < LEAST_COUNTS))
+    return _named(session, ~answers(measured(session)[0]) & moved)
+
+
+def _named(session: CalibrationSession, chosen: Array) -> tuple[str, ...]:
+    return tuple(sensor.name for sensor, yes in zip(session.sensors, chosen, strict=True) if yes)
