@@ -104,6 +104,8 @@ def _replay(world: World, fresh: World) -> bool:
     for unit, service in world.services.values():
         if unit in fresh.units():
             fresh.send(f"/units/{quote(unit, safe='')}/services", service)
+    for path, certificate in world.certificates:
+        fresh.send(path, certificate, "PUT")
     known = {session["id"] for _, session in counted}
     for id in (id for id in world.chosen if id in known):
         unit = next(session["unit"] for _, session in counted if session["id"] == id)

@@ -95,10 +95,11 @@ class Records(Steps):
         """The certificate of a stand's own calibration."""
         stands = [one["stand"] for one in self.world.sessions() if one["stand"]]
         if stands:
-            name = quote(stands[which % len(stands)], safe="")
+            path = f"/stands/{quote(stands[which % len(stands)], safe='')}/certificate"
             new = {"number": f"PTB-{year}", "issued_by": "PTB", "issued_on": f"{year}-02-01"}
             new |= {"valid_until": f"{year + 2}-02-01", "by": BY["by"]}
-            self.tries(f"/stands/{name}/certificate", new, "PUT")
+            if self.tries(path, new, "PUT"):
+                self.world.certificates.append((path, new))
 
     @rule(which=WHICH, of_unit=st.booleans(), text=st.sampled_from(["moved by road", "<b>=1+1</b> №5", "x" * 1900]))
     def remarks(self, which: int, of_unit: bool, text: str) -> None:

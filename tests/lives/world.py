@@ -52,6 +52,8 @@ class World:
     """Why uploads were not taken."""
     services: dict[int, tuple[str, dict[str, Any]]] = field(default_factory=dict)
     """Recorded services that count: the unit, and what was said of it, by number."""
+    certificates: list[tuple[str, dict[str, Any]]] = field(default_factory=list)
+    """Of stands, as they were recorded: where, and what."""
     tolerances: dict[tuple[str, int], dict[str, Any]] = field(default_factory=dict)
     """What was set of unit types, by name and revision."""
     is_dated: bool = False
