@@ -11,7 +11,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from estimator.calibration.calibrate import averaged
 from estimator.causes.catalogue import CATALOGUE, cause
 from estimator.causes.contract import Cause
 from estimator.content import remembered
@@ -59,7 +58,7 @@ def diagnose(
     ------
     ScheduleError : the session cannot be calibrated at all, or a channel reads the same in every row.
     """
-    history = [h for h in history if not silent_channels(averaged(h))]
+    history = [h for h in history if not silent_channels(h)]
     pooled = session.programme in CALIBRATIONS and (records if records is not None else history)
     if not pooled:
         return by_itself(session, history, catalogue=catalogue)

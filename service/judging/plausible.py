@@ -12,7 +12,6 @@ from collections.abc import Collection, Iterator, Sequence
 import numpy as np
 
 from estimator.applied_vector import STANDARD_GRAVITY
-from estimator.calibration.calibrate import averaged
 from estimator.diagnosis.record.silent import dead_channels
 from estimator.results import Calibration, SensorCalibration
 from estimator.session import CALIBRATIONS, Array, CalibrationSession, Sensor
@@ -73,7 +72,7 @@ def _of_calibration(known: KnownUnit, new: Checked, calibration: Calibration) ->
 
 def _of_dead(session: CalibrationSession) -> Iterator[Doubt]:
     """Channels that read the same at every position of a stand."""
-    for name in dead_channels(averaged(session)):
+    for name in dead_channels(session):
         what = f"{name} reads the same in every row, although its input changes"
         yield Doubt(what, "it is dead, or its channel is not connected")
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from estimator.applied_vector import stand_geometry
 from estimator.calibration.analytic import answers
+from estimator.calibration.calibrate import averaged
 from estimator.errors import Problem, ScheduleError
 from estimator.forward import measured, response
 from estimator.parameters import nominal
@@ -24,29 +25,31 @@ SAME = "reads the same in every row, so that nothing can be told of it"
 
 
 def refuse_silent(session: CalibrationSession) -> None:
-    """ScheduleError where a channel of an averaged session on a stand reads the same in every row."""
+    """ScheduleError where a channel of a session on a stand reads the same in every row."""
     names = silent_channels(session)
     if names:
         raise ScheduleError([Problem(name, SAME) for name in names])
 
 
 def silent_channels(session: CalibrationSession) -> tuple[str, ...]:
-    """Sensors of an averaged session on a stand that read the same in every row."""
+    """Sensors of a session on a stand that read the same in every row."""
     if session.programme != TWO_AXIS_STAND:
         return ()
-    return _named(session, ~answers(measured(session)[0]))
+    rows = averaged(session)
+    return _named(rows, ~answers(measured(rows)[0]))
 
 
 def dead_channels(session: CalibrationSession) -> tuple[str, ...]:
-    """Sensors of an averaged session on a stand that read the same in every row, although their input changes."""
+    """Sensors of a session on a stand that read the same in every row, although their input changes."""
     if session.programme != TWO_AXIS_STAND:
         return ()
-    geometry, like = stand_geometry(session), nominal(session.sensors)
+    rows = averaged(session)
+    geometry, like = stand_geometry(rows), nominal(rows.sensors)
     expected = np.ptp(response(like, geometry.n), axis=0)
-    in_counts = np.all(session.readings == np.round(session.readings), axis=0)
-    counts = expected * (1.0 if session.count_time is None else session.count_time)
+    in_counts = np.all(rows.readings == np.round(rows.readings), axis=0)
+    counts = expected * (rows.count_time or 1.0)
     moved = (expected > LEAST_CHANGE * like.scale * geometry.norm) & ~(in_counts & (counts < LEAST_COUNTS))
-    return _named(session, ~answers(measured(session)[0]) & moved)
+    return _named(rows, ~answers(measured(rows)[0]) & moved)
 
 
 def _named(session: CalibrationSession, chosen: Array) -> tuple[str, ...]:
