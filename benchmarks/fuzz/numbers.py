@@ -1,7 +1,8 @@
 """``python -m benchmarks.fuzz.numbers`` sends extreme numbers to a running service, and writes what became of them.
 
-A find is an answer of 5xx, an answer later than ten seconds, an ordinary upload after it that is not taken, a page or
-result of what was taken that cannot be read, and work beside the requests that failed at it.
+A find is an answer of 5xx, an answer that comes later than ten seconds also when it is asked for alone, an ordinary
+upload after it that is not taken, a page or result of what was taken that cannot be read, and work beside the requests
+that failed at it.
 """
 
 import argparse
@@ -10,11 +11,14 @@ import os
 import re
 import time
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import groupby
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from threading import Lock
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
@@ -22,7 +26,7 @@ import httpx
 
 from benchmarks.files.service import Service, service
 from benchmarks.fuzz.extremes import EXTREMES, Case, cases, in_csv, in_xlsx
-from benchmarks.fuzz.requests import requests
+from benchmarks.fuzz.requests import Request, requests
 from tests.builders import accelerometer_block
 
 LATEST = 10.0
@@ -42,11 +46,16 @@ HEAD = f"""# Extreme numbers
 Written by `make fuzz-numbers`. Every number of a session file of every programme, one row and whole columns alike, and
 every number of the other calls of the API, has in turn each of {len(EXTREMES)} values: 0, from 5e-324 to 1.7e308 in
 either sense, integers of up to 401 digits, NaN, infinities, truth values and texts. After each place an ordinary
-session is uploaded, and what was taken is read again.
+session is uploaded, and what was taken is read again. Because other programs may have had the machine, an answer that
+took longer than ten seconds is asked for again when nothing else is: it is a find if it takes as long then.
 
 | sent | answers | of them |
 | --- | --- | --- |
 """
+
+
+Ask = Callable[[int], httpx.Response]
+"""Sends a case for the first (0) or second (1) time."""
 
 
 @dataclass
@@ -55,15 +64,29 @@ class Tally:
 
     answers: Counter[tuple[str, int]] = field(default_factory=Counter)
     finds: list[str] = field(default_factory=list)
+    late: list[tuple[str, Ask]] = field(default_factory=list)
     slowest: float = 0.0
+    _lock: Lock = field(default_factory=Lock)
 
-    def note(self, group: str, name: str, answer: httpx.Response) -> None:
-        """One answer."""
+    def ask(self, group: str, name: str, ask: Ask) -> httpx.Response:
+        """Sends a case, and notes its answer."""
+        answer = ask(0)
         seconds = answer.elapsed.total_seconds()
-        self.answers[group, answer.status_code] += 1
-        self.slowest = max(self.slowest, seconds)
-        if answer.status_code >= httpx.codes.INTERNAL_SERVER_ERROR or seconds > LATEST:
-            self.find(f"{name}: {answer.status_code} in {seconds:.1f} s")
+        with self._lock:
+            self.answers[group, answer.status_code] += 1
+            self.slowest = max(self.slowest, seconds)
+            if seconds > LATEST:
+                self.late.append((name, ask))
+        if answer.status_code >= httpx.codes.INTERNAL_SERVER_ERROR:
+            self.find(f"{name}: {answer.status_code}")
+        return answer
+
+    def ask_again(self) -> None:
+        """What was late, alone."""
+        for name, ask in self.late:
+            seconds = ask(1).elapsed.total_seconds()
+            if seconds > LATEST:
+                self.find(f"{name}: {seconds:.1f} s")
 
     def find(self, text: str) -> None:
         """Something that must not be."""
@@ -77,19 +100,24 @@ def main() -> None:
     parser.add_argument("--only", default="", help="only cases whose name holds this")
     parser.add_argument("--every", type=int, default=1, help="one case of so many")
     parser.add_argument("--wait", type=float, default=60, help="minutes that diagnoses are waited for")
-    parser.add_argument("--read", type=int, default=1, help="one stored session of so many is read again")
+    parser.add_argument("--read", type=int, default=5, help="one stored session of so many is read again")
+    parser.add_argument("--clients", type=int, default=3, help="that send at a time")
     parser.add_argument("--out", type=Path, default=PAGE)
     options = parser.parse_args()
     tally = Tally()
     chosen = [case for case in cases() if options.only in case.name][:: options.every]
     with TemporaryDirectory() as folder, service(Path(folder), _ordinary("FIRST")) as running:
         began = time.monotonic()
-        taken = list(_sent(running, tally, chosen))
+        taken = list(_sent(running, tally, chosen, options.clients))
         _others(running, tally)
         minutes = (time.monotonic() - began) / 60
         left = _waited(running, options.wait * 60)
         for id in taken[:: options.read]:
             _read(running, tally, id)
+        tally.ask_again()
+        failed = running.client.get(f"{running.address}/api/v1/jobs/failed").json()["failed"]
+        for one in failed:
+            tally.find(f"{one['kind']} of {one['of']}: {one['why']}")
         for line in running.client.get(f"{running.address}/metrics").text.splitlines():
             if FAULT.match(line):
                 tally.find(line)
@@ -103,17 +131,29 @@ def main() -> None:
     print(options.out.read_text())
 
 
-def _sent(running: Service, tally: Tally, tried: Iterable[Case]) -> Iterator[str]:
+def _sent(running: Service, tally: Tally, tried: Iterable[Case], clients: int) -> Iterator[str]:
     """Every case, and an ordinary session after each place; ids of what was taken."""
-    for number, (place, own) in enumerate(groupby(tried, lambda case: (case.programme, case.way))):
-        for at, case in enumerate(own):
-            answer = running.client.post(
-                f"{running.address}/api/v1/sessions", content=case.content(f"EX-{number}-{at}")
+    places = [(place, tuple(own)) for place, own in groupby(tried, lambda case: (case.programme, case.way))]
+
+    def send(number: int) -> list[str]:
+        place, own = places[number]
+        answers = [
+            _upload(
+                running, tally, case.programme, case.name, partial(_written, Case.content, case, f"EX-{number}-{at}")
             )
-            tally.note(case.programme, case.name, answer)
-            if answer.status_code == httpx.codes.CREATED:
-                yield answer.json()["id"]
+            for at, case in enumerate(own)
+        ]
         _next(running, tally, f"after {place}", number)
+        return [answer.json()["id"] for answer in answers if answer.status_code == httpx.codes.CREATED]
+
+    with ThreadPoolExecutor(clients) as pool:
+        for ids in pool.map(send, range(len(places))):
+            yield from ids
+
+
+def _upload(running: Service, tally: Tally, group: str, name: str, content: Callable[[int], bytes]) -> httpx.Response:
+    url = f"{running.address}/api/v1/sessions"
+    return tally.ask(group, name, lambda again: running.client.post(url, content=content(again)))
 
 
 def _read(running: Service, tally: Tally, id: str) -> None:
@@ -121,12 +161,15 @@ def _read(running: Service, tally: Tally, id: str) -> None:
     unit = running.client.get(f"{running.address}/api/v1/sessions/{id}").json()["unit"]
     paths = (*(f"/api/v1/sessions/{id}{part}" for part in PARTS), f"/sessions/{id}", f"/units/{unit}")
     for path in (*paths, f"/api/v1/units/{unit}/usable"):
-        tally.note("what was taken, read again", path, running.client.get(f"{running.address}{path}"))
+        tally.ask("what was taken, read again", path, partial(_got, running, path))
+
+
+def _got(running: Service, path: str, _: int) -> httpx.Response:
+    return running.client.get(f"{running.address}{path}")
 
 
 def _next(running: Service, tally: Tally, name: str, number: int) -> None:
-    answer = running.client.post(f"{running.address}/api/v1/sessions", content=_ordinary(f"ORD-{number}"))
-    tally.note("an ordinary session", name, answer)
+    answer = _upload(running, tally, "an ordinary session", name, lambda again: _ordinary(f"ORD{again}-{number}"))
     if answer.status_code != httpx.codes.CREATED:
         tally.find(f"{name}: an ordinary upload got {answer.status_code}")
 
@@ -136,18 +179,24 @@ def _others(running: Service, tally: Tally) -> None:
     chosen = [case for case in cases() if case.programme == "two-axis-stand"][::SAMPLE]
     for form, written in (("as CSV", in_csv), ("as XLSX", in_xlsx)):
         for number, case in enumerate(chosen):
-            content = written(case, f"{form[3:]}-{number}")
-            name = f"{form}, {case.name}"
-            tally.note(form, name, running.client.post(f"{running.address}/api/v1/sessions", content=content))
+            own = partial(_written, written, case, f"{form[3:]}-{number}")
+            _upload(running, tally, form, f"{form}, {case.name}", own)
     known = {
         "serial": "FIRST",
         "id": running.client.get(f"{running.address}/api/v1/units/FIRST").json()["sessions"][0]["id"],
     }
     spec = running.client.get(f"{running.address}/openapi.json").json()
     for one in requests(spec, known):
-        answer = running.client.request(one.method, f"{running.address}{one.path}", content=one.body, headers=JSON)
-        tally.note("other calls of the API", one.name, answer)
+        tally.ask("other calls of the API", one.name, partial(_called, running, one))
     _next(running, tally, "all other calls", -2)
+
+
+def _called(running: Service, one: Request, _: int) -> httpx.Response:
+    return running.client.request(one.method, f"{running.address}{one.path}", content=one.body, headers=JSON)
+
+
+def _written(written: Callable[[Case, str], bytes], case: Case, unit: str, again: int) -> bytes:
+    return written(case, f"{unit}-{again}")
 
 
 def _waited(running: Service, most: float) -> int:

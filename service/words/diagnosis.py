@@ -95,8 +95,8 @@ def _named(findings: Sequence[Finding]) -> str:
     return " ".join(said[:MOST_FINDINGS]) + (f" And {more} more." if more > 0 else "")
 
 
-def cannot_be_diagnosed(fault: SessionError) -> str:
-    """What the session lacks."""
+def cannot_be_diagnosed(fault: SessionError | str) -> str:
+    """What the session lacks; without it, what all that is said of such sessions begins with."""
     return f"The session cannot be diagnosed: {fault}"
 
 

@@ -23,6 +23,7 @@ from service.storage.queries.pending_groups import PendingGroups, PendingSummari
 from service.storage.queries.pending_outlooks import PendingOutlooks
 from service.storage.queries.recomputations import Recomputations
 from service.storage.tables import DeliveryRow, DiagnosisRow, UnitRow
+from service.words.diagnosis import cannot_be_diagnosed
 
 RECENT = timedelta(days=7)
 """That jobs and messages which ended as failed are told: nothing ever ends that."""
@@ -64,7 +65,7 @@ class Failures(Queries):
 
     def ask_anew(self, now: datetime) -> int:
         """The same of diagnoses and answers that were given up."""
-        gone = delete(DiagnosisRow).where(DiagnosisRow.state == DiagnosisState.FAILED)
+        gone = delete(DiagnosisRow).where(_GIVEN_UP)
         sessions = tuple(self._session.scalars(gone.returning(DiagnosisRow.session_id)))
         PendingDiagnoses(self._session).add(sessions, now)
         of = (GroupDiagnosisRow.level, GroupDiagnosisRow.group_id)
@@ -86,7 +87,7 @@ class Failures(Queries):
             ),
             derivation.join(FailedDerivationRow, FailedDerivationRow.unit_id == UnitRow.id),
             diagnosis.where(PendingRow.failed.is_not(None)),
-            given_up.where(DiagnosisRow.state == DiagnosisState.FAILED),
+            given_up.where(_GIVEN_UP),
             answer.where(GroupDiagnosisRow.document.is_(None)),
             *(_asked(kind, row) for kind, row in GROUPS),
             _models(),
@@ -94,6 +95,8 @@ class Failures(Queries):
         ]
 
 
+_GIVEN_UP = (DiagnosisRow.state == DiagnosisState.FAILED) & ~DiagnosisRow.summary.startswith(cannot_be_diagnosed(""))
+"""A session that lacks something is no failure of the program, and no other try helps it."""
 GROUPS = ((FailedKind.GROUP, PendingGroupRow), (FailedKind.SUMMARY, PendingSummaryRow))
 
 
