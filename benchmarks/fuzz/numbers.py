@@ -19,6 +19,7 @@ from itertools import groupby
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import Lock
+from typing import Protocol, TypeVar
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
@@ -54,6 +55,25 @@ took longer than ten seconds is asked for again when nothing else is: it is a fi
 """
 
 
+T = TypeVar("T", bound="Named")
+"""What is sent."""
+
+
+class Named(Protocol):
+    """A case or a call."""
+
+    @property
+    def name(self) -> str:
+        """For the table."""
+
+
+class Choose(Protocol):
+    """Which of all cases are sent."""
+
+    def __call__(self, every: Iterable[T]) -> list[T]:
+        """Those of them."""
+
+
 Ask = Callable[[int], httpx.Response]
 """Sends a case for the first (0) or second (1) time."""
 
@@ -70,8 +90,13 @@ class Tally:
 
     def ask(self, group: str, name: str, ask: Ask) -> httpx.Response:
         """Sends a case, and notes its answer."""
-        answer = ask(0)
-        seconds = answer.elapsed.total_seconds()
+        began = time.monotonic()
+        try:
+            answer = ask(0)
+        except httpx.TransportError as fault:
+            self.find(f"{name}: {fault!r}")
+            answer = httpx.Response(httpx.codes.GATEWAY_TIMEOUT)
+        seconds = time.monotonic() - began
         with self._lock:
             self.answers[group, answer.status_code] += 1
             self.slowest = max(self.slowest, seconds)
@@ -84,7 +109,9 @@ class Tally:
     def ask_again(self) -> None:
         """What was late, alone."""
         for name, ask in self.late:
-            seconds = ask(1).elapsed.total_seconds()
+            began = time.monotonic()
+            ask(1)
+            seconds = time.monotonic() - began
             if seconds > LATEST:
                 self.find(f"{name}: {seconds:.1f} s")
 
@@ -95,7 +122,7 @@ class Tally:
 
 
 def main() -> None:
-    """Send everything, wait until all work beside it is done, and write the table."""
+    """Send everything, wait for the diagnoses so long at most, read what was taken again, and write the table."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.fuzz.numbers", description=__doc__)
     parser.add_argument("--only", default="", help="only cases whose name holds this")
     parser.add_argument("--every", type=int, default=1, help="one case of so many")
@@ -105,11 +132,16 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=PAGE)
     options = parser.parse_args()
     tally = Tally()
-    chosen = [case for case in cases() if options.only in case.name][:: options.every]
+
+    def chosen(every: Iterable[T]) -> list[T]:
+        return [one for one in every if options.only in one.name][:: options.every]
+
     with TemporaryDirectory() as folder, service(Path(folder), _ordinary("FIRST")) as running:
         began = time.monotonic()
-        taken = list(_sent(running, tally, chosen, options.clients))
-        _others(running, tally)
+        with ThreadPoolExecutor(options.clients) as pool:
+            taken = list(_sent(running, tally, chosen(cases()), pool))
+            _others(running, tally, pool, chosen)
+        _next(running, tally, "all other calls", -2)
         minutes = (time.monotonic() - began) / 60
         left = _waited(running, options.wait * 60)
         for id in taken[:: options.read]:
@@ -124,14 +156,14 @@ def main() -> None:
         log = (Path(folder) / "log").read_text()
     (options.out.parent / f"{options.out.stem}.log").write_text(log)
     for line in log.splitlines():
-        if "Traceback" in line or "failed" in line:
+        if "Traceback" in line or '"level": "error"' in line:
             tally.find(f"log: {line[:300]}")
     made = f"{len(taken) - left:,} of the {len(taken):,} sessions that were taken were diagnosed when it ended."
     options.out.write_text(_page(tally, minutes, made))
     print(options.out.read_text())
 
 
-def _sent(running: Service, tally: Tally, tried: Iterable[Case], clients: int) -> Iterator[str]:
+def _sent(running: Service, tally: Tally, tried: Iterable[Case], pool: ThreadPoolExecutor) -> Iterator[str]:
     """Every case, and an ordinary session after each place; ids of what was taken."""
     places = [(place, tuple(own)) for place, own in groupby(tried, lambda case: (case.programme, case.way))]
 
@@ -146,9 +178,8 @@ def _sent(running: Service, tally: Tally, tried: Iterable[Case], clients: int) -
         _next(running, tally, f"after {place}", number)
         return [answer.json()["id"] for answer in answers if answer.status_code == httpx.codes.CREATED]
 
-    with ThreadPoolExecutor(clients) as pool:
-        for ids in pool.map(send, range(len(places))):
-            yield from ids
+    for ids in pool.map(send, range(len(places))):
+        yield from ids
 
 
 def _upload(running: Service, tally: Tally, group: str, name: str, content: Callable[[int], bytes]) -> httpx.Response:
@@ -174,21 +205,22 @@ def _next(running: Service, tally: Tally, name: str, number: int) -> None:
         tally.find(f"{name}: an ordinary upload got {answer.status_code}")
 
 
-def _others(running: Service, tally: Tally) -> None:
+def _others(running: Service, tally: Tally, pool: ThreadPoolExecutor, chosen: Choose) -> None:
     """The other formats for a sample, and every number of every other call."""
-    chosen = [case for case in cases() if case.programme == "two-axis-stand"][::SAMPLE]
+    sample = chosen([case for case in cases() if case.programme == "two-axis-stand"][::SAMPLE])
+
+    def send(form: str, written: Callable[[Case, str], bytes], number: int) -> None:
+        own = partial(_written, written, sample[number], f"{form[3:]}-{number}")
+        _upload(running, tally, form, f"{form}, {sample[number].name}", own)
+
     for form, written in (("as CSV", in_csv), ("as XLSX", in_xlsx)):
-        for number, case in enumerate(chosen):
-            own = partial(_written, written, case, f"{form[3:]}-{number}")
-            _upload(running, tally, form, f"{form}, {case.name}", own)
+        list(pool.map(partial(send, form, written), range(len(sample))))
     known = {
         "serial": "FIRST",
         "id": running.client.get(f"{running.address}/api/v1/units/FIRST").json()["sessions"][0]["id"],
     }
-    spec = running.client.get(f"{running.address}/openapi.json").json()
-    for one in requests(spec, known):
-        tally.ask("other calls of the API", one.name, partial(_called, running, one))
-    _next(running, tally, "all other calls", -2)
+    calls = chosen(requests(running.client.get(f"{running.address}/openapi.json").json(), known))
+    list(pool.map(lambda one: tally.ask("other calls of the API", one.name, partial(_called, running, one)), calls))
 
 
 def _called(running: Service, one: Request, _: int) -> httpx.Response:
