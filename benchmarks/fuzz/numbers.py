@@ -39,6 +39,8 @@ PARTS = ("", "/calibration", "/diagnosis", "/correction", "/file")
 FAULT = re.compile(r"^imu_health_background_faults_total\{.*\} [1-9]")
 PENDING = re.compile(r"^imu_health_pending_diagnoses (\S+)", re.MULTILINE)
 PAGE = Path(__file__).with_name("NUMBERS.md")
+LOG = Path("build/fuzz-numbers.log")
+"""Where the service's log is kept."""
 SAMPLE = 7
 """One case of so many in the other formats: they share the checks behind the reader."""
 JSON = {"Content-Type": "application/json"}
@@ -154,7 +156,8 @@ def main() -> None:
             if FAULT.match(line):
                 tally.find(line)
         log = (Path(folder) / "log").read_text()
-    (options.out.parent / f"{options.out.stem}.log").write_text(log)
+    LOG.parent.mkdir(exist_ok=True)
+    LOG.write_text(log)
     for line in log.splitlines():
         if "Traceback" in line or '"level": "error"' in line:
             tally.find(f"log: {line[:300]}")

@@ -5,8 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from estimator.calibration.free import calibrate_free
+from estimator import read_session
+from estimator.calibration.free import accelerometer_rows, calibrate_free
 from estimator.calibration.free.model import Rows, Unknowns, jacobian, linearise, predicted
+from estimator.calibration.free.optional import around
+from estimator.calibration.free.schedule import sorted_out
+from estimator.calibration.free.solve import search
+from estimator.calibration.free.start import starts
+from tests.builders import arbitrary_orientations
 from tests.estimator.calibration.free_sessions import errors, session, sphere, truth
 
 
@@ -179,3 +185,14 @@ def test_a_sensor_between_gyros_keeps_its_place():
         assert one.sensor(name).bias.value == pytest.approx(other.sensor(name).bias.value, rel=1e-6)
     index = {n: k for k, n in enumerate(other.names)}
     assert other.covariance[index["A2.scale"], index["A2.scale"]] == pytest.approx(other.sensor("A2").scale.sigma ** 2)
+
+
+def test_nothing_is_looked_for_around_a_search_that_has_not_ended():
+    """Rows of which one is absurd: standard errors mean nothing where χ² still falls, and each search takes long."""
+    document = arbitrary_orientations(3, orientations=12, direction_sigma_deg=1.0)
+    document["table"]["A1"][1] = 0.0
+    absurd = read_session(document)
+    rows, _ = accelerometer_rows(absurd, sorted_out(absurd)[0], 9.81)
+    found = search(rows, starts(rows)[0], False)
+    assert not found.converged
+    assert around(found) == []
