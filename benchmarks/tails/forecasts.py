@@ -17,6 +17,7 @@ from estimator.health.pooled import Prior
 from estimator.health.posterior import Draws, draw
 from estimator.health.prognosis import prognosis
 from estimator.health.shapes import DRIFTS, courses
+from estimator.health.ways import felt, swing, ways
 
 
 @dataclass(frozen=True)
@@ -64,12 +65,10 @@ def _by_rival(one: History, prior: Prior, *, is_missing: bool) -> tuple[float, D
     n, rng = len(one.time), np.random.default_rng(0)
     base = Readings(one.time, one.value[:, None], one.sigma[:, None], np.ones((n, 1)), np.ones(1), prior.tails)
     found = detect(base, prior.usual_walk, np.full(n, np.inf), one.temperature, LEVEL)
-    family = courses(found.readings.time)
-    draws = draw(reweighted(found.readings, family, prior, is_missing=is_missing), family, prior, rng)
-    swing = 0.0
-    if found.warmth is not None and found.warmth.is_found:
-        swing = float(abs(found.warmth.coefficient[0]) * np.abs(one.temperature - one.temperature.mean()).max())
-    stays = staying(draws, prior, swing, rng)
+    family = courses(found.readings.time, felt(found.warmth, one.temperature))
+    given = [(reweighted(way, family, prior, is_missing=is_missing), log) for way, log in ways(found, prior)]
+    draws = draw(given, family, prior, rng)
+    stays = staying(draws, prior, swing(found.warmth, draws, one.temperature), rng)
     return earliest(draws, stays, drifts=any(change.kind in DRIFTS for change in found.changes)), draws
 
 

@@ -78,8 +78,21 @@ class Detected:
     warmth: Warmth | None
     """None where the sessions do not span temperature."""
     readings: Readings
-    """With what was found to act whatever else does: temperature, then jumps but for the change that is found last in
-    time, which may be the beginning of a drift."""
+    """With the temperature where it was found to act whatever else does."""
+
+    @property
+    def over(self) -> tuple[Change, ...]:
+        """The jumps that are over: all but the change that is found last in time, which may be the beginning of a
+        drift."""
+        jumps = sorted((change for change in self.changes if change.kind is Kind.JUMP), key=lambda change: change.gap)
+        return tuple(jumps if len(jumps) < len(self.changes) else jumps[:-1])
+
+    def without_jumps(self) -> Readings:
+        """The readings with the jumps that are over acting, of any size."""
+        readings = self.readings
+        for change in self.over:
+            readings = _with(readings, change.column)
+        return readings
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +129,7 @@ def detect(readings: Readings, walk: float, dof: Array, temperature: Array, leve
     is_left = left is not None and left.p_value < level
     if start.likely.wanders and (is_left or _walks(start.readings, explained, walk)):
         return Detected(p, (_wandering(start.readings, p),), start.warmth, start.readings)
-    return Detected(p, tuple(found), start.warmth, _with_jumps(start.readings, found))
+    return Detected(p, tuple(found), start.warmth, start.readings)
 
 
 def _walks(readings: Readings, explained: Readings, walk: float) -> bool:
@@ -223,25 +236,16 @@ def _with(readings: Readings, column: Array) -> Readings:
     return replace(readings, base=base, now=np.append(readings.now, column[-1]))
 
 
-def _with_jumps(readings: Readings, found: list[Change]) -> Readings:
-    """With the jumps that are over: all but the one change that stays open to be something else."""
-    jumps = sorted((change for change in found if change.kind is Kind.JUMP), key=lambda change: change.gap)
-    over = jumps if len(jumps) < len(found) else jumps[:-1]
-    for change in over:
-        readings = _with(readings, change.column)
-    return readings
-
-
 def with_temperature(readings: Readings, temperature: Array) -> Readings:
     """With the regressor; the level that is forecast is that at the mean temperature."""
-    base = np.concatenate([readings.base, _centred(temperature)[:, None]], axis=1)
+    base = np.concatenate([readings.base, centred(temperature)[:, None]], axis=1)
     return replace(readings, base=base, now=np.append(readings.now, 0.0))
 
 
-def _centred(temperature: Array) -> Array:
+def centred(temperature: Array) -> Array:
     """(n,) °C about their mean; a session without one has the mean, as the likeliest."""
     known = np.isfinite(temperature)
-    return np.where(known, temperature - temperature[known].mean(), 0.0)
+    return np.where(known, temperature - temperature[known].mean(), 0.0) if known.any() else np.zeros(len(known))
 
 
 def tells_of_temperature(temperature: Array) -> bool:
@@ -254,7 +258,7 @@ def _warmth(readings: Readings, temperature: Array, rival: Change | None, level:
     """The coefficient of temperature, where these sessions can tell of one."""
     if not tells_of_temperature(temperature):
         return None
-    column = _centred(temperature)
+    column = centred(temperature)
     found = fits(readings, alone(column))
     score, information = found.score[..., 0], found.information[..., 0]
     best = int(np.argmax((found.log_likelihood + score**2 / information / 2).sum(axis=1)))

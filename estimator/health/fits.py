@@ -27,13 +27,15 @@ PARTS = tuple(
     [(Kind.NONE, 0.0)]
     + [(Kind.JUMP, size) for size in (0.2, 0.6, 1.5)]
     + [(kind, rate) for kind in (Kind.LATE, Kind.START) for rate in (0.1, 0.3, 0.9)]
-    + [(kind, size) for kind in (Kind.AGING, Kind.SETTLING) for size in (0.2, 0.6)]
+    + [(Kind.AGING, size) for size in (0.2, 0.6)]
+    + [(Kind.SETTLING, size) for size in (0.3, 0.9)]
+    + [(Kind.WARMTH, slope) for slope in (0.01, 0.03, 0.1)]
 )
-"""P kinds of change with one sigma of their sizes, in T or T a year, from hardly seen to ruinous."""
+"""P kinds of change with one sigma of their sizes, in T, T a year or T per °C, from hardly seen to ruinous."""
 PART_KINDS = np.array([kind for kind, _ in PARTS])
 """(P,) `Kind` of each."""
 PART_SIZES = np.array([size for _, size in PARTS])
-"""(P,) one sigma of the size, T or T a year."""
+"""(P,) one sigma of the size, T, T a year or T per °C."""
 CHANGES = tuple(dict.fromkeys(kind for kind, _ in PARTS if kind is not Kind.NONE))
 """Kinds with a shape, in the order of their parts."""
 LEAST = 1e-6

@@ -24,7 +24,7 @@ from scipy.stats import ncx2
 from estimator.health.fits import PART_KINDS, PART_SIZES
 from estimator.health.pooled import Prior
 from estimator.health.posterior import Draws
-from estimator.health.shapes import DRIFTS, Kind
+from estimator.health.shapes import DRIFTS, STILL, Kind
 from estimator.session import Array
 
 AHEAD = np.concatenate([[0.0], np.geomspace(0.02, 12.0, 30)])
@@ -65,7 +65,7 @@ def _paths(k: int, ahead: bytes) -> Array:
     return np.cumsum(taken * np.sqrt(steps), axis=2)
 
 
-def passage(draws: Draws, prior: Prior, swing: float, rng: np.random.Generator) -> Array:
+def passage(draws: Draws, prior: Prior, swing: Array | float, rng: np.random.Generator) -> Array:
     """(h,) probability, never falling, that the tolerance has been reached by `AHEAD`; arguments are those of
     `staying`."""
     return passed(draws.weight, staying(draws, prior, swing, rng))
@@ -93,12 +93,12 @@ def earliest(draws: Draws, stays: Array, *, drifts: bool) -> float:
     return min(found)
 
 
-def staying(draws: Draws, prior: Prior, swing: float, rng: np.random.Generator) -> Array:
+def staying(draws: Draws, prior: Prior, swing: Array | float, rng: np.random.Generator) -> Array:
     """(N, h) chance of every draw to be within the tolerance at all times up to `AHEAD`.
 
     Parameters
     ----------
-    swing : T, that temperature takes off the tolerance on either side.
+    swing : T, that temperature takes off the tolerance on either side; one of all draws, or (N, 1) of each.
     """
     level = followed(draws, AHEAD, rng)
     length = (np.abs(level[:, 0]) if level.shape[1] == 1 else np.hypot(level[:, 0], level[:, 1])) + swing
@@ -108,7 +108,7 @@ def staying(draws: Draws, prior: Prior, swing: float, rng: np.random.Generator) 
     spread = draws.walk[walks, None] ** 2 * np.diff(AHEAD)
     within[walks, 1:] = -np.expm1(-2 * inside[:, :-1] * inside[:, 1:] / spread)
     within = np.cumprod(within, axis=1)
-    k, quiet, near = draws.level.shape[1], draws.kind == Kind.NONE, np.minimum(length, 1.0)
+    k, quiet, near = draws.level.shape[1], np.isin(draws.kind, STILL), np.minimum(length, 1.0)
     within[quiet] *= np.exp(-_hazard(near[quiet], prior.rate, k) * prior.left(draws.age, AHEAD))
     within[~quiet] *= np.exp(-_hazard(near[~quiet], prior.again, k))
     return np.asarray(within)
@@ -204,7 +204,7 @@ class Future:
 
 def future(draws: Draws, prior: Prior, ahead: Array, rng: np.random.Generator) -> Future:
     """Levels at increasing years ahead (h,), with jumps and drifts that the type lets expect."""
-    level, quiet, again = followed(draws, ahead, rng), draws.kind == Kind.NONE, prior.again
+    level, quiet, again = followed(draws, ahead, rng), np.isin(draws.kind, STILL), prior.again
     last = float(ahead[-1])
     effective = last * float(prior.left(draws.age, ahead[-1:])[0])
     for part in map(int, np.flatnonzero(prior.rate)):

@@ -1,10 +1,10 @@
 """How the parameters of a unit type behave, learned from its own histories: empirical Bayes.
 
 Each history of a parameter is of one kind at one strength of its walk (`fits`): nothing, a jump or a late drift at some
-time, a drift from the start, aging. Jumps and late drifts come as Poisson processes with a rate per year for each size;
-drifts from the start and aging have a chance per parameter. With the marginal likelihoods L_i(q, p) of M histories,
+time, a drift from the start, aging, temperature. Jumps and late drifts come as Poisson processes with a rate per year
+for each size; the others have a chance per parameter. With the marginal likelihoods L_i(q, p) of M histories,
 
-    γ_i(q, p) ∝ ω_q·π_p(span_i)·L_i(q, p)
+    γ_i(q, p) ∝ ω_q·π_p(span_i)·L_i(q, p),    ω of those that change and of the others apart,
 
 and the parameters are the mode under conjugate weak priors, by expectation maximisation (Dempster, Laird & Rubin 1977):
 ω and the chances with Dirichlet, the rates with gamma priors, each worth a few histories of what inertial units do in
@@ -24,22 +24,24 @@ import numpy as np
 
 from estimator.health.error_laws import FREEDOMS, NORMAL, USUAL
 from estimator.health.fits import PART_KINDS, WALKS
-from estimator.health.shapes import Kind
+from estimator.health.shapes import STILL, Kind
 from estimator.session import Array
 
 COMES = (PART_KINDS == Kind.JUMP) | (PART_KINDS == Kind.LATE)
 """(P,) bool: parts that happen at some time, with a rate."""
-STARTS = np.isin(PART_KINDS, (Kind.START, Kind.AGING, Kind.SETTLING))
+STARTS = np.isin(PART_KINDS, (Kind.START, Kind.AGING, Kind.SETTLING, Kind.WARMTH))
 """(P,) bool: parts that a history has from its start, with a chance."""
+QUIET = np.isin(PART_KINDS, STILL)
+"""(P,) bool: parts in which nothing has begun."""
 WALK = np.array([0.70, 0.12, 0.08, 0.05, 0.03, 0.015, 0.005])
 """(7,) chance of each strength of the walk in units in general: most keep their values within their uncertainty."""
-CHANCE = np.array([0.003, 0.003, 0.002] * 2 + [0.006, 0.006, 0.004] + [0.005] * 4)
+CHANCE = np.array([0.003, 0.003, 0.002] * 2 + [0.006, 0.006, 0.004] + [0.005] * 7)
 """(P − 1,) per year of jumps and late drifts, by size, and per history of drifts from the start and of aging: one in
 sixty parameters a year begins something, one in thirty has from the start."""
 HISTORIES = 10.0
 """Histories that the general strength of the walk, and the chances, are worth."""
-YEARS = 40.0
-"""Years of histories that the general rates are worth."""
+YEARS = 20.0
+"""Years of histories that the general rates are worth: as many histories, of two years each."""
 FRAILTY = 0.5
 """κ: rates differ by more than their mean, as those of weak and sound parts do. The histories of one type, all about as
 long, hardly tell it."""
@@ -52,7 +54,9 @@ class Prior:
     """What is expected of a parameter before its own history is looked at."""
 
     walk: Array
-    """(Q,) chance of each strength."""
+    """(Q,) chance of each strength, of one in which nothing else happens."""
+    moving: Array
+    """(Q,) the same, of one that changes: what wanders need not drift."""
     rate: Array
     """(P,) per year, of jumps and late drifts by size; 0 elsewhere."""
     chance: Array
@@ -71,6 +75,11 @@ class Prior:
         come = still * (1 - quiet) * self.rate / max(total, 1e-300)
         none = still * quiet * (PART_KINDS == Kind.NONE)
         return np.asarray(come + none + self.chance)
+
+    def joint(self, span: Array | float) -> Array:
+        """(..., Q, P) chance of each part at each strength of the walk within histories of (...,) years."""
+        strength = np.where(QUIET, self.walk[:, None], self.moving[:, None])
+        return np.asarray(strength * self.parts(span)[..., None, :])
 
     @property
     def again(self) -> Array:
@@ -101,7 +110,8 @@ class Prior:
 def general_prior() -> Prior:
     """Of units in general."""
     chance = np.concatenate([[0.0], CHANCE])
-    return Prior(WALK / WALK.sum(), np.where(COMES, chance, 0.0), np.where(STARTS, chance, 0.0), tails=USUAL)
+    walk = WALK / WALK.sum()
+    return Prior(walk, walk, np.where(COMES, chance, 0.0), np.where(STARTS, chance, 0.0), tails=USUAL)
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,11 +149,13 @@ def _weighed(usual: Array, logs: Array) -> Array:
 
 def _improved(found: Prior, general: Prior, likelihood: Array, span: Array) -> Prior:
     """One round; likelihood (M, Q, P) and span (M,) years."""
-    joint = likelihood * found.walk[:, None] * found.parts(span)[:, None, :]
+    joint = likelihood * found.joint(span)
     joint = joint / joint.sum(axis=(1, 2), keepdims=True)
     parts, m = joint.sum(axis=(0, 1)), len(span)
+    walk, moving = (joint[..., own].sum(axis=(0, 2)) + HISTORIES * general.walk for own in (QUIET, ~QUIET))
     return Prior(
-        walk=(joint.sum(axis=(0, 2)) + HISTORIES * general.walk) / (m + HISTORIES),
+        walk=walk / walk.sum(),
+        moving=moving / moving.sum(),
         rate=np.where(COMES, (parts + YEARS * general.rate) / (_exposed(found, joint, span) + YEARS), 0.0),
         chance=np.where(STARTS, (parts + HISTORIES * general.chance) / (m + HISTORIES), 0.0),
         histories=m,
@@ -151,9 +163,10 @@ def _improved(found: Prior, general: Prior, likelihood: Array, span: Array) -> P
 
 
 def _exposed(found: Prior, joint: Array, span: Array) -> float:
-    """Years at the rate of a new one: of the quiet by what is left of their frailty, of the others until the event."""
-    came = joint[:, :, COMES].sum(axis=(1, 2))
+    """Years at the rate of a new one: of the quiet by what is left of their frailty, of those to which something came
+    until then; those that do something from their start tell nothing of what comes."""
+    came, still = (joint[:, :, own].sum(axis=(1, 2)) for own in (COMES, PART_KINDS == Kind.NONE))
     total, half = float(found.rate.sum()), span / 2
     quiet = span * FRAILTY / (FRAILTY + total * span)
     struck = half * (1 + FRAILTY) / (FRAILTY + total * half)
-    return float(((1 - came) * quiet + came * struck).sum())
+    return float((still * quiet + came * struck).sum())

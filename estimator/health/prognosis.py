@@ -15,6 +15,7 @@ from estimator.health.pooled import Evidence, Prior
 from estimator.health.posterior import Draws, draw
 from estimator.health.shapes import DRIFTS, Kind, courses
 from estimator.health.tails import log_tails
+from estimator.health.ways import felt, swing, ways, where_found
 from estimator.session import Array
 
 RECENT = 60
@@ -101,11 +102,13 @@ class Prognosis:
 def evidence(track: Track) -> Evidence:
     """What a track tells of its type, whatever else is known of the type."""
     readings, (dof, temperature) = _readings(track), _conditions(track)
+    warmth = None
     if tells_of_temperature(temperature):
-        readings = warmed(readings, 0.0, dof, temperature, LEVEL).readings
-    found = fits(readings, courses(readings.time))
+        told = warmed(readings, 0.0, dof, temperature, LEVEL)
+        readings, warmth = told.readings, told.warmth
+    found = fits(readings, courses(readings.time, felt(warmth, temperature)))
     logs = found.log_evidence()
-    return Evidence(found.span, logs, log_tails(readings, found.family, logs))
+    return Evidence(found.span, where_found(logs, warmth), log_tails(readings, found.family, logs))
 
 
 def prognosis(tracks: Sequence[Track], priors: Sequence[Prior], ahead: Array) -> Prognosis:
@@ -154,10 +157,11 @@ def _outlook(track: Track, prior: Prior, ahead: Array, of: tuple[int, float]) ->
     number, level = of
     rng = np.random.default_rng(number)
     readings = replace(_readings(track), tails=prior.tails)
-    detected = detect(readings, prior.usual_walk, *_conditions(track), level)
-    family = courses(detected.readings.time)
-    draws = draw(detected.readings, family, prior, rng)
-    stays = staying(draws, prior, _swing(detected.warmth, track), rng)
+    dof, temperature = _conditions(track)
+    detected = detect(readings, prior.usual_walk, dof, temperature, level)
+    family = courses(readings.time, felt(detected.warmth, temperature))
+    draws = draw(ways(detected, prior), family, prior, rng)
+    stays = staying(draws, prior, swing(detected.warmth, draws, temperature), rng)
     chance = passed(draws.weight, stays)
     way = direction(track)
     middle, sigma = _moments(draws, way)
@@ -200,15 +204,6 @@ def _rate(draws: Draws, way: Array) -> tuple[float, float]:
     rates = (draws.rate + draws.aging * draws.slowed()[:, None]) @ way
     middle = float(draws.mean(rates))
     return middle, float(np.sqrt(draws.mean((rates - middle) ** 2)))
-
-
-def _swing(warmth: Warmth | None, track: Track) -> float:
-    """What the span of temperatures takes off the tolerance on either side, T."""
-    if warmth is None or not warmth.is_found or track.temperature is None:
-        return 0.0
-    seen = track.temperature[-RECENT:]
-    away = np.abs(seen[np.isfinite(seen)] - seen[np.isfinite(seen)].mean())
-    return float(np.linalg.norm(warmth.coefficient) * away.max())
 
 
 def _placed(change: Change, skipped: int) -> Change:

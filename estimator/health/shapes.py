@@ -6,15 +6,18 @@ Times t_0 < … < t_{n−1} of the sessions in years since the first, one column
     drift from the start                   t
     drift that began in the gap before k   max(t − t_{k−1} − u(t_k − t_{k−1}), 0)   k = 1 … n−1, u of `BEGINS`
     aging                                  ln(1 + t/τ)/ln(1 + 1/τ)                  τ of `AGES`
-    aging that comes to an end             (1 − e^{−t/τ})/(1 − e^{−1/τ})            τ of `SETTLES`, in forecasts
+    aging that comes to an end             1 − e^{−t/τ}                             τ of `SETTLES`, in forecasts
+    following the temperature              T(t) − T̄                                 in forecasts
 
 A drift begins anywhere within its gap, each time alike, so its likelihood is the mean over u. With m nodes u is wrong
 by 1/2m of a gap d at most, the course by r·d/2m: of a young drift that has to stay below a session's own uncertainty,
 or a walk, which fits anything, takes the drift's place and its rate is not carried on. Aging is fast at first and slows
 down as stresses relax and volatiles leave (logarithmic, as of quartz and electronics; Primak 1955); its unit is the
-change of the first year. Whether it goes on for ever, as a logarithm does, or comes to an end, as stresses that relax
-at one rate, hardly shows within the readings and decides where they lead: detection does without the second, forecasts
-weigh both.
+change of the first year, of one that comes to an end that in the end: how much relaxes is no matter of how soon.
+Whether it goes on for ever, as a logarithm does, or comes to an end, as stresses that relax at one rate, hardly shows
+within the readings and decides where they lead: detection does without the second, forecasts weigh both. A temperature
+coefficient is found by `detection` where there are sessions enough; the few of a young history may show the season as
+well as a drift, and forecasts weigh it too.
 """
 
 from dataclasses import dataclass
@@ -27,7 +30,10 @@ from estimator.session import Array
 
 AGES = (0.03, 0.3, 1.0)
 """τ, years: from days, as after an assembly, to a year."""
-SETTLES = (0.3, 1.0, 3.0)
+SLOW = 3.0
+"""τ, years, of aging for forecasts beside `AGES`: of a unit that was assembled long before its first session, t + t_0
+in place of t, much is gone, and ln(1 + t/(τ + t_0)) is left."""
+SETTLES = (0.1, 0.3, 1.0, 3.0)
 """τ, years, of aging that comes to an end: what is slower cannot be told from a drift."""
 BEGINS = (0.125, 0.375, 0.625, 0.875)
 """u, parts of a gap: the middles of quarters. At half a tolerance a year and half a year between sessions a drift is
@@ -50,10 +56,14 @@ class Kind(IntEnum):
     """At no steady rate, away and back again."""
     SETTLING = 6
     """Aging that comes to an end."""
+    WARMTH = 7
+    """Not by itself, but with the temperature of the sessions."""
 
 
 DRIFTS = (Kind.LATE, Kind.START, Kind.AGING)
 """What goes on."""
+STILL = (Kind.NONE, Kind.WARMTH)
+"""In which nothing has begun."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +71,7 @@ class Shapes:
     """H hypotheses about n sessions."""
 
     columns: Array
-    """(n, H) deviation per unit of size: dimensionless for jumps and aging, years for drifts."""
+    """(n, H) deviation per unit of size: dimensionless for jumps and aging, years for drifts, °C for temperature."""
     kind: Array
     """(H,) `Kind`."""
     gap: Array
@@ -78,21 +88,30 @@ def shapes(time: Array) -> Shapes:
 
 
 @lru_cache(maxsize=8)
-def _with_ends(moments: bytes) -> Shapes:
+def _with_ends(moments: bytes, warmth: bytes) -> Shapes:
     found, time = _shapes(moments), np.frombuffer(moments)
     b = len(SETTLES)
+    more = [course(time, SLOW), *(settled(time, age) for age in SETTLES), np.frombuffer(warmth)]
+    kind = np.append(found.kind, [Kind.AGING, *[Kind.SETTLING] * b, Kind.WARMTH])
+    share = np.append(found.share, [1.0, *[1 / b] * b, 1.0])
+    share[kind == Kind.AGING] = 1 / (len(AGES) + 1)
     return Shapes(
-        columns=np.concatenate([found.columns, np.stack([settled(time, age) for age in SETTLES], axis=1)], axis=1),
-        kind=np.append(found.kind, np.full(b, Kind.SETTLING)),
-        gap=np.append(found.gap, np.zeros(b, dtype=int)),
-        share=np.append(found.share, np.full(b, 1 / b)),
-        constant=np.append(found.constant, SETTLES),
+        columns=np.concatenate([found.columns, np.stack(more, axis=1)], axis=1),
+        kind=kind,
+        gap=np.append(found.gap, np.zeros(len(more), dtype=int)),
+        share=share,
+        constant=np.append(found.constant, [SLOW, *SETTLES, 1.0]),
     )
 
 
-def courses(time: Array) -> Shapes:
-    """The same with aging that comes to an end, for forecasts."""
-    return _with_ends(time.tobytes())
+def courses(time: Array, warmth: Array) -> Shapes:
+    """The same with aging that comes to an end and with the temperature, for forecasts.
+
+    Parameters
+    ----------
+    warmth : (n,) °C about their mean; zero where nothing is known of it, or it acts whatever else does.
+    """
+    return _with_ends(time.tobytes(), warmth.tobytes())
 
 
 @lru_cache(maxsize=8)
@@ -122,4 +141,4 @@ def course(time: Array, age: Array | float) -> Array:
 
 def settled(time: Array, age: Array | float) -> Array:
     """The same of aging that comes to an end."""
-    return np.asarray(np.expm1(-time / age) / np.expm1(-1 / np.asarray(age)))
+    return np.asarray(-np.expm1(-time / age))

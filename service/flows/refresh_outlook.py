@@ -18,7 +18,7 @@ from service.words.motion import motions_in_words
 
 END_OF_TIME = datetime(9999, 1, 1, tzinfo=UTC)
 """After every break."""
-RULE = b"4"
+RULE = b"5"
 """Version of what an outlook says of a history: those made by an earlier one are made again."""
 AT_HAND = 32
 """Parameters whose prior is kept: those of several types. Units are worked out again type by type."""

@@ -6,16 +6,18 @@ from collections.abc import Sequence
 import numpy as np
 
 from estimator.health.error_laws import FREEDOMS
-from estimator.health.fits import PARTS, WALKS
+from estimator.health.fits import PART_KINDS, PARTS, WALKS
 from estimator.health.pooled import Evidence
+from estimator.health.shapes import Kind
 
 SHAPE = (len(WALKS), len(PARTS))
 """Of the log evidence of one history."""
 LAWS = len(FREEDOMS)
-MARK = np.full(1, np.inf, dtype="<f4")
-"""Rows without it were written before aging that comes to an end was told from aging that goes on; those behind a NaN
-tell of tails too, older ones do not."""
-EARLIER = SHAPE[1] - 2
+MARK = np.full(1, -np.inf, dtype="<f4")
+"""Rows behind a positive one were written before temperature was told from drifts; those behind a NaN, which tell of
+tails, and those behind nothing before aging that comes to an end was told from aging that goes on."""
+WARM = int(np.count_nonzero(PART_KINDS == Kind.WARMTH))
+EARLIER, EARLIEST = SHAPE[1] - WARM, SHAPE[1] - WARM - 2
 """Parts of the log evidence of those."""
 
 
@@ -29,13 +31,15 @@ def unpacked(content: bytes) -> tuple[Evidence, ...]:
     """The histories that were written."""
     numbers = np.frombuffer(content, dtype="<f4").astype(float)
     is_marked = not np.isfinite(numbers[:1]).all()
-    parts = SHAPE[1] if np.isinf(numbers[:1]).any() else EARLIER
+    parts = SHAPE[1] if np.isneginf(numbers[:1]).any() else EARLIER if np.isinf(numbers[:1]).any() else EARLIEST
     laws = LAWS if is_marked else 0
     rows = numbers[is_marked:].reshape(-1, 1 + laws + SHAPE[0] * parts)
     tails = rows[:, 1 : 1 + laws] if laws else np.zeros((len(rows), LAWS))
     evidence = rows[:, 1 + laws :].reshape(-1, SHAPE[0], parts)
-    if parts == EARLIER:  # of which end was open: as likely by one as by the other
+    if parts == EARLIEST:  # of which end was open: as likely by one as by the other
         evidence = np.concatenate([evidence, evidence[..., -2:]], axis=2)
+    if parts != SHAPE[1]:  # of temperature they tell nothing: as likely with it as without
+        evidence = np.concatenate([evidence, np.repeat(evidence[..., :1], WARM, axis=2)], axis=2)
     return tuple(
         Evidence(float(row[0]), *own) for row, own in zip(rows, zip(evidence, tails, strict=True), strict=True)
     )

@@ -26,7 +26,9 @@ def draws(count: int, level: Array, rate: float = 0.0, strength: float = 0.0) ->
     moving[:, 0] = rate
     flat = np.ones(count)
     kind = np.full(count, Kind.START if rate else Kind.NONE)
-    return Draws(flat / count, np.tile(level, (count, 1)), moving, 0 * moving, flat, strength * flat, kind, 1.0)
+    return Draws(
+        flat / count, np.tile(level, (count, 1)), moving, 0 * moving, flat, strength * flat, kind, 1.0, 0 * moving
+    )
 
 
 def chance_in(years: float, of: Draws, prior: Prior = NEVER, swing: float = 0.0) -> float:
@@ -49,7 +51,7 @@ def test_a_drift_passes_before_reach_90_in_one_history_of_five_and_a_found_one_i
     rate = np.concatenate([still.rate, np.linspace(0.002, 1.0, 500)[:, None]])
     level, weight = np.zeros((4000, 1)), np.full(4000, 1 / 4000)
     kind = np.where(rate[:, 0] > 0, Kind.LATE, Kind.NONE)
-    both = Draws(weight, level, rate, 0 * rate, np.ones(4000), np.zeros(4000), kind, 1.0)
+    both = Draws(weight, level, rate, 0 * rate, np.ones(4000), np.zeros(4000), kind, 1.0, 0 * rate)
     stays = staying(both, NEVER, 0.0, np.random.default_rng(1))
     for is_found, share in ((False, 0.2), (True, 0.1)):
         date = earliest(both, stays, drifts=is_found)

@@ -25,13 +25,15 @@ def test_squared_errors_beside_a_jump_are_those_of_the_joint_normal_law() -> Non
     family = shapes(given.time)
     jumps = np.where((PART_KINDS == Kind.JUMP) & (np.arange(len(PART_KINDS)) == 2), 1e18, 0.0)
     found = fits(given, family)
-    square = _squares(found, given, weighed(found, Prior(STILL, jumps, NEVER)))
+    square = _squares(found, given, weighed(found, Prior(STILL, STILL, jumps, NEVER)))
     total = 0.6**2 + 0.1**2 + 0.2**2
     assert square[:, 0] == pytest.approx([s**2 - s**4 / total + (s**2 * 0.5 / total) ** 2 for s in (0.1, 0.2)])
 
 
 def test_a_bad_day_counts_for_less_and_the_others_for_more() -> None:
     given = readings(np.array([0.0, 0.0, 0.6, 0.0, 0.0]), np.full(5, 0.1))
-    worth = reweighted(given, shapes(given.time), Prior(STILL, NEVER, NEVER, tails=np.eye(4)[2]), is_missing=False)
+    worth = reweighted(
+        given, shapes(given.time), Prior(STILL, STILL, NEVER, NEVER, tails=np.eye(4)[2]), is_missing=False
+    )
     assert worth.sigma[2, 0] > 0.2
     assert (np.delete(worth.sigma, 2) < 0.1).all()

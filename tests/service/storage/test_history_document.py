@@ -5,7 +5,7 @@ import pytest
 
 from estimator.health.error_laws import FREEDOMS
 from estimator.health.pooled import Evidence
-from service.storage.history_document import SHAPE, packed, unpacked
+from service.storage.history_document import EARLIEST, SHAPE, WARM, packed, unpacked
 
 RNG = np.random.default_rng(1)
 TOLD = [Evidence(1.5 + i, -RNG.exponential(size=SHAPE), -RNG.exponential(size=len(FREEDOMS))) for i in range(17)]
@@ -18,16 +18,23 @@ def test_histories_are_read_as_they_were_written() -> None:
         assert read.log_evidence == pytest.approx(one.log_evidence - one.log_evidence.max(), abs=1e-5)
 
 
+def test_what_was_written_before_tells_nothing_of_temperature() -> None:
+    rows = [np.concatenate([[one.span], one.log_tails, one.log_evidence[:, :-WARM].ravel()]) for one in TOLD]
+    read = unpacked(np.full(1, np.inf, dtype="<f4").tobytes() + np.asarray(rows, dtype="<f4").tobytes())
+    assert read[3].log_evidence[:, :-WARM] == pytest.approx(TOLD[3].log_evidence[:, :-WARM])
+    assert (read[3].log_evidence[:, -WARM:] == read[3].log_evidence[:, :1]).all()
+
+
 def test_what_was_written_before_leaves_open_whether_aging_ends() -> None:
-    rows = [np.concatenate([[one.span], one.log_tails, one.log_evidence[:, :-2].ravel()]) for one in TOLD]
+    rows = [np.concatenate([[one.span], one.log_tails, one.log_evidence[:, :EARLIEST].ravel()]) for one in TOLD]
     read = unpacked(np.full(1, np.nan, dtype="<f4").tobytes() + np.asarray(rows, dtype="<f4").tobytes())
     assert read[3].log_tails == pytest.approx(TOLD[3].log_tails)
-    assert read[3].log_evidence[:, :-2] == pytest.approx(TOLD[3].log_evidence[:, :-2])
-    assert np.array_equal(read[3].log_evidence[:, -2:], read[3].log_evidence[:, -4:-2])
+    assert read[3].log_evidence[:, :EARLIEST] == pytest.approx(TOLD[3].log_evidence[:, :EARLIEST])
+    assert np.array_equal(read[3].log_evidence[:, EARLIEST:-WARM], read[3].log_evidence[:, EARLIEST - 2 : EARLIEST])
 
 
 def test_what_was_written_before_tells_nothing_of_tails() -> None:
-    rows = [np.append(one.span, one.log_evidence[:, :-2]) for one in TOLD]
+    rows = [np.append(one.span, one.log_evidence[:, :EARLIEST]) for one in TOLD]
     read = unpacked(np.asarray(rows, dtype="<f4").tobytes())
     assert [one.span for one in read] == pytest.approx([one.span for one in TOLD])
     assert not np.any([one.log_tails for one in read])
