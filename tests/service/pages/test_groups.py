@@ -35,7 +35,9 @@ def test_the_page_says_what_they_show_how_large_and_in_which_session(twelve: htt
     assert "What the simulation gets wrong, over 12 sessions" in page
     assert re.search(r"\d\.\d ± \d\.\d.µg/g³ in all of these sessions; \d\.\d standard errors", page)
     assert re.search(r"Session Unit Amplitude 1 Dec 2023 BA-017 \d\.\d ± \d", page)
-    assert "A2 bends with the cube of the input, unless it is odd quadratic or one that is not in the catalogue." in page
+    assert (
+        "A2 bends with the cube of the input, unless it is odd quadratic or one that is not in the catalogue." in page
+    )
     assert re.search(r"What else it could be .* odd quadratic .* %", page)
 
 
