@@ -32,6 +32,7 @@ from tests.builders import accelerometer_block
 
 LATEST = 10.0
 """Seconds."""
+BUSY = httpx.codes.SERVICE_UNAVAILABLE
 MOMENT = 0.5
 """Seconds between two looks at what still waits."""
 PARTS = ("", "/calibration", "/diagnosis", "/correction", "/file")
@@ -49,8 +50,9 @@ HEAD = f"""# Extreme numbers
 Written by `make fuzz-numbers`. Every number of a session file of every programme, one row and whole columns alike, and
 every number of the other calls of the API, has in turn each of {len(EXTREMES)} values: 0, from 5e-324 to 1.7e308 in
 either sense, integers of up to 401 digits, NaN, infinities, truth values and texts. After each place an ordinary
-session is uploaded, and what was taken is read again. Because other programs may have had the machine, an answer that
-took longer than ten seconds is asked for again when nothing else is: it is a find if it takes as long then.
+session is uploaded, and what was taken is read again. Because other programs may have had the machine, what took
+longer than ten seconds, or was asked to come again (503 with Retry-After), is sent again when nothing else is: it is a
+find if it ends so then. A warning of the program is one too.
 
 | sent | answers | of them |
 | --- | --- | --- |
@@ -102,9 +104,10 @@ class Tally:
         with self._lock:
             self.answers[group, answer.status_code] += 1
             self.slowest = max(self.slowest, seconds)
-            if seconds > LATEST:
+            is_asked_back = answer.status_code == BUSY and "Retry-After" in answer.headers
+            if seconds > LATEST or is_asked_back:
                 self.late.append((name, ask))
-        if answer.status_code >= httpx.codes.INTERNAL_SERVER_ERROR:
+        if answer.status_code >= httpx.codes.INTERNAL_SERVER_ERROR and not is_asked_back:
             self.find(f"{name}: {answer.status_code}")
         return answer
 
@@ -112,10 +115,10 @@ class Tally:
         """What was late, alone."""
         for name, ask in self.late:
             began = time.monotonic()
-            ask(1)
+            status = ask(1).status_code
             seconds = time.monotonic() - began
-            if seconds > LATEST:
-                self.find(f"{name}: {seconds:.1f} s")
+            if seconds > LATEST or status >= httpx.codes.INTERNAL_SERVER_ERROR:
+                self.find(f"{name}, alone: {status} in {seconds:.1f} s")
 
     def find(self, text: str) -> None:
         """Something that must not be."""
@@ -159,7 +162,7 @@ def main() -> None:
     LOG.parent.mkdir(exist_ok=True)
     LOG.write_text(log)
     for line in log.splitlines():
-        if "Traceback" in line or '"level": "error"' in line:
+        if any(word in line for word in ("Traceback", "Warning", '"level": "error"')):
             tally.find(f"log: {line[:300]}")
     made = f"{len(taken) - left:,} of the {len(taken):,} sessions that were taken were diagnosed when it ended."
     options.out.write_text(_page(tally, minutes, made))

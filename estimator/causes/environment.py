@@ -15,6 +15,12 @@ def elapsed(setting: Setting) -> Array:
     return setting.time - setting.time.mean()
 
 
+def since_on(setting: Setting) -> Array:
+    """(R,) t, s; where the clock reads less than 0, counted from the first moment that it reads."""
+    assert setting.time is not None
+    return setting.time - min(float(setting.time.min()), 0.0)
+
+
 def warmth(setting: Setting) -> Array:
     """(R,) T − T̄, °C."""
     assert setting.temperature is not None
@@ -140,8 +146,7 @@ class WarmUp(GridCause):
 
     def terms(self, setting: Setting, i: int, grid: Sequence[tuple[float, ...]]) -> Array:
         """(S, R, 1) exp(−t/τ), dimensionless."""
-        assert setting.time is not None
-        return column(np.exp(-setting.time / np.array(grid)))
+        return column(np.exp(-since_on(setting) / np.array(grid)))
 
     def neighbours(self, setting: Setting, shape: Shape) -> Iterator[Shape]:
         (tau,) = shape.nonlinear
@@ -152,10 +157,9 @@ class WarmUp(GridCause):
 
     def derivative(self, setting: Setting, shape: Shape) -> Array:
         """(R, m, 1) by ln τ, dimensionless."""
-        assert setting.time is not None
-        (tau,) = shape.nonlinear
+        (tau,), time = shape.nonlinear, since_on(setting)
         bent = np.zeros((*shape.columns.shape[:2], 1))
-        bent[:, shape.sensors[0], 0] = np.exp(-setting.time / tau) * setting.time / tau
+        bent[:, shape.sensors[0], 0] = np.exp(-time / tau) * time / tau
         return bent
 
 
