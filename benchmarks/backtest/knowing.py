@@ -77,6 +77,14 @@ def early(one: History, law: Law, level: float, rng: Random) -> float:
 
 def known_dates(one: History, law: Law, levels: tuple[float, ...], rng: Random) -> tuple[float, ...]:
     """The same for several chances, given that it is within its tolerance now."""
+    inside = known_passages(one, law, rng)
+    if not len(inside):
+        return tuple(float("inf") for _ in levels)
+    return tuple(float(q) for q in np.quantile(inside, levels, method="inverted_cdf"))
+
+
+def known_passages(one: History, law: Law, rng: Random) -> Array:
+    """(m,) years, all as likely, after which it passes its tolerance that it is within now; infinite if never."""
     days = STEP * np.arange(round(float(one.time[-1]) / STEP), round(YEARS / STEP))
     kinds = [_drawn(kind, one, law, days, rng) for kind in law.kinds]
     logs = np.stack([kind.log_weight for kind in kinds])
@@ -84,10 +92,7 @@ def known_dates(one: History, law: Law, levels: tuple[float, ...], rng: Random) 
     picked = np.searchsorted(rough, rough[-1] * (np.arange(FOLLOWED) + rng.uniform()) / FOLLOWED)
     found = [_passed(kind.future(picked[picked // DRAWS == i] % DRAWS)) for i, kind in enumerate(kinds)]
     passed = np.concatenate(found)
-    inside = passed[passed > 0]
-    if not len(inside):
-        return tuple(float("inf") for _ in levels)
-    return tuple(float(q) for q in np.quantile(inside, levels, method="inverted_cdf"))
+    return np.asarray(passed[passed > 0])
 
 
 def _passed(deviation: Array) -> Array:

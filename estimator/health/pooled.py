@@ -40,6 +40,9 @@ CHANCE = np.array([0.003, 0.003, 0.002] * 2 + [0.006, 0.006, 0.004] + [0.005] * 
 sixty parameters a year begins something, one in thirty has from the start."""
 HISTORIES = 10.0
 """Histories that the general strength of the walk, and the chances, are worth."""
+ENDS = 10.0
+"""Agings that it is worth that as many go on as come to an end: a short history hardly tells one from the other, and a
+few that favour one by a little would else settle it for all."""
 YEARS = 20.0
 """Years of histories that the general rates are worth: as many histories, of two years each."""
 FRAILTY = 0.5
@@ -157,9 +160,20 @@ def _improved(found: Prior, general: Prior, likelihood: Array, span: Array) -> P
         walk=walk / walk.sum(),
         moving=moving / moving.sum(),
         rate=np.where(COMES, (parts + YEARS * general.rate) / (_exposed(found, joint, span) + YEARS), 0.0),
-        chance=np.where(STARTS, (parts + HISTORIES * general.chance) / (m + HISTORIES), 0.0),
+        chance=_ends_shared(np.where(STARTS, (parts + HISTORIES * general.chance) / (m + HISTORIES), 0.0), parts),
         histories=m,
     )
+
+
+def _ends_shared(chance: Array, parts: Array) -> Array:
+    """(P,) chances per history, in which aging that goes on and aging that ends are as common as (P,) counted histories
+    and the prior have it."""
+    kinds = [PART_KINDS == Kind.AGING, PART_KINDS == Kind.SETTLING]
+    counts = np.array([parts[own].sum() for own in kinds]) + ENDS / 2
+    total = sum(chance[own].sum() for own in kinds)
+    for own, share in zip(kinds, counts / counts.sum(), strict=True):
+        chance[own] *= share * total / chance[own].sum()
+    return chance
 
 
 def _exposed(found: Prior, joint: Array, span: Array) -> float:

@@ -168,6 +168,41 @@ def test_a_type_that_settles_is_not_expected_to_go_on() -> None:
     assert found.outlooks[0].reach_50 == np.inf
 
 
+def seasonal(rng: np.random.Generator, t: Array) -> Track:
+    """0.05 T per °C in a hall with 4 °C of seasons."""
+    warm = 20 + 4 * np.sin(2 * np.pi * (t + rng.uniform()))
+    return replace(measured(rng, t, 0.05 * (warm - warm[0]), sigma=0.02), temperature=warm)
+
+
+def test_in_a_type_that_follows_the_seasons_few_sessions_are_not_taken_for_a_drift() -> None:
+    """Between its two sessions one has moved by 0.4 T, as much as eight degrees make; or at one temperature."""
+    rng = np.random.default_rng(22)
+    tracks = [seasonal(rng, dates(rng, 8)) for _ in range(16)]
+    tracks += [measured(rng, t, 0.5 * t, sigma=0.02) for t in (dates(rng, 8, 2.0) for _ in range(8))]
+    prior = learn([evidence(track) for track in tracks])
+    young = Track(np.array([0.0, 0.5]), np.array([[0.0], [0.4]]), np.full((2, 1), 0.02), 1.0)
+    alike, warmer = (
+        prognosis([replace(young, temperature=np.array([16.0, end]))], [prior], YEAR).outlooks[0]
+        for end in (16.0, 24.0)
+    )
+    assert alike.reach_50 < 3
+    assert warmer.reach_50 > 10
+    assert warmer.rate < alike.rate / 2
+
+
+def test_what_a_walk_leaves_between_jumps_of_it_is_no_drift() -> None:
+    """A jump back after two steady years: in a type of which a third walks both are of one walk."""
+    rng = np.random.default_rng(23)
+    times = [dates(rng, 8) for _ in range(30)]
+    walks = (0.4, 0.0, 0.0)
+    prior = learn([evidence(measured(rng, t, walk(rng, t, walks[i % 3]), sigma=0.04)) for i, t in enumerate(times)])
+    value = np.array([0.0, 0.2, 0.36, 0.55, 0.7, 0.1, 0.12])[:, None]
+    one = Track(np.array([0.0, 0.5, 1.0, 1.5, 2.0, 2.3, 2.6]), value, np.full((7, 1), 0.04), 1.0)
+    found = prognosis([one], [prior], YEAR).outlooks[0]
+    assert found.steps
+    assert abs(found.rate) < 0.03
+
+
 def test_who_was_quiet_for_long_is_expected_to_stay_so() -> None:
     prior = replace(general_prior(), rate=20 * general_prior().rate)
     young, old = (replace(draws(10, np.zeros(1)), age=age) for age in (0.5, 8.0))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from estimator.health.fits import PART_KINDS
+from estimator.health.fits import PART_KINDS, WALKS
 from estimator.health.pooled import Evidence, Prior, general_prior, learn
 from estimator.health.prognosis import evidence
 from estimator.health.shapes import Kind
@@ -38,6 +38,24 @@ def test_the_rate_of_jumps_is_learned() -> None:
     """Every fourth history has one in about three years: 0.085 a year."""
     years = np.mean([h.span for h in of_type("jump", 80)])
     assert rate(learn(of_type("jump", 80)), Kind.JUMP) == pytest.approx(0.25 / years, rel=0.4)
+
+
+def test_histories_that_drift_from_their_start_do_not_dilute_the_rate_of_jumps() -> None:
+    """They can show no jump beside it, so the rate is that of the others alone."""
+    rng = np.random.default_rng(17)
+    times = [dates(rng, 10) for _ in range(80)]
+    drifting = [evidence(measured(rng, t, 0.4 * t, sigma=0.05)) for t in times]
+    alone, beside = (rate(learn([*of_type("jump", 80), *more]), Kind.JUMP) for more in ([], drifting))
+    assert beside == pytest.approx(alone, rel=0.2)
+
+
+def test_what_wanders_is_not_expected_to_drift_where_it_is_one_or_the_other() -> None:
+    rng = np.random.default_rng(18)
+    times = [dates(rng, 10) for _ in range(40)]
+    drifting = [evidence(measured(rng, t, rng.choice([-0.4, 0.4]) * t, sigma=0.05)) for t in times]
+    prior = learn([*of_type("walk", 40), *drifting])
+    assert prior.walk @ WALKS > 0.15
+    assert prior.moving @ WALKS < 0.05
 
 
 def test_a_type_in_which_nothing_happens_expects_less_than_units_in_general() -> None:
