@@ -42,7 +42,7 @@ class Case:
         return f"{self.programme}: {place}{'[]' if self.whole else ''} = {self.number[:20]}"
 
     def content(self, unit: str) -> bytes:
-        """The file as JSON, of a unit, a type and a stand of its own, so that none tells of another."""
+        """The file as JSON, of a unit, a type and a stand of its own, so that none is evidence about another."""
         return json.dumps(self.document(unit)).replace(f'"{MARK}"', self.number).encode()
 
     def document(self, unit: str) -> Document:

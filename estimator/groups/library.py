@@ -2,7 +2,7 @@
 
 Of one sensor: a, |a|, sign a, p·n, o·n (as part of the applied vector), T − T̄, dT/dt, T late by some time, t − t̄, the
 run (±1), the input of the row before, waves of β, and the squares of a, T − T̄ and t − t̄; and a⁵ and its like of even
-order, which only strong effects let be told from a³. Of the applied vector: δα and
+order, which only strong effects distinguish from a³. Of the applied vector: δα and
 δβ as waves of β, as courses of temperature and time, alike and opposite in the two runs. A wave has two amplitudes, and
 so have its products. The catalogue's causes lie in the span, so that what is learned beside them is what the catalogue
 lacks.

@@ -41,7 +41,7 @@ sixty parameters a year begins something, one in thirty has from the start."""
 HISTORIES = 10.0
 """Histories that the general strength of the walk, and the chances, are worth."""
 ENDS = 10.0
-"""Agings that it is worth that as many go on as come to an end: a short history hardly tells one from the other, and a
+"""Agings that it is worth that as many go on as come to an end: a short history hardly distinguishes them, and a
 few that favour one by a little would else settle it for all."""
 YEARS = 20.0
 """Years of histories that the general rates are worth: as many histories, of two years each."""

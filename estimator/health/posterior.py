@@ -17,7 +17,7 @@ from estimator.health.shapes import Kind, Shapes, course, settled
 from estimator.session import Array
 
 FAINT = 1e-3
-"""Share of a way of taking the readings that is left out: of a chance of 5 % it tells a hundredth at most."""
+"""Share of a way of taking the readings that is left out: it changes a chance of 5 % by a hundredth of that at most."""
 EACH = ("level", "rate", "aging", "constant", "walk", "kind", "slope")
 """What every draw has."""
 DRAWS = 1600

@@ -104,8 +104,8 @@ def evidence(track: Track) -> Evidence:
     readings, (dof, temperature) = _readings(track), _conditions(track)
     warmth = None
     if tells_of_temperature(temperature):
-        told = warmed(readings, 0.0, dof, temperature, LEVEL)
-        readings, warmth = told.readings, told.warmth
+        start = warmed(readings, 0.0, dof, temperature, LEVEL)
+        readings, warmth = start.readings, start.warmth
     found = fits(readings, courses(readings.time, felt(warmth, temperature)))
     logs = found.log_evidence()
     return Evidence(found.span, where_found(logs, warmth), log_tails(readings, found.family, logs))

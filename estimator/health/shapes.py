@@ -34,7 +34,7 @@ SLOW = 3.0
 """τ, years, of aging for forecasts beside `AGES`: of a unit that was assembled long before its first session, t + t_0
 in place of t, much is gone, and ln(1 + t/(τ + t_0)) is left."""
 SETTLES = (0.1, 0.3, 1.0, 3.0)
-"""τ, years, of aging that comes to an end: what is slower cannot be told from a drift."""
+"""τ, years, of aging that comes to an end: what is slower cannot be distinguished from a drift."""
 BEGINS = (0.125, 0.375, 0.625, 0.875)
 """u, parts of a gap: the middles of quarters. At half a tolerance a year and half a year between sessions a drift is
 then wrong by 0.03 T at most, as much as a good session is uncertain of."""

@@ -2,7 +2,7 @@
 
 An attempt is claimed before it is made. If the service dies in between, the claim runs out and the notice is sent
 again under the same key, by which the receiver knows it. Every receiver has a turn of its own: while one keeps the
-service waiting, the others are told, and a service that stops waits for none.
+service waiting, the others get theirs, and a service that stops waits for none.
 """
 
 import asyncio

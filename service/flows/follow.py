@@ -21,7 +21,7 @@ from service.storage.store import Store
 
 
 def follow(storage: Storage, way: Deriving, serial: str, derived: Derived) -> None:
-    """After a change of a unit's records: verdicts, what they are said with, and dates. What fails is kept with why,
+    """After a change of a unit's records: verdicts, their reservations, and dates. What fails is kept with why,
     and costs the change itself nothing."""
     with ending_here("derivations", serial):
         derive_left(storage, way, serial, derived)

@@ -1,8 +1,8 @@
-"""The boundary of work beside the requests: what fails is told, counted and tried again later, and the rest goes on.
+"""The boundary of work beside the requests: what fails is logged, counted and tried again later, and the rest goes on.
 
 What an upload or a store can do is foreseen, and said in words where it happens. Everything else is a fault of the
-program, and only here is it caught: told with its traceback and with what it was at, so that whoever gave the work can
-count it and keep that it failed.
+program, and only here is it caught: logged with its traceback and with what it was at, so that whoever gave the work
+can count it and keep that it failed.
 """
 
 from collections.abc import Callable, Iterator
@@ -16,7 +16,7 @@ from service.metrics import Metrics
 from service.storage.failed import AT_FAULT
 
 FORESEEN = (ServiceError, SessionError)
-"""A store that is away or full, a file that cannot be read: told in one line. What else a database refuses is a fault
+"""A store that is away or full, a file that cannot be read: logged in one line. What else a database refuses is a fault
 of the program."""
 Alone = Callable[[str, str], AbstractContextManager[None]]
 """How one piece of work is done: what is done, and on which stand or unit."""
@@ -71,7 +71,7 @@ def kept(keep: Callable[[str], None]) -> Iterator[None]:
     except FORESEEN as fault:
         keep(str(fault))
         raise
-    except Exception:
+    except Exception:  # whatever it was is kept as failed work, and raised again
         keep(AT_FAULT)
         raise
 

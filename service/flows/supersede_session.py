@@ -53,7 +53,8 @@ def supersede(
 
 
 def settled_by(storage: Storage, replaced: str, by: str) -> str | None:
-    """The one doubt that a questioned session is in, where it is that it is the session which it stands for now."""
+    """The one doubt that a questioned session is in, where it is that it holds the readings of the session which it
+    supersedes now."""
     with storage.database.reading() as store:
         session = store.sessions.get(by)
     if session.state is not RecordState.QUESTIONED:

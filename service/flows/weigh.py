@@ -125,7 +125,7 @@ class Weighable:
 
 @dataclass(frozen=True)
 class WeighedAgain:
-    """What a verdict is to be said with."""
+    """The reservations of a verdict."""
 
     id: str
     of: Weighable

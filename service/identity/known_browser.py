@@ -27,7 +27,7 @@ def proof_for(login: str, password_hash: str, now: datetime) -> str:
 
 
 def browser_of(proof: str, login: str, password_hash: str | None, now: datetime) -> str:
-    """What tells a browser from others; empty where its proof is none, or is of another account or an earlier
+    """The identifier of a browser; empty where its proof is none, or is of another account or an earlier
     password."""
     said, _, seal = proof.rpartition(".")
     browser, _, until = said.partition(".")

@@ -42,7 +42,7 @@ def check(
 ) -> Checked:
     """The session that uploaded bytes hold; SessionError with every problem where they cannot be used.
 
-    ``is_known`` tells whether there is a unit of a serial number: what an earlier version stored under one that is no
+    ``is_known``: whether there is a unit of a serial number: what an earlier version stored under one that is no
     longer taken goes on under it.
     """
     session = read_upload(content, filename)

@@ -1,7 +1,7 @@
 """Is a serial number another one's slip of writing?
 
-Units of a fleet are numbered, so that most of them are one keystroke apart. What tells a slip from the next unit of the
-series is which characters differ:
+Units of a fleet are numbered, so that most of them are one keystroke apart. What distinguishes a slip from the next
+unit of the series is which characters differ:
 
 * characters that look alike, capitals and small letters, two encodings of one letter: always a slip;
 * one digit for another, or two exchanged: the next unit, as far as the number says;

@@ -27,7 +27,7 @@ class Counted:
 
     @property
     def is_unweighed(self) -> bool:
-        """Whether what its verdict is said with may be that of the verdict before."""
+        """Whether its reservations may be those of the verdict before."""
         return self.basis is not None and self.basis.startswith(UNWEIGHED)
 
     @property

@@ -63,7 +63,7 @@ class DueRule(StrEnum):
     INTERVAL = "interval"
     """The longest interval of its type, before its risk passes the level."""
     NO_TREND = "no-trend"
-    """The same interval, for one session tells no risk."""
+    """The same interval, for one session gives no estimate of the risk."""
     RISK = "risk"
     """The chance that any parameter is out of tolerance passes the level."""
     MAY_BE_OUT = "may-be-out"

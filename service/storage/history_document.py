@@ -14,8 +14,8 @@ SHAPE = (len(WALKS), len(PARTS))
 """Of the log evidence of one history."""
 LAWS = len(FREEDOMS)
 MARK = np.full(1, -np.inf, dtype="<f4")
-"""Rows behind a positive one were written before temperature was told from drifts; those behind a NaN, which tell of
-tails, and those behind nothing before aging that comes to an end was told from aging that goes on."""
+"""Rows behind a positive one were written before temperature was distinguished from drifts; those behind a NaN, which
+hold tails, and those behind nothing before aging that comes to an end was distinguished from aging that goes on."""
 WARM = int(np.count_nonzero(PART_KINDS == Kind.WARMTH))
 EARLIER, EARLIEST = SHAPE[1] - WARM, SHAPE[1] - WARM - 2
 """Parts of the log evidence of those."""

@@ -32,7 +32,7 @@ def _since(basis: DueBasis, day: str) -> str:
     if basis.rule is DueRule.INTERVAL:
         return f"Last calibrated on {day}; {interval}."
     if basis.rule is DueRule.NO_TREND:
-        return f"Last calibrated on {day}, which tells no trend yet; {interval}."
+        return f"Last calibrated on {day}, which shows no trend yet; {interval}."
     if basis.rule is DueRule.UNFIT:
         return (
             f"Found out of tolerance on {day}: adjust, repair or withdraw it, record the service and measure it again."
@@ -48,7 +48,7 @@ def _place(basis: DueBasis) -> str:
 
 
 def foreseen(outlook: UnitOutlook) -> str:
-    """Which parameter reaches its tolerance first, and when, whatever set the date; empty where nothing tells."""
+    """Which parameter reaches its tolerance first, and when, whatever set the date; empty where nothing is known."""
     if not outlook.trends or outlook.action is Action.NOW:
         return ""
     if outlook.reach_90 is None or outlook.parameter is None:

@@ -35,7 +35,7 @@ class NextCalibration:
     reason: str
     """The rule that set the date."""
     foreseen: str
-    """Which parameter reaches its tolerance first; empty where nothing tells."""
+    """Which parameter reaches its tolerance first; empty where nothing is known."""
     moving: tuple[str, ...]
     """Which parameters drift or changed suddenly."""
     together: tuple[str, ...]

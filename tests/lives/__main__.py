@@ -69,14 +69,14 @@ def lives(engine: str, minutes: float, steps: int, only: int | None, lines: Path
     with ENGINES[engine]() as databases:
         while True:
             number = SystemRandom().randrange(1, 2**31) if only is None else only
-            told = one_life(databases, number, steps)
-            any_found = any_found or bool(told["find"])
-            print(f"{engine} --seed {number} --steps {steps}: {told['find'] or 'nothing found'}", flush=True)
-            if told["find"]:
-                print("\n".join(told["journal"]), flush=True)
+            life = one_life(databases, number, steps)
+            any_found = any_found or bool(life["find"])
+            print(f"{engine} --seed {number} --steps {steps}: {life['find'] or 'nothing found'}", flush=True)
+            if life["find"]:
+                print("\n".join(life["journal"]), flush=True)
             if lines is not None:
                 with lines.open("a", encoding="utf-8") as file:
-                    file.write(json.dumps(told) + "\n")
+                    file.write(json.dumps(life) + "\n")
             if only is not None or monotonic() > end:
                 return any_found
 

@@ -19,7 +19,7 @@ BY = {"by": "K. Ito", "why": "as before"}
 REVISION = re.compile(r"rev (\d+)\)$")
 """At the end of the rule that a parameter was judged by."""
 MOST = 12
-"""Differences that are told of one comparison."""
+"""Differences of one comparison that are printed."""
 
 
 def settle(world: World) -> None:
@@ -68,9 +68,9 @@ def same_of_the_backup(world: World, databases: Databases, folder: Path) -> None
         ("restore", str(file), *restored.where),
     )
     for arguments in steps:
-        code, told = world.service.command(*arguments)
+        code, output = world.service.command(*arguments)
         if code:
-            raise FindError(f"imu-health {' '.join(arguments)} → {code}: {told}")
+            raise FindError(f"imu-health {' '.join(arguments)} → {code}: {output}")
     with opened(restored, 0) as again:
         again.http.headers.update({k: v for k, v in world.http.headers.items() if k == "authorization"})
         wait_until_quiet(again)

@@ -43,9 +43,9 @@ NAMED = {
 
 def log_is_clean(world: World) -> None:
     """Nothing failed beside the requests."""
-    told = world.new_log()
-    if FAILED.search(told):
-        raise FindError(f"the service's log:\n{told[-3000:]}")
+    printed = world.new_log()
+    if FAILED.search(printed):
+        raise FindError(f"the service's log:\n{printed[-3000:]}")
 
 
 def look_around(world: World, count: int) -> None:
@@ -140,7 +140,7 @@ def _filled(template: str, names: dict[tuple[str, str], list[str]]) -> Iterator[
 
 
 def pages_agree(world: World, everything: bool = False) -> None:
-    """Pages of a unit and a session say what programs are told of them."""
+    """Pages of a unit and a session say what programs read of them."""
     units, sessions = world.units(), world.sessions()
     if not everything:
         units, sessions = (world.chance.sample(found, min(1, len(found))) for found in (units, sessions))

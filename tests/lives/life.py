@@ -90,12 +90,12 @@ def end(world: World, databases: Databases, folder: Path, size: Size) -> None:
     log_is_clean(world)
 
 
-def whole_life(databases: Databases, folder: Path, number: int, size: Size, told: Callable[[World], None]) -> None:
-    """A life and its end on a database of its own; whoever wants to know of it is told of its world."""
+def whole_life(databases: Databases, folder: Path, number: int, size: Size, seen: Callable[[World], None]) -> None:
+    """A life and its end on a database of its own; ``seen`` is called with its world."""
     url = databases.migrated()
     try:
         with receiver() as hook, opened(Service(url, folder / "life", (hook.host, NOBODY)), number) as world:
-            told(world)
+            seen(world)
             world.is_short = not size.prints
             live(world, number, size)
             end(world, databases, folder, size)

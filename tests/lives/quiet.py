@@ -83,9 +83,9 @@ def _unit(world: World, serial: str) -> dict[str, Any]:
     points = world.get(f"{path}/history", params={"limit": 10000})["points"]
     flags = [one for one in world.get(f"{path}/flags")["flags"] if one["state"] != "resolved"]
     usable, outlook = world.get(f"{path}/usable"), world.get(f"{path}/outlook")
-    told = ("id", "verdict", "said", "reason", "is_reference", "is_check", "stage", "started_at")
+    names = ("id", "verdict", "said", "reason", "is_reference", "is_check", "stage", "started_at")
     return {
-        "sessions": sorted(([one[name] for name in told] for one in _counted(world, serial)), key=lambda one: one[0]),
+        "sessions": sorted(([one[name] for name in names] for one in _counted(world, serial)), key=lambda one: one[0]),
         "history": [_without(point, "revision") for point in points],
         "outlook": outlook,
         "usable": _without_numbers(_without(usable, "as_of")),
@@ -93,13 +93,13 @@ def _unit(world: World, serial: str) -> dict[str, Any]:
     }
 
 
-def _without_numbers(told: Any) -> Any:
+def _without_numbers(value: Any) -> Any:
     """Flags are counted as they are raised."""
-    if isinstance(told, dict):
-        return {name: _without_numbers(value) for name, value in told.items()}
-    if isinstance(told, list):
-        return [_without_numbers(one) for one in told]
-    return FLAG.sub("Flag", told) if isinstance(told, str) else told
+    if isinstance(value, dict):
+        return {name: _without_numbers(one) for name, one in value.items()}
+    if isinstance(value, list):
+        return [_without_numbers(one) for one in value]
+    return FLAG.sub("Flag", value) if isinstance(value, str) else value
 
 
 def _without(found: dict[str, Any], *names: str) -> dict[str, Any]:

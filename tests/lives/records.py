@@ -80,8 +80,8 @@ class Records(Steps):
         path = f"/unit-types/{quote(kind['name'], safe='')}"
         self.tries(f"{path}/preview", new)
         self.world.is_dated = True
-        if told := self.tries(path, new | {"maximum_interval_days": interval}, "PUT"):
-            self.world.tolerances[kind["name"], told["revision"]] = new
+        if made := self.tries(path, new | {"maximum_interval_days": interval}, "PUT"):
+            self.world.tolerances[kind["name"], made["revision"]] = new
 
     @rule(which=WHICH, lot=st.sampled_from(["2024-07", None]), customer=st.sampled_from(["ООО «Курс»", ""]))
     def says_whose_it_is(self, which: int, lot: str | None, customer: str) -> None:

@@ -10,7 +10,7 @@ HEAD = """# Whole lives
 
 What `make lives` lived last, and what it found. A life is a sequence of steps drawn by chance on a running service:
 files of every programme and format, services, corrections, withdrawals, causes, jobs, tokens, restarts and kills.
-After each step nothing may have failed, and pages and programs must be told the same. At the end nothing may still be
+After each step nothing may have failed, and pages must show what programs read. At the end nothing may still be
 waiting, the state must follow from the accepted records alone, and a backup must restore to it. `make test` lives short
 ones, always the same.
 
@@ -41,6 +41,6 @@ def _finds(made: dict[str, list[dict[str, Any]]]) -> list[str]:
         lines.append(
             f"\n`--engine {engine} --seed {life['seed']} --steps {life['steps']}`, last steps first to last:\n"
         )
-        told = [*life["find"].splitlines()[-20:], "", *life["journal"][-12:]]
-        lines += ["```text", *(line[:240] for line in told), "```"]
+        shown = [*life["find"].splitlines()[-20:], "", *life["journal"][-12:]]
+        lines += ["```text", *(line[:240] for line in shown), "```"]
     return lines

@@ -118,9 +118,9 @@ class Uploads(Steps):
             self.expect(answer.status_code in (409, 422), f"{filename}: {answer.status_code} {answer.text[:300]}")
             self.world.refused[_why(answer.json())] += 1
             return None
-        told: dict[str, Any] = answer.json()
-        self.world.stored.setdefault(told["id"], content)
-        return told
+        receipt: dict[str, Any] = answer.json()
+        self.world.stored.setdefault(receipt["id"], content)
+        return receipt
 
     def document_of(self, id: str) -> Document | None:
         """Of a session that came as JSON."""

@@ -127,16 +127,16 @@ class World:
     def token(self, role: str, days: int) -> dict[str, str]:
         """The header of a new token of the first account, made at the machine as only people may."""
         what = ("token", "add", ADMIN, "--role", role, "--label", "hall 3", "--days", str(days))
-        told = self._command(*what, *self.service.where)
-        secret = next(word for line in told.splitlines() for word in line.split() if len(word) > SECRET)
+        output = self._command(*what, *self.service.where)
+        secret = next(word for line in output.splitlines() for word in line.split() if len(word) > SECRET)
         self.forget()
         return {"Authorization": f"Bearer {secret}"}
 
     def _command(self, *arguments: str) -> str:
-        code, told = self.service.command(*arguments)
+        code, output = self.service.command(*arguments)
         if code:
-            raise FindError(f"imu-health {' '.join(arguments)} → {code}: {told}")
-        return told
+            raise FindError(f"imu-health {' '.join(arguments)} → {code}: {output}")
+        return output
 
     def listed(self, what: str) -> list[dict[str, Any]]:
         """All that there is of a kind, as it was listed since the last change."""

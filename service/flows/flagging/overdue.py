@@ -1,4 +1,4 @@
-"""Step: whether a unit is overdue is told by its outlook and the clock alone, whatever changed the outlook."""
+"""Step: whether a unit is overdue follows from its outlook and the clock alone, whatever changed the outlook."""
 
 from dataclasses import replace
 from datetime import datetime

@@ -38,7 +38,7 @@ class Attempt:
     address: str
     """That the request came from."""
     browser: str = ""
-    """Of one that has signed in to this account before, what tells it from others; empty of any other."""
+    """Of one that has signed in to this account before, its identifier; empty of any other."""
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ from service.storage.tables import DeliveryRow, DiagnosisRow, UnitRow
 from service.words.diagnosis import cannot_be_diagnosed
 
 RECENT = timedelta(days=7)
-"""That jobs and messages which ended as failed are told: nothing ever ends that."""
+"""For which jobs and messages that ended as failed are listed: nothing else removes them."""
 
 
 Text = ColumnElement[str] | InstrumentedAttribute[Any]

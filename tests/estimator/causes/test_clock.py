@@ -1,4 +1,4 @@
-"""A clock may count from any moment: far below 0 what follows time is told as from 0."""
+"""A clock may count from any moment: far below 0 what follows time is estimated as from 0."""
 
 import numpy as np
 

@@ -8,7 +8,7 @@ LIVES = SOURCES[-1]
 
 
 def test_dates_hold_about_as_often_as_they_claim() -> None:
-    """The bounds are wide: one type tells a rate of 10 % to within a factor of two."""
+    """The bounds are wide: one type gives a rate of 10 % to within a factor of two."""
     found = statements(LIVES, Sample(types=1), np.random.default_rng(31))
     assert held(found, lambda one: one.reach_90).share < 0.2
     low, high = held(found, lambda one: one.reach_50).interval()

@@ -159,7 +159,7 @@ def test_an_axis_drifts_along_its_direction() -> None:
 
 
 def test_a_type_that_settles_is_not_expected_to_go_on() -> None:
-    """All end at 0.8 T. That aging may come to an end is told by those that were watched until it did."""
+    """All end at 0.8 T. That aging may come to an end is learned from those that were watched until it did."""
     rng = np.random.default_rng(21)
     whole = [np.linspace(0, 4, 10) for _ in range(24)]
     prior = learn([evidence(measured(rng, t, -0.8 * np.expm1(-t), sigma=0.03)) for t in whole])

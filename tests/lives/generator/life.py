@@ -151,6 +151,6 @@ def _services(last: float, rate: float, rng: Random) -> tuple[Serviced, ...]:
     """At times of their own, whatever the unit does."""
     days = np.sort(rng.uniform(30, max(last, 31), rng.poisson(rate * last / YEAR))).astype(int)
     kinds = [str(rng.choice(list(SERVICED))) for _ in days]
-    told = [str(rng.choice(RECORDED, p=(0.6, 0.25, 0.15))) for _ in days]
-    found = zip(days, kinds, told, strict=True)
+    recorded = [str(rng.choice(RECORDED, p=(0.6, 0.25, 0.15))) for _ in days]
+    found = zip(days, kinds, recorded, strict=True)
     return tuple(Serviced(int(d), k, float(SERVICED[k] * rng.standard_normal()), how) for d, k, how in found)

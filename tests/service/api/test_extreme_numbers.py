@@ -79,7 +79,7 @@ def test_a_channel_that_reads_the_same_at_every_position_is_questioned(
     assert (stored["state"], stored["is_reference"]) == ("questioned", False)
     assert f"{name} reads the same in every row, although its input changes: it is dead" in stored["reason"]
     told = client.get(f"/api/v1/sessions/{stored['id']}/diagnosis").json()["detail"]
-    assert f"{name}: reads the same in every row, so that nothing can be told of it" in told
+    assert f"{name}: reads the same in every row, so that nothing can be estimated of it" in told
     assert client.get("/api/v1/jobs/failed").json()["failed"] == []
 
 

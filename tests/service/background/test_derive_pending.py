@@ -52,7 +52,7 @@ def test_who_is_the_reference_already_is_chosen_without_judging_the_others(stora
 
 
 def said(client: httpx.Client, id: str) -> tuple[bool, list[str]]:
-    """Whether a session is the reference, and what its verdict is said with."""
+    """Whether a session is the reference, and the reservations of its verdict."""
     found = client.get(f"/api/v1/sessions/{id}").json()
     return found["is_reference"], [one["kind"] for one in found["reservations"]]
 

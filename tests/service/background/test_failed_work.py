@@ -42,7 +42,7 @@ def dated_outlook(client: httpx.Client, unit: str) -> dict[str, Any]:
 
 
 def put_histories(settings: Settings, evidence: bytes) -> None:
-    """What the first unit tells of its type, as a fault of the disk may leave it."""
+    """What the first unit teaches its type, as a fault of the disk may leave it."""
     database = Database(settings.database)
     with database.engine.begin() as connection:
         connection.execute(text("UPDATE histories SET evidence = :evidence"), {"evidence": evidence})
@@ -50,7 +50,7 @@ def put_histories(settings: Settings, evidence: bytes) -> None:
 
 
 def fail_a_forecast(client: httpx.Client, settings: Settings) -> None:
-    """The dates of one unit rest on what another one of its type tells."""
+    """The dates of one unit rest on the histories of another one of its type."""
     send(client, FIRST)
     send(client, session_bytes(unit=DAMAGED, seed=2, month=2))
     assert dated_outlook(client, DAMAGED)["due"]

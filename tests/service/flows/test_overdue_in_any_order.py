@@ -1,4 +1,4 @@
-"""The flag of an overdue calibration is told by the records and the clock, not by the order in which records came."""
+"""The flag of an overdue calibration follows from the records and the clock, not by the order in which records came."""
 
 from datetime import UTC, datetime
 from itertools import permutations

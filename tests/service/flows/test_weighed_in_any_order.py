@@ -1,4 +1,4 @@
-"""What a verdict is said with is told by the records, not by the order in which they came and were looked at."""
+"""Reservations follow from the records, not by the order in which they came and were looked at."""
 
 import json
 from typing import Any
@@ -50,7 +50,7 @@ def done(client: httpx.Client, id: str, what: str, **more: Any) -> None:
 
 
 def looked_at(client: httpx.Client, id: str) -> tuple[Any, Any]:
-    """What the diagnosis of a session names, and what its verdict is said with."""
+    """What the diagnosis of a session names, and the reservations of its verdict."""
     found = client.get(f"/api/v1/sessions/{id}/diagnosis").json()
     named = [(one["cause"], one["sensors"], one["amplitude"]) for one in found["findings"]]
     return named, client.get(f"/api/v1/sessions/{id}").json()["reservations"]
