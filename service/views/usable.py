@@ -26,6 +26,7 @@ FIT = (Verdict.PASS, Verdict.CONDITIONAL_PASS)
 FORBIDDING = (Matter.TOLERANCE,)
 """Flags that forbid the use until they are resolved, acknowledged or not: others are reservations. That a calibration
 is overdue is asked of the clock, because its flag is raised once an hour only."""
+MATTERS = tuple(Matter)
 MOST_NAMED = 4
 """Parameters, by name, before the rest are counted."""
 SLACK = timedelta(days=1)
@@ -35,7 +36,7 @@ SLACK = timedelta(days=1)
 def usable(store: Store, serial: str, now: datetime) -> Usable:
     """The answer for one unit; NotFoundError when there is none of that serial number."""
     report = unit_report(store, serial, now)
-    flags = store.flags.open_of(store.units.key(serial))
+    flags = tuple(sorted(store.flags.open_of(store.units.key(serial)), key=_gravity))
     session, since = _latest_judged(report, now), _last_service(report, now)
     reference = _reference(report, since) if session is None else None
     told = session or reference
@@ -53,6 +54,11 @@ def usable(store: Store, serial: str, now: datetime) -> Usable:
         correction=_correction(report, since),
         as_of=now,
     )
+
+
+def _gravity(flag: Flag) -> tuple[int, int, str]:
+    """The gravest flag first, whichever was raised first."""
+    return MATTERS.index(flag.matter), -flag.severity, flag.place
 
 
 def _last_service(report: UnitReport, now: datetime) -> datetime | None:

@@ -1,10 +1,13 @@
 """The same records once more: uploaded in order of their dates to a fresh service, and restored from a backup."""
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
+from estimator.session import CALIBRATIONS, IN_SERVICE
 from service.app import utc_now
 from service.background.watch_fleet import look
 from service.metrics import Metrics
@@ -53,6 +56,7 @@ def same_of_the_records(world: World, databases: Databases, folder: Path) -> Non
         _replay_types(world, fresh)
         fresh.is_dated = world.is_dated
         settle(fresh)
+        _resolve_again(world, fresh)
         _compare(state(world), state(fresh), "the same records in order of their dates")
         world.service.processor += fresh.service.count_processor()
     databases.drop(url)
@@ -91,7 +95,7 @@ def _replay(world: World, fresh: World) -> None:
     types = {serial: world.get(f"/units/{quote(serial, safe='')}")["summary"]["unit_type"] for serial in world.units()}
     begun = _begin_types(world, fresh, types)
     counted = [(_revision(world, one["id"]), one) for one in world.sessions("accepted")]
-    for number, session in sorted(counted, key=lambda own: (own[0], own[1]["started_at"] or "", own[1]["id"])):
+    for number, session in sorted(counted, key=_in_order):
         _bring_to_revision(world, fresh, types[session["unit"]], number)
         if session["id"] not in begun:
             _upload_again(world, fresh, session)
@@ -107,11 +111,37 @@ def _replay(world: World, fresh: World) -> None:
         fresh.send(f"/units/{quote(unit, safe='')}/reference", BY | {"session": id})
 
 
+def _in_order(own: tuple[int, dict[str, Any]]) -> tuple[int, bool, str, str]:
+    """By revision of the tolerances and date; recordings in service after what they are compared with."""
+    number, session = own
+    return number, session["programme"] == IN_SERVICE, session["started_at"] or "", session["id"]
+
+
+@contextmanager
+def _calibrated(world: World, fresh: World, session: dict[str, Any]) -> Iterator[None]:
+    """While a recording in service is uploaded its unit has a calibration, if only one that counts no longer."""
+    missing = session["programme"] == IN_SERVICE and not _calibrations(fresh, session["unit"], "accepted")
+    lent = _calibrations(world, session["unit"], "withdrawn", "superseded")[:1] if missing else []
+    for one in lent:
+        _upload_again(world, fresh, one)
+        fresh.forget()
+        if one["id"] not in {own["id"] for own in _calibrations(fresh, one["unit"], "accepted")}:
+            fresh.send(f"/sessions/{one['id']}/accept", BY)
+    yield
+    for one in lent:
+        fresh.send(f"/sessions/{one['id']}/withdraw", BY)
+
+
+def _calibrations(world: World, unit: str, *states: str) -> list[dict[str, Any]]:
+    return [one for one in world.sessions(*states, unit=unit) if one["programme"] in CALIBRATIONS]
+
+
 def _begin_types(world: World, fresh: World, types: dict[str, str]) -> set[str]:
     """Uploads what each type began with, also where that counts no longer: a type is what its first session says."""
     first = dict[str, dict[str, Any]]()
     for session in sorted(world.sessions(), key=lambda one: one["uploaded_at"]):
-        first.setdefault(types[session["unit"]], session)
+        if session["unit"] in types:  # no unit until one of its sessions is accepted
+            first.setdefault(types[session["unit"]], session)
     for session in first.values():
         _upload_again(world, fresh, session)
         if session["state"] != "accepted":
@@ -122,7 +152,8 @@ def _begin_types(world: World, fresh: World, types: dict[str, str]) -> set[str]:
 def _upload_again(world: World, fresh: World, session: dict[str, Any]) -> None:
     content = world.ask("GET", f"/api/v1/sessions/{session['id']}/file").content
     params = {"check": "true"} if session["is_check"] else {}
-    answer = fresh.ask("POST", "/api/v1/sessions", files={"file": (session["filename"], content)}, params=params)
+    with _calibrated(world, fresh, session):
+        answer = fresh.ask("POST", "/api/v1/sessions", files={"file": (session["filename"], content)}, params=params)
     if answer.status_code != 201 or answer.json()["id"] != session["id"]:
         raise FindError(f"{session['id']} uploaded again → {answer.status_code}: {answer.text[:400]}")
 
@@ -146,6 +177,18 @@ def _bring_to_state(fresh: World, session: dict[str, Any]) -> None:
         fresh.send(f"/sessions/{session['id']}/accept", BY)
     if now["stage"] != session["stage"]:
         fresh.send(f"/sessions/{session['id']}/stage", {"by": BY["by"], "stage": session["stage"]}, "PUT")
+
+
+def _resolve_again(world: World, fresh: World) -> None:
+    """What somebody resolved, and no later session has shown again."""
+    for serial in fresh.units():
+        path = f"/units/{quote(serial, safe='')}/flags"
+        ours, theirs = world.get(path)["flags"], fresh.get(path)["flags"]
+        opened = {(one["matter"], one["place"]) for one in ours if one["state"] != "resolved"}
+        by_hand = {(one["matter"], one["place"]) for one in ours if one["state"] == "resolved"} - opened
+        for one in theirs:
+            if one["state"] != "resolved" and (one["matter"], one["place"]) in by_hand:
+                fresh.send(f"/flags/{one['id']}/resolve", BY)
 
 
 def _replay_types(world: World, fresh: World) -> None:

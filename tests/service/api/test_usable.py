@@ -122,6 +122,23 @@ def test_a_flag_forbids_although_the_next_session_is_fit(asked: Asking) -> None:
     assert found["why"].startswith("Flag ")
 
 
+def moved(month: int, *columns: str) -> bytes:
+    """A session in which the bias of some sensors is out of tolerance."""
+    document = json.loads(session_bytes(seed=month, month=month))
+    for column in columns:
+        document["table"][column] = [reading + 1e-3 for reading in document["table"][column]]
+    return json.dumps(document).encode()
+
+
+def test_flags_are_listed_alike_whichever_was_raised_first(asked: Asking) -> None:
+    first, one, both = session_bytes(month=1), moved(2, "A5"), moved(3, "A2", "A5")
+    forwards, backwards = asked(first, one, both, at=LATE), asked(first, both, one, at=LATE)
+    flags = [
+        [line.split(": ")[1][:2] for line in found["reasons"] if "Flag" in line] for found in (forwards, backwards)
+    ]
+    assert flags == [["A2", "A5"], ["A2", "A5"]]
+
+
 def test_a_date_to_come_is_not_believed(asked: Asking) -> None:
     found = asked(*FIT, at=datetime(2026, 1, 20, tzinfo=UTC))
     assert not found["usable"]
