@@ -123,8 +123,9 @@ def _calibrated(world: World, fresh: World, session: dict[str, Any]) -> Iterator
     missing = session["programme"] == IN_SERVICE and not _calibrations(fresh, session["unit"], "accepted")
     lent = _calibrations(world, session["unit"], "withdrawn", "superseded")[:1] if missing else []
     for one in lent:
-        _upload_again(world, fresh, one)
-        fresh.forget()
+        if one["id"] not in {own["id"] for own in fresh.sessions()}:
+            _upload_again(world, fresh, one)
+            fresh.forget()
         if one["id"] not in {own["id"] for own in _calibrations(fresh, one["unit"], "accepted")}:
             fresh.send(f"/sessions/{one['id']}/accept", BY)
     yield
