@@ -192,8 +192,8 @@ def page(sample: Sample, seed: int) -> str:
         "*reach 50*. The last column is the mean chance, with two standard errors, that somebody gives to the same "
         "dates who knows the generator with all its laws, and of this parameter no more than its readings.",
         table(head, short),
-        "*Reach 50* comes early where agings come to an end, which within the readings look like agings that go on (see "
-        "below), and whoever knows the generator gives those dates less than 50 % too. Early is the side that "
+        "*Reach 50* comes early where agings come to an end, which within the readings look like agings that go on "
+        "(see below), and whoever knows the generator gives those dates less than 50 % too. Early is the side that "
         "costs a measurement and not a flight.",
         "## Are chances right?",
         "How often the tolerance was passed within so many years, by the chance that was stated for it.",
