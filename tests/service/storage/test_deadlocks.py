@@ -3,13 +3,13 @@
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from random import Random
-from time import sleep
 
 import httpx
 import psycopg
 import pytest
 
 from service.settings import Settings
+from tests.patience import until
 from tests.service.sessions import session_bytes
 from tests.serving import TLS, serving
 
@@ -70,8 +70,11 @@ def answered(client: httpx.Client, change: Change) -> int:
     """The status of what is not to be asked again."""
     method, path, body = change
     what = {"content": body} if isinstance(body, bytes) else {"json": body}
-    while True:
-        answer = client.request(method, path, **what)  # type: ignore[arg-type]
-        if answer.status_code != 503:
-            return answer.status_code
-        sleep(0.2)
+    statuses = list[int]()
+
+    def is_answered() -> bool:
+        statuses.append(client.request(method, path, **what).status_code)  # type: ignore[arg-type]
+        return statuses[-1] != httpx.codes.SERVICE_UNAVAILABLE
+
+    until(is_answered)
+    return statuses[-1]
