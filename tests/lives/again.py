@@ -56,7 +56,8 @@ def same_of_the_records(world: World, databases: Databases, folder: Path) -> Non
         _replay_types(world, fresh)
         fresh.is_dated = world.is_dated
         settle(fresh)
-        _resolve_again(world, fresh)
+        if _resolve_again(world, fresh):
+            settle(fresh)
         _compare(state(world), state(fresh), "the same records in order of their dates")
         world.service.processor += fresh.service.count_processor()
     databases.drop(url)
@@ -180,8 +181,10 @@ def _bring_to_state(fresh: World, session: dict[str, Any]) -> None:
         fresh.send(f"/sessions/{session['id']}/stage", {"by": BY["by"], "stage": session["stage"]}, "PUT")
 
 
-def _resolve_again(world: World, fresh: World) -> None:
-    """What somebody resolved, and no later session has shown again."""
+def _resolve_again(world: World, fresh: World) -> bool:
+    """Resolves what somebody resolved and no later session has shown again; whether there was any. A parameter's jump
+    is flagged only where none of its sensor's is out of tolerance, so others may be raised in its place."""
+    has_resolved = False
     for serial in fresh.units():
         path = f"/units/{quote(serial, safe='')}/flags"
         ours, theirs = world.get(path)["flags"], fresh.get(path)["flags"]
@@ -190,6 +193,8 @@ def _resolve_again(world: World, fresh: World) -> None:
         for one in theirs:
             if one["state"] != "resolved" and (one["matter"], one["place"]) in by_hand:
                 fresh.send(f"/flags/{one['id']}/resolve", BY)
+                has_resolved = True
+    return has_resolved
 
 
 def _replay_types(world: World, fresh: World) -> None:
