@@ -94,12 +94,15 @@ def _replay(world: World, fresh: World) -> None:
     """Sessions in order of their dates, after those that types began with. Each is judged by the tolerances that held
     when it was computed."""
     types = {serial: world.get(f"/units/{quote(serial, safe='')}")["summary"]["unit_type"] for serial in world.units()}
-    begun = _begin_types(world, fresh, types)
+    begun, first = _begin_types(world, fresh, types), _first_of_units(world)
     counted = [(_revision(world, one["id"]), one) for one in world.sessions("accepted")]
-    for number, session in sorted(counted, key=_in_order):
+    for number, session in sorted(counted, key=lambda own: _in_order(*own, first)):
         _bring_to_revision(world, fresh, types[session["unit"]], number)
         if session["id"] not in begun:
             _upload_again(world, fresh, session)
+        _bring_to_state(fresh, session)
+    wait_until_quiet(fresh)
+    for _, session in counted:
         _bring_to_state(fresh, session)
     for unit, service in world.services.values():
         if unit in fresh.units():
@@ -112,10 +115,20 @@ def _replay(world: World, fresh: World) -> None:
         fresh.send(f"/units/{quote(unit, safe='')}/reference", BY | {"session": id})
 
 
-def _in_order(own: tuple[int, dict[str, Any]]) -> tuple[int, bool, str, str]:
+def _first_of_units(world: World) -> set[str]:
+    """The sessions that named a unit's type, where others of the same unit name none and would have begun another."""
+    typeless = {session["unit"] for session in world.sessions() if session["id"] in world.typeless}
+    first = dict[str, str]()
+    for session in sorted(world.sessions(), key=lambda one: one["uploaded_at"]):
+        if session["unit"] in typeless:
+            first.setdefault(session["unit"], session["id"])
+    return set(first.values())
+
+
+def _in_order(number: int, session: dict[str, Any], first: set[str]) -> tuple[int, bool, bool, str, str]:
     """By revision of the tolerances and date; recordings in service after what they are compared with."""
-    number, session = own
-    return number, session["programme"] == IN_SERVICE, session["started_at"] or "", session["id"]
+    is_later = session["id"] not in first
+    return number, is_later, session["programme"] == IN_SERVICE, session["started_at"] or "", session["id"]
 
 
 @contextmanager
@@ -139,16 +152,20 @@ def _calibrations(world: World, unit: str, *states: str) -> list[dict[str, Any]]
 
 
 def _begin_types(world: World, fresh: World, types: dict[str, str]) -> set[str]:
-    """Uploads what each type began with, also where that counts no longer: a type is what its first session says."""
-    first = dict[str, dict[str, Any]]()
+    """Uploads what each type began with, also where that counts no longer: a type is what its first session says, and a
+    unit is of the type that its first session names."""
+    first, of_units = dict[str, dict[str, Any]](), _first_of_units(world)
     for session in sorted(world.sessions(), key=lambda one: one["uploaded_at"]):
         if session["unit"] in types:  # no unit until one of its sessions is accepted
             first.setdefault(types[session["unit"]], session)
-    for session in first.values():
+            if session["id"] in of_units and session["state"] != "accepted":
+                first.setdefault(session["id"], session)
+    begun = {session["id"]: session for session in first.values()}
+    for session in begun.values():
         _upload_again(world, fresh, session)
         if session["state"] != "accepted":
             fresh.send(f"/sessions/{session['id']}/withdraw", BY)
-    return {session["id"] for session in first.values()}
+    return set(begun)
 
 
 def _upload_again(world: World, fresh: World, session: dict[str, Any]) -> None:

@@ -37,7 +37,9 @@ class Uploads(Steps):
         document = self.measured(serial, number)
         for name in odd:
             ODDITIES[name](document)
-        self.upload(written(document, kind), f"{serial}-{number}.{kind}", check=is_check)
+        receipt = self.upload(written(document, kind), f"{serial}-{number}.{kind}", check=is_check)
+        if receipt and "no type" in odd:
+            self.world.typeless.add(receipt["id"])
 
     @rule(serial=st.sampled_from(BENCHES[:4]), number=NUMBERS, count=st.integers(2, 6), step=st.sampled_from([1, 2]))
     def sends_a_series(self, serial: str, number: int, count: int, step: int) -> None:

@@ -43,6 +43,8 @@ class World:
     http: httpx.Client
     stored: dict[str, bytes] = field(default_factory=dict)
     """Acknowledged uploads by their session's id."""
+    typeless: set[str] = field(default_factory=set)
+    """Sessions whose files name no type of unit."""
     chosen: list[str] = field(default_factory=list)
     """Sessions that were made references, in that order."""
     journal: list[str] = field(default_factory=list)
