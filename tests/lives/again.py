@@ -7,11 +7,14 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
+from sqlalchemy import create_engine, update
+
 from estimator.session import CALIBRATIONS, IN_SERVICE
 from service.app import utc_now
 from service.background.watch_fleet import look
 from service.metrics import Metrics
 from service.settings import Settings
+from service.storage.tables import CalibrationRow
 from tests.databases import Databases
 from tests.lives.quiet import differences, state, wait_until_quiet
 from tests.lives.service import Service
@@ -100,6 +103,8 @@ def _replay(world: World, fresh: World) -> None:
         _bring_to_revision(world, fresh, types[session["unit"]], number)
         if session["id"] not in begun:
             _upload_again(world, fresh, session)
+        elif number > _revision(fresh, session["id"]):
+            _compute_now(fresh, session["id"])
         _bring_to_state(fresh, session)
     wait_until_quiet(fresh)
     for _, session in counted:
@@ -188,6 +193,18 @@ def _bring_to_revision(world: World, fresh: World, name: str, number: int) -> No
     now = next(kind["revision"] for kind in fresh.listed("unit-types") if kind["name"] == name)
     for following in range(now + 1, number + 1):
         fresh.send(f"/unit-types/{quote(name, safe='')}", world.tolerances[name, following], "PUT")
+
+
+def _compute_now(fresh: World, id: str) -> None:
+    """Judges what a type began with by the tolerances as they are by now: in the life it was computed again when they
+    held, under a model that counts no longer."""
+    engine = create_engine(fresh.service.database)
+    with engine.begin() as connection:
+        own = update(CalibrationRow).where(CalibrationRow.session_id == id)
+        connection.execute(own.values(computed_at=utc_now()))
+    engine.dispose()
+    for step in ("withdraw", "accept"):
+        fresh.send(f"/sessions/{id}/{step}", BY)
 
 
 def _bring_to_state(fresh: World, session: dict[str, Any]) -> None:
