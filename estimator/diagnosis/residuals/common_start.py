@@ -14,6 +14,9 @@ from estimator.session import TWO_AXIS_STAND
 
 ROUNDS = 3
 """Times that a session is fitted from the others' parameters: the turn between them is taken from the fit before."""
+WORSE = 2.0
+"""Largest ratio of mean square residuals at which a refit is still the session's own minimum: another start may change
+only what the readings leave open."""
 
 
 def baselines(now: Baseline, history: Sequence[Baseline]) -> tuple[Baseline, list[Baseline]]:
@@ -52,6 +55,14 @@ def fitted_near(sessions: list[Baseline], best: Baseline) -> list[Baseline]:
         moving = [k for k, still in zip(moving, moved, strict=True) if still]
         starts = [replace(p, axis=p.axis @ before[k].T) for k in moving]
         fits = near([replace(sessions[k].session, flip_turn=np.zeros(3)) for k in moving], starts)
-        for k, fit, start in zip(moving, fits, starts, strict=True):
-            found[k] = about_its_flip(fit, start)
+        refits = {k: about_its_flip(fit, start) for k, fit, start in zip(moving, fits, starts, strict=True)}
+        moving = [k for k in moving if fits_as_well(refits[k], sessions[k])]
+        found = [refits[k] if k in moving else one for k, one in enumerate(found)]
     return found
+
+
+def fits_as_well(refit: Baseline, own: Baseline) -> bool:
+    """Whether a fit from another start reached the session's own minimum. It may not where a sensor is far from that
+    start, such as one whose sign is reversed in one of the files."""
+    left, before = (float(np.mean(one.residual**2 / one.variance)) for one in (refit, own))
+    return left <= WORSE * before

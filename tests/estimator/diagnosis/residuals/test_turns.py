@@ -123,3 +123,15 @@ def test_a_single_run_that_leaves_a_direction_open_is_no_drift_when_the_block_wa
     single = replace(whole, **{name: getattr(whole, name)[~whole.flipped] for name in rows})
     found = diagnose(single, [measured(2, np.zeros(3)), measured(3, np.zeros(3))])
     assert {f.cause for f in found.findings} == {"remount-rotation"}
+
+
+@pytest.mark.parametrize("sensor", [0, 1, 2])
+def test_a_session_with_a_reversed_sensor_does_not_spoil_the_fit_of_another(sensor: int) -> None:
+    """A fit that starts at the other sign of a sensor leaves its session's own minimum; the session's own is kept."""
+    wrong = measured(2, np.zeros(3))
+    readings = wrong.readings.copy()
+    readings[:, sensor] *= -1
+    before = [baseline_of(s) for s in (measured(1, np.zeros(3)), replace(wrong, readings=readings))]
+    now, (earlier,) = baselines(before[0], before[1:])
+    after, own = ([float(np.mean(b.residual**2 / b.variance)) for b in fits] for fits in ((now, earlier), before))
+    assert after == pytest.approx(own, rel=0.1)
