@@ -1,30 +1,20 @@
-"""Feeds that people's own tools subscribe to: flags and verdicts as Atom, due dates as a calendar."""
+"""Due dates as a calendar that people's own tools subscribe to."""
 
 from urllib.parse import quote
 
 from fastapi import APIRouter, Request, Response
 
-from service.api.atom import atom_feed
 from service.api.calendar import DueDay, calendar
 from service.api.schemas.problem import errors
 from service.dependencies import Now, Reading
 
 router = APIRouter(prefix="/feeds", tags=["feeds"])
-ATOM, CALENDAR = "application/atom+xml", "text/calendar"
-"""Media types (RFC 4287 section 8, RFC 5545 section 8.1)."""
-MOST_ENTRIES = 200
-"""Months of a fleet of a hundred units, and little to fetch every hour."""
+CALENDAR = "text/calendar"
+"""Media type (RFC 5545 section 8.1)."""
 MOST_DAYS = 1000
 """Units in the calendar, the first that are due: years of work, and little to fetch every hour."""
 TEXT = {"type": "string"}
-"""What the description says of both."""
-
-
-@router.get("/flags.atom", responses={200: {"content": {ATOM: {"schema": TEXT}}}, **errors()}, response_class=Response)
-def read_flags_feed(request: Request, store: Reading) -> Response:
-    """The latest changes of flags and verdicts, newest first, as Atom."""
-    content = atom_feed(store.notices.latest(MOST_ENTRIES), str(request.url), str(request.base_url))
-    return Response(content, media_type=ATOM)
+"""What the description says of the answer."""
 
 
 @router.get("/due.ics", responses={200: {"content": {CALENDAR: {"schema": TEXT}}}, **errors()}, response_class=Response)

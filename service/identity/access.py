@@ -93,7 +93,6 @@ GET {API}/stands
 GET {API}/stands/{{name:path}}/certificates
 GET {API}/stands/{{name:path}}/diagnosis
 GET {API}/flags
-GET {API}/feeds/flags.atom
 GET {API}/feeds/due.ics
 GET {API}/fleet
 GET {API}/fleet/report

@@ -20,7 +20,6 @@ SETTINGS = "service/settings.py"
 """Its page shows what they are described by."""
 ALSO = ("service", "estimator")
 SILENT = (
-    "service/api/atom.py",
     "service/api/calendar.py",
     "service/api/feeds.py",
     "service/api/fleet.py",

@@ -6,7 +6,7 @@ from sqlalchemy import insert, literal, select
 
 from service.records.flag import Notice, NoticeKind
 from service.storage.queries.base import Queries
-from service.storage.tables import DeliveryRow, NoticeRow, UnitRow, WebhookRow
+from service.storage.tables import DeliveryRow, NoticeRow, WebhookRow
 
 
 class Notices(Queries):
@@ -29,16 +29,6 @@ class Notices(Queries):
         self._session.flush()
         if kind is not NoticeKind.SEEN:
             self._put_into_outbox(row.id, at)
-
-    def latest(self, limit: int) -> tuple[Notice, ...]:
-        """What people and programs are told, newest first."""
-        query = (
-            select(NoticeRow, UnitRow.serial)
-            .join(UnitRow, UnitRow.id == NoticeRow.unit_id)
-            .where(NoticeRow.kind != NoticeKind.SEEN)
-            .order_by(NoticeRow.id.desc())
-        )
-        return tuple(notice_of(row, serial) for row, serial in self._session.execute(query.limit(limit)))
 
     def _put_into_outbox(self, notice: int, at: datetime) -> None:
         columns = ("notice_id", "webhook_id", "state", "attempts", "next_at", "outcome")

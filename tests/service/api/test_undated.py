@@ -41,7 +41,7 @@ def everything_of(client: httpx.Client) -> Iterator[str]:
     api = "/api/v1"
     yield from (f"{api}/units/{UNIT}", f"{api}/units/{UNIT}/diagnosis", f"{api}/unit-types/three/diagnosis")
     yield from (f"{api}/stands/ODG-1/diagnosis", f"{api}/units/{UNIT}/usable", f"{api}/units/{UNIT}/outlook")
-    yield from (f"{api}/units/{UNIT}/label.pdf", f"{api}/feeds/due.ics", f"{api}/feeds/flags.atom", f"{api}/models")
+    yield from (f"{api}/units/{UNIT}/label.pdf", f"{api}/feeds/due.ics", f"{api}/models")
     yield from (f"{api}/units/{UNIT}/history?format={form}" for form in ("json", "csv", "parquet"))
     yield from (f"{api}/fleet/report?format={form}" for form in ("json", "csv", "xlsx"))
     for id in [one["id"] for one in stored(client)][-1:]:

@@ -154,6 +154,7 @@ def test_the_database_refuses_to_change_a_life(flagged: Storage, statement: str)
 
 def test_another_verdict_is_told(flagged: Storage) -> None:
     measured(flagged, 3)
-    with flagged.database.reading() as store:
-        told = [n.text for n in store.notices.latest(10) if n.kind is NoticeKind.VERDICT]
-    assert [text.split(";")[0] for text in told] == ["Unfit → Fit", "Reference set → Unfit"]
+    with flagged.database.engine.connect() as connection:
+        query = text("SELECT text FROM notices WHERE kind = :kind ORDER BY id DESC")
+        told = connection.scalars(query, {"kind": NoticeKind.VERDICT.value}).all()
+    assert [line.split(";")[0] for line in told] == ["Unfit → Fit", "Reference set → Unfit"]

@@ -54,7 +54,6 @@ NAMES = frozenset(
             "DCC",
             "SVG",
             "SHA",
-            "Atom",
             "Parquet",
             "MAT",
             "HDF",
