@@ -10,8 +10,7 @@ from service.records.decision import Decision
 from service.records.fleet import FleetQuery
 from service.records.history import HistoryPoint
 from service.records.unit import UnitSummary
-from service.reports.sheet_rows import Cell
-from service.reports.sheets import Column, Kind, Workbook
+from service.reports.sheets import Cell, Column, Kind, Workbook
 from service.storage.store import Store
 from service.views.fleet_report import MOST_UNITS, FleetReport
 from service.words.conditions import condition_of, said_with

@@ -26,8 +26,7 @@ from estimator.session import (
 )
 from estimator.writing import session_document
 from service.languages.language import Language
-from service.reports.sheet_rows import naive
-from service.reports.sheets import OPTIONS
+from service.reports.sheets import OPTIONS, naive, write_text
 from service.reports.template_wording import Wording, wording
 from service.words.session_keys import COLUMN_HINTS, KEY_HINTS, NEEDED_HERE, reading_hint, standard_error_hint
 
@@ -212,7 +211,7 @@ def _write(sheet: Worksheet, place: tuple[int, int], value: Any, look: Format) -
     elif isinstance(value, int | float):
         sheet.write_number(*place, value, look)
     else:
-        sheet.write_string(*place, str(value), look)
+        write_text(sheet, place, str(value), look)
 
 
 def _check(sheet: Worksheet, cells: tuple[int, int, int, int], name: str, hint: str, words: Wording) -> None:

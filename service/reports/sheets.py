@@ -1,27 +1,30 @@
 """Tables in a workbook: frozen, filtered heading, real dates and numbers, verdicts in colour, text that stays text."""
 
-import tempfile
+import re
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import ExitStack
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import UTC, datetime
 from enum import Enum
-from io import BytesIO
+from math import isfinite
 from typing import IO
 
 import xlsxwriter
 from xlsxwriter.format import Format
-from xlsxwriter.utility import xl_range
 from xlsxwriter.worksheet import Worksheet
 
 from service.languages.catalogue import catalogue_of
 from service.languages.language import Language
 from service.reports.pictures import PALETTE
-from service.reports.sheet_rows import Cell, Looks, Rows, naive, put_rows, writer
 from service.words.conditions import CONDITIONS, REFERENCE
 
 OPTIONS = {"constant_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
 """Rows go to disk as they come, and no text becomes a formula or a link by what it looks like."""
+FORMULA = re.compile(r"^[=+\-@\t\r]")
+"""How a text begins that a spreadsheet would work out once it is edited."""
+LONGEST_TEXT = 32_767
+"""Characters that a cell holds."""
+
+Cell = str | float | int | bool | datetime | None
 
 
 class Kind(Enum):
@@ -48,15 +51,25 @@ class Column:
     """Whether people name what stands in it: that is written as they did, in every language."""
 
 
+def naive(at: datetime) -> datetime:
+    """A spreadsheet's dates have no zone: UTC, to the second."""
+    return at.astimezone(UTC).replace(tzinfo=None, microsecond=0)
+
+
+def write_text(sheet: Worksheet, place: tuple[int, int], text: str, look: Format) -> None:
+    """A text as it is; the library takes one that stands between ``<r>`` and ``</r>`` for its own markup."""
+    if text.startswith("<r>"):
+        sheet.write_rich_string(*place, text[:1], look, text[1:LONGEST_TEXT], look)
+    else:
+        sheet.write_string(*place, text[:LONGEST_TEXT], look)
+
+
 class Workbook:
     """A workbook under construction; rows go to disk as they come, so a large one takes little memory."""
 
     def __init__(self, target: IO[bytes], made: datetime, title: str, language: Language = Language.ENGLISH) -> None:
         self._say: Callable[[str], str] = str if language is Language.ENGLISH else catalogue_of(language).say
-        self._target, self._made = target, BytesIO()
-        self._rows: dict[str, Rows] = {}
-        self._files = ExitStack()
-        self._book = xlsxwriter.Workbook(self._made, OPTIONS)
+        self._book = xlsxwriter.Workbook(target, OPTIONS)
         self._book.set_properties({"title": self._say(title), "author": "imu-health", "created": naive(made)})
         self._head = self._book.add_format({"bold": True, "bottom": 1, "text_wrap": True, "valign": "top"})
         self._formats: dict[Kind, Format] = {kind: self._book.add_format({"num_format": kind.value}) for kind in Kind}
@@ -75,29 +88,29 @@ class Workbook:
         for place, column in enumerate(columns):
             sheet.set_column(place, place, column.width)
             sheet.write_string(0, place, self._say(column.name), self._head)
-        content = self._files.enter_context(tempfile.TemporaryFile(prefix="imu-sheet-"))  # noqa: SIM115 - it is
-        last = self._written(columns, rows, content)
-        part = f"xl/worksheets/sheet{len(self._rows) + 1}.xml"
-        self._rows[part] = Rows(content, xl_range(0, 0, last, len(columns) - 1))
+        last = 0
+        for last, row in enumerate(rows, 1):
+            for place, (column, cell) in enumerate(zip(columns, row, strict=True)):
+                self._write(sheet, (last, place), column, cell)
         sheet.autofilter(0, 0, max(last, 1), len(columns) - 1)
         self._colour(sheet, columns, last)
 
-    def _written(self, columns: Sequence[Column], rows: Iterable[Sequence[Cell]], content: IO[bytes]) -> int:
-        """How many rows there are."""
-        writers = [
-            writer(place, self._looks(column.kind), str if column.is_named else self._say)
-            for place, column in enumerate(columns)
-        ]
-        last = 0
-        for last, row in enumerate(rows, 1):
-            cells = "".join([write(last + 1, cell) for write, cell in zip(writers, row, strict=True)])
-            content.write(f'<row r="{last + 1}">{cells}</row>'.encode())
-        return last
-
-    def _looks(self, kind: Kind) -> Looks:
-        """As the library counts them: a look is in the file once it has a number."""
-        looks = (self._formats[kind], self._formats[Kind.TEXT], self._quoted)
-        return Looks(*(look._get_xf_index() for look in looks))
+    def _write(self, sheet: Worksheet, place: tuple[int, int], column: Column, cell: Cell) -> None:
+        """One cell, by the kind of its value; nothing of an empty one."""
+        say = str if column.is_named else self._say
+        look = self._formats[column.kind]
+        match cell:
+            case None:
+                pass
+            case str():
+                text_look = self._quoted if FORMULA.match(cell) else self._formats[Kind.TEXT]
+                write_text(sheet, place, say(cell), text_look)
+            case bool():
+                sheet.write_string(*place, say("yes" if cell else "no"))
+            case datetime():
+                sheet.write_datetime(*place, naive(cell), look)
+            case _ if isfinite(cell):
+                sheet.write_number(*place, cell, look)
 
     def _colour(self, sheet: Worksheet, columns: Sequence[Column], last: int) -> None:
         """Verdicts in their colours, as rules of the sheet: they follow when somebody sorts or edits. No word of one
@@ -110,6 +123,4 @@ class Workbook:
 
     def close(self) -> None:
         """Writes the file."""
-        with self._files:
-            self._book.close()
-            put_rows(self._made, self._rows, self._target)
+        self._book.close()

@@ -37,7 +37,10 @@ def styled(content: bytes, cell: str) -> tuple[str, str | None]:
     return (own or [look.get("numFmtId")])[0], look.get("quotePrefix")
 
 
-@pytest.mark.parametrize("text", ["a & <b>", "  spaced ", "line\nbreak", "_x0041_", "µg·√h", "=1+1", "17", "x" * 300])
+@pytest.mark.parametrize(
+    "text",
+    ["a & <b>", "  spaced ", "line\nbreak", "_x0041_", "µg·√h", "=1+1", "17", "x" * 300, "<r>a</r>", "<r><b & </r>"],
+)
 def test_a_text_is_read_as_it_was_written(text: str) -> None:
     assert pl.read_excel(BytesIO(made((text, None, None, None))), sheet_name="First")["Text"].to_list() == [text]
 
