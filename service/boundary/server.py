@@ -1,6 +1,5 @@
 """The HTTP server that stands before the application."""
 
-import gc
 import socket
 
 import uvicorn
@@ -21,11 +20,6 @@ class Server(uvicorn.Server):
         super().__init__(server_config(app, settings))
         self._door: Door = app.state.door
         self._within = settings.stop_seconds
-
-    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """What was loaded to serve stays until the end: no later search for garbage looks at it, 0.2 s each time."""
-        await super().startup(sockets)
-        gc.freeze()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """Ends the service within the time that the settings give."""
