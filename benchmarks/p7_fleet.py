@@ -51,8 +51,9 @@ because the peer makes nothing of what it reads: of the processor's time that th
 four milliseconds before its page, by profile one for HTTP and what every request passes, and three for its threads, the
 transaction and one statement; making 480 points of a history takes 10, a page of 285 kB with 480 points and their
 charts 25, a calendar of a thousand events 20, and 40 charts of the paper a second. The database's own time is the same
-in both, and on the first page of units, of one stand and of sessions it is half of all. What grows with the fleet is the first page of units, by some
-milliseconds in which PostgreSQL sorts the units of one condition, and the workbook by its sheet of all units.
+in both, and on the first page of units, of one stand and of sessions it is half of all. What grows with the fleet is
+the first page of units, by some milliseconds in which PostgreSQL sorts the units of one condition, and the workbook by
+its sheet of all units.
 """
 
 

@@ -5,7 +5,6 @@ import socket
 import uvicorn
 from fastapi import FastAPI
 
-from service.boundary.patient import PatientProtocol
 from service.boundary.stopping import Door
 from service.settings import Settings
 
@@ -28,25 +27,18 @@ class Server(uvicorn.Server):
 
 
 def server_config(app: FastAPI, settings: Settings) -> uvicorn.Config:
-    """How the application is served: where, and to how many and how slow clients."""
+    """How the application is served: where, and on how many connections."""
     return uvicorn.Config(
         app,
         settings.host,
         settings.port,
-        http=_protocol(settings),
+        http="h11",
+        limit_concurrency=settings.max_connections + 1,  # which is refused itself
         log_config=None,
         access_log=False,
         forwarded_allow_ips=[str(network) for network in settings.trusted_proxies],
         timeout_graceful_shutdown=LAST_WORDS,
     )
-
-
-def _protocol(settings: Settings) -> type[PatientProtocol]:
-    class Protocol(PatientProtocol):
-        patience = settings.client_seconds
-        most_connections = settings.max_connections
-
-    return Protocol
 
 
 def address_of(server: uvicorn.Server) -> str:
