@@ -12,12 +12,12 @@ import numpy as np
 from rich.table import Table
 from scipy.linalg import null_space
 
+from benchmarks.convert import convert
 from benchmarks.recordings.held_out import rows as some_rows
 from benchmarks.recordings.sets import FILES, folder, recordings
 from benchmarks.two_axis_stand import table
 from estimator import Calibration, CalibrationSession, calibrate, parity_check, read_session
 from estimator.session import ACCELEROMETER, IN_SERVICE, Array
-from service.ingest.convert import convert
 
 MILLI_G = 9.80665e-3
 BIASES = (0.2, 0.5, 1.0, 2.0, 5.0)

@@ -14,6 +14,7 @@ import imucal
 import numpy as np
 import pandas as pd
 
+from benchmarks.convert.ferraris_csv import GRAVITY, PARTS, RATE_HZ
 from benchmarks.figures import Figure, side_by_side
 from benchmarks.recordings.held_out import held_out, misses
 from benchmarks.recordings.sets import FILES, FOLDER, folder, logs, recordings
@@ -24,7 +25,6 @@ from estimator.calibration.free import residual_per_freedom
 from estimator.results import Calibration
 from estimator.session import Array, CalibrationSession
 from estimator.static import average
-from service.ingest.convert.ferraris_csv import GRAVITY, PARTS, RATE_HZ
 
 ROUNDS = 20
 AXES = ["acc_x", "acc_y", "acc_z"]

@@ -4,10 +4,8 @@ A command is imported when it is asked for, so that `calibrate` waits for neithe
 of commands is plain text: what draws boxes takes longer to import than all else that the list needs.
 """
 
-import gc
 import sys
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
 from functools import cache
 from importlib import import_module
 from typing import Annotated, Any
@@ -63,23 +61,12 @@ class Commands(TyperGroup):
 @cache
 def _command(name: str) -> Any:
     module, _, member = CATALOGUE[name].home.partition(".")
-    with _nothing_collected():
-        found = getattr(import_module(f"service.commands.{module}"), member)
+    found = getattr(import_module(f"service.commands.{module}"), member)
     if not isinstance(found, typer.Typer):
         single = typer.Typer(add_completion=False)
         single.command(name)(found)
         found = single
     return _taught(typer.main.get_command(found), name)
-
-
-@contextmanager
-def _nothing_collected() -> Iterator[None]:
-    """What an import makes stays to the end: looking for garbage in it, during the start and again at the end,
-    took half of the processor's time for both, and would hold up requests between."""
-    gc.disable()
-    yield
-    gc.freeze()
-    gc.enable()
 
 
 def _taught(command: Any, words: str) -> Any:

@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
+from benchmarks.convert import convert
 from estimator.calibration.free import residual_per_freedom
 from estimator.reading import read_session
 from estimator.session import ACCELEROMETER, CalibrationSession, Sensor
 from estimator.static import average
-from service.ingest.convert import convert
 
 FOLDER = "IMU_HEALTH_RECORDINGS"
 FILES = {

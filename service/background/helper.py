@@ -25,7 +25,6 @@ from service.flows.refresh_beside import refresh_beside
 from service.flows.refresh_group import refresh_group
 from service.flows.summarise import summarise
 from service.ingest import limits
-from service.ingest.memory import give_back_large_blocks
 from service.log import write_log
 from service.records.group import Group
 from service.records.recomputation import Task
@@ -153,7 +152,6 @@ class Helper:
 def work(pipe: Connection, settings: Settings) -> None:
     """In the process: makes what is asked for until nobody is there to ask."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # of a terminal; the service decides
-    give_back_large_blocks()  # a long log is read whole for its noise
     os.nice(settings.diagnosis_niceness)  # a request that waits for what it holds leaves it the core
     limits.use(limits.limits_of(settings))
     write_log()

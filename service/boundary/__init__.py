@@ -1,4 +1,4 @@
-"""What every request passes before a route sees it: who it is for, who sent it, how large it is and how slow.
+"""What every request passes before a route sees it: who it is for, who sent it, how large and how slow its body is.
 
 `guard` puts the checks around an application; what they refuse has the one shape of every error.
 """

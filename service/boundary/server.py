@@ -1,12 +1,10 @@
 """The HTTP server that stands before the application."""
 
-import gc
 import socket
 
 import uvicorn
 from fastapi import FastAPI
 
-from service.boundary.patient import PatientProtocol
 from service.boundary.stopping import Door
 from service.settings import Settings
 
@@ -22,11 +20,6 @@ class Server(uvicorn.Server):
         self._door: Door = app.state.door
         self._within = settings.stop_seconds
 
-    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """What was loaded to serve stays until the end: no later search for garbage looks at it, 0.2 s each time."""
-        await super().startup(sockets)
-        gc.freeze()
-
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """Ends the service within the time that the settings give."""
         await self._door.empty(self._within)
@@ -34,25 +27,18 @@ class Server(uvicorn.Server):
 
 
 def server_config(app: FastAPI, settings: Settings) -> uvicorn.Config:
-    """How the application is served: where, and to how many and how slow clients."""
+    """How the application is served: where, and on how many connections."""
     return uvicorn.Config(
         app,
         settings.host,
         settings.port,
-        http=_protocol(settings),
+        http="h11",
+        limit_concurrency=settings.max_connections + 1,  # which is refused itself
         log_config=None,
         access_log=False,
         forwarded_allow_ips=[str(network) for network in settings.trusted_proxies],
         timeout_graceful_shutdown=LAST_WORDS,
     )
-
-
-def _protocol(settings: Settings) -> type[PatientProtocol]:
-    class Protocol(PatientProtocol):
-        patience = settings.client_seconds
-        most_connections = settings.max_connections
-
-    return Protocol
 
 
 def address_of(server: uvicorn.Server) -> str:

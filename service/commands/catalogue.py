@@ -35,7 +35,6 @@ CATALOGUE = {
         "upload.upload_files",
         "Upload session files and print the verdict of each; a file that is already there is stored once.",
     ),
-    "convert": Entry("convert.convert_files", "Turn a recording of a public data set into session files."),
     "fleet": Entry(
         "report.fleet",
         "Show every unit with its condition, the worst first; some of them by stand, type, due date or flag.",

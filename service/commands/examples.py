@@ -20,7 +20,6 @@ upload session.xlsx  # stored, judged against the unit's reference
 upload after-transport.json --check  # judged and kept, and the due date stays
 upload bench.csv --mapping bench-3.json  # a table of your own layout
 upload corrected.json --supersedes 3f9a0c5be1d24786aa10 --by "K. Ito" --why "measured on BA-018"  # for another one
-convert imu-tk xsens_acc.mat --out sessions  # a public recording as session files
 fleet --stand S1 --due-before 2026-12-01  # what one stand has to measure until then
 fleet | jq -r 'select(.verdict == "fail") | .serial'  # in a pipe: one unit a line
 history BA-017 --sensor A3 --parameter bias  # how one parameter moved

@@ -13,7 +13,6 @@ from service.commands.exits import say
 from service.commands.options import DatabaseUrl, DataFolder, settings_from
 from service.demo.fill import FILES, fill, is_wanted
 from service.flows.identity.links import make_link
-from service.ingest.memory import give_back_large_blocks
 from service.log import write_log
 from service.settings import Settings
 from service.storage import Database, Files, Storage
@@ -39,7 +38,6 @@ def serve(
     if hosts_of(settings).any_address:
         say("It answers to addresses in digits only: IMU_HEALTH_PUBLIC_URL or IMU_HEALTH_ALLOWED_HOSTS names it.")
     require_writable(settings.files)
-    give_back_large_blocks()
     upgrade(settings.database)
     if demo:
         _fill(settings)

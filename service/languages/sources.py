@@ -33,7 +33,6 @@ SILENT = (
     "service/client",
     "service/demo",
     "service/identity/access.py",
-    "service/ingest/convert",
     "service/ingest/fork_server.py",
     "service/ingest/layout/units.py",
     "service/ingest/layout/vocabulary.py",

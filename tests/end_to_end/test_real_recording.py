@@ -9,7 +9,7 @@ import httpx
 import numpy as np
 import pytest
 
-from service.ingest.convert import convert
+from benchmarks.convert import convert
 from service.settings import Settings
 from tests.databases import one_engine
 from tests.serving import serving

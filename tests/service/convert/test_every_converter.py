@@ -6,10 +6,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from benchmarks.convert import FORMATS, convert
 from estimator.calibration import calibrate
 from estimator.errors import SessionError
 from estimator.reading import read_session
-from service.ingest.convert import FORMATS, convert
 from tests.service.convert.made import MADE, needs_recordings, real
 
 NAMES = [converter.name for converter in FORMATS]

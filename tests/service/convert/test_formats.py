@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
+from benchmarks.convert import convert
 from estimator.calibration import calibrate
 from estimator.errors import FormatError
 from estimator.reading import read_session
-from service.ingest.convert import convert
 from tests.service.convert import made
 
 

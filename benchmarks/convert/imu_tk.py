@@ -4,10 +4,10 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.convert.contract import Converter, Document
+from benchmarks.convert.documents import columns, session, triad
+from benchmarks.convert.files import expect_count, one_containing, read_numbers, refuse
 from estimator.wording import counted
-from service.ingest.convert.contract import Converter, Document
-from service.ingest.convert.documents import columns, session, triad
-from service.ingest.convert.files import expect_count, one_containing, read_numbers, refuse
 
 GRAVITY = 9.81744
 """m/s², as the publication states it."""

@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.convert.contract import Converter, Document
+from benchmarks.convert.documents import PER_DEGREE, columns, session, triad
+from benchmarks.convert.files import read_bytes, refuse
 from estimator.applied_vector import STANDARD_GRAVITY
 from estimator.errors import FormatError, Problem
-from service.ingest.convert.contract import Converter, Document
-from service.ingest.convert.documents import PER_DEGREE, columns, session, triad
-from service.ingest.convert.files import read_bytes, refuse
 
 LEADING = 4
 """Bytes before the first packet: the board's answer to the command that started it."""

@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from benchmarks.convert.contract import Converter, Document
+from benchmarks.convert.ctu_mat import CTU_MAT
+from benchmarks.convert.ferraris_csv import FERRARIS_CSV
+from benchmarks.convert.imu_tk import IMU_TK
+from benchmarks.convert.kth_mimu import KTH_MIMU
+from benchmarks.convert.mpu9150_five import MPU9150_FIVE
 from estimator.errors import FormatError, Problem
-from service.ingest.convert.contract import Converter, Document
-from service.ingest.convert.ctu_mat import CTU_MAT
-from service.ingest.convert.ferraris_csv import FERRARIS_CSV
-from service.ingest.convert.imu_tk import IMU_TK
-from service.ingest.convert.kth_mimu import KTH_MIMU
-from service.ingest.convert.mpu9150_five import MPU9150_FIVE
 
 __all__ = ["FORMATS", "Converter", "Document", "convert"]
 

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.convert.contract import Converter, Document
+from benchmarks.convert.documents import columns, session, triad
+from benchmarks.convert.files import expect_count, read_bytes, refuse
 from estimator.applied_vector import STANDARD_GRAVITY
 from service.ingest.apart import read_apart
-from service.ingest.convert.contract import Converter, Document
-from service.ingest.convert.documents import columns, session, triad
-from service.ingest.convert.files import expect_count, read_bytes, refuse
 
 BYTE_ORDER = slice(126, 128)
 """Where the header of a MAT file says how its bytes run."""

@@ -10,14 +10,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.convert.contract import Converter, Document
+from benchmarks.convert.documents import Columns, columns, session, triad
+from benchmarks.convert.files import expect_count, read_numbers
 from estimator.calibration.free import residual_per_freedom
 from estimator.errors import FormatError, Problem
 from estimator.reading import read_session
 from estimator.session import CalibrationSession
 from estimator.static import average
-from service.ingest.convert.contract import Converter, Document
-from service.ingest.convert.documents import Columns, columns, session, triad
-from service.ingest.convert.files import expect_count, read_numbers
 
 GRAVITY = 9.81
 """m/s², as the publication states it."""

@@ -9,9 +9,9 @@ import numpy as np
 import polars as pl
 from polars.exceptions import PolarsError
 
-from service.ingest.convert.contract import Converter, Document
-from service.ingest.convert.documents import PER_DEGREE, columns, session, triad
-from service.ingest.convert.files import expect_count, read_bytes, refuse
+from benchmarks.convert.contract import Converter, Document
+from benchmarks.convert.documents import PER_DEGREE, columns, session, triad
+from benchmarks.convert.files import expect_count, read_bytes, refuse
 
 GRAVITY = 9.81
 """m/s², as the publication states it."""

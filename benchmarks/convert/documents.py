@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from service.ingest.convert.contract import Document
+from benchmarks.convert.contract import Document
 
 Columns = NDArray[np.float64]
 
