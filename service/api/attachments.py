@@ -7,8 +7,8 @@ from fastapi.responses import FileResponse
 
 from service.admission import PersonOf
 from service.api.exports import disposition
-from service.api.schemas.attachments import AttachmentList, AttachmentSchema, NewComment
-from service.api.schemas.events import NoteList, NoteSchema
+from service.api.schemas.attachments import AttachmentList, NewComment
+from service.api.schemas.events import NoteList
 from service.api.schemas.fields import Number, Serial, SessionId
 from service.api.schemas.flags import Handling
 from service.api.schemas.problem import errors
@@ -16,6 +16,7 @@ from service.arriving import SentOf
 from service.dependencies import Now, Reading, StorageOf
 from service.flows.add_note import comment_on
 from service.flows.attach_file import attach_file, given_out, withdraw_attachment
+from service.records.event import Attachment, Note
 
 router = APIRouter()
 BYTES = "application/octet-stream"
@@ -42,9 +43,9 @@ BODY: dict[str, Any] = {
 @router.post(
     "/attachments", status_code=201, responses=errors(400, 404, 413, 422, 507), openapi_extra=BODY, tags=["units"]
 )
-def attach(sent: SentOf, storage: StorageOf, now: Now) -> AttachmentSchema:
+def attach(sent: SentOf, storage: StorageOf, now: Now) -> Attachment:
     """Attach a file to a unit or to a session. The same content attached there again is there once."""
-    return AttachmentSchema.model_validate(attach_file(storage, sent.given, sent.who, now))
+    return attach_file(storage, sent.given, sent.who, now)
 
 
 @router.get("/attachments/{id}/file", responses={200: {"content": ANY_BYTES}, **errors(404, 422, 500)},
@@ -60,10 +61,10 @@ def download(id: Number, store: Reading, storage: StorageOf) -> Response:
 
 
 @router.post("/attachments/{id}/withdraw", responses=errors(400, 404, 409, 422), tags=["units"])
-def withdraw(id: Number, handling: Handling, storage: StorageOf, now: Now, person: PersonOf) -> AttachmentSchema:
+def withdraw(id: Number, handling: Handling, storage: StorageOf, now: Now, person: PersonOf) -> Attachment:
     """Say that an attached file no longer holds, and why. It stays on record and is given out no more."""
     gone = withdraw_attachment(storage, id, person.signs(handling.by), handling.why, now)
-    return AttachmentSchema.model_validate(gone)
+    return gone
 
 
 @router.get("/units/{serial:path}/attachments", responses=errors(404, 422), tags=["units"])
@@ -71,14 +72,14 @@ def list_of_unit(serial: Serial, store: Reading) -> AttachmentList:
     """Files attached to the unit and to its sessions, withdrawn ones too, oldest first."""
     store.units.key(serial)
     found = store.attachments.of_unit(serial)
-    return AttachmentList(attachments=[AttachmentSchema.model_validate(one) for one in found])
+    return AttachmentList(attachments=found)
 
 
 @router.get("/sessions/{id}/attachments", responses=errors(404, 422), tags=["sessions"])
 def list_of_session(id: SessionId, store: Reading) -> AttachmentList:
     """Files attached to the session, withdrawn ones too, oldest first."""
     found = store.attachments.of_session(store.sessions.get(id).id)
-    return AttachmentList(attachments=[AttachmentSchema.model_validate(one) for one in found])
+    return AttachmentList(attachments=found)
 
 
 @router.get("/sessions/{id}/notes", responses=errors(404, 422), tags=["sessions"])
@@ -86,10 +87,10 @@ def read_comments(id: SessionId, store: Reading) -> NoteList:
     """Remarks on the session, withdrawn ones too, in the order in which they were written."""
     session = store.sessions.get(id)
     found = store.notes.of_session(session.id)
-    return NoteList(unit=session.unit, notes=[NoteSchema.model_validate(note) for note in found])
+    return NoteList(unit=session.unit, notes=found)
 
 
 @router.post("/sessions/{id}/notes", status_code=201, responses=errors(400, 404, 422), tags=["sessions"])
-def write_comment(id: SessionId, new: NewComment, storage: StorageOf, now: Now, person: PersonOf) -> NoteSchema:
+def write_comment(id: SessionId, new: NewComment, storage: StorageOf, now: Now, person: PersonOf) -> Note:
     """Keep a remark on the session. It can be withdrawn, never changed."""
-    return NoteSchema.model_validate(comment_on(storage, id, new.text, who=person.signs(new.by), now=now))
+    return comment_on(storage, id, new.text, who=person.signs(new.by), now=now)

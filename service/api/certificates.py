@@ -8,15 +8,16 @@ from service.admission import PersonOf, attempt_of
 from service.api.exports import as_file
 from service.api.schemas.corrections import CorrectionDocument
 from service.api.schemas.fields import TEXT, SessionId, Text
-from service.api.schemas.papers import IssueList, IssueSchema, NewSignature, SignatureSchema
+from service.api.schemas.papers import NewSignature
 from service.api.schemas.problem import errors
 from service.dependencies import DeskOf, Now, StorageOf
 from service.flows.sign_certificate import Signing
 from service.records.paper import NOT_STATED
+from service.records.signature import Signature
 from service.reports.desk import HandedOut, hand_out, hand_out_approved, sign
 from service.reports.onboard import FORMS, System
 from service.reports.onboard.stored import given_of
-from service.reports.signatures import papers_of
+from service.reports.signatures import Papers, papers_of
 from service.views.correction import correction_document
 
 router = APIRouter(prefix="/sessions", tags=["handing on"])
@@ -61,17 +62,12 @@ def read_certificate(
 
 
 @router.get("/{id}/certificates", responses=errors(404, 422))
-def list_certificates(id: SessionId, desk: DeskOf) -> IssueList:
+def list_certificates(id: SessionId, desk: DeskOf) -> Papers:
     """The numbers under which the session's certificate was issued, the first one first, with who signed them.
 
     The last one holds. What it rests on is worked out again and compared, and `concerns` says what has changed.
     """
-    papers = papers_of(desk, id)
-    listed = [
-        IssueSchema.model_validate({**vars(one.issue), "signatures": [vars(s) for s in one.signatures]})
-        for one in papers.issues
-    ]
-    return IssueList(certificates=listed, is_current=papers.is_current, concerns=list(papers.concerns))
+    return papers_of(desk, id)
 
 
 @router.get("/{id}/certificates/{number}", responses={**FILES, **errors(404, 422)}, response_class=Response)
@@ -85,7 +81,7 @@ def read_approved_certificate(
 @router.post("/{id}/certificate/signatures", status_code=201, responses=errors(400, 401, 403, 404, 409, 422, 429, 507))
 def sign_certificate(
     id: SessionId, new: NewSignature, desk: DeskOf, person: PersonOf, now: Now, request: Request
-) -> SignatureSchema:
+) -> Signature:
     """Sign the session's certificate: that you reviewed it, or that it is approved.
 
     Asks for the password of your account again. A certificate is reviewed first and approved by somebody else; both
@@ -94,7 +90,7 @@ def sign_certificate(
     """
     signing = Signing(id, new.number, new.meaning, person.login, new.password)
     signature = sign(desk, signing, attempt_of(request, person.login), now)
-    return SignatureSchema.model_validate(signature)
+    return signature
 
 
 def _file(paper: HandedOut, format: str) -> Response:

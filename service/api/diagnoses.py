@@ -7,7 +7,13 @@ from fastapi import APIRouter, Response
 from fastapi.responses import JSONResponse
 
 from service.api.schemas.fields import SessionId
-from service.api.schemas.models import DiagnosisDocument, ModelSchema, NewModelSchema, PendingDiagnosis
+from service.api.schemas.models import (
+    DiagnosisDocument,
+    ModelDocument,
+    NewModelSchema,
+    PendingDiagnosis,
+    model_document,
+)
 from service.api.schemas.problem import errors
 from service.dependencies import Now, ReaderOf, StorageOf
 from service.errors import NotFoundError
@@ -36,7 +42,7 @@ def read_diagnosis(id: SessionId, reader: ReaderOf) -> Response | DiagnosisDocum
 
 
 @router.post("/{id}/diagnosis/accept", status_code=201, responses=errors(400, 404, 409, 422))
-def accept_cause(id: SessionId, new: NewModelSchema, storage: StorageOf, reader: ReaderOf, now: Now) -> ModelSchema:
+def accept_cause(id: SessionId, new: NewModelSchema, storage: StorageOf, reader: ReaderOf, now: Now) -> ModelDocument:
     """Accept a named cause: from the next session on it is part of the model of the unit, unit type or stand."""
     accepted = accept_model(storage, reader.made(id), NewModel(**new.model_dump()), now)
-    return ModelSchema.model_validate(accepted)
+    return model_document(accepted)

@@ -3,22 +3,14 @@
 from fastapi import APIRouter
 
 from service.admission import PersonOf
-from service.api.schemas.events import (
-    FoundAndLeftLine,
-    FoundAndLeftSchema,
-    NewNote,
-    NewServiceSchema,
-    NoteList,
-    NoteSchema,
-    ServiceSchema,
-)
+from service.api.schemas.events import FoundAndLeftLine, FoundAndLeftSchema, NewNote, NewServiceSchema, NoteList
 from service.api.schemas.fields import Serial
 from service.api.schemas.problem import errors
-from service.api.schemas.sessions import DecisionSchema, SessionSchema
+from service.api.schemas.sessions import DecisionSchema, said_session
 from service.dependencies import Now, Reading, ReceptionOf, SettingsOf, StorageOf
 from service.flows.add_note import add_note
 from service.flows.record_service import record_service
-from service.records.event import NewService
+from service.records.event import NewService, Note, Service
 from service.views.found_and_left import found_and_left
 from service.views.unit_report import unit_report
 
@@ -26,29 +18,27 @@ router = APIRouter(prefix="/units", tags=["units"])
 
 
 @router.post("/{serial:path}/services", status_code=201, responses=errors(400, 404, 422))
-def add_service(
-    serial: Serial, new: NewServiceSchema, reception: ReceptionOf, now: Now, person: PersonOf
-) -> ServiceSchema:
+def add_service(serial: Serial, new: NewServiceSchema, reception: ReceptionOf, now: Now, person: PersonOf) -> Service:
     """Record a known break; the first session measured after it is the new reference, whenever it was uploaded."""
     done = NewService(new.kind, new.at or now, new.note, person.signs(new.by), new.sensor)
     k = reception.coverage_factor
     service, _ = record_service(reception.storage, serial, done, now, coverage_factor=k)
     reception.ring()
-    return ServiceSchema.model_validate(service)
+    return service
 
 
 @router.get("/{serial:path}/notes", responses=errors(404, 422))
 def read_notes(serial: Serial, store: Reading) -> NoteList:
     """The unit's notes, withdrawn ones too."""
     store.units.key(serial)
-    return NoteList(unit=serial, notes=[NoteSchema.model_validate(note) for note in store.notes.of_unit(serial)])
+    return NoteList(unit=serial, notes=store.notes.of_unit(serial))
 
 
 @router.post("/{serial:path}/notes", status_code=201, responses=errors(400, 404, 422))
-def write_note(serial: Serial, new: NewNote, storage: StorageOf, now: Now, person: PersonOf) -> NoteSchema:
+def write_note(serial: Serial, new: NewNote, storage: StorageOf, now: Now, person: PersonOf) -> Note:
     """Keep a remark on the unit's history. It can be withdrawn, never changed."""
     note = add_note(storage, serial, new.text, at=new.at or now, who=person.signs(new.by), now=now)
-    return NoteSchema.model_validate(note)
+    return note
 
 
 @router.get("/{serial:path}/found-and-left", responses=errors(404, 422))
@@ -67,7 +57,7 @@ def read_found_and_left(serial: Serial, store: Reading, settings: SettingsOf, no
     ]
     return FoundAndLeftSchema(
         reference=pair.reference,
-        found=SessionSchema.model_validate(pair.found),
-        left=None if pair.left is None else SessionSchema.model_validate(pair.left),
+        found=said_session(pair.found),
+        left=None if pair.left is None else said_session(pair.left),
         parameters=lines,
     )

@@ -7,12 +7,12 @@ from fastapi import APIRouter, Query
 
 from service.admission import PersonOf
 from service.api.schemas.fields import Number, Text, Window, WindowOf
-from service.api.schemas.flags import Assigned, Assigning, AssigningSeveral, FlagPage, FlagSchema, Handling
+from service.api.schemas.flags import Assigned, Assigning, AssigningSeveral, FlagPage, Handling
 from service.api.schemas.problem import errors
 from service.dependencies import Now, Reading, StorageOf
 from service.flows.assign_flags import Assignment, assign_flag, assign_flags
 from service.flows.handle_flag import acknowledge_flag, resolve_flag
-from service.records.flag import FlagState
+from service.records.flag import Flag, FlagState
 from service.storage.queries.flags import FlagQuery
 from service.storage.store import Store
 from service.views.assigned import assignee_meant
@@ -28,8 +28,7 @@ def flag_page(store: Store, wanted: FlagQuery, window: Window) -> FlagPage:
     if wanted.unit is not None:
         store.units.key(wanted.unit)
     found = store.flags.page(replace(wanted, offset=window.offset, limit=window.limit))
-    flags = [FlagSchema.model_validate(flag) for flag in found]
-    return FlagPage(flags=flags, page=window.page, limit=window.limit, next_page=window.next_after(len(flags)))
+    return FlagPage(flags=found, **window.place(len(found)))
 
 
 @router.get("", responses=errors(404, 422))
@@ -58,19 +57,19 @@ def assign_several(given: AssigningSeveral, storage: StorageOf, now: Now, person
 
 
 @router.post("/{id}/assign", responses=errors(400, 404, 409, 422))
-def assign(id: Number, given: Assigning, storage: StorageOf, now: Now, person: PersonOf) -> FlagSchema:
+def assign(id: Number, given: Assigning, storage: StorageOf, now: Now, person: PersonOf) -> Flag:
     """Say who is to look after the flag."""
     said = Assignment(given.to, person.signs(given.by), given.why)
-    return FlagSchema.model_validate(assign_flag(storage, id, said, now))
+    return assign_flag(storage, id, said, now)
 
 
 @router.post("/{id}/acknowledge", responses=errors(400, 404, 409, 422))
-def acknowledge(id: Number, handling: Handling, storage: StorageOf, now: Now, person: PersonOf) -> FlagSchema:
+def acknowledge(id: Number, handling: Handling, storage: StorageOf, now: Now, person: PersonOf) -> Flag:
     """Say that somebody looks after the flag, and why it can stay for now."""
-    return FlagSchema.model_validate(acknowledge_flag(storage, id, person.signs(handling.by), handling.why, now))
+    return acknowledge_flag(storage, id, person.signs(handling.by), handling.why, now)
 
 
 @router.post("/{id}/resolve", responses=errors(400, 404, 409, 422))
-def resolve(id: Number, handling: Handling, storage: StorageOf, now: Now, person: PersonOf) -> FlagSchema:
+def resolve(id: Number, handling: Handling, storage: StorageOf, now: Now, person: PersonOf) -> Flag:
     """Say that the matter is settled, and how."""
-    return FlagSchema.model_validate(resolve_flag(storage, id, person.signs(handling.by), handling.why, now))
+    return resolve_flag(storage, id, person.signs(handling.by), handling.why, now)

@@ -8,10 +8,11 @@ from service.api.exports import BINARY, BY_HEADER, TABLES, as_file, as_table, fl
 from service.api.negotiated import FORMS, wanted_form
 from service.api.schemas.fields import Page, Window
 from service.api.schemas.problem import errors
-from service.api.schemas.units import FleetSchema, UnitPage, UnitSummarySchema
+from service.api.schemas.units import UnitPage, said_unit
 from service.dependencies import Now, Reading, ReadingFleet
 from service.languages.language import asked
 from service.records.fleet import FleetQuery
+from service.records.unit import FleetCondition
 from service.reports.fleet_paper import fleet_pdf
 from service.reports.fleet_workbook import fleet_xlsx
 from service.views.fleet_report import fleet_report
@@ -30,9 +31,9 @@ REPORTS = {**FORMS, XLSX: "xlsx", PDF: "pdf"}
 
 
 @router.get("", responses=errors())
-def read_fleet(store: Reading) -> FleetSchema:
+def read_fleet(store: Reading) -> FleetCondition:
     """How many units are in which condition."""
-    return FleetSchema.model_validate(store.fleet.condition())
+    return store.fleet.condition()
 
 
 @router.get(
@@ -61,6 +62,5 @@ def report_fleet(
     found = store.fleet.units(FleetQuery(offset=window.offset, limit=limit))
     if form != "json":
         return as_table(fleet_table(found), form, "fleet")
-    units = [UnitSummarySchema.model_validate(unit) for unit in found]
-    answer = UnitPage(units=units, page=page, limit=limit, next_page=window.next_after(len(units)))
+    answer = UnitPage(units=list(map(said_unit, found)), **window.place(len(found)))
     return Response(answer.model_dump_json(), media_type="application/json", headers=BY_HEADER)

@@ -10,7 +10,7 @@ from fastapi.responses import JSONResponse
 from service.admission import PersonOf
 from service.api.schemas.fields import Serial, StandName, TypeName
 from service.api.schemas.groups import PENDING, GroupDocument, NewLastingSchema
-from service.api.schemas.models import ModelSchema
+from service.api.schemas.models import ModelDocument, model_document
 from service.api.schemas.problem import errors
 from service.dependencies import GroupReaderOf, Now, ReceptionOf
 from service.errors import NotFoundError
@@ -35,7 +35,7 @@ class Accepting:
     now: Now
     person: PersonOf
 
-    def accepted(self, level: Level, name: str, new: NewLastingSchema) -> ModelSchema:
+    def accepted(self, level: Level, name: str, new: NewLastingSchema) -> ModelDocument:
         """The revision, once the group's answer is of its sessions of now."""
         storage = self.reception.storage
         self.groups.read(level, name)
@@ -44,7 +44,7 @@ class Accepting:
         wanted = NewLasting(new.cause, tuple(new.sensors), self.person.signs(new.by), new.note)
         revision = accept_lasting(storage, group, wanted, self.now)
         recompute_beside(self.reception, self.now)
-        return ModelSchema.model_validate(revision)
+        return model_document(revision)
 
 
 AcceptingOf = Annotated[Accepting, Depends()]
@@ -69,19 +69,19 @@ def read_stand_diagnosis(name: StandName, groups: GroupReaderOf) -> Response | G
 
 
 @router.post("/units/{serial:path}/diagnosis/accept", status_code=201, responses=ACCEPTED)
-def accept_for_unit(serial: Serial, new: NewLastingSchema, own: AcceptingOf) -> ModelSchema:
+def accept_for_unit(serial: Serial, new: NewLastingSchema, own: AcceptingOf) -> ModelDocument:
     """Accept what a unit's sessions show together; every session that it concerns is computed again."""
     return own.accepted(Level.UNIT, serial, new)
 
 
 @router.post("/unit-types/{name:path}/diagnosis/accept", status_code=201, responses=ACCEPTED)
-def accept_for_unit_type(name: TypeName, new: NewLastingSchema, own: AcceptingOf) -> ModelSchema:
+def accept_for_unit_type(name: TypeName, new: NewLastingSchema, own: AcceptingOf) -> ModelDocument:
     """Accept what the sessions of a type show together; every session that it concerns is computed again."""
     return own.accepted(Level.TYPE, name, new)
 
 
 @router.post("/stands/{name:path}/diagnosis/accept", status_code=201, responses=ACCEPTED)
-def accept_for_stand(name: StandName, new: NewLastingSchema, own: AcceptingOf) -> ModelSchema:
+def accept_for_stand(name: StandName, new: NewLastingSchema, own: AcceptingOf) -> ModelDocument:
     """Accept what the sessions on a stand show together; every session that it concerns is computed again."""
     return own.accepted(Level.STAND, name, new)
 

@@ -10,9 +10,6 @@ from service.api.schemas.fields import Limit, Number, Text
 from service.api.schemas.identity import (
     AccountChanges,
     AccountList,
-    AccountSchema,
-    AuditCheckSchema,
-    AuditLineSchema,
     AuditPage,
     LinkSchema,
     Login,
@@ -21,7 +18,6 @@ from service.api.schemas.identity import (
     NewAccount,
     NewToken,
     TokenList,
-    TokenSchema,
 )
 from service.api.schemas.problem import errors
 from service.dependencies import Now, Reading, StorageOf
@@ -29,7 +25,8 @@ from service.errors import ConflictError, ForbiddenError
 from service.flows.identity.accounts import AccountChange, add_account, change_account
 from service.flows.identity.links import make_link
 from service.flows.identity.tokens import make_token, require_may_revoke, require_no_token, revoke_token
-from service.records.identity import UNNAMED, Role
+from service.records.audit import AuditCheck
+from service.records.identity import UNNAMED, Account, Role
 
 router = APIRouter(tags=["accounts"])
 NO_ACCOUNT = "A token acts for an account: make the first account, and sign in with it."
@@ -44,23 +41,21 @@ def read_me(person: PersonOf) -> MeSchema:
 @router.get("/accounts", responses=errors())
 def list_accounts(store: Reading) -> AccountList:
     """Everybody who may sign in, or once might."""
-    return AccountList(accounts=[AccountSchema.model_validate(account) for account in store.accounts.every()])
+    return AccountList(accounts=store.accounts.every())
 
 
 @router.post("/accounts", status_code=201, responses=errors(400, 409, 422))
-def create_account(new: NewAccount, storage: StorageOf, now: Now, person: PersonOf) -> AccountSchema:
+def create_account(new: NewAccount, storage: StorageOf, now: Now, person: PersonOf) -> Account:
     """Make an account. A link lets its owner choose a password; from the first account on everybody must sign in."""
     made = add_account(storage, new.login, new.name, new.role, now, who=person.signs(UNNAMED))
-    return AccountSchema.model_validate(made)
+    return made
 
 
 @router.put("/accounts/{login}", responses=errors(400, 404, 409, 422))
-def update_account(
-    login: Login, changes: AccountChanges, storage: StorageOf, now: Now, person: PersonOf
-) -> AccountSchema:
+def update_account(login: Login, changes: AccountChanges, storage: StorageOf, now: Now, person: PersonOf) -> Account:
     """Another name or role, or the account may no longer sign in. Accounts are never deleted."""
     change = AccountChange(changes.name, changes.role, changes.is_active)
-    return AccountSchema.model_validate(change_account(storage, login, change, now, who=person.signs(UNNAMED)))
+    return change_account(storage, login, change, now, who=person.signs(UNNAMED))
 
 
 @router.post("/accounts/{login}/link", status_code=201, responses=errors(403, 404, 422))
@@ -75,7 +70,7 @@ def create_link(login: Login, storage: StorageOf, now: Now, person: PersonOf) ->
 def list_tokens(store: Reading, person: PersonOf) -> TokenList:
     """One's own tokens; an administrator sees all."""
     tokens = store.tokens.every(None if person.may(Role.ADMIN) else person.login)
-    return TokenList(tokens=[TokenSchema.model_validate(token) for token in tokens])
+    return TokenList(tokens=tokens)
 
 
 @router.post("/tokens", status_code=201, responses=errors(400, 403, 409, 422))
@@ -88,7 +83,7 @@ def create_token(new: NewToken, storage: StorageOf, now: Now, person: PersonOf) 
         raise ForbiddenError(f"{person.account} is {person.role} and cannot make a token for {new.role}.")
     lasts = timedelta(days=new.days)
     token, secret = make_token(storage, person.login, new.label, new.role, now, lasts=lasts, who=person.name)
-    return MadeToken.model_validate({**vars(token), "secret": secret})
+    return MadeToken(**vars(token), secret=secret)
 
 
 @router.delete("/tokens/{id}", status_code=204, responses=errors(403, 404, 422))
@@ -107,11 +102,11 @@ def read_audit(
     subject: Annotated[Text | None, Query(description="Only what was done to this.")] = None,
 ) -> AuditPage:
     """The audit trail, newest first."""
-    lines = [AuditLineSchema.model_validate(line) for line in store.audit.page(limit, before, subject)]
+    lines = store.audit.page(limit, before, subject)
     return AuditPage(lines=lines, before=lines[-1].id if len(lines) == limit else None)
 
 
 @router.get("/audit/check", responses=errors())
-def check_audit(store: Reading) -> AuditCheckSchema:
+def check_audit(store: Reading) -> AuditCheck:
     """Work out the chain of the whole trail again."""
-    return AuditCheckSchema.model_validate(store.audit.check())
+    return store.audit.check()

@@ -11,13 +11,12 @@ from service.api.schemas.fields import Number, Text
 from service.api.schemas.jobs import (
     Cancelling,
     FailedWorkPage,
-    FailedWorkSchema,
+    JobAnswer,
     JobPage,
-    JobSchema,
     NewRecalibration,
     NewReport,
     RetriedSchema,
-    job_schema,
+    job_answer,
 )
 from service.api.schemas.problem import errors
 from service.dependencies import CREW, JobDeskOf, LanguageOf, Now, Reading, StorageOf
@@ -43,7 +42,7 @@ def list_jobs(
     """Long work that was asked for, the newest first."""
     account = person.login if mine else ""
     found = store.jobs.page(limit, before=before, account=account, subject=subject)
-    return JobPage(jobs=list(map(job_schema, found)), before=found[-1].id if len(found) == limit else None)
+    return JobPage(jobs=list(map(job_answer, found)), before=found[-1].id if len(found) == limit else None)
 
 
 @router.get("/failed", responses=errors(422))
@@ -52,7 +51,7 @@ def list_failed(
 ) -> FailedWorkPage:
     """Work beside the requests that has failed, and why. Jobs and messages are listed for a week after they ended."""
     counts = {kind: number for kind, number in store.failures.counts(now).items() if number}
-    listed = [FailedWorkSchema.model_validate(one) for one in store.failures.listed(now, limit)]
+    listed = store.failures.listed(now, limit)
     return FailedWorkPage(counts=counts, failed=listed)
 
 
@@ -65,7 +64,7 @@ def retry_failed(storage: StorageOf, now: Now, desk: JobDeskOf, person: PersonOf
 @router.post("/recalibration", status_code=202, responses={**ACCEPTED, **errors(400, 422, 503)})
 def ask_for_recalibration(
     new: NewRecalibration, response: Response, desk: JobDeskOf, storage: StorageOf, person: PersonOf
-) -> JobSchema:
+) -> JobAnswer:
     """Have stored sessions computed again under the models in force, unit by unit. Nothing is overwritten."""
     own = NewJob(JobKind.RECALIBRATION, person.signs(new.by or CREW), person.login, new.scope, new.subject)
     return _accepted(response, desk.ask(storage, own))
@@ -74,17 +73,17 @@ def ask_for_recalibration(
 @router.post("/report", status_code=202, responses={**ACCEPTED, **errors(400, 422, 503)})
 def ask_for_report(
     new: NewReport, response: Response, desk: JobDeskOf, storage: StorageOf, person: PersonOf, language: LanguageOf
-) -> JobSchema:
+) -> JobAnswer:
     """Have a report of the whole fleet made; it is kept for a week."""
     own = NewJob(JobKind.REPORT, person.signs(new.by or CREW), person.login, form=new.format, language=language.value)
     return _accepted(response, desk.ask(storage, own))
 
 
 @router.get("/{id}", responses=errors(404, 422))
-def read_job(id: Number, store: Reading) -> JobSchema:
+def read_job(id: Number, store: Reading) -> JobAnswer:
     """How far one job has come."""
     job = store.jobs.get(id)
-    return job_schema(job, () if job.refusal is None else store.arrivals.refusal(job.refusal).problems)
+    return job_answer(job, () if job.refusal is None else store.arrivals.refusal(job.refusal).problems)
 
 
 @router.get(
@@ -101,11 +100,11 @@ def download_result(id: Number, store: Reading, storage: StorageOf) -> Response:
 
 
 @router.post("/{id}/cancel", responses=errors(400, 403, 404, 409, 422))
-def cancel(id: Number, asked: Cancelling, storage: StorageOf, person: PersonOf, now: Now) -> JobSchema:
+def cancel(id: Number, asked: Cancelling, storage: StorageOf, person: PersonOf, now: Now) -> JobAnswer:
     """Stop a job between two pieces of its work. What was done stays."""
-    return job_schema(cancel_job(storage, id, person, person.signs(asked.by or CREW), now))
+    return job_answer(cancel_job(storage, id, person, person.signs(asked.by or CREW), now))
 
 
-def _accepted(response: Response, job: Job) -> JobSchema:
+def _accepted(response: Response, job: Job) -> JobAnswer:
     response.headers["Location"] = f"/api/v1/jobs/{job.id}"
-    return job_schema(job)
+    return job_answer(job)

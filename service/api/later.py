@@ -8,9 +8,10 @@ from typing import Annotated
 
 from fastapi import Depends, Request
 from fastapi.responses import JSONResponse
+from pydantic import TypeAdapter
 
 from service.admission import PersonOf
-from service.api.schemas.jobs import job_schema
+from service.api.schemas.jobs import JobAnswer, job_answer
 from service.background.job_desk import JobDesk
 from service.dependencies import JobDeskOf, SettingsOf
 from service.flows.receive import Reception
@@ -21,6 +22,7 @@ from service.records.received import SentFile
 PREFER, ASYNC = "Prefer", "respond-async"
 """Header and preference of RFC 7240."""
 ACCEPTED = 202
+JSON = TypeAdapter(JobAnswer)
 
 
 @dataclass(frozen=True)
@@ -40,7 +42,7 @@ class Later:
         """The job, with its address; what becomes of the upload is told there too."""
         job = self.desk.take_in(reception, file, self.person)
         headers = {"Location": f"/api/v1/jobs/{job.id}", "Preference-Applied": ASYNC}
-        return JSONResponse(job_schema(job).model_dump(mode="json"), ACCEPTED, headers)
+        return JSONResponse(JSON.dump_python(job_answer(job), mode="json"), ACCEPTED, headers)
 
 
 def _later(request: Request, settings: SettingsOf, desk: JobDeskOf, person: PersonOf) -> Later:

@@ -7,7 +7,7 @@ from fastapi import APIRouter, Query
 from service.api.received import REQUEST_BODY, FileOf
 from service.api.schemas.fields import Text
 from service.api.schemas.layouts import LayoutColumn, PreviewSchema
-from service.api.schemas.problem import Fault, errors
+from service.api.schemas.problem import errors, faults
 from service.dependencies import StorageOf
 from service.records.received import held
 from service.views.layout_preview import felt_length, first_rows, preview
@@ -31,7 +31,7 @@ def preview_layout(file: FileOf, storage: StorageOf, unit: Unit = "", unit_type:
         rows=seen["rows"],
         sheets=list(seen["sheets"]),
         columns=[LayoutColumn.model_validate(column) for column in seen["columns"]],
-        problems=[Fault(field=p.field, row=p.row, message=p.message) for p in found.problems],
+        problems=faults(found.problems),
         first_rows=[] if session is None else first_rows(session),
         felt=None if session is None else felt_length(session),
     )

@@ -7,7 +7,7 @@ from fastapi import APIRouter, Query
 from service.admission import PersonOf
 from service.api.schemas.fields import Number, Text, WindowOf
 from service.api.schemas.flags import Handling
-from service.api.schemas.models import ModelAndRecomputations, ModelPage, ModelSchema
+from service.api.schemas.models import ModelAndRecomputations, ModelDocument, ModelPage, model_document, moved_by
 from service.api.schemas.problem import errors
 from service.dependencies import Now, Reading, ReceptionOf
 from service.flows.recompute import recompute_beside
@@ -19,19 +19,18 @@ router = APIRouter(prefix="/models", tags=["models"])
 
 
 @router.post("/{id}/withdraw", status_code=201, responses=errors(400, 404, 409, 422))
-def withdraw_cause(id: Number, handling: Handling, reception: ReceptionOf, now: Now, person: PersonOf) -> ModelSchema:
+def withdraw_cause(id: Number, handling: Handling, reception: ReceptionOf, now: Now, person: PersonOf) -> ModelDocument:
     """Take an accepted cause out of the model: a revision of its own; sessions from now on are calibrated without.
     What a group of sessions showed goes out of the stored ones too."""
     made = withdraw_model(reception.storage, id, person.signs(handling.by), handling.why, now)
     recompute_beside(reception, now)
-    return ModelSchema.model_validate(made)
+    return model_document(made)
 
 
 @router.get("/{id}", responses=errors(404, 422))
 def read_model(id: Number, store: Reading) -> ModelAndRecomputations:
     """One revision, with what it moved in the sessions that it concerns."""
-    own = {**vars(store.models.get(id)), "recomputations": store.recomputations.of(id)}
-    return ModelAndRecomputations.model_validate(own, from_attributes=True)
+    return moved_by(store.models.get(id), store.recomputations.of(id))
 
 
 @router.get("", responses=errors(422))
@@ -43,5 +42,4 @@ def list_models(
 ) -> ModelPage:
     """Accepted causes, newest first."""
     found = store.models.page(ModelQuery(scope, subject, window.offset, window.limit))
-    listed = [ModelSchema.model_validate(revision) for revision in found]
-    return ModelPage(models=listed, page=window.page, limit=window.limit, next_page=window.next_after(len(listed)))
+    return ModelPage(models=list(map(model_document, found)), **window.place(len(found)))

@@ -10,18 +10,20 @@ from service.api.later import LaterOf
 from service.api.received import REQUEST_BODY, FileOf
 from service.api.schemas.events import NewStage
 from service.api.schemas.fields import Bound, Revision, SessionId, Text, WindowOf
-from service.api.schemas.jobs import JobSchema
+from service.api.schemas.jobs import JobAnswer
 from service.api.schemas.noise import NoiseDocument
-from service.api.schemas.papers import TraceabilitySchema
 from service.api.schemas.problem import errors
+from service.api.schemas.reservations import said
 from service.api.schemas.sessions import (
+    RECEIPT_EXAMPLE,
     CalibrationDocument,
     CommonMotionSchema,
     DecisionSchema,
-    ReceiptSchema,
+    ReceiptAnswer,
+    SaidSession,
     SessionPage,
-    SessionReportSchema,
-    SessionSchema,
+    SessionReportAnswer,
+    said_session,
 )
 from service.dependencies import Now, Reading, ReceptionOf, StorageOf
 from service.errors import NotFoundError
@@ -45,17 +47,18 @@ ANY_BYTES = {BYTES: {"schema": {"type": "string", "format": "binary"}}}
 @router.post(
     "",
     status_code=201,
-    response_model=ReceiptSchema,
+    response_model=ReceiptAnswer,
     responses={
-        200: {"model": ReceiptSchema, "description": "Stored before."},
-        202: {"model": JobSchema, "description": "Received: worked on beside the requests, as was asked for."},
+        200: {"model": ReceiptAnswer, "description": "Stored before."},
+        201: {"content": {"application/json": {"example": RECEIPT_EXAMPLE}}},
+        202: {"model": JobAnswer, "description": "Received: worked on beside the requests, as was asked for."},
         **errors(400, 404, 409, 413, 422, 507),
     },
     openapi_extra=REQUEST_BODY,
 )
 def upload_session(
     request: Request, response: Response, file: FileOf, reception: ReceptionOf, now: Now, later: LaterOf
-) -> ReceiptSchema | JSONResponse:
+) -> ReceiptAnswer | JSONResponse:
     """Upload a session file: it is checked, calibrated, judged, stored, diagnosed. The same content is stored once.
 
     A table of one's own layout comes with its `mapping`, as a part of the form.
@@ -73,7 +76,7 @@ def upload_session(
     url = str(request.url_for("read_session", id=receipt.id))
     response.status_code = 201 if receipt.created else 200
     response.headers["Location"] = url
-    return ReceiptSchema.model_validate({**vars(receipt), "url": url}, from_attributes=True)
+    return ReceiptAnswer(**said(receipt), url=url)
 
 
 @router.get("", responses=errors(422))
@@ -97,25 +100,22 @@ def list_sessions(
         unit=unit, unit_type=unit_type, stand=stand, since=since, until=until, state=state, verdict=verdict,
         order=order, backwards=backwards, after=after, offset=window.offset, limit=window.limit,
     )  # fmt: skip
-    listed = [SessionSchema.model_validate(session) for session in store.sessions.wanted(wanted)]
-    return SessionPage(sessions=listed, page=window.page, limit=window.limit, next_page=window.next_after(len(listed)))
+    found = store.sessions.wanted(wanted)
+    return SessionPage(sessions=list(map(said_session, found)), **window.place(len(found)))
 
 
 @router.get("/{id}", responses=errors(404, 422))
-def read_session(id: SessionId, store: Reading) -> SessionReportSchema:
+def read_session(id: SessionId, store: Reading) -> SessionReportAnswer:
     """One session with the decision on every parameter."""
     session = store.sessions.get(id)
-    judged = [DecisionSchema.model_validate(decision) for decision in store.sessions.decisions(id)]
-    together = [CommonMotionSchema.model_validate(motion) for motion in store.sessions.motions(id)]
     chain = traceability_of(store, session)
-    own = {
-        **vars(session),
-        "decisions": judged,
-        "common_motion": together,
-        "stand_certificate_expired": chain.has_expired,
-        "traceability": TraceabilitySchema.model_validate(chain),
-    }
-    return SessionReportSchema.model_validate(own, from_attributes=True)
+    return SessionReportAnswer(
+        **said(session),
+        decisions=tuple(map(DecisionSchema.model_validate, store.sessions.decisions(id))),
+        common_motion=tuple(map(CommonMotionSchema.model_validate, store.sessions.motions(id))),
+        stand_certificate_expired=chain.has_expired,
+        traceability=chain,
+    )
 
 
 @router.get("/{id}/calibration", responses=errors(404, 422), response_model=CalibrationDocument)
@@ -135,9 +135,9 @@ def read_noise(id: SessionId, store: Reading) -> NoiseDocument:
 
 
 @router.put("/{id}/stage", responses=errors(400, 404, 422))
-def mark_session(id: SessionId, new: NewStage, storage: StorageOf, now: Now, person: PersonOf) -> SessionSchema:
+def mark_session(id: SessionId, new: NewStage, storage: StorageOf, now: Now, person: PersonOf) -> SaidSession:
     """Say whether the session shows the unit as found or as left; the file's own word gives way to this."""
-    return SessionSchema.model_validate(set_stage(storage, id, new.stage, person.signs(new.by), now))
+    return said_session(set_stage(storage, id, new.stage, person.signs(new.by), now))
 
 
 @router.get("/{id}/file", responses={200: {"content": ANY_BYTES}, **errors(404, 422, 500)}, response_class=Response)

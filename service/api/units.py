@@ -10,19 +10,13 @@ from service.api.flags import WantedState, flag_page
 from service.api.negotiated import wanted_form
 from service.api.schemas.fields import Bound, Moment, Serial, Text, WantedText, WantedVerdict, WindowOf
 from service.api.schemas.flags import FlagPage
-from service.api.schemas.history import HistoryAsked, HistoryPage, HistoryPointSchema
-from service.api.schemas.models import RecalibratedSchema
-from service.api.schemas.outlook import OutlookSchema
-from service.api.schemas.papers import CustomerSchema, NewCustomer
+from service.api.schemas.history import HistoryAsked, HistoryPage
+from service.api.schemas.outlook import OutlookAnswer
+from service.api.schemas.papers import NewCustomer
 from service.api.schemas.problem import errors
-from service.api.schemas.units import (
-    NewLot,
-    UnitPage,
-    UnitReportSchema,
-    UnitSummarySchema,
-)
+from service.api.schemas.units import NewLot, SaidUnit, UnitPage, UnitReportSchema, said_unit
 from service.dependencies import CREW, Now, ReaderOf, Reading, ReadingFleet, SettingsOf, StorageOf
-from service.flows.recalibrate import recalibrate
+from service.flows.recalibrate import Recalibrated, recalibrate
 from service.flows.set_customer import set_customer
 from service.flows.set_lot import set_lot
 from service.records.fleet import FleetQuery, Order
@@ -60,8 +54,7 @@ def list_units(
         order=order, backwards=backwards, after=after,
     )  # fmt: skip
     found = store.fleet.units(wanted)
-    listed = [UnitSummarySchema.model_validate(unit) for unit in found]
-    return UnitPage(units=listed, page=window.page, limit=window.limit, next_page=window.next_after(len(listed)))
+    return UnitPage(units=list(map(said_unit, found)), **window.place(len(found)))
 
 
 @router.get(
@@ -75,12 +68,12 @@ def read_history(request: Request, serial: Serial, store: Reading, asked: Annota
     A table (CSV, Parquet, Arrow) that is not the last has a `Link` header to the next.
     """
     found = store.history.points(store.units.key(serial), asked.query)
-    following, form = asked.window.next_after(len(found)), wanted_form(request, asked.format)
+    form = wanted_form(request, asked.format)
     if form == "json":
-        points = [HistoryPointSchema.model_validate(point) for point in found]
-        answer = HistoryPage(unit=serial, points=points, page=asked.page, limit=asked.limit, next_page=following)
+        answer = HistoryPage(unit=serial, points=found, **asked.window.place(len(found)))
         return Response(answer.model_dump_json(), media_type="application/json", headers=BY_HEADER)
     table = as_table(history_table(serial, found), form, f"{serial}-history")
+    following = asked.window.next_after(len(found))
     if following is not None:
         table.headers["Link"] = f'<{request.url.include_query_params(page=following)}>; rel="next"'
     return table
@@ -99,42 +92,41 @@ def read_outlook(
     now: Now,
     reader: ReaderOf,
     until: Annotated[Moment | None, Query(description="Also the risk of waiting until this date.")] = None,
-) -> OutlookSchema:
+) -> OutlookAnswer:
     """When the unit must come back and why: drift, forecast to tolerance, risk of waiting."""
     reader.until_dated(serial)
     found = outlook_of(store, serial, now)
     risk = None if until is None else found.risk_by(until)
     asked = None if until is None or risk is None else RiskPoint(until, risk)
-    return OutlookSchema.model_validate({**vars(found), "until": asked})
+    return OutlookAnswer(**vars(found), until=asked)
 
 
 @router.put("/{serial:path}/lot", responses=errors(400, 404, 422))
-def change_lot(serial: Serial, new: NewLot, storage: StorageOf, now: Now, person: PersonOf) -> UnitSummarySchema:
+def change_lot(serial: Serial, new: NewLot, storage: StorageOf, now: Now, person: PersonOf) -> SaidUnit:
     """Record the unit's production lot; a lot that drifts unlike the others is named on the fleet page."""
-    return UnitSummarySchema.model_validate(set_lot(storage, serial, new.lot or None, now, who=person.signs(CREW)))
+    return said_unit(set_lot(storage, serial, new.lot or None, now, who=person.signs(CREW)))
 
 
 @router.get("/{serial:path}/customer", responses=errors(404, 422))
-def read_customer(serial: Serial, store: Reading) -> CustomerSchema:
+def read_customer(serial: Serial, store: Reading) -> Customer:
     """For whom the unit is calibrated."""
-    return CustomerSchema.model_validate(store.units.customer(serial))
+    return store.units.customer(serial)
 
 
 @router.put("/{serial:path}/customer", responses=errors(400, 404, 422))
-def change_customer(serial: Serial, new: NewCustomer, storage: StorageOf, now: Now, person: PersonOf) -> CustomerSchema:
+def change_customer(serial: Serial, new: NewCustomer, storage: StorageOf, now: Now, person: PersonOf) -> Customer:
     """Record for whom the unit is calibrated; its certificates name them."""
     customer = Customer(new.name.strip(), new.address.strip())
-    return CustomerSchema.model_validate(set_customer(storage, serial, customer, now, who=person.signs(new.by)))
+    return set_customer(storage, serial, customer, now, who=person.signs(new.by))
 
 
 @router.post("/{serial:path}/recalibrate", responses=errors(404, 422))
 def recalibrate_unit(
     serial: Serial, storage: StorageOf, settings: SettingsOf, now: Now, person: PersonOf
-) -> RecalibratedSchema:
+) -> Recalibrated:
     """Compute the stored sessions again under the model in force. What was computed before stays readable."""
     k, who = settings.coverage_factor, person.signs("engineer")
-    done = recalibrate(storage, serial, now, coverage_factor=k, who=who)
-    return RecalibratedSchema.model_validate(done)
+    return recalibrate(storage, serial, now, coverage_factor=k, who=who)
 
 
 @router.get("/{serial:path}", responses=errors(404, 422))

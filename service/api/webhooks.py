@@ -7,10 +7,11 @@ from fastapi import APIRouter, Query
 from service.admission import PersonOf
 from service.api.schemas.fields import Limit, Name, Number
 from service.api.schemas.problem import errors
-from service.api.schemas.webhooks import DeliveryList, DeliverySchema, NewWebhook, WebhookList, WebhookSchema
+from service.api.schemas.webhooks import DeliveryList, NewWebhook, WebhookList
 from service.dependencies import Now, Reading, SettingsOf, StorageOf
 from service.flows.register_webhook import register_webhook as register
 from service.flows.remove_webhook import remove_webhook
+from service.records.webhook import Webhook
 
 router = APIRouter(prefix="/webhooks", tags=["webhooks"])
 
@@ -18,23 +19,21 @@ router = APIRouter(prefix="/webhooks", tags=["webhooks"])
 @router.get("", responses=errors())
 def list_webhooks(store: Reading) -> WebhookList:
     """Every address that is told; secrets are not shown."""
-    return WebhookList(webhooks=[WebhookSchema.model_validate(webhook) for webhook in store.webhooks.every()])
+    return WebhookList(webhooks=store.webhooks.every())
 
 
 @router.post("", status_code=201, responses=errors(400, 422))
-def register_webhook(
-    new: NewWebhook, storage: StorageOf, settings: SettingsOf, now: Now, person: PersonOf
-) -> WebhookSchema:
+def register_webhook(new: NewWebhook, storage: StorageOf, settings: SettingsOf, now: Now, person: PersonOf) -> Webhook:
     """Tell an address of flags and verdicts from now on. Its host must be among those that the operator allows."""
     webhook = register(storage, settings.webhook_hosts, new.url, new.secret, who=person.signs(new.by), now=now)
-    return WebhookSchema.model_validate(webhook)
+    return webhook
 
 
 @router.get("/{id}/deliveries", responses=errors(404, 422))
 def list_deliveries(id: Number, store: Reading, limit: Limit = 100) -> DeliveryList:
     """The latest messages to an address, and what became of them."""
     found = store.webhooks.deliveries(store.webhooks.get(id).id, limit)
-    return DeliveryList(deliveries=[DeliverySchema.model_validate(delivery) for delivery in found])
+    return DeliveryList(deliveries=found)
 
 
 @router.delete("/{id}", status_code=204, responses=errors(404, 422))

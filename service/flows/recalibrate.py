@@ -4,6 +4,8 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 
+from pydantic import computed_field
+
 from estimator.errors import SessionError
 from estimator.results import Calibration
 from estimator.session import IN_SERVICE
@@ -18,6 +20,7 @@ from service.judging.calibrate import Basis, calibrate, rests_on_model
 from service.judging.known_unit import known_unit
 from service.judging.model_in_force import model_of
 from service.judging.moved import furthest, moved_parameters, moved_verdicts
+from service.records.answer import Hidden, answer
 from service.records.model import Model, ModelRevision, Scope
 from service.records.recomputation import LeftSession, MovedParameter, MovedVerdict
 from service.records.session import ParameterValue, StoredSession
@@ -26,27 +29,32 @@ from service.storage.files import LOST
 from service.storage.store import Store
 
 
+@answer
 @dataclass(frozen=True)
 class Recalibrated:
-    """What became of a unit's stored sessions under the model in force."""
+    """What became of a unit's stored sessions."""
 
     unit: str
+    """Serial number of the unit."""
     sessions: int
+    """How many it has."""
     recomputed: int
+    """How many have a new calibration under the model in force."""
     unchanged: int
-    """Computed under this model before."""
-    kept: tuple[LeftSession, ...]
+    """How many had one already."""
+    kept: Hidden[tuple[LeftSession, ...]]
     """Sessions that cannot be calibrated under it, or whose file is lost; they keep what they have."""
     revision: int
-    """The latest revision that any of them rests on."""
-    verdicts: tuple[MovedVerdict, ...] = ()
+    """The latest model revision that any of them rests on; 0 is the baseline."""
+    verdicts: Hidden[tuple[MovedVerdict, ...]] = ()
     """Sessions of the unit that have another verdict since."""
-    furthest: MovedParameter | None = None
+    furthest: Hidden[MovedParameter | None] = None
     """The parameter that moved most."""
 
+    @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
     @property
     def left(self) -> int:
-        """How many sessions keep what they have."""
+        """How many cannot be calibrated under it and keep what they have."""
         return len(self.kept)
 
 

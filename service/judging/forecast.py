@@ -16,6 +16,7 @@ from service.judging.histories import Histories
 from service.records.decision import Verdict
 from service.records.outlook import (
     Action,
+    ChangeKind,
     DueBasis,
     DueRule,
     FanPoint,
@@ -39,7 +40,9 @@ ACTIONS = {
     DueRule.MAY_BE_OUT: Action.REPEAT,
 }
 """What a unit needs next that waits for no date."""
-CALLED = {Kind.JUMP: "jump", Kind.LATE: "drift", Kind.START: "drift", Kind.AGING: "aging", Kind.WALK: "walk"}
+CALLED: dict[Kind, ChangeKind] = {
+    Kind.JUMP: "jump", Kind.LATE: "drift", Kind.START: "drift", Kind.AGING: "aging", Kind.WALK: "walk"
+}  # fmt: skip
 """Kinds of change as `FoundChange` has them."""
 
 

@@ -66,7 +66,7 @@ def certificate_page(
     session: StoredSession, papers: Papers, person: Person, *, four_eyes: bool, wrong: str = ""
 ) -> CertificatePage:
     """The page of a session's certificate as somebody sees it."""
-    rows = tuple(_issue(one) for one in papers.issues)
+    rows = tuple(_issue(one) for one in papers.certificates)
     signs = None if session.simulated else _next(papers)
     return CertificatePage(
         session=session,
@@ -88,19 +88,19 @@ def _next(papers: Papers) -> Meaning | None:
     """The first that nobody has signed, of an issue that states what is stored."""
     if not papers.is_current:
         return None
-    given = {signature.meaning for signature in papers.issues[-1].signatures}
+    given = {signature.meaning for signature in papers.certificates[-1].signatures}
     return next((meaning for meaning in Meaning if meaning not in given), None)
 
 
 def _issue(one: SignedIssue) -> IssueRow:
     return IssueRow(
-        number=one.issue.number,
-        issued=day_of(one.issue.issued_at),
-        who=one.issue.who,
+        number=one.number,
+        issued=day_of(one.issued_at),
+        who=one.who,
         state=RELEASED if one.is_approved else REVIEWED if one.signatures else OPEN,
         is_approved=one.is_approved,
         signatures=tuple(_signature(signature) for signature in one.signatures),
-        content_hash=one.issue.content_hash,
+        content_hash=one.content_hash,
     )
 
 

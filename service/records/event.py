@@ -3,24 +3,32 @@
 from dataclasses import dataclass
 from datetime import datetime
 
+from service.records.answer import answer
 from service.records.state import RecordState
 
 SERVICES = ("adjustment", "repair", "sensor-swap", "reference", "service")
 """What can be done to a unit: each is a break, after which the next session is the new reference."""
 
 
+@answer
 @dataclass(frozen=True)
 class Service:
-    """A known break in a unit's history: adjustment, repair, sensor swap, new reference."""
+    """A known break in a unit's history."""
 
     id: int
+    """Number of the entry."""
     unit: str
+    """Serial number of the unit."""
     at: datetime
+    """When it was done, UTC."""
     kind: str
+    """What was done."""
     note: str
+    """Why, what exactly."""
     who: str = ""
+    """Who did it."""
     sensor: str = ""
-    """That it concerns; empty for the whole unit."""
+    """The sensor that it concerns; empty for the whole unit."""
     state: RecordState = RecordState.ACCEPTED
     """One that was withdrawn is no break."""
 
@@ -38,28 +46,40 @@ class NewService:
     """That it concerns; empty for the whole unit."""
 
 
+@answer
 @dataclass(frozen=True)
 class Withdrawal:
     """Why a note no longer holds."""
 
     at: datetime
+    """When it was withdrawn, UTC."""
     who: str
+    """By whom."""
     why: str
+    """Why."""
 
 
+@answer
 @dataclass(frozen=True)
 class Note:
-    """A remark on a unit's history at a date."""
+    """A remark on a unit's history; never changed."""
 
     id: int
+    """Number of the note."""
     unit: str
+    """Serial number of the unit."""
     at: datetime
+    """The date it is about, UTC."""
     text: str
+    """What is worth knowing."""
     who: str
+    """Who said it."""
     recorded_at: datetime
+    """When it was written, UTC."""
     withdrawal: Withdrawal | None
+    """Why it no longer holds; null while it does."""
     session: str | None = None
-    """That it is about; None for the unit as a whole."""
+    """The session that it is about; null for the unit as a whole."""
 
 
 @dataclass(frozen=True)
@@ -67,22 +87,29 @@ class NewAttachment:
     """A file that somebody attached."""
 
     session: str | None
-    """None for the unit as a whole."""
+    """The session that it is attached to; null for the unit as a whole."""
     sha256: str
+    """SHA-256 of the bytes."""
     filename: str
-    """As it was called, printable; only ever shown, never used as a path."""
+    """What the file was called, printable; only ever shown, never used as a path."""
     size: int
     """Bytes."""
     text: str
     """What it shows."""
     who: str
+    """Who attached it."""
     at: datetime
+    """When, UTC."""
 
 
+@answer
 @dataclass(frozen=True)
 class Attachment(NewAttachment):
-    """The same, as it is kept."""
+    """A file that somebody attached; never changed."""
 
     id: int
+    """Number of the attachment."""
     unit: str
+    """Serial number of the unit."""
     withdrawal: Withdrawal | None
+    """Why it is given out no more; null while it is."""

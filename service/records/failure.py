@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
+from service.records.answer import answer
+
 
 class FailedKind(StrEnum):
     """What is done beside the requests."""
@@ -25,11 +27,14 @@ class FailedKind(StrEnum):
     """To another program."""
 
 
+@answer
 @dataclass(frozen=True)
 class Failed:
-    """One piece of it."""
+    """One piece of work beside the requests that has failed."""
 
     kind: FailedKind
+    """What is done."""
     of: str
     """Session, unit, group, job or address."""
     why: str
+    """Why it failed, in short; the log says more."""

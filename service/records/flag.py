@@ -5,6 +5,7 @@ from datetime import datetime
 from enum import StrEnum
 from uuid import NAMESPACE_URL, uuid5
 
+from service.records.answer import Hidden, answer
 from service.records.model import Scope
 
 
@@ -92,18 +93,24 @@ class Concern:
         return self.matter, self.place
 
 
+@answer
 @dataclass(frozen=True)
 class Notice:
-    """What happened to a flag or to a unit's verdict; never changed."""
+    """One change of a flag."""
 
-    id: int
-    unit: str
-    flag: int | None
+    id: Hidden[int]
+    unit: Hidden[str]
+    flag: Hidden[int | None]
     kind: NoticeKind
+    """What happened."""
     at: datetime
+    """When, UTC."""
     who: str
+    """Through whom; `imu-health` for the service itself."""
     text: str
+    """What was seen, or why it was done."""
     session: str | None
+    """The session that it follows from, if one does."""
 
     @property
     def key(self) -> str:
@@ -111,31 +118,40 @@ class Notice:
         return str(uuid5(NAMESPACE_URL, f"imu-health/{self.unit}/{self.at.isoformat()}/{self.id}"))
 
 
+@answer
 @dataclass(frozen=True)
 class Flag:
     """A matter that somebody must look after."""
 
     id: int
+    """Number of the flag."""
     unit: str
+    """Serial number of the unit; of another scope, of the unit that showed it last."""
     matter: Matter
+    """What it is about."""
     place: str
+    """The sensor or the stand that it is about; empty for the unit as a whole."""
     state: FlagState
-    severity: int
+    """`raised`, `acknowledged` or `resolved`."""
+    severity: Hidden[int]
     summary: str
+    """The matter as the latest session shows it, in a sentence or two."""
     proposal: str
     """Why it could be resolved; empty while nothing speaks for it."""
     session: str | None
     """The latest session that showed it."""
     raised_at: datetime
+    """When it was first raised, UTC."""
     changed_at: datetime
+    """When it last changed, UTC."""
     assignee: str = ""
     """Who is to look after it; empty where nobody in particular is."""
     scope: Scope = Scope.UNIT
-    """Whether it is about the unit, or about its whole type or a stand, which the unit only showed last."""
+    """Whether it is about the unit, its whole unit type or a stand."""
     subject: str = ""
-    """Name of the type or the stand; empty where it is about the unit."""
+    """Name of the unit type or the stand; empty where it is about the unit."""
     changes: tuple[Notice, ...] = ()
-    """Its life, oldest first."""
+    """Its life, oldest first; nothing of it is ever changed."""
 
     @property
     def key(self) -> tuple[str, str]:

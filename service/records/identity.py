@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 
+from service.records.answer import Hidden, answer
+
 
 class Role(StrEnum):
     """What somebody may do; each may all that the ones before it may."""
@@ -26,25 +28,33 @@ RANKS = {role: rank for rank, role in enumerate(Role)}
 """How far each role reaches."""
 
 
+@answer
 @dataclass(frozen=True)
 class Account:
-    """Somebody who may sign in. Accounts are never deleted, for papers and the audit trail name them."""
+    """Somebody who may sign in."""
 
-    id: int
+    id: Hidden[int]
     login: str
+    """What the person signs in with."""
     name: str
     """As papers, flags and the audit trail name the person."""
     role: Role
+    """What the person may do."""
     is_active: bool
+    """Whether the person may sign in."""
     created_at: datetime
+    """When, UTC."""
     has_password: bool
+    """Whether a password was chosen already."""
 
 
+@answer
 @dataclass(frozen=True)
 class Token:
-    """What a program shows instead of a password; its secret is shown once, when it is made."""
+    """What a program shows instead of a password."""
 
     id: int
+    """Number of the token."""
     login: str
     """Account that it acts for."""
     label: str
@@ -52,10 +62,13 @@ class Token:
     role: Role
     """At most this, and never more than its account may."""
     created_at: datetime
+    """When, UTC."""
     expires_at: datetime
+    """Until when it holds, UTC."""
     revoked_at: datetime | None
+    """When it was revoked, UTC."""
     last_used_at: datetime | None
-    """To the hour."""
+    """To the hour, UTC."""
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,10 @@ from datetime import datetime, timedelta
 from enum import StrEnum
 from typing import Any
 
+from pydantic import computed_field
+
+from service.records.answer import Hidden, answer
+from service.records.arrival import under_way
 from service.records.model import Scope
 from service.records.received import Replaced
 
@@ -83,12 +87,15 @@ class NewJob:
     """The file that is taken in; ``subject`` is its name."""
 
 
+@answer
 @dataclass(frozen=True)
 class JobFailure:
-    """A piece of the work that could not be done, and did not stop the others."""
+    """A piece of the work that could not be done."""
 
     subject: str
+    """Serial number of the unit; empty for the whole."""
     reason: str
+    """Why, and what helps."""
 
 
 @dataclass(frozen=True)
@@ -100,39 +107,55 @@ class Piece:
     failure: JobFailure | None = None
 
 
+@answer
 @dataclass(frozen=True)
 class Made:
     """The file that a job made."""
 
     filename: str
+    """Name for whoever keeps it."""
     size: int
+    """Bytes."""
     sha256: str
+    """SHA-256 of its content, hexadecimal."""
     until: datetime
     """It is kept until then."""
 
 
+@answer
 @dataclass(frozen=True)
 class Job:
     """Long work, as it stands."""
 
     id: int
+    """Number of the job."""
     kind: JobKind
+    """What kind of work."""
     scope: Scope | None
+    """None for the whole fleet."""
     subject: str
-    form: str
-    language: str
-    revision: int
+    """Serial number or name; of an upload the file's; empty for the whole fleet."""
+    form: Hidden[str]
+    language: Hidden[str]
+    revision: Hidden[int]
     who: str
-    account: str
+    """Who asked for it."""
+    account: Hidden[str]
     state: JobState
+    """How far it is."""
     asked_at: datetime
+    """When it was asked for, UTC."""
     begun_at: datetime | None
+    """When it was begun, UTC; none while it waits."""
     ended_at: datetime | None
+    """When its last piece was begun, UTC; none while it is not ended."""
     cancelled_by: str
+    """Who cancelled it; empty where nobody did."""
     done: int
-    """Pieces that are whole."""
+    """Pieces that are whole: of a recalibration, units; of an upload, kilobytes read."""
     total: int
-    cursor: int
+    """Pieces in all."""
+    cursor: Hidden[int]
     """The last piece that is whole, so that whoever takes it up again begins behind it."""
     recomputed: int
     """Sessions that have another calibration since."""
@@ -141,18 +164,31 @@ class Job:
     failed: int
     """Pieces that could not be done."""
     failures: tuple[JobFailure, ...]
-    """The first of them."""
+    """The first hundred of them."""
     held_up: str
     """Why it waits although it was begun; empty where it does not."""
     made: Made | None
-    sent: Sent | None = None
+    """What it made, at `/jobs/{id}/file`."""
+    sent: Hidden[Sent | None] = None
     """The file that is taken in: of its ``total`` kilobytes ``done`` were read, after ``cursor`` times through all."""
-    is_storing: bool = False
+    is_storing: Hidden[bool] = False
     """Whether that file is read and being stored, so that nobody cancels it any more."""
     session: str = ""
-    """That it became; empty where it became none."""
-    refusal: int | None = None
+    """Of an upload: the session that it became; empty while it is none."""
+    refusal: Hidden[int | None] = None
     """Number of its refusal, where it could not be used."""
+
+    @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
+    @property
+    def times(self) -> int:
+        """Of an upload: how often all of it was read already; a log is read several times."""
+        return self.cursor if self.kind is JobKind.UPLOAD else 0
+
+    @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
+    @property
+    def upload(self) -> str:
+        """Of an upload: its id at `/uploads/{id}`, which tells what becomes of it."""
+        return under_way(self.id) if self.kind is JobKind.UPLOAD else ""
 
     @property
     def is_open(self) -> bool:

@@ -6,6 +6,7 @@ from enum import StrEnum
 
 from estimator.diagnosis.results import Gain
 from estimator.groups.fixed import FixedEffect
+from service.records.answer import answer
 
 
 class Scope(StrEnum):
@@ -87,25 +88,34 @@ class Evidence:
     """None of what a single session showed: there each session fits it."""
 
 
+@answer
 @dataclass(frozen=True)
 class ModelRevision:
-    """One accepted cause. Revisions are numbered through, so that a number says which model a result rests on."""
+    """One accepted or withdrawn cause: a numbered revision of a model."""
 
     id: int
-    """0 before it is stored."""
+    """Number of the revision; all models are numbered through."""
     scope: Scope
+    """Whose model it is."""
     subject: str
     """Serial number of the unit, or name of the unit type or of the stand."""
     cause: str
+    """Identifier of the cause."""
     sensors: tuple[str, ...]
+    """Sensors that it acts on; none for a cause of stand or fixture."""
     session: str
+    """The session that showed it."""
     evidence: Evidence | None
-    """None of a revision that withdraws another."""
+    """p-value, strength, amplitude with sigma, and gain of the finding; `pooled`: what a group of sessions told beside,
+    null where a single session showed it."""
     accepted_by: str
+    """Who accepted it."""
     note: str
+    """Why."""
     accepted_at: datetime
+    """When, UTC."""
     withdraws: int | None = None
-    """The revision that this one withdraws; None for an accepted cause."""
+    """The revision that this one withdraws; null for an accepted cause."""
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,11 @@
 from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
+from typing import Literal
+
+from service.records.answer import Hidden, answer
+
+ChangeKind = Literal["jump", "drift", "aging", "walk"]
 
 
 @dataclass(frozen=True)
@@ -78,128 +83,156 @@ class DueRule(StrEnum):
     """No session has shown it."""
 
 
+@answer
 @dataclass(frozen=True)
 class DueBasis:
-    """What set a date: the one fact that every sentence about the date is made from."""
+    """The rule that set the date, with its parts."""
 
     rule: DueRule
+    """The rule that decided."""
     at: datetime | None = None
-    """Of the session or the service that the rule starts from."""
+    """Of the session or the service that it starts from."""
     interval_days: float | None = None
-    """Of `DueRule.INTERVAL` and `DueRule.NO_TREND`."""
+    """Longest interval, where the rule is one."""
     risk: float | None = None
-    """The level, of `DueRule.RISK` and `DueRule.MAY_BE_OUT`."""
+    """Chance of being out of tolerance at the date, where that set it."""
     sensor: str | None = None
-    """That adds most to the risk, of the same two."""
+    """The sensor that adds most to that chance."""
     parameter: str | None = None
-    because: str = ""
+    """Its parameter."""
+    because: Hidden[str] = ""
     """Why the session did not decide, in a sentence, of `DueRule.UNDECIDED`."""
 
 
+@answer
 @dataclass(frozen=True)
 class FoundChange:
     """A change of one parameter that chance does not explain."""
 
-    kind: str
-    """``jump``, ``drift``, ``aging``, or ``walk``: at no steady rate."""
+    kind: ChangeKind
+    """`walk`: it moved at no steady rate."""
     after: datetime
-    """The last session before it; of a drift from the start, and of a walk, the first session."""
+    """The last session before it, or the first of all."""
     before: datetime
     """The first session that shows it."""
     size: float
-    """SI or relative, for the axis its length; of a drift a year, of an aging the change of its first year."""
+    """SI or relative, of an axis its length; of a drift a year, of aging the first year's."""
     sigma: float
+    """Standard uncertainty of it."""
     p_value: float
     """Over all kinds, sizes and times of change that were tried on the parameter."""
 
 
+@answer
 @dataclass(frozen=True)
 class TemperatureCoefficient:
     """How a parameter follows the temperature of its sessions."""
 
     value: float
-    """SI or relative per °C; for the axis its length."""
+    """SI or relative per °C; of an axis its length."""
     sigma: float
+    """Standard uncertainty of it."""
     p_value: float
+    """Chance of one this far from zero when there is none."""
     is_found: bool
     """Whether the trend goes on without it."""
 
 
+@answer
 @dataclass(frozen=True)
 class ParameterTrend:
-    """One parameter of one sensor since the last break."""
+    """One parameter of one sensor since the unit's last break."""
 
     sensor: str
+    """Name of the sensor."""
     parameter: str
+    """`scale`, `bias`, `quadratic`, `axis` or `misalignment`."""
     rate_per_year: float
-    """SI a year; relative for scale; for the axis along the direction in which it has moved."""
+    """Drift a year."""
     rate_sigma: float
+    """Standard uncertainty of it, that of the random walk included."""
     significance: float
-    """p-value: the chance of changes as evident as these, of any kind and at any time, where nothing happens."""
+    """p-value: chance of changes as evident, of any kind and at any time, where nothing happens."""
     step_dates: tuple[datetime, ...]
     """Sessions that first showed a sudden change."""
     level: float
-    """Deviation from the reference at the last session, all sessions considered."""
+    """Deviation at the last session, all sessions considered."""
     level_sigma: float
+    """Standard uncertainty of it."""
     reach_50: datetime | None
-    """The tolerance is reached by then with 50 % probability; None beyond twelve years."""
+    """By then the tolerance is reached with 50 % probability."""
     reach_90: datetime | None
-    """The early bound: before it the tolerance is reached with only 10 % probability."""
+    """Before it the tolerance is reached with 10 % probability only."""
     population_z: float | None
-    """How far the rate stands from those of the other units of the type, in their robust spread; None with too few."""
+    """The rate among those of the type's units, in their robust spread."""
     kind: str = ""
+    """`accelerometer` or `gyroscope`."""
     tolerance: float = 1.0
-    since: datetime | None = None
+    """T, SI; relative for scale."""
+    since: Hidden[datetime | None] = None
     """Of the first session that the trend goes through: the reference, or the first after a sudden change."""
-    fan: tuple[FanPoint, ...] = ()
+    fan: Hidden[tuple[FanPoint, ...]] = ()
     """From the last session on, a year ahead."""
     changes: tuple[FoundChange, ...] = ()
-    """What was found at the level over all parameters of the unit, the most evident first."""
+    """Changes that chance does not explain, most evident first."""
     temperature: TemperatureCoefficient | None = None
-    """None where the sessions do not span temperature."""
+    """How it follows the sessions' temperature; null where they do not span any."""
 
 
+@answer
 @dataclass(frozen=True)
 class RiskPoint:
-    """Chance that any parameter of the unit has reached its tolerance by a date."""
+    """The risk of waiting until a date."""
 
     at: datetime
+    """Date, UTC."""
     risk: float
+    """Chance that any parameter has reached its tolerance by then."""
 
 
+@answer
 @dataclass(frozen=True)
 class UnitOutlook:
-    """When a unit must be calibrated next and what its parameters do until then."""
+    """When a unit must be calibrated next, why, and what waiting costs."""
 
     serial: str
+    """Serial number."""
     due: datetime | None
-    """None for a unit without a calibration session."""
+    """Next calibration: before the risk passes 5 %, never after the longest interval; null: at once."""
     overdue: bool
+    """Whether that has passed."""
     reason: str
-    """Why then, in one sentence a technician understands."""
+    """Why then, in one sentence, made from `basis`."""
     sensor: str | None
-    """That reaches its tolerance first; None where none does within twelve years."""
+    """The sensor that reaches its tolerance first."""
     parameter: str | None
+    """Its parameter."""
     reach_50: datetime | None
+    """By then it is reached with 50 % probability."""
     reach_90: datetime | None
+    """Before it it is reached with 10 % probability only."""
     risk_at_due: float | None
-    """Chance that any parameter is out of tolerance by the due date; None where there is no trend yet."""
+    """Chance that any parameter is out of tolerance by the due date."""
     trends: tuple[ParameterTrend, ...]
+    """One a sensor and parameter."""
     unit_type: str = ""
+    """Name of its type."""
     lot: str | None = None
+    """Production lot, where it is recorded."""
     risk: tuple[RiskPoint, ...] = ()
-    """The risk of waiting, date by date from the latest session on."""
-    together: tuple[str, ...] = ()
+    """The risk of waiting, from the latest session on."""
+    together: Hidden[tuple[str, ...]] = ()
     """What all sensors did together at the latest calibration, in sentences."""
     action: Action = Action.CALIBRATE
+    """What the unit needs next."""
     learned_from: int = 0
-    """Histories of its type that the forecast rests on; 0 where it rests on units in general."""
+    """Histories of the type that the forecast rests on; 0 where it rests on units in general."""
     failed: str = ""
-    """That it could not be worked out with the latest records, why and who must act; empty else."""
-    rests_on: str = ""
+    """That it could not be worked out with the latest records, why and who must act; empty where it was."""
+    rests_on: Hidden[str] = ""
     """Hash of those histories: another one means that the type has more to tell."""
     basis: DueBasis | None = None
-    """What set the date; None in an outlook of an earlier version."""
+    """The rule that set the date; null in an outlook that an earlier version made, until it is renewed."""
 
     def risk_by(self, at: datetime) -> float | None:
         """Chance that any parameter is out of tolerance by a date; None where there is no trend."""

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from datetime import date, datetime
 from enum import StrEnum
 
+from service.records.answer import answer
+
 NOT_STATED = "not stated"
 """Stands in a paper where a name is wanted and nobody gave one: nothing is ever made up."""
 
@@ -20,26 +22,34 @@ class Laboratory:
     """Where it measures, if that is not at its address."""
 
 
+@answer
 @dataclass(frozen=True)
 class Customer:
-    """For whom a unit is calibrated; empty texts are not stated."""
+    """For whom a unit is calibrated, as its certificates name them."""
 
     name: str = ""
+    """Empty where it is not stated."""
     address: str = ""
+    """Where they can be reached."""
 
 
 NOBODY = Customer()
 """Of a unit for which no customer is stated."""
 
 
+@answer
 @dataclass(frozen=True)
 class StandCertificate:
     """The certificate of a stand's own calibration."""
 
     stand: str
+    """Name of the stand."""
     number: str
+    """As printed on it."""
     issued_by: str
+    """The laboratory that calibrated the stand."""
     issued_on: date
+    """From this day on it speaks for the stand."""
     valid_until: date
     """The last day on which it holds."""
 
@@ -55,13 +65,16 @@ class TraceState(StrEnum):
     NO_STAND = "no-stand"
 
 
+@answer
 @dataclass(frozen=True)
 class Traceability:
     """What a session's numbers hang on."""
 
     state: TraceState
+    """`traceable`; `interrupted`: the stand's certificate had expired at the day of measurement; `not-stated`: none
+    that held is on record; `no-stand`."""
     text: str
-    """In one or two sentences."""
+    """In one or two sentences, as on the certificate."""
     certificate: StandCertificate | None
     """Of the stand, the latest that was issued by the day of measurement."""
 
@@ -71,16 +84,22 @@ class Traceability:
         return self.state is TraceState.INTERRUPTED
 
 
+@answer
 @dataclass(frozen=True)
 class Issue:
     """One issue of a session's certificate."""
 
     number: str
+    """Session, model revision, and count of the issue."""
     session: str
+    """Id of the session."""
     revision: int
+    """Model revision of its numbers; 0 is the baseline."""
     issued_at: datetime
+    """UTC."""
     who: str
+    """Who issued it."""
     replaces: str | None
-    """Number of the certificate that this one takes the place of; None for a session's first."""
+    """Number of the certificate that it takes the place of."""
     content_hash: str
     """SHA-256 of all that it states."""

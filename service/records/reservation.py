@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
+from service.records.answer import answer
 from service.records.decision import Verdict
 
 
@@ -27,23 +28,29 @@ class Doubt(StrEnum):
     """The readings contradict the standard errors that the file states."""
 
 
+@answer
 @dataclass(frozen=True)
 class Reservation:
-    """One thing that speaks against a verdict."""
+    """One thing that speaks against taking a verdict as it stands."""
 
     kind: Doubt
+    """`record`: the file is wrong. `not-checked`: no causes could be looked for. `pending`: they are still being looked
+    for; ask again. `temperature`: it was measured far from the temperatures of the unit's reference and earlier
+    sessions, which can make or hide a change. `cause`: a named cause takes more than a third of a tolerance.
+    `other-model`: the verdict is another under a model that the readings leave standing. `unexplained`: so does
+    structure that no known cause explains. `stated-errors`: the readings contradict the standard errors of the file."""
     text: str
-    """What is the matter, as a clause that stands after ``but``."""
+    """What is the matter, as a clause that stands after `but`."""
     advice: str
     """What to do about it, as a clause."""
     sensors: tuple[str, ...] = ()
     """That it concerns; empty where it concerns all, or none in particular."""
     cause: str | None = None
-    """Identifier of the named cause."""
+    """The named cause."""
     parameter: str | None = None
     """Whose tolerance the size is held against."""
     size: float | None = None
-    """In the tolerance's SI unit (relative for a scale factor); None where there is none to state."""
+    """In the tolerance's unit, SI; relative for a scale factor."""
     uncertainty: float | None = None
     """Standard uncertainty of the size."""
     share: float | None = None

@@ -4,6 +4,10 @@ from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 
+from pydantic import computed_field
+
+from service.records.answer import Hidden, answer
+
 
 class ListPage(StrEnum):
     """Lists of which views are kept."""
@@ -18,26 +22,33 @@ class ListPage(StrEnum):
         return "/" if self is ListPage.FLEET else f"/{self}"
 
 
+@answer
 @dataclass(frozen=True)
 class SavedView:
-    """What a list is asked for, under a name."""
+    """A view that is kept."""
 
     id: int
+    """Number of the view."""
     page: ListPage
+    """Of which list."""
     name: str
-    owner: str
+    """Its name."""
+    owner: Hidden[str]
     """Login of whose it is; empty where everybody has it."""
     query: str
-    """What stands behind the `?` of the list's address: filter and order."""
+    """What stands behind the `?` of the list's address."""
     who: str
-    """Who saved it last."""
+    """Who kept it last."""
     saved_at: datetime
+    """When, UTC."""
 
+    @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
     @property
     def url(self) -> str:
-        """Its address."""
+        """Its address on this service."""
         return f"{self.page.path}?{self.query}" if self.query else self.page.path
 
+    @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
     @property
     def shared(self) -> bool:
         """Whether everybody has it."""

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 
+from service.records.answer import answer
+
 
 class Meaning(StrEnum):
     """What a signature says; in the order in which they are given."""
@@ -12,18 +14,21 @@ class Meaning(StrEnum):
     APPROVED = "approved"
 
 
+@answer
 @dataclass(frozen=True)
 class Signature:
-    """One signature under one issue of a certificate."""
+    """One signature under a certificate."""
 
     certificate: str
-    """Number of the issue."""
+    """Number of the certificate."""
     meaning: Meaning
+    """What it says."""
     login: str
-    """Account that signed, by its password."""
+    """Account that signed, with its password."""
     name: str
-    """As it was printed when it was signed."""
+    """As it is printed."""
     signed_at: datetime
+    """UTC."""
     content_hash: str
     """SHA-256 of all that the certificate stated when it was signed."""
 

@@ -5,6 +5,7 @@ from datetime import datetime
 from math import isfinite
 
 from estimator.health.common_motion import AXES, SCALES
+from service.records.answer import answer
 
 STILL: dict[str, tuple[tuple[float, ...], tuple[tuple[float, ...], ...]]] = {
     AXES: ((0.0,) * 3, ((0.0,) * 3,) * 3),
@@ -54,58 +55,71 @@ class StandUse:
     """Of the latest of them; None where none is accepted."""
 
 
+@answer
 @dataclass(frozen=True)
 class StandEvidence:
-    """What the units say of one quantity on one stand: a shift, or the most evident one that chance may explain."""
+    """What the units say of one quantity on one stand."""
 
     kind: str
+    """`accelerometer` or `gyroscope`."""
     quantity: str
+    """`axes` or `scales`."""
     since: datetime
-    """Of the first session that shows it."""
+    """First session that shows the shift, UTC."""
     until: datetime | None
-    """Of the first session that shows it no more; None while it lasts."""
+    """First session that shows it no more, UTC; null while it lasts."""
     value: tuple[float, ...]
     """Turn in block axes, rad, or relative change of all scales."""
     size: float
+    """Angle of the turn, or the relative change."""
     sigma: float
+    """Standard uncertainty of the size."""
     chi2: float
-    """Of no shift less that of this one."""
+    """How much better the units are explained with it than without, as chi-square."""
     p_value: float
-    """Corrected for the dates and stands that were looked at."""
+    """Chance of as much when nothing shifted, all dates and stands considered."""
     units: int
+    """Units that tell of it."""
     agreeing: int
+    """Of them, that show the shift."""
     has_shifted: bool
     """Whether it counts as a shift of the stand."""
 
 
+@answer
 @dataclass(frozen=True)
 class StandSeating:
     """How blocks are seated on a stand, from one mounting to the next."""
 
     kind: str
+    """`accelerometer` or `gyroscope`."""
     quantity: str
+    """`axes` or `scales`."""
     tau: float
-    """One sigma per component: of a turn rad, of scales relative."""
+    """Standard deviation per component: of a turn rad, of all scales relative."""
 
 
+@answer
 @dataclass(frozen=True)
 class StandCondition:
-    """A stand, as the units measured on it show it."""
+    """A stand as the units measured on it show it."""
 
     stand: str
+    """Name of the stand."""
     sessions: int
-    """That it is judged by."""
+    """Sessions that it is judged by."""
     has_shifted: bool
-    """Whether it is elsewhere now than it was."""
+    """Whether it now shifts every unit that is measured on it."""
     reason: str
+    """In one sentence."""
     evidence: tuple[StandEvidence, ...]
-    """The most evident of every quantity that three or more units tell of."""
+    """Most evident, of every quantity that units tell of."""
     shifts: tuple[StandEvidence, ...]
-    """Every shift of the stand, those that were taken back too, oldest first."""
+    """Every shift, also one that was taken back; oldest first."""
     seating: tuple[StandSeating, ...]
-    """Of every quantity."""
+    """Scatter of mountings, of every quantity."""
     unreadable: tuple[str, ...]
-    """Sessions that are left out, because what is stored of their common motion cannot be used."""
+    """Sessions left out: what is stored of them cannot be used."""
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 
+from service.records.answer import Hidden, answer
 from service.records.doubt import Remedies
 
 
@@ -34,20 +35,25 @@ class Step:
     why: str
 
 
+@answer
 @dataclass(frozen=True)
 class StateChange:
-    """One line of a record's life; never changed."""
+    """One line of a record's life."""
 
-    kind: RecordKind
-    record: str
+    kind: Hidden[RecordKind]
+    record: Hidden[str]
     """The session's id, or the service's number."""
     state: RecordState
+    """What it is from then on."""
     who: str
+    """Who said so; `imu-health` for the service itself."""
     at: datetime
+    """When, UTC."""
     why: str
+    """Why."""
     superseded_by: str | None = None
     """The session that stands for a superseded one."""
-    remedies: Remedies | None = None
+    remedies: Hidden[Remedies | None] = None
     """What would put a questioned one right, as far as was known then; None of others, and of lines from before this
     was kept."""
 

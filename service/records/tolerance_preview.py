@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from datetime import datetime
 
+from service.records.answer import answer
 from service.records.decision import Verdict
 from service.records.unit import Tolerances
 
@@ -30,33 +31,41 @@ class LatestSession:
     verdict: Verdict
 
 
+@answer
 @dataclass(frozen=True)
 class VerdictChange:
     """A unit that would have another verdict."""
 
     unit: str
+    """Serial number."""
     session: str
+    """Id of its latest session."""
     before: Verdict
+    """As it is stored."""
     after: Verdict
+    """Under the other tolerances."""
     sensor: str
+    """The sensor that it hangs on; empty where nothing would be judged."""
     parameter: str
-    """That the other verdict hangs on; both empty where nothing would be judged."""
+    """The parameter that it hangs on."""
     reason: str
-    """In a sentence."""
+    """Why, in one sentence."""
 
 
+@answer
 @dataclass(frozen=True)
 class TolerancePreview:
     """What other tolerances would change."""
 
     units: int
-    """Of the type, with a session that counts."""
+    """Units of the type with a session that counts."""
     judged: int
-    """Of them, those whose latest session was judged by them; a reference is judged by nothing."""
+    """Those whose latest session was judged by the other tolerances."""
     references: int
+    """Those whose latest session is judged against nothing."""
     recordings: int
-    """Units whose latest session is a recording in service that was compared with no calibration."""
+    """Those whose latest session is a recording in service that no calibration stands beside."""
     beyond: int
-    """Units that were not looked at, because there are so many."""
+    """Those that were not looked at, because there are so many."""
     changes: tuple[VerdictChange, ...]
-    """Worst first."""
+    """Units that would have another verdict, the worst first."""

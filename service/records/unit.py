@@ -4,6 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 
+from pydantic import computed_field
+
+from service.records.answer import Hidden, answer
 from service.records.decision import Verdict
 from service.records.event import Service
 from service.records.fleet import Tally
@@ -16,12 +19,13 @@ from service.records.session import StoredSession
 from service.records.state import StateChange
 
 
+@answer
 @dataclass(frozen=True)
 class Tolerances:
-    """Largest allowed deviation from the reference, per parameter; None where the parameter is not judged."""
+    """Largest allowed deviations from the reference; null where a parameter is not judged."""
 
     scale: float | None
-    """Relative (1e-6 is 1 ppm)."""
+    """Relative: 1e-6 is 1 ppm."""
     bias: float | None
     """m/s² (rad/s)."""
     quadratic: float | None
@@ -30,20 +34,27 @@ class Tolerances:
     """rad."""
 
 
+@answer
 @dataclass(frozen=True)
 class UnitType:
     """A kind of unit: nominal axes and tolerances that all its units share."""
 
     name: str
+    """Name of the type."""
     block: str
+    """`accelerometer` or `gyroscope`."""
     sensors: tuple[str, ...]
+    """Names of the sensors."""
     nominal_axes: tuple[tuple[float, float, float], ...]
+    """Unit vectors in block axes."""
     nominal_scales: tuple[float, ...]
+    """Reading unit per m/s² (rad/s)."""
     tolerances: Tolerances
+    """Of the sensors of the block's own kind."""
     gyro_tolerances: Tolerances | None
-    """For the gyros of a mixed block; None when the block has one kind of sensor."""
+    """Of the gyros of a block of accelerometers."""
     revision: int
-    """Counts up with every change of tolerances; decisions name the revision they were made under."""
+    """Counts up with every change of tolerances; decisions name theirs."""
     maximum_interval_days: float = 365.0
     """Longest time from a session to the next calibration."""
 
@@ -67,68 +78,83 @@ class TypeUse:
     """Of units with an accepted session; every verdict is a key."""
 
 
+@answer
 @dataclass(frozen=True)
 class UnitSummary:
-    """One line of the fleet page."""
+    """One unit in short."""
 
     serial: str
+    """Serial number."""
     unit_type: str
+    """Name of its type."""
     simulated: bool
+    """Whether its sessions were simulated, not measured."""
     sessions: int
+    """How many sessions are stored."""
     last_session: str | None
+    """Id of the latest session."""
     last_at: datetime | None
+    """When it was measured, UTC."""
     verdict: Verdict | None
-    """Of the latest session; None when the unit has none."""
+    """Of the latest session."""
     is_reference: bool
     """Whether the latest session is one that later ones are judged against."""
     reason: str
+    """Why, in one sentence."""
     worst_sensor: str | None
+    """The sensor that the verdict hangs on."""
     worst_parameter: str | None
+    """The parameter that the verdict hangs on."""
     margin: float | None
-    """1 − (|d| + U)/T of the worst parameter: 1 is spotless, 0 the edge of pass, negative beyond."""
+    """1 − (|d| + U)/T of it: 1 is spotless, 0 the edge of pass, negative beyond."""
     diagnosis: str = ""
-    """What the simulation gets wrong about the latest session, in one line; empty where nothing is wrong."""
+    """What the simulation gets wrong about the latest session; empty if nothing."""
     flags: int = 0
-    """How many are open."""
+    """How many flags are open."""
     due: datetime | None = None
-    """Of the next calibration."""
-    due_reason: str = ""
+    """When its next calibration is due, UTC."""
+    due_reason: Hidden[str] = ""
     """Why then, in one sentence."""
     lot: str | None = None
-    """Of production."""
-    reservations: Reservations = ()
+    """Production lot, where it is recorded."""
+    reservations: Hidden[Reservations] = ()
     """What the verdict is said with."""
-    customer: Customer = NOBODY
+    customer: Hidden[Customer] = NOBODY
     """For whom it is calibrated."""
-    is_undated: bool = False
+    is_undated: Hidden[bool] = False
     """Whether ``due`` and its outlook are still to be worked out with its latest records."""
-    failed: str = ""
+    failed: Hidden[str] = ""
     """Why what follows from its latest records could not be worked out; empty where it was, or still is."""
 
+    @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
     @property
     def last_at_ms(self) -> int | None:
-        """``last_at`` in milliseconds since 1970."""
+        """`last_at` in milliseconds since 1970."""
         return None if self.last_at is None else epoch_ms(self.last_at)
 
+    @computed_field  # type: ignore[prop-decorator]  # the one way to describe a property
     @property
     def due_ms(self) -> int | None:
-        """``due`` in milliseconds since 1970."""
+        """`due` in milliseconds since 1970."""
         return None if self.due is None else epoch_ms(self.due)
 
 
+@answer
 @dataclass(frozen=True)
 class FleetCondition:
-    """How many units are in which condition."""
+    """The condition of the whole fleet."""
 
     units: int
+    """How many units there are."""
     verdicts: dict[Verdict, int]
-    """Every verdict is a key."""
+    """How many of them have each verdict."""
     simulated: int
+    """How many of them were simulated, not measured."""
     flags: int = 0
-    """How many are open: of units, types and stands."""
+    """How many flags are open."""
     reserved: dict[Verdict, int] = field(default_factory=dict)
-    """Of how many units with a verdict it is said with a reservation."""
-    overdue: int = 0
+    """Of how many with each verdict it is said with a reservation."""
+    overdue: Hidden[int] = 0
     """How many should have been calibrated by now; 0 where that was not asked."""
     references: int = 0
     """Of how many the latest session is a reference, which nothing was held against."""

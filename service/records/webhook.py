@@ -4,19 +4,24 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from enum import StrEnum
 
+from service.records.answer import Hidden, answer
 from service.records.flag import Matter, Notice
 
 
+@answer
 @dataclass(frozen=True)
 class Webhook:
-    """An address that is told of notices."""
+    """An address that is told."""
 
     id: int
+    """Number of the webhook."""
     url: str
-    secret: str = field(repr=False)
+    """Where messages are sent."""
+    secret: Hidden[str] = field(repr=False)
     who: str
     """Who registered it."""
     created_at: datetime
+    """When, UTC."""
 
 
 class DeliveryState(StrEnum):
@@ -28,18 +33,23 @@ class DeliveryState(StrEnum):
     """Given up."""
 
 
+@answer
 @dataclass(frozen=True)
 class Delivery:
-    """One notice on its way to one address."""
+    """One message to one address."""
 
     id: int
+    """Number of the delivery."""
     notice: Notice
+    """What the address is told."""
     state: DeliveryState
+    """`waiting`, `delivered`, or `failed`: given up."""
     attempts: int
+    """How often it was sent."""
     next_at: datetime
-    """When the next attempt is made; of one that has ended, when it ended."""
+    """When it is sent next, UTC; of one that has ended, when it ended."""
     outcome: str
-    """Of the latest attempt."""
+    """What the latest attempt came to."""
 
 
 @dataclass(frozen=True)

@@ -3,18 +3,20 @@
 from dataclasses import dataclass
 
 from service.errors import ConflictError
+from service.records.answer import answer
 from service.records.paper import Issue
 from service.records.signature import Meaning, Signature
 from service.reports.desk import Desk, certified
 from service.words.signature import CHANGED_HASH, NO_LONGER, NOT_COUNTED
 
 
+@answer
 @dataclass(frozen=True)
-class SignedIssue:
-    """One issue with the names under it."""
+class SignedIssue(Issue):
+    """One issue of a session's certificate."""
 
-    issue: Issue
     signatures: tuple[Signature, ...]
+    """Who signed it, in their order."""
 
     @property
     def is_approved(self) -> bool:
@@ -22,16 +24,17 @@ class SignedIssue:
         return any(signature.meaning is Meaning.APPROVED for signature in self.signatures)
 
 
+@answer
 @dataclass(frozen=True)
 class Papers:
-    """All issues of a session's certificate."""
+    """Every issue of a session's certificate."""
 
-    issues: tuple[SignedIssue, ...]
-    """The first one first."""
+    certificates: tuple[SignedIssue, ...]
+    """The first one first; the last one holds."""
     is_current: bool
-    """Whether the latest one states what is stored now."""
+    """Whether the last one states what is stored now; another number is due if not."""
     concerns: tuple[str, ...]
-    """What speaks against using the latest one, in words."""
+    """What speaks against using the last one, in words."""
 
 
 def papers_of(desk: Desk, id: str) -> Papers:
@@ -39,13 +42,16 @@ def papers_of(desk: Desk, id: str) -> Papers:
     with desk.storage.database.reading() as store:
         store.sessions.get(id)
         issued, signatures = store.certificates.of_session(id), store.signatures.of_session(id)
-    issues = tuple(SignedIssue(one, tuple(s for s in signatures if s.certificate == one.number)) for one in issued)
+    issues = tuple(
+        SignedIssue(**vars(one), signatures=tuple(s for s in signatures if s.certificate == one.number))
+        for one in issued
+    )
     if not issues:
         return Papers((), is_current=False, concerns=())
     latest = issues[-1]
-    counts, is_current = _compared(desk, id, latest.issue)
+    counts, is_current = _compared(desk, id, latest)
     told = ((CHANGED_HASH, _is_other(latest)), (NOT_COUNTED, not counts), (NO_LONGER, counts and not is_current))
-    concerns = (words.format(number=latest.issue.number, done=_done(latest)) for words, holds in told if holds)
+    concerns = (words.format(number=latest.number, done=_done(latest)) for words, holds in told if holds)
     return Papers(issues, is_current=is_current, concerns=tuple(concerns))
 
 
@@ -60,7 +66,7 @@ def _compared(desk: Desk, id: str, issue: Issue) -> tuple[bool, bool]:
 
 def _is_other(latest: SignedIssue) -> bool:
     """Whether something else was signed than is on record."""
-    return any(signature.content_hash != latest.issue.content_hash for signature in latest.signatures)
+    return any(signature.content_hash != latest.content_hash for signature in latest.signatures)
 
 
 def _done(latest: SignedIssue) -> str:

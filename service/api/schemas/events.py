@@ -1,13 +1,12 @@
 """What was done to units, notes on their histories, and sessions as found and as left."""
 
-from datetime import datetime
 from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from service.api.schemas.fields import LongText, Moment, Name, Reason, Text
-from service.api.schemas.sessions import DecisionSchema, SessionSchema
-from service.records.state import RecordState
+from service.api.schemas.sessions import DecisionSchema, SaidSession
+from service.records.event import Note
 
 ServiceKind = Literal["adjustment", "repair", "sensor-swap", "reference", "service"]
 Stage = Literal["as-found", "as-left"]
@@ -36,21 +35,6 @@ class NewServiceSchema(BaseModel):
     sensor: Text = Field(default="", description="The sensor that it concerns; empty for the whole unit.")
 
 
-class ServiceSchema(BaseModel):
-    """A known break in a unit's history."""
-
-    model_config = ConfigDict(from_attributes=True)
-
-    id: int = Field(description="Number of the entry.")
-    unit: str = Field(description="Serial number of the unit.")
-    at: datetime = Field(description="When it was done, UTC.")
-    kind: str = Field(description="What was done.")
-    note: str = Field(description="Why, what exactly.")
-    who: str = Field(description="Who did it.")
-    sensor: str = Field(description="The sensor that it concerns; empty for the whole unit.")
-    state: RecordState = Field(description="One that was withdrawn is no break.")
-
-
 class NewNote(BaseModel):
     """A remark on a unit's history."""
 
@@ -64,36 +48,11 @@ class NewNote(BaseModel):
     at: Moment | None = Field(default=None, description="The date it is about; now if not given.")
 
 
-class WithdrawalSchema(BaseModel):
-    """Why a note no longer holds."""
-
-    model_config = ConfigDict(from_attributes=True)
-
-    at: datetime = Field(description="When it was withdrawn, UTC.")
-    who: str = Field(description="By whom.")
-    why: str = Field(description="Why.")
-
-
-class NoteSchema(BaseModel):
-    """A remark on a unit's history; never changed."""
-
-    model_config = ConfigDict(from_attributes=True)
-
-    id: int = Field(description="Number of the note.")
-    unit: str = Field(description="Serial number of the unit.")
-    at: datetime = Field(description="The date it is about, UTC.")
-    text: str = Field(description="What is worth knowing.")
-    who: str = Field(description="Who said it.")
-    recorded_at: datetime = Field(description="When it was written, UTC.")
-    withdrawal: WithdrawalSchema | None = Field(description="Why it no longer holds; null while it does.")
-    session: str | None = Field(description="The session that it is about; null for the unit as a whole.")
-
-
 class NoteList(BaseModel):
     """All notes of a unit, oldest first."""
 
     unit: str = Field(description="Serial number of the unit.")
-    notes: list[NoteSchema] = Field(description="The notes, withdrawn ones too.")
+    notes: tuple[Note, ...] = Field(description="The notes, withdrawn ones too.")
 
 
 class NewStage(BaseModel):
@@ -128,6 +87,6 @@ class FoundAndLeftSchema(BaseModel):
     """A unit as it was found and as it was left."""
 
     reference: str | None = Field(description="The session that both are judged against.")
-    found: SessionSchema | None = Field(description="The latest as-found session; null where there is none.")
-    left: SessionSchema | None = Field(description="The first as-left session after it.")
+    found: SaidSession | None = Field(description="The latest as-found session; null where there is none.")
+    left: SaidSession | None = Field(description="The first as-left session after it.")
     parameters: list[FoundAndLeftLine] = Field(description="Every judged parameter, sensor after sensor.")

@@ -3,10 +3,10 @@
 import re
 from dataclasses import dataclass
 from datetime import UTC, date, datetime
-from typing import Annotated
+from typing import Annotated, Any
 
 from fastapi import Depends, Path, Query
-from pydantic import AfterValidator, BeforeValidator, StringConstraints
+from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, StringConstraints
 
 from service.records.decision import Verdict
 from service.records.instants import EARLIEST, EPOCH, LATEST, MILLISECOND, aware, in_utc
@@ -108,6 +108,18 @@ class Window:
     def next_after(self, found: int) -> int | None:
         """The number of the next page; None after one that is not full."""
         return self.page + 1 if found == self.limit else None
+
+    def place(self, found: int) -> dict[str, Any]:
+        """What a `Paged` answer says of its place."""
+        return {"page": self.page, "limit": self.limit, "next_page": self.next_after(found)}
+
+
+class Paged(BaseModel):
+    """One page of a list."""
+
+    page: int = Field(description="Which page this is, from 1.")
+    limit: int = Field(description="How many fit on a page.")
+    next_page: int | None = Field(description="The next page; null after the last.")
 
 
 def _window(page: Page = 1, limit: Limit = 100) -> Window:

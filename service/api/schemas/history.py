@@ -1,12 +1,11 @@
 """The parameters of a unit through time."""
 
-from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
-from service.api.schemas.fields import Bound, Text, Window
-from service.records.decision import Verdict
+from service.api.schemas.fields import Bound, Paged, Text, Window
+from service.records.history import HistoryPoint
 from service.storage.queries.history import HistoryQuery
 
 Parameter = Literal[
@@ -55,42 +54,8 @@ class HistoryAsked(BaseModel):
         )
 
 
-class HistoryPointSchema(BaseModel):
-    """One parameter of one sensor at one session, ready for drawing a band."""
-
-    model_config = ConfigDict(from_attributes=True)
-
-    session: str = Field(description="Id of the session.")
-    at: datetime = Field(description="When it was measured, UTC.")
-    sensor: str = Field(description="Name of the sensor.")
-    kind: str = Field(description="`accelerometer` or `gyroscope`.")
-    parameter: str = Field(
-        description="`scale`, `bias`, `quadratic`, `axis`, `misalignment`, or a term of noise at rest."
-    )
-    value: float | None = Field(description="SI; for the axis the angle from the reference axis as judged, rad.")
-    u: float | None = Field(description="Standard uncertainty of the value.")
-    lower: float | None = Field(
-        description="Value minus expanded uncertainty; of a term of noise the end of its 95 % interval."
-    )
-    upper: float | None = Field(
-        description="Value plus expanded uncertainty; of a term of noise the end of its 95 % interval."
-    )
-    reference: float | None = Field(description="The value that it is judged against.")
-    deviation: float | None = Field(description="From the reference, as it was judged: relative for scale, else SI.")
-    expanded: float | None = Field(description="U of the deviation, of both sessions.")
-    tolerance: float | None = Field(description="In the unit of the value; null where it is not judged.")
-    verdict: Verdict = Field(description="The state of this parameter at this session.")
-    is_reference: bool = Field(description="Whether the session is one that later ones are judged against.")
-    axis: tuple[float, float, float] | None = Field(description="For the axis: its components in block axes.")
-    revision: int = Field(description="Model revision that it was computed under; 0 is the baseline.")
-    at_ms: int = Field(description="`at` in milliseconds since 1970.")
-
-
-class HistoryPage(BaseModel):
+class HistoryPage(Paged):
     """One page of a unit's history, oldest first."""
 
     unit: str = Field(description="Serial number of the unit.")
-    points: list[HistoryPointSchema] = Field(description="One a session, sensor and parameter.")
-    page: int = Field(description="Which page this is, from 1.")
-    limit: int = Field(description="How many points fit on a page.")
-    next_page: int | None = Field(description="The next page; null after the last.")
+    points: tuple[HistoryPoint, ...] = Field(description="One a session, sensor and parameter.")

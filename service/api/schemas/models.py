@@ -1,15 +1,18 @@
 """Diagnoses, accepted causes as model revisions, and what became of recomputed sessions."""
 
+from collections.abc import Iterable
+from dataclasses import dataclass
 from datetime import datetime
 from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
-from service.api.schemas.fields import LongText, Name
+from service.api.schemas.fields import LongText, Name, Paged
+from service.records.answer import answer
 from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState
-from service.records.model import Scope
-from service.records.recomputation import Progress
+from service.records.model import ModelRevision, Scope
+from service.records.recomputation import Recomputation
 from service.storage.diagnosis_document import evidence_to_dict
 
 
@@ -19,7 +22,6 @@ def _with_a_space(scope: Any) -> Any:
 
 
 AnyScope = Annotated[Scope, BeforeValidator(_with_a_space)]
-AnyEvidence = Annotated[dict[str, Any], BeforeValidator(evidence_to_dict)]
 
 
 class DiagnosisDocument(BaseModel):
@@ -88,100 +90,40 @@ class NewModelSchema(BaseModel):
     note: LongText = Field(default="", description="Why.")
 
 
-class ModelSchema(BaseModel):
+@answer
+@dataclass(frozen=True)
+class ModelDocument(ModelRevision):
     """One accepted or withdrawn cause: a numbered revision of a model."""
 
-    model_config = ConfigDict(from_attributes=True)
-
-    id: int = Field(description="Number of the revision; all models are numbered through.")
-    scope: Scope = Field(description="Whose model it is.")
-    subject: str = Field(description="Serial number of the unit, or name of the unit type or of the stand.")
-    cause: str = Field(description="Identifier of the cause.")
-    sensors: list[str] = Field(description="Sensors that it acts on; none for a cause of stand or fixture.")
-    session: str = Field(description="The session that showed it.")
-    evidence: AnyEvidence = Field(
-        description="p-value, strength, amplitude with sigma, and gain of the finding; `pooled`: what a group of "
-        "sessions told beside, null where a single session showed it."
-    )
-    accepted_by: str = Field(description="Who accepted it.")
-    note: str = Field(description="Why.")
-    accepted_at: datetime = Field(description="When, UTC.")
-    withdraws: int | None = Field(description="The revision that this one withdraws; null for an accepted cause.")
+    evidence: dict[str, Any]  # type: ignore[assignment]  # as it is stored
+    """p-value, strength, amplitude with sigma, and gain of the finding; `pooled`: what a group of sessions told beside,
+    null where a single session showed it."""
 
 
-class MovedVerdictSchema(BaseModel):
-    """A session that has another verdict since."""
-
-    model_config = ConfigDict(from_attributes=True)
-
-    session: str = Field(description="Id of the session.")
-    started_at: datetime = Field(description="When it was measured.")
-    before: Verdict = Field(description="Its verdict before.")
-    after: Verdict = Field(description="Its verdict since.")
-
-
-class MovedParameterSchema(BaseModel):
-    """The parameter of a unit that moved furthest, in its own standard uncertainty."""
-
-    model_config = ConfigDict(from_attributes=True)
-
-    session: str = Field(description="Id of the session.")
-    sensor: str = Field(description="Name of the sensor.")
-    kind: str = Field(description="`accelerometer` or `gyroscope`.")
-    parameter: str = Field(description="`scale`, `bias`, `quadratic`, `axis` or `misalignment`.")
-    change: float = Field(description="SI; relative of a scale factor, rad of an axis.")
-    u: float = Field(description="Its standard uncertainty.")
-
-
-class RecomputedSchema(BaseModel):
-    """What became of a unit's sessions."""
-
-    model_config = ConfigDict(from_attributes=True)
-
-    sessions: int = Field(description="How many it has.")
-    recomputed: int = Field(description="How many have another calibration.")
-    left: int = Field(description="How many cannot be calibrated under the model, and keep what they have.")
-    verdicts: list[MovedVerdictSchema] = Field(description="Sessions that have another verdict since.")
-    furthest: MovedParameterSchema | None = Field(description="What moved most; null where nothing moved.")
-
-
-class RecomputationSchema(BaseModel):
-    """A unit's part of what a revision brought."""
-
-    model_config = ConfigDict(from_attributes=True)
-
-    unit: str = Field(description="Serial number.")
-    state: Progress = Field(description="`waiting`, `done`, or `given up`: then its sessions keep what they had.")
-    done_at: datetime | None = Field(description="When, UTC; null while it waits.")
-    outcome: RecomputedSchema | None = Field(description="What became of its sessions; null until it is done.")
-    failed: str = Field(description="Why the last try failed; empty where none did.")
-
-
-class ModelAndRecomputations(ModelSchema):
+@answer
+@dataclass(frozen=True, kw_only=True)
+class ModelAndRecomputations(ModelDocument):
     """A revision with what it brought."""
 
-    recomputations: list[RecomputationSchema] = Field(
-        description="Units whose sessions are computed again because of it: of what groups of sessions show."
-    )
+    recomputations: tuple[Recomputation, ...]
+    """Units whose sessions are computed again because of it: of what groups of sessions show."""
 
 
-class ModelPage(BaseModel):
+def model_document(revision: ModelRevision) -> ModelDocument:
+    """With its evidence as it is stored."""
+    return ModelDocument(**_fields(revision))
+
+
+def moved_by(revision: ModelRevision, recomputations: Iterable[Recomputation]) -> ModelAndRecomputations:
+    """With what it brought."""
+    return ModelAndRecomputations(**_fields(revision), recomputations=tuple(recomputations))
+
+
+def _fields(revision: ModelRevision) -> dict[str, Any]:
+    return {**vars(revision), "evidence": evidence_to_dict(revision.evidence)}
+
+
+class ModelPage(Paged):
     """One page of model revisions, newest first."""
 
-    models: list[ModelSchema] = Field(description="The revisions of this page.")
-    page: int = Field(description="Which page this is, from 1.")
-    limit: int = Field(description="How many fit on a page.")
-    next_page: int | None = Field(description="The next page; null after the last.")
-
-
-class RecalibratedSchema(BaseModel):
-    """What became of a unit's stored sessions."""
-
-    model_config = ConfigDict(from_attributes=True)
-
-    unit: str = Field(description="Serial number of the unit.")
-    sessions: int = Field(description="How many it has.")
-    recomputed: int = Field(description="How many have a new calibration under the model in force.")
-    unchanged: int = Field(description="How many had one already.")
-    left: int = Field(description="How many cannot be calibrated under it and keep what they have.")
-    revision: int = Field(description="The latest model revision that any of them rests on; 0 is the baseline.")
+    models: list[ModelDocument] = Field(description="The revisions of this page.")

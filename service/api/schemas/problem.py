@@ -1,8 +1,11 @@
 """The one shape of every error: application/problem+json (RFC 9457)."""
 
+from collections.abc import Iterable
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
+
+from estimator.errors import Problem
 
 
 class Fault(BaseModel):
@@ -36,6 +39,11 @@ class ProblemDocument(BaseModel):
         default=None, description="The id of the request, under which the log of the service knows it."
     )
     problems: list[Fault] | None = Field(default=None, description="With 422: every fault with its place.")
+
+
+def faults(problems: Iterable[Problem]) -> list[Fault]:
+    """Problems as an answer lists them."""
+    return [Fault(**vars(one)) for one in problems]
 
 
 def errors(*statuses: int) -> dict[int | str, dict[str, Any]]:

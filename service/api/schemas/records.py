@@ -1,23 +1,9 @@
 """What became of sessions and services, and who chose a reference."""
 
-from datetime import datetime
-
 from pydantic import BaseModel, ConfigDict, Field
 
 from service.api.schemas.fields import Name, Reason, Text
-from service.records.state import RecordState
-
-
-class StateSchema(BaseModel):
-    """One line of a record's life."""
-
-    model_config = ConfigDict(from_attributes=True)
-
-    state: RecordState = Field(description="What it is from then on.")
-    who: str = Field(description="Who said so; `imu-health` for the service itself.")
-    at: datetime = Field(description="When, UTC.")
-    why: str = Field(description="Why.")
-    superseded_by: str | None = Field(description="The session that stands for a superseded one.")
+from service.records.state import RecordState, StateChange
 
 
 class StateList(BaseModel):
@@ -25,7 +11,7 @@ class StateList(BaseModel):
 
     session: str = Field(description="Its id.")
     state: RecordState = Field(description="What it is now. Only an accepted session tells of its unit.")
-    states: list[StateSchema] = Field(description="Oldest first; empty where it was accepted and remained so.")
+    states: tuple[StateChange, ...] = Field(description="Oldest first; empty where it was accepted and remained so.")
 
 
 class Correcting(BaseModel):

@@ -1,15 +1,17 @@
 """Sessions, receipts, decisions."""
 
-from datetime import datetime
+from dataclasses import dataclass
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic.config import JsonDict
 
-from service.api.schemas.papers import TraceabilitySchema
-from service.api.schemas.reservations import SaidVerdict
+from service.api.schemas.fields import Paged
+from service.api.schemas.reservations import SaidVerdict, said
+from service.records.answer import answer
 from service.records.decision import Verdict
-from service.records.state import RecordState
+from service.records.paper import Traceability
+from service.records.session import Receipt, StoredSession
 
 RECEIPT_EXAMPLE: JsonDict = {
     "id": "3f9a0c5be1d24786aa10",
@@ -26,55 +28,24 @@ RECEIPT_EXAMPLE: JsonDict = {
 }
 
 
-class ReceiptSchema(SaidVerdict):
+@answer
+@dataclass(frozen=True, kw_only=True)
+class ReceiptAnswer(SaidVerdict, Receipt):
     """The answer to an upload."""
 
-    model_config = ConfigDict(from_attributes=True, json_schema_extra={"example": RECEIPT_EXAMPLE})
-
-    id: str = Field(description="The session's id, made from the content: the same bytes have the same id.")
-    unit: str = Field(description="Serial number of the unit.")
-    verdict: Verdict = Field(description="Of the session: the worst of its parameters.")
-    reason: str = Field(description="Why, in one sentence.")
-    created: bool = Field(description="False when the same bytes were already stored.")
-    is_reference: bool = Field(
-        description="Whether later sessions are judged against this one; then its own verdict is `undecidable`."
-    )
-    state: RecordState = Field(description="`questioned` where the file cannot be as it says; then it tells nothing.")
-    is_check: bool = Field(description="Whether it is only a check; of what was stored before, as that was.")
-    url: str = Field(description="Where the session can be read.")
-
-    def _is_questioned(self) -> bool:
-        return self.state is RecordState.QUESTIONED
+    url: str
+    """Where the session can be read."""
 
 
-class SessionSchema(SaidVerdict):
+@answer
+@dataclass(frozen=True, kw_only=True)
+class SaidSession(SaidVerdict, StoredSession):
     """One stored session."""
 
-    model_config = ConfigDict(from_attributes=True)
 
-    id: str = Field(description="The first 20 digits of the content's SHA-256.")
-    unit: str = Field(description="Serial number of the unit.")
-    sha256: str = Field(description="SHA-256 of the uploaded bytes.")
-    filename: str = Field(description="What the file was called when it was uploaded.")
-    size: int = Field(description="Bytes.")
-    programme: str = Field(description="How it was measured.", examples=["two-axis-stand"])
-    stand: str | None = Field(description="The stand, if one was used.")
-    operator: str = Field(description="Who measured, as the file says.")
-    notes: str = Field(description="Notes of the file.")
-    started_at: datetime = Field(description="When it was measured, UTC; the upload's time if the file does not say.")
-    uploaded_at: datetime = Field(description="When it was uploaded, UTC.")
-    verdict: Verdict = Field(description="The worst of the session's parameters.")
-    reason: str = Field(description="Why the verdict is what it is, in one sentence.")
-    is_reference: bool = Field(description="Whether later sessions are judged against this one.")
-    simulated: bool = Field(description="Whether it was simulated, not measured.")
-    revision: int = Field(description="Model revision that its calibration in force was made under; 0 is the baseline.")
-    is_check: bool = Field(description="Whether it is only a check, which moves no due date unless it is a reference.")
-    stage: str | None = Field(description="`as-found`, `as-left`, or null where neither was said.")
-    state: RecordState = Field(description="Only an accepted session tells of its unit.")
-    superseded_by: str | None = Field(description="The session that stands for a superseded one.")
-
-    def _is_questioned(self) -> bool:
-        return self.state is RecordState.QUESTIONED
+def said_session(session: StoredSession) -> SaidSession:
+    """With its verdict in words."""
+    return SaidSession(**said(session))
 
 
 class DecisionSchema(BaseModel):
@@ -133,27 +104,26 @@ class CommonMotionSchema(BaseModel):
     left_out: list[str] = Field(description="That moved on their own.")
 
 
-class SessionReportSchema(SessionSchema):
+@answer
+@dataclass(frozen=True, kw_only=True)
+class SessionReportAnswer(SaidSession):
     """One stored session with its decisions."""
 
-    decisions: list[DecisionSchema] = Field(description="Every judged parameter, sensor after sensor.")
-    common_motion: list[CommonMotionSchema] = Field(
-        description="What all sensors did together; empty for a reference and for sessions judged before this was kept."
-    )
-    stand_certificate_expired: bool = Field(
-        description="Whether the stand's own certificate had expired at the day of measurement: the verdict stands, "
-        "its traceability does not."
-    )
-    traceability: TraceabilitySchema = Field(description="What the numbers hang on.")
+    decisions: tuple[DecisionSchema, ...]
+    """Every judged parameter, sensor after sensor."""
+    common_motion: tuple[CommonMotionSchema, ...]
+    """What all sensors did together; empty for a reference and for sessions judged before this was kept."""
+    stand_certificate_expired: bool
+    """Whether the stand's own certificate had expired at the day of measurement: the verdict stands, its traceability
+    does not."""
+    traceability: Traceability
+    """What the numbers hang on."""
 
 
-class SessionPage(BaseModel):
+class SessionPage(Paged):
     """One page of sessions, newest measurement first."""
 
-    sessions: list[SessionSchema] = Field(description="The sessions of this page.")
-    page: int = Field(description="Which page this is, from 1.")
-    limit: int = Field(description="How many fit on a page.")
-    next_page: int | None = Field(description="The next page; null after the last.")
+    sessions: list[SaidSession] = Field(description="The sessions of this page.")
 
 
 class CalibrationDocument(BaseModel):

@@ -4,8 +4,8 @@ from datetime import datetime
 
 from pydantic import BaseModel, Field
 
-from service.api.schemas.problem import Fault
-from service.api.schemas.sessions import SessionSchema
+from service.api.schemas.problem import Fault, faults
+from service.api.schemas.sessions import SaidSession, said_session
 from service.records.arrival import Arrival, Refusal, under_way
 from service.records.job import Job
 from service.records.session import StoredSession
@@ -20,7 +20,7 @@ class UploadSchema(BaseModel):
     sha256: str = Field(description="SHA-256 of its bytes.")
     size: int = Field(description="Bytes.")
     stored: bool = Field(description="Whether it became a session.")
-    session: SessionSchema | None = Field(description="The session that it became.")
+    session: SaidSession | None = Field(description="The session that it became.")
     problems: list[Fault] = Field(description="Why it was refused: every fault with its place.")
     job: str = Field(default="", description="Address of the job that works, or worked, on it.")
 
@@ -61,6 +61,6 @@ def upload_schema(arrival: Arrival) -> UploadSchema:
         sha256=file.sha256,
         size=file.size,
         stored=arrival.session is not None,
-        session=None if arrival.session is None else SessionSchema.model_validate(arrival.session),
-        problems=[Fault(field=one.field, row=one.row, message=one.message) for one in problems],
+        session=None if arrival.session is None else said_session(arrival.session),
+        problems=faults(problems),
     )

@@ -1,12 +1,11 @@
 """Views of lists that people keep under a name."""
 
-from datetime import datetime
 from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 from service.api.schemas.fields import Name
-from service.records.saved_view import ListPage
+from service.records.saved_view import ListPage, SavedView
 
 ViewName = Annotated[str, StringConstraints(pattern=r"^[^\x00]*\S[^\x00]*$", max_length=100)]
 ViewQuery = Annotated[str, StringConstraints(pattern=r"^[^\x00?#\s]*$", max_length=20_000)]
@@ -29,22 +28,7 @@ class NewViewSchema(BaseModel):
     by: Name = Field(description="Who keeps it.")
 
 
-class ViewSchema(BaseModel):
-    """A view that is kept."""
-
-    model_config = ConfigDict(from_attributes=True)
-
-    id: int = Field(description="Number of the view.")
-    page: ListPage = Field(description="Of which list.")
-    name: str = Field(description="Its name.")
-    query: str = Field(description="What stands behind the `?` of the list's address.")
-    url: str = Field(description="Its address on this service.")
-    shared: bool = Field(description="Whether everybody has it.")
-    who: str = Field(description="Who kept it last.")
-    saved_at: datetime = Field(description="When, UTC.")
-
-
 class ViewList(BaseModel):
     """Views of lists."""
 
-    views: list[ViewSchema] = Field(description="The views, by list and name.")
+    views: tuple[SavedView, ...] = Field(description="The views, by list and name.")

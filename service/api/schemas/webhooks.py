@@ -1,13 +1,11 @@
 """Addresses that are told of flags and verdicts."""
 
-from datetime import datetime
 from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 from service.api.schemas.fields import Name
-from service.api.schemas.flags import NoticeSchema
-from service.records.webhook import DeliveryState
+from service.records.webhook import Delivery, Webhook
 
 Url = Annotated[str, StringConstraints(pattern=r"^[!-~]+$", max_length=2000)]
 Secret = Annotated[str, StringConstraints(pattern=r"^[ -~]+$", min_length=16, max_length=200)]
@@ -31,37 +29,13 @@ class NewWebhook(BaseModel):
     by: Name = Field(description="Who registers it.")
 
 
-class WebhookSchema(BaseModel):
-    """An address that is told."""
-
-    model_config = ConfigDict(from_attributes=True)
-
-    id: int = Field(description="Number of the webhook.")
-    url: str = Field(description="Where messages are sent.")
-    who: str = Field(description="Who registered it.")
-    created_at: datetime = Field(description="When, UTC.")
-
-
 class WebhookList(BaseModel):
     """All addresses that are told."""
 
-    webhooks: list[WebhookSchema] = Field(description="In the order in which they were registered.")
-
-
-class DeliverySchema(BaseModel):
-    """One message to one address."""
-
-    model_config = ConfigDict(from_attributes=True)
-
-    id: int = Field(description="Number of the delivery.")
-    notice: NoticeSchema = Field(description="What the address is told.")
-    state: DeliveryState = Field(description="`waiting`, `delivered`, or `failed`: given up.")
-    attempts: int = Field(description="How often it was sent.")
-    next_at: datetime = Field(description="When it is sent next, UTC; of one that has ended, when it ended.")
-    outcome: str = Field(description="What the latest attempt came to.")
+    webhooks: tuple[Webhook, ...] = Field(description="In the order in which they were registered.")
 
 
 class DeliveryList(BaseModel):
     """The latest messages to one address."""
 
-    deliveries: list[DeliverySchema] = Field(description="Newest first.")
+    deliveries: tuple[Delivery, ...] = Field(description="Newest first.")
