@@ -11,12 +11,13 @@ from fastapi.concurrency import run_in_threadpool
 from service import api, pages
 from service.api.measured import Measured
 from service.application import Application, Gate
+from service.background.asking import ask_for_missing
 from service.background.beside import work_beside
 from service.background.deliver_messages import deliver_until
 from service.background.derive_pending import derive_pending
-from service.background.diagnose_waiting import Diagnosing, ask_for_missing
 from service.background.take_in_waiting import take_in_waiting
 from service.background.watch_fleet import watch_fleet
+from service.background.work import Worker
 from service.boundary import guard
 from service.boundary.heads import HeadAsGet
 from service.identity.elsewhere import provider_of
@@ -94,9 +95,9 @@ def _work(application: Application) -> Iterator[tuple[str, Callable[..., None], 
     storage, clock, hosts = application.storage, application.clock, application.settings.webhook_hosts
     metrics, k = application.metrics, application.settings.coverage_factor
     for number in range(application.settings.diagnosis_workers):
-        yield f"diagnoses {number}", work_beside, (_claiming(application),)
+        yield f"diagnoses {number}", work_beside, (_worker(application),)
     if application.settings.diagnosis_workers:
-        yield "uploads", take_in_waiting, (_claiming(application),)
+        yield "uploads", take_in_waiting, (_worker(application),)
         yield "missing diagnoses", ask_for_missing, (storage, clock, metrics, application.bell)
     yield "pending derivations", derive_pending, (storage, k, clock, metrics)
     yield "fleet", watch_fleet, (storage, clock, metrics)
@@ -104,6 +105,5 @@ def _work(application: Application) -> Iterator[tuple[str, Callable[..., None], 
         yield "outbox", deliver_until, (storage, hosts, clock, metrics)
 
 
-def _claiming(own: Application) -> Diagnosing:
-    """Under a name of its own."""
-    return Diagnosing(own.settings, own.storage, own.clock, own.metrics, own.bell)
+def _worker(own: Application) -> Worker:
+    return Worker(own.settings, own.storage, own.clock, own.metrics, own.bell)

@@ -11,6 +11,7 @@ from service.api.schemas.problem import errors
 from service.dependencies import MetricsOf, Now, SettingsOf, StorageOf
 from service.errors import AwayError
 from service.records.failure import FailedKind
+from service.records.work import WorkKind
 from service.storage.space import space_at
 
 router = APIRouter(tags=["operations"])
@@ -56,7 +57,7 @@ def readiness(storage: StorageOf, settings: SettingsOf, now: Now) -> Readiness:
 def metrics(figures: MetricsOf, settings: SettingsOf, storage: StorageOf, now: Now) -> Response:
     """Figures for Prometheus; without a database those that need none."""
     with suppress(AwayError), storage.database.reading() as store:
-        figures.note_pending(store.pending.count())
+        figures.note_pending(store.work(WorkKind.DIAGNOSIS).count())
         figures.note_failed(store.failures.counts(now))
     figures.note_room(space_at(settings.files, settings.min_free_bytes).free)
     return Response(figures.text(), media_type=CONTENT_TYPE_LATEST)

@@ -9,6 +9,7 @@ from service.flows.follow import derive_waiting_of
 from service.flows.guard import Alone, Guard, kept, plainly
 from service.flows.refresh_beside import date
 from service.metrics import Metrics
+from service.records.work import WorkKind
 from service.storage import Storage
 
 LOOK_EVERY = 2.0
@@ -39,14 +40,14 @@ def derive_waiting(
     with storage.database.reading() as store:
         serials = store.derivations.waiting()
     for serial in serials:
-        with alone("derivations", serial), kept(_failed_at(storage, serial)):
+        with alone("derivations", serial), kept(_failed_at(storage, serial, clock)):
             _derive_unit(storage, coverage_factor, clock, stop, serial)
 
 
-def _failed_at(storage: Storage, serial: str) -> Callable[[str], None]:
+def _failed_at(storage: Storage, serial: str, clock: Callable[[], datetime]) -> Callable[[str], None]:
     def keep(why: str) -> None:
         with storage.database.writing() as store:
-            store.failures.put_derivation(serial, why)
+            store.work(WorkKind.DERIVATION).keep_failed(serial, why, clock())
 
     return keep
 

@@ -6,7 +6,7 @@ from datetime import datetime
 from uuid import uuid4
 
 from service.background.bell import Bell
-from service.background.diagnose_waiting import CLAIM
+from service.background.work import LEASE
 from service.background.work_job import skip_piece, work_piece
 from service.flows.ask_job import ask_job
 from service.flows.guard import FORESEEN, Guard
@@ -60,7 +60,7 @@ class JobDesk:
         while True:
             now = self.clock()
             with storage.database.writing() as store:
-                begun = store.jobs.claim(id, now, now + CLAIM)
+                begun = store.jobs.claim(id, now, now + LEASE)
             if begun is None:
                 return
             self._work(storage, id, now)

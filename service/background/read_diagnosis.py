@@ -6,13 +6,10 @@ from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from threading import BoundedSemaphore
 from time import monotonic
-from uuid import uuid4
 
 from estimator.errors import SessionError
 from service.background.bell import Bell
-from service.background.diagnose_waiting import PUT_OFF, WORK
-from service.background.refresh_waiting import OUTLOOKS
-from service.background.summarise_waiting import SUMMARIES
+from service.background.kinds import DIAGNOSES, OUTLOOKS, PUT_OFF, SUMMARIES
 from service.errors import PendingError, ServiceError
 from service.flows.diagnose import diagnose, give_up, known_of
 from service.flows.guard import Guard
@@ -20,7 +17,7 @@ from service.flows.refresh_beside import date_one
 from service.flows.summarise import summarise_all
 from service.metrics import Metrics
 from service.records.diagnosis import StoredDiagnosis
-from service.records.pending import Claim, Pending
+from service.records.work import Waiting, WorkKind
 from service.storage import Storage
 from service.words.diagnosis import STILL_MADE
 
@@ -33,8 +30,8 @@ LOOK_EVERY = 0.25
 MOST_WAITING = 8
 """Requests that wait at a time, of the 40 that are answered at once; others are asked back."""
 
-CLAIM = timedelta(minutes=2)
-"""That a reader's claim holds, who does not say again that he is at it: longer than nearly all diagnoses take."""
+LEASE = timedelta(minutes=2)
+"""Of a reader, who does not say again that he is at it: longer than nearly all diagnoses take."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +91,7 @@ class Reader:
         if self.workers:
             return
         with self.storage.database.reading() as store:
-            is_asked = store.pending_summaries.any()
+            is_asked = store.work(WorkKind.SUMMARY).count() > 0
         if is_asked:
             with Guard(self.metrics).at_request(SUMMARIES.name, ""):
                 summarise_all(self.storage, self.clock())
@@ -118,14 +115,14 @@ class Reader:
 
     def _is_undated(self, serial: str) -> bool:
         with self.storage.database.reading() as store:
-            return store.pending_outlooks.is_coming(serial)
+            return store.work(WorkKind.OUTLOOK).is_coming(serial)
 
-    def _look(self, id: str) -> tuple[StoredDiagnosis | None, Pending | None]:
+    def _look(self, id: str) -> tuple[StoredDiagnosis | None, Waiting | None]:
         with self.storage.database.reading() as store:
             store.sessions.get(id)
-            return known_of(store, id), store.pending.of(id)
+            return known_of(store, id), store.work(WorkKind.DIAGNOSIS).get(id)
 
-    def _is_left_to_readers(self, asked: Pending | None) -> bool:
+    def _is_left_to_readers(self, asked: Waiting | None) -> bool:
         """Where nobody makes it, or where it failed: then the reader is told why."""
         return not self.workers or asked is None or asked.not_before is not None
 
@@ -141,24 +138,25 @@ class Reader:
     def _made(self, id: str) -> StoredDiagnosis | None:
         """Here, unless somebody is at it; where the program fails that is kept, and whoever reads is told."""
         now = self.clock()
-        claim = Claim(id, uuid4().hex, now + CLAIM)
         with self.storage.database.writing() as store:
-            store.pending.add((id,), now)
-            is_ours = store.pending.claim(claim, now) is not None
+            queue = store.work(WorkKind.DIAGNOSIS)
+            queue.ask_once((id,), now)
+            is_ours = queue.claim(id, now, now + LEASE) is not None
         if not is_ours:
             return self._awaited(id, monotonic() + PATIENCE)
         guard = Guard(self.metrics)
-        with guard.at_request(WORK, id):
-            self._diagnose(claim, now)
+        with guard.at_request(DIAGNOSES.name, id):
+            self._diagnose(id, now)
         if guard.failed:
             give_up(self.storage, id, now)
         return self._look(id)[0]
 
-    def _diagnose(self, claim: Claim, now: datetime) -> None:
+    def _diagnose(self, id: str, now: datetime) -> None:
         try:
-            diagnose(self.storage, claim.session, now, self.coverage_factor)
+            diagnose(self.storage, id, now, self.coverage_factor)
         except (ServiceError, SessionError) as fault:
             with self.storage.database.writing() as store:
-                store.pending.hold_up(claim.session, str(fault))
-                store.pending.put_off(claim, now + PUT_OFF)
+                queue = store.work(WorkKind.DIAGNOSIS)
+                queue.hold_up(id, str(fault))
+                queue.put_off(id, now + PUT_OFF)
             raise

@@ -7,11 +7,12 @@ from threading import BoundedSemaphore
 from time import monotonic
 
 from service.background.bell import Bell
-from service.background.pool_waiting import GROUPS
+from service.background.kinds import GROUPS
 from service.flows.guard import Guard
-from service.flows.refresh_group import current, refresh_group
+from service.flows.refresh_group import current, give_up, refresh_group
 from service.metrics import Metrics
 from service.records.group import Group, GroupAnswer, Level
+from service.records.work import WorkKind
 from service.settings import VERSION
 from service.storage import Storage
 from service.words.failed import group_failed
@@ -41,17 +42,16 @@ class GroupReader:
         is no such unit, unit type or stand."""
         with self.storage.database.reading() as store:
             group = store.groups.find(level, name)
-            known, asked = current(store, group), store.pending_groups.asked(group)
-            failed = store.pending_groups.failed(group)
+            known, asked = current(store, group), store.work(WorkKind.GROUP).get(group.place)
         if known is not None:
             return known
         if not self.workers:
             return self._made(group)
-        if failed:
-            return GroupAnswer("", 0, group_failed(failed), "", None, VERSION, self.clock())
-        if not asked:
+        if asked is not None and asked.failed:
+            return GroupAnswer("", 0, group_failed(asked.failed), "", None, VERSION, self.clock())
+        if asked is None:
             with self.storage.database.writing() as store:
-                store.pending_groups.ask((group,), self.clock())
+                store.work(WorkKind.GROUP).ask_each((group.place,), self.clock())
             self.bell.ring()
         if not self.places.acquire(blocking=False):
             return None
@@ -69,7 +69,7 @@ class GroupReader:
             if guard.failed == tried:
                 break
         else:
-            GROUPS.give_up(self.storage, group, self.clock())
+            give_up(self.storage, group, self.clock())
         with self.storage.database.reading() as store:
             return current(store, group)
 

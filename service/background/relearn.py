@@ -5,6 +5,7 @@ from datetime import datetime
 from service.flows.guard import Alone, plainly
 from service.flows.refresh_beside import date_one
 from service.flows.refresh_outlook import digest, of_type
+from service.records.work import WorkKind
 from service.storage import Storage
 from service.storage.store import Store
 
@@ -30,7 +31,8 @@ def _relearned(storage: Storage, serial: str, now: datetime) -> bool:
         if not _is_stale(store, serial):
             return False
     with storage.database.writing() as store:
-        store.pending_outlooks.ask(store.units.hold(serial), now)
+        store.units.hold(serial)
+        store.work(WorkKind.OUTLOOK).ask_again(serial, now)
     date_one(storage, serial, now)
     return True
 

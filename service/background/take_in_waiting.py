@@ -6,12 +6,13 @@ from contextlib import contextmanager, suppress
 from datetime import datetime, timedelta
 from threading import Event, Thread
 
-from service.background.claimed import Work, work_next
-from service.background.diagnose_waiting import Diagnosing
-from service.background.helper import Helper, Still, StoppingError
+from service.background.helper import Still, StoppingError
+from service.background.kinds import Kind
+from service.background.work import Make, Worker, work_next
 from service.flows.guard import FORESEEN, Failure, Guard, ending_here
 from service.flows.receive import Reception
 from service.flows.take_in import give_up, take_in
+from service.records.work import WorkKind
 from service.storage import Storage
 from service.words.jobs import FILE_AT_FAULT
 
@@ -30,32 +31,31 @@ WORK = "uploads"
 """As the log and the figures name it."""
 
 
-def take_in_waiting(own: Diagnosing, stop: Event) -> None:
+def take_in_waiting(own: Worker, stop: Event) -> None:
     """Takes in what waits until ``stop`` is set."""
-    idle, work = Helper(own.settings), uploads_of(own)
+    make = taking_in(own)
     while not stop.is_set():
         rung, guard = own.bell.rung, Guard(own.metrics)
         with guard.alone(WORK, ""):
-            while not stop.is_set() and work_next(own, idle, stop, work):
+            while not stop.is_set() and work_next(own, make, stop, UPLOADS):
                 rung = own.bell.rung
         own.bell.wait(rung, RETRY if guard.failed else LOOK_EVERY)
 
 
-def uploads_of(own: Diagnosing) -> Work[int]:
-    """The queue of long files, and what takes one in."""
+def taking_in(own: Worker) -> Make[int]:
+    """What takes one in."""
     k = own.settings.coverage_factor
     reception = Reception(own.storage, k, own.metrics, own.bell.ring, is_dated_later=True)
-
-    def make(_: Helper, id: int, now: datetime, still: Still) -> Failure | None:
-        return _taken_in(lambda tick: take_in(reception, id, now, tick), id, still)
-
-    return Work(
-        WORK, queue=lambda store: store.upload_jobs, make=make, give_up=_give_up, most=MOST_TRIES, put_off=PUT_OFF
-    )
+    return lambda _, id, now, still: _taken_in(lambda tick: take_in(reception, id, now, tick), id, still)
 
 
 def _give_up(storage: Storage, id: int, now: datetime) -> None:
     give_up(storage, id, FILE_AT_FAULT, now)
+
+
+UPLOADS: Kind[int] = Kind(
+    WORK, WorkKind.UPLOAD, lambda store: store.upload_jobs, None, _give_up, most=MOST_TRIES, put_off=PUT_OFF
+)
 
 
 def _taken_in(work: Callable[[Callable[[], None]], None], id: int, still: Still) -> Failure | None:

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from datetime import datetime
 from threading import Event
 
+from service.background.asking import ask_for_outdated
 from service.background.flag_overdue import flag_overdue
 from service.background.flag_shifted_stands import flag_shifted_stands
-from service.background.pool_waiting import ask_for_outdated
 from service.background.relearn import relearn
 from service.flows.ask_job import drop_outlived
 from service.flows.guard import Guard

@@ -16,6 +16,7 @@ from packaging.requirements import Requirement
 
 from service.boundary.hosts import hosts_of
 from service.errors import ServiceError
+from service.records.work import WorkKind
 from service.settings import VERSION, Settings
 from service.storage import Database
 from service.storage.engine import shown_url
@@ -177,7 +178,7 @@ def _clock(opened: Database, now: datetime) -> Iterator[Finding]:
 def _waiting(opened: Database, settings: Settings) -> Iterator[Finding]:
     """Processes that work beside the requests, and what waits for them."""
     with opened.reading() as store:
-        waiting = store.pending.count()
+        waiting = store.work(WorkKind.DIAGNOSIS).count()
     workers, cores = settings.diagnosis_workers, os.cpu_count() or 1
     text = f"{workers} beside the requests, {waiting} diagnoses waiting"
     if workers == 0:

@@ -6,6 +6,7 @@ A questioned session is diagnosed by itself alone. Once it is accepted it is dia
 from service.records.doubt import Remedies
 from service.records.session import StoredSession
 from service.records.state import RecordKind, RecordState, Step
+from service.records.work import WorkKind
 from service.storage.store import Store
 
 DONE = {
@@ -28,7 +29,7 @@ def change(
 ) -> None:
     """Writes down what becomes of a session, by whom and why; what follows from it is derived afterwards."""
     if state is RecordState.ACCEPTED and _was_questioned(store, session.id):
-        store.pending.add(store.derivations.forget_diagnosis(session.id), step.at)
+        store.work(WorkKind.DIAGNOSIS).ask_once(store.derivations.forget_diagnosis(session.id), step.at)
     store.states.put_session(session.id, state, superseded_by)
     store.states.add(RecordKind.SESSION, session.id, state, step, superseded_by=superseded_by, remedies=remedies)
     details = {"unit": session.unit, "before": session.state.value, "why": step.why, "superseded_by": superseded_by}

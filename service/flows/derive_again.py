@@ -20,6 +20,7 @@ from service.judging.epochs import Place, needs_judging
 from service.judging.known_unit import KnownUnit, known_unit
 from service.records.group import Level
 from service.records.session import StoredSession
+from service.records.work import WorkKind
 from service.storage import Files
 from service.storage.store import Store
 
@@ -91,8 +92,9 @@ def derive_again(
     is_left = bool(left) or any(p.session.id in diagnosed for p in now)
     latest = sum_up(store, way, serial) if not is_left or len(own) < len(left) else None
     groups = store.groups.of_unit(serial)
-    store.pending_groups.ask(groups, way.at)
-    store.pending_summaries.ask((group for group in groups if group.level is not Level.UNIT), way.at)
+    store.work(WorkKind.GROUP).ask_each((group.place for group in groups), way.at)
+    shared = (group.place for group in groups if group.level is not Level.UNIT)
+    store.work(WorkKind.SUMMARY).ask_each(shared, way.at)
     return Derived((*(p.session.id for p in now), *own), len(left) - len(own), latest, is_left)
 
 
@@ -121,11 +123,11 @@ def _ask_again(
     store, own = known.store, known.records
     store.fleet.touch(known.unit)
     if any(at >= since or id in judged for id, at in own.waiting.items() if id not in known.made):
-        store.pending.look_again(known.unit, since, judged)
+        store.derivations.look_again(known.unit, since, judged)
     gone: tuple[str, ...] = ()
     if any(at >= since and id not in same for id, at in own.diagnosed.items()):
         gone = store.derivations.forget_diagnoses(known.unit, since, same)
-        store.pending.add(gone, way.at)
+        store.work(WorkKind.DIAGNOSIS).ask_once(gone, way.at)
     return frozenset(own.diagnosed.keys() - {*gone})
 
 
@@ -143,7 +145,7 @@ def sum_up(store: Store, way: Deriving, serial: str) -> StoredSession | None:
     occasion = Occasion(unit, None if latest is None else latest.id, way.at)
     if latest is None:
         store.outlooks.drop(unit)
-        store.pending_outlooks.settle(unit)
+        store.work(WorkKind.OUTLOOK).drop(serial)
         settle_sessions(store, occasion)
         flag_drift(store, occasion, None)
         no_longer_overdue(store, occasion, None)
@@ -153,5 +155,5 @@ def sum_up(store: Store, way: Deriving, serial: str) -> StoredSession | None:
     tell_verdict(store, occasion, latest, was)
     settle_sessions(store, occasion)
     if way.outlook:
-        store.pending_outlooks.ask(unit, way.at)
+        store.work(WorkKind.OUTLOOK).ask_again(serial, way.at)
     return latest

@@ -1,7 +1,7 @@
 """Flow: what the simulation gets wrong about a stored session, found once and kept.
 
 A session without a diagnosis is one whose diagnosis is pending. An upload asks for it within its own transaction, and
-processes beside the requests make it, or else whoever reads it first: see `service.background.diagnose_waiting`. So an
+processes beside the requests make it, or else whoever reads it first: see `service.background.work`. So an
 acknowledged upload is never left without one.
 """
 
@@ -28,6 +28,7 @@ from service.log import log
 from service.records.diagnosis import DiagnosisState, StoredDiagnosis, state_of
 from service.records.session import StoredSession
 from service.records.state import RecordState
+from service.records.work import WorkKind
 from service.settings import VERSION
 from service.storage import Files, Storage
 from service.storage.diagnosis_document import diagnosis_to_dict, inapplicable_to_dict, read_diagnosis, written
@@ -69,7 +70,7 @@ def diagnose(storage: Storage, id: str, now: datetime, coverage_factor: float = 
             known = known_of(store, id)
             if known is not None:
                 return known
-            task, asked = task_of(store, id), store.pending.of(id)
+            task, asked = task_of(store, id), store.work(WorkKind.DIAGNOSIS).get(id)
         made = _made(storage, task, now)
         with storage.database.writing() as store:
             kept = _keep(store, way, task.session.unit, made, None if asked is None else asked.ticket)
@@ -84,9 +85,10 @@ def diagnose(storage: Storage, id: str, now: datetime, coverage_factor: float = 
 def give_up(storage: Storage, id: str, now: datetime) -> None:
     """Stores of a session that the program failed at its diagnosis; this version does not try again."""
     with storage.database.reading() as store:
-        task, asked, why = task_of(store, id), store.pending.of(id), store.pending.failed(id)
+        task, asked = task_of(store, id), store.work(WorkKind.DIAGNOSIS).get(id)
     log.error("diagnosis given up", session=id, estimator_version=VERSION)
-    made, way = _failed(task, with_last_try(fault_of_the_program(id), why), now), Deriving(storage.files, COVERAGE, now)
+    summary = with_last_try(fault_of_the_program(id), "" if asked is None else asked.failed)
+    made, way = _failed(task, summary, now), Deriving(storage.files, COVERAGE, now)
     with storage.database.writing() as store:
         _keep(store, way, task.session.unit, made, None if asked is None else asked.ticket)
 
@@ -95,7 +97,7 @@ def _keep(store: Store, way: Deriving, unit: str, made: StoredDiagnosis, ticket:
     """Where it is of what is known now it is stored, unless another one was made meanwhile, and what is left of what
     follows is returned; None where it is not."""
     store.units.hold(unit)
-    if not store.pending.settle(made.session, ticket):
+    if not store.work(WorkKind.DIAGNOSIS).settle(made.session, ticket):
         return None
     derived = None
     if store.diagnoses.add_once(made):

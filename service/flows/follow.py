@@ -15,6 +15,7 @@ from service.flows.summarise import ask_for_summaries
 from service.flows.weigh import weighable, weighed_again
 from service.judging.known_unit import known_unit
 from service.records.derivation import Counted
+from service.records.work import WorkKind
 from service.storage import Storage
 from service.storage.queries.sessions import NOT_JUDGED
 from service.storage.store import Store
@@ -35,7 +36,7 @@ def derive_left(storage: Storage, way: Deriving, serial: str, derived: Derived) 
 
     def keep(why: str) -> None:
         with storage.database.writing() as store:
-            store.failures.put_derivation(serial, why)
+            store.work(WorkKind.DERIVATION).keep_failed(serial, why, way.at)
 
     with kept(keep):
         if derived.waiting:
@@ -67,7 +68,7 @@ def judge_waiting(storage: Storage, way: Deriving, serial: str, most: int, only:
         waiting = tuple(p for p in places_of(known) if p.session.basis == NOT_JUDGED)
         by = judging(known, serial, waiting, way.files, way.coverage_factor, way.at)
         fit = fitting(by, waiting, foreseen)
-        store.pending.look_again(known.unit, END_OF_TIME, [p.session.id for p in fit])
+        store.derivations.look_again(known.unit, END_OF_TIME, [p.session.id for p in fit])
         put(known, fit, foreseen, known.records.diagnosed.keys())
         return _left(store, way, serial)
 
@@ -92,7 +93,7 @@ def _left(store: Store, way: Deriving, serial: str) -> int:
     """How many sessions of a unit wait; where none does any more, what follows from all of them."""
     left = store.derivations.waiting_of(serial)
     if not left:
-        store.failures.settle_derivation(store.units.key(serial))
+        store.work(WorkKind.DERIVATION).drop(serial)
         sum_up(store, way, serial)
         ask_for_summaries(store, serial, way.at)
     return left

@@ -6,6 +6,7 @@ from estimator.errors import SessionError
 from estimator.groups import statistics_of
 from estimator.session import CALIBRATIONS
 from service.ingest import read_upload
+from service.records.work import WorkKind
 from service.settings import VERSION
 from service.storage import Storage
 from service.storage.files import LOST
@@ -22,7 +23,8 @@ def keep_statistics(storage: Storage, session: str, now: datetime) -> None:
         add_statistics(storage, session, stored.sha256, stored.filename)
     finally:
         with storage.database.writing() as store:
-            store.pending_groups.ask(store.groups.of_unit(stored.unit), now)
+            groups = store.groups.of_unit(stored.unit)
+            store.work(WorkKind.GROUP).ask_each((one.place for one in groups), now)
 
 
 def add_statistics(storage: Storage, session: str, sha256: str, filename: str) -> None:

@@ -33,6 +33,7 @@ from service.records.decision import Verdict
 from service.records.doubt import remedies_among
 from service.records.received import Content, Received, Replaced, SentFile, where
 from service.records.session import Digests, Receipt, StoredSession
+from service.records.work import WorkKind
 from service.storage import Storage
 from service.storage.files import content_hash
 from service.storage.store import Store
@@ -212,7 +213,7 @@ def _store(
     record = _record(received, new)
     stand = store.units.stand_key(record.stand)
     store.sessions.add(record, unit, stand, new.checked.session.block, ready.digests)
-    store.pending.add((record.id,), received.at)
+    store.work(WorkKind.DIAGNOSIS).ask_once((record.id,), received.at)
     keep(store, unit, ((record, ready.made),), received.at)
     known = known_unit(store, unit, {record.id: new.calibration}, ready.foreseen.references)
     derived = _derived(way, known, record, ready, replaces)

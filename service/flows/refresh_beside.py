@@ -10,6 +10,7 @@ from service.flows.guard import ending_here, kept
 from service.flows.refresh_outlook import gathered, known_of, worked_out
 from service.flows.summarise import ask_for_summaries
 from service.judging.histories import told_of_type
+from service.records.work import WorkKind
 from service.storage import Storage
 
 
@@ -26,8 +27,7 @@ def date_one(storage: Storage, serial: str, now: datetime) -> None:
 
     def keep(why: str) -> None:
         with storage.database.writing() as store:
-            store.pending_outlooks.hold_up(serial, why)
-            store.pending_outlooks.give_up(serial)
+            store.work(WorkKind.OUTLOOK).give_up(serial, why)
 
     with kept(keep):
         refresh_beside(storage, serial, now)
@@ -40,14 +40,14 @@ def refresh_beside(storage: Storage, serial: str, now: datetime) -> None:
     """
     while True:
         with storage.database.reading() as store:
-            ticket = store.pending_outlooks.ticket(serial)
-            if ticket is None:
+            asked = store.work(WorkKind.OUTLOOK).get(serial)
+            if asked is None:
                 return
             unit, known = store.units.key(serial), known_of(store, serial)
         told = told_of_type(known)
         with storage.database.writing() as store:
             store.units.hold(serial)
-            if not store.pending_outlooks.holds(unit, ticket):
+            if not store.work(WorkKind.OUTLOOK).holds(serial, asked.ticket):
                 continue
             store.outlooks.put_histories(unit, told)
         with storage.database.reading() as store:
@@ -55,9 +55,9 @@ def refresh_beside(storage: Storage, serial: str, now: datetime) -> None:
         outlook = worked_out(sources)
         with storage.database.writing() as store:
             store.units.hold(serial)
-            if not store.pending_outlooks.holds(unit, ticket):
+            if not store.work(WorkKind.OUTLOOK).holds(serial, asked.ticket):
                 continue
-            store.pending_outlooks.settle(unit)
+            store.work(WorkKind.OUTLOOK).drop(serial)
             store.outlooks.put(unit, outlook)
             ask_for_summaries(store, serial, now)
             summary = store.fleet.unit(serial)

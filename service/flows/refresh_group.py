@@ -24,6 +24,7 @@ from service.lock_order import outside_writing
 from service.log import log
 from service.records.group import Group, GroupAnswer, Level, Member, Members
 from service.records.model import SCOPES
+from service.records.work import WorkKind
 from service.settings import VERSION
 from service.storage import Files, Storage
 from service.storage.files import LOST
@@ -68,13 +69,13 @@ def refresh_group(storage: Storage, group: Group, now: datetime) -> GroupAnswer:
     for the group again.
     """
     with storage.database.reading() as store:
-        asked, missing = store.pending_groups.asked(group), members_of(store, group).without
+        asked, missing = store.work(WorkKind.GROUP).tickets(group.place), members_of(store, group).without
     for member in missing:
         with storage.database.writing() as store:
             is_tried = not store.diagnoses.has_failed(member.session)
             wanted = is_tried and store.statistics.begin(member.session, VERSION)
             if is_tried and not wanted and not member.why:
-                store.pending_groups.blame_none(group)  # that session was, and is given up now
+                store.work(WorkKind.GROUP).forgive(group.place)  # that session was, and is given up now
         if wanted:
             add_statistics(storage, member.session, member.sha256, member.filename)
     with storage.database.reading() as store:
@@ -87,7 +88,7 @@ def refresh_group(storage: Storage, group: Group, now: datetime) -> GroupAnswer:
             store.groups.put(group, answer)
             tell_own(store, SCOPES[group.level.value], group.name)
         _flag(store, group, members, answer, now)
-        store.pending_groups.settle(asked)
+        store.work(WorkKind.GROUP).settle_each(asked)
     return answer
 
 
@@ -101,11 +102,11 @@ def _flag(store: Store, group: Group, members: Members, answer: GroupAnswer, now
 def give_up(storage: Storage, group: Group, now: datetime) -> None:
     """Stores of a group that the program failed at its answer; this version does not try again with these sessions."""
     with storage.database.writing() as store:
-        asked = store.pending_groups.asked(group)
-        summary = with_last_try(FAILED, store.pending_groups.failed(group))
+        asked = store.work(WorkKind.GROUP).tickets(group.place)
+        summary = with_last_try(FAILED, store.work(WorkKind.GROUP).failed(group.place))
         answer = GroupAnswer(digest(members_of(store, group)), 0, summary, "", None, VERSION, now)
         store.groups.put(group, answer)
-        store.pending_groups.settle(asked)
+        store.work(WorkKind.GROUP).settle_each(asked)
 
 
 @outside_writing

@@ -8,6 +8,7 @@ from service.flows.derive_again import Deriving
 from service.flows.refresh_beside import date
 from service.measures import COVERAGE
 from service.records.unit import Tolerances, UnitType
+from service.records.work import WorkKind
 from service.storage import Storage
 
 
@@ -42,7 +43,7 @@ def set_tolerances(
             current = store.unit_types.set_interval(name, interval_days)
             undated = tuple(store.units.of_type(name))
             for serial in undated:
-                store.pending_outlooks.ask(store.units.key(serial), now)
+                store.work(WorkKind.OUTLOOK).ask_again(serial, now)
             store.audit.write(
                 now, who, "interval", name, {"before": was, "maximum_interval_days": interval_days} | said
             )

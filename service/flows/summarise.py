@@ -5,12 +5,15 @@ from datetime import datetime
 from service.judging.populations import populations
 from service.judging.stand_health import stand_health
 from service.records.group import Group, Level
+from service.records.work import WorkKind
 from service.storage import Storage
 from service.storage.store import Store
 
 
-def summarise(storage: Storage, group: Group, now: datetime) -> None:
+def summarise(storage: Storage, place: str, now: datetime) -> None:
     """Makes what pages read of a type or of the stands; what changes meanwhile has asked for it again."""
+    with storage.database.reading() as store:
+        group = store.groups.at(place)
     if group.level is Level.STAND:
         _stands(storage, now)
     else:
@@ -22,7 +25,7 @@ def summarise_all(storage: Storage, now: datetime) -> int:
     count = 0
     while True:
         with storage.database.reading() as store:
-            found = store.pending_summaries.waiting(now, 1)
+            found = store.work(WorkKind.SUMMARY).waiting(now, 1)
         if not found:
             return count
         summarise(storage, found[0], now)
@@ -31,24 +34,24 @@ def summarise_all(storage: Storage, now: datetime) -> int:
 
 def ask_for_summaries(store: Store, serial: str, now: datetime) -> None:
     """After a change of a unit's records: of its type and of the stands that it was measured on."""
-    groups = store.groups.of_unit(serial)
-    store.pending_summaries.ask((group for group in groups if group.level is not Level.UNIT), now)
+    shared = (group.place for group in store.groups.of_unit(serial) if group.level is not Level.UNIT)
+    store.work(WorkKind.SUMMARY).ask_each(shared, now)
 
 
 def _type(storage: Storage, group: Group, now: datetime) -> None:
     with storage.database.reading() as store:
-        asked, rates = store.pending_summaries.asked(group), store.outlooks.rates(group.key)
+        asked, rates = store.work(WorkKind.SUMMARY).tickets(group.place), store.outlooks.rates(group.key)
     found = populations(rates)
     with storage.database.writing() as store:
         store.unit_types.hold(group.name)
         store.populations.put(group.key, found, now)
-        store.pending_summaries.settle(asked)
+        store.work(WorkKind.SUMMARY).settle_each(asked)
 
 
 def _stands(storage: Storage, now: datetime) -> None:
     """All together: a shift of one is told from the others."""
     with storage.database.reading() as store:
-        asked, found = store.pending_summaries.asked_of(Level.STAND), stand_health(store)
+        asked, found = store.work(WorkKind.SUMMARY).tickets_under(f"{Level.STAND} "), stand_health(store)
     with storage.database.writing() as store:
         store.stands.put_conditions(found, now)
-        store.pending_summaries.settle(asked)
+        store.work(WorkKind.SUMMARY).settle_each(asked)

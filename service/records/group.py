@@ -23,6 +23,11 @@ class Group:
     key: int
     name: str
 
+    @property
+    def place(self) -> str:
+        """What the queue of work calls it."""
+        return f"{self.level} {self.key}"
+
 
 @dataclass(frozen=True)
 class Member:

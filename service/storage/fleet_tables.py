@@ -4,7 +4,7 @@ function of the other tables and can be made again.
 
     tallied       ──> fleet_tallies     what every unit adds to the counts, and the counts
     stand_units   ──> stand_tallies     the same by stand
-    pending_summaries ──> populations, stand_conditions
+    work ──> populations, stand_conditions
 """
 
 from datetime import datetime

@@ -5,7 +5,7 @@ A group is a unit, a unit type or a stand: ``level`` says which, ``group_id`` is
 
 from datetime import datetime
 
-from sqlalchemy import ForeignKey, Index, String, Text
+from sqlalchemy import ForeignKey, String
 from sqlalchemy.orm import Mapped, mapped_column
 
 from service.storage.tables import Base
@@ -42,33 +42,3 @@ class GroupDiagnosisRow(Base):
     """None where it could not be made."""
     estimator_version: Mapped[str] = mapped_column(String(40))
     created_at: Mapped[datetime]
-
-
-class AskedRow:
-    """Somebody asks for what a group shows, because a session of it changed.
-
-    Every asking is a row of its own: so none waits for another, whatever else both of them hold.
-    """
-
-    id: Mapped[int] = mapped_column(primary_key=True)
-    level: Mapped[str] = mapped_column(String(10))
-    group_id: Mapped[int]
-    asked_at: Mapped[datetime]
-    claimed_until: Mapped[datetime | None]
-    attempts: Mapped[int]
-    failed: Mapped[str | None] = mapped_column(Text)
-    """Why the last try failed; NULL where none did."""
-
-
-class PendingGroupRow(AskedRow, Base):
-    """For what its sessions show together."""
-
-    __tablename__ = "pending_groups"
-    __table_args__ = (Index("ix_pending_groups_level_group_id", "level", "group_id"),)
-
-
-class PendingSummaryRow(AskedRow, Base):
-    """Of a unit type for how its units drift, of a stand for its own health."""
-
-    __tablename__ = "pending_summaries"
-    __table_args__ = (Index("ix_pending_summaries_level_group_id", "level", "group_id"),)

@@ -4,6 +4,7 @@ from functools import cached_property
 
 from sqlalchemy.orm import Session
 
+from service.records.work import WorkKind
 from service.storage.queries.accounts import Accounts
 from service.storage.queries.announced import Announcements
 from service.storage.queries.arrivals import Arrivals
@@ -29,9 +30,6 @@ from service.storage.queries.noises import Noises
 from service.storage.queries.notes import Notes
 from service.storage.queries.notices import Notices
 from service.storage.queries.outlooks import Outlooks
-from service.storage.queries.pending import PendingDiagnoses
-from service.storage.queries.pending_groups import PendingGroups, PendingSummaries
-from service.storage.queries.pending_outlooks import PendingOutlooks
 from service.storage.queries.populations import Populations
 from service.storage.queries.recomputations import Recomputations
 from service.storage.queries.said import SaidOf
@@ -49,6 +47,7 @@ from service.storage.queries.tokens import Tokens
 from service.storage.queries.unit_types import UnitTypes
 from service.storage.queries.units import Units
 from service.storage.queries.webhooks import Webhooks
+from service.storage.queries.work import WorkQueue
 
 
 class Store:
@@ -107,20 +106,14 @@ class Store:
         """What the simulation gets wrong."""
         return Diagnoses(self._session)
 
-    @cached_property
-    def pending(self) -> PendingDiagnoses:
-        """Diagnoses that are still to be made."""
-        return PendingDiagnoses(self._session)
+    def work(self, kind: WorkKind) -> WorkQueue:
+        """Work beside the requests that is still to be done."""
+        return WorkQueue(self._session, kind)
 
     @cached_property
     def failures(self) -> Failures:
         """Work beside the requests that has failed."""
         return Failures(self._session)
-
-    @cached_property
-    def pending_outlooks(self) -> PendingOutlooks:
-        """Outlooks that are to be worked out again."""
-        return PendingOutlooks(self._session)
 
     @cached_property
     def statistics(self) -> Statistics:
@@ -131,16 +124,6 @@ class Store:
     def groups(self) -> Groups:
         """Units, unit types and stands as groups of sessions."""
         return Groups(self._session)
-
-    @cached_property
-    def pending_groups(self) -> PendingGroups:
-        """Groups whose answer is to be made again."""
-        return PendingGroups(self._session)
-
-    @cached_property
-    def pending_summaries(self) -> PendingSummaries:
-        """Types and stands whose summaries are to be made again."""
-        return PendingSummaries(self._session)
 
     @cached_property
     def populations(self) -> Populations:

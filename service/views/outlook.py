@@ -11,6 +11,7 @@ from datetime import datetime
 from service.errors import NotFoundError
 from service.records.fleet import Population
 from service.records.outlook import ParameterTrend, UnitOutlook
+from service.records.work import WorkKind
 from service.storage.store import Store
 from service.words.failed import unit_failed
 
@@ -22,7 +23,7 @@ def outlook_of(store: Store, serial: str, now: datetime) -> UnitOutlook:
         if not store.units.exists(serial):
             raise NotFoundError(f"There is no unit {serial!r}.")
         own = nothing_known(serial)
-    why = store.pending_outlooks.failed(serial)
+    why = store.work(WorkKind.OUTLOOK).failed(serial)
     return replace(compared(own, store.populations.of_type(own.unit_type), now), failed=unit_failed(why) if why else "")
 
 

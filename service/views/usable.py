@@ -14,6 +14,7 @@ from service.records.session import StoredSession
 from service.records.state import RecordState
 from service.records.unit import UnitReport
 from service.records.usable import Usable
+from service.records.work import WorkKind
 from service.storage.store import Store
 from service.views.traceability import traceability_of
 from service.views.unit_report import unit_report
@@ -151,7 +152,7 @@ def _reservations(store: Store, session: StoredSession | None, flags: tuple[Flag
         if chain.has_expired:
             yield chain.text
         if session.reservations is None:
-            failed = store.pending.failed(session.id)
+            failed = store.work(WorkKind.DIAGNOSIS).failed(session.id)
             yield session_failed(failed) if failed else words.on(words.NOT_DIAGNOSED, session.started_at)
         yield from (words.reserved(one) for one in session.reservations or ())
     yield from (words.flagged(flag) for flag in flags if flag.matter not in (*FORBIDDING, Matter.OVERDUE))

@@ -18,12 +18,13 @@ from sqlalchemy import text
 from service.app import create_app
 from service.background import read_diagnosis
 from service.background.bell import Bell
-from service.background.diagnose_waiting import CLAIM, MOST_ATTEMPTS, Diagnosing, diagnose_next
 from service.background.helper import Helper
+from service.background.kinds import DIAGNOSES, MOST_ATTEMPTS
+from service.background.work import LEASE, Worker, work_next
 from service.flows.guard import AT_FAULT
 from service.metrics import Metrics
 from service.records.diagnosis import DiagnosisState
-from service.records.pending import Claim
+from service.records.work import WorkKind
 from service.settings import Settings
 from service.storage import Storage
 from tests.conftest import SettingsHolding
@@ -130,7 +131,7 @@ def test_what_rests_on_a_diagnosis_that_somebody_is_making_is_asked_for_again(
 ) -> None:
     id = session_id(REFERENCE)
     with storage.database.writing() as store:
-        store.pending.claim(Claim(id, "somebody else", datetime.now(UTC) + CLAIM), NOW)
+        store.work(WorkKind.DIAGNOSIS).claim(id, NOW, datetime.now(UTC) + LEASE)
     monkeypatch.setattr(read_diagnosis, "PATIENCE", 0.0)
     with http_client(create_app(settings)) as client:
         answer = client.get(f"/api/v1/sessions/{id}/certificate")
@@ -140,14 +141,14 @@ def test_what_rests_on_a_diagnosis_that_somebody_is_making_is_asked_for_again(
 def test_what_the_program_fails_at_is_tried_some_times_beside_the_requests(
     written: io.StringIO, spoilt: Storage, settings: Settings
 ) -> None:
-    own, helper = Diagnosing(settings, spoilt, lambda: NOW, Metrics(), Bell()), Helper(settings)
+    own, helper = Worker(settings, spoilt, lambda: NOW, Metrics(), Bell()), Helper(settings)
     tries = 0
-    while diagnose_next(own, helper, Event()):
+    while work_next(own, helper.make, Event(), DIAGNOSES):
         tries += 1
     helper.end()
     assert tries == 1 + MOST_ATTEMPTS + 1
     assert f'{{fault="KeyError",work="pending diagnoses"}} {float(MOST_ATTEMPTS)}' in own.metrics.text().decode()
-    reasons = [line["reason"] for line in lines(written) if line.get("session") == ID and "reason" in line]
+    reasons = [line["reason"] for line in lines(written) if line.get("of") == ID and "reason" in line]
     assert reasons == [AT_FAULT] * MOST_ATTEMPTS
 
 

@@ -1,15 +1,17 @@
 """What the fleet page says before its list of units: three short lists in one statement."""
 
-from sqlalchemy import Subquery, case, func, select
+from sqlalchemy import String, Subquery, case, cast, func, literal, select
 
 from service.records.announced import Announced
 from service.records.group import FoundTogether, Group, Level
 from service.records.state import Questioned, RecordState
+from service.records.work import WorkKind
 from service.storage.fleet_tables import StandConditionRow
-from service.storage.group_tables import GroupDiagnosisRow, PendingGroupRow
+from service.storage.group_tables import GroupDiagnosisRow
 from service.storage.queries.base import Queries, lists
 from service.storage.stand_document import condition_from_dict
 from service.storage.tables import SessionRow, StandRow, UnitRow, UnitTypeRow
+from service.storage.work_tables import WorkRow
 
 WIDEST = (Level.STAND, Level.TYPE, Level.UNIT)
 """What concerns most units first."""
@@ -56,8 +58,9 @@ def _questioned(most: int) -> Subquery:
 
 def _found(most: int) -> Subquery:
     """Groups whose answer is being made again are left out."""
-    row, asked = GroupDiagnosisRow, PendingGroupRow
-    again = select(asked.id).where(asked.level == row.level, asked.group_id == row.group_id).exists()
+    row = GroupDiagnosisRow
+    place_of = row.level + literal(" ") + cast(row.group_id, String)
+    again = select(WorkRow.id).where(WorkRow.kind == WorkKind.GROUP, WorkRow.key == place_of).exists()
     place = case({level.value: place for place, level in enumerate(WIDEST)}, value=row.level).label("place")
     name = func.coalesce(UnitRow.serial, UnitTypeRow.name, StandRow.name).label("group_name")
     query = (

@@ -13,11 +13,12 @@ from service.errors import NotFoundError
 from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState, DiagnosisSummary
 from service.records.session import StoredSession
+from service.records.work import WorkKind
 from service.storage.calibration_document import Packed, calibration_from_dict
-from service.storage.pending_tables import PendingRow
 from service.storage.queries.base import Queries
 from service.storage.queries.sessions import session_record, session_rows, worst_columns
 from service.storage.tables import CalibrationRow, DiagnosisRow, SessionRow
+from service.storage.work_tables import WorkRow
 
 AT_HAND = 32
 """Calibrations that are kept as they were read: an upload reads its own two or three times, and its reference."""
@@ -58,9 +59,9 @@ class Calibrations(Queries):
         """A session, its diagnosis in one line where it is made, why the last try to make it failed, and its
         calibration in force; in one query."""
         own = (CalibrationRow.session_id == SessionRow.id) & (CalibrationRow.revision == SessionRow.revision)
-        line = (DiagnosisRow.state, DiagnosisRow.summary, PendingRow.failed)
+        line = (DiagnosisRow.state, DiagnosisRow.summary, WorkRow.failed)
         query = session_rows().add_columns(*line, CalibrationRow.document).join(CalibrationRow, own)
-        whole = query.outerjoin(PendingRow, PendingRow.session_id == SessionRow.id)
+        whole = query.outerjoin(WorkRow, (WorkRow.kind == WorkKind.DIAGNOSIS) & (WorkRow.key == SessionRow.id))
         row = self._session.execute(whole.where(SessionRow.id == id)).one_or_none()
         if row is None:
             raise NotFoundError(f"There is no session {id!r}.")

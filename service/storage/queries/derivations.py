@@ -3,12 +3,14 @@
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from datetime import datetime
 from typing import Any
+from uuid import uuid4
 
-from sqlalchemy import Table, Update, bindparam, delete, func, select, update
+from sqlalchemy import Table, Update, bindparam, delete, func, or_, select, update
 
 from service.records.decision import Judged
 from service.records.derivation import UNWEIGHED, Counted, Decided, Told, UnitRecords
 from service.records.flag import Concern, FlagState, Matter, NoticeKind
+from service.records.work import WorkKind
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
 from service.storage.queries.sessions import NOT_JUDGED, is_waiting, worst_columns
@@ -23,6 +25,7 @@ from service.storage.tables import (
     SessionRow,
     UnitRow,
 )
+from service.storage.work_tables import WorkRow
 
 Key = tuple[str, str]
 """Matter and place of a flag."""
@@ -144,6 +147,14 @@ class Derivations(Queries):
         )
         gone = delete(DiagnosisRow).where(DiagnosisRow.session_id.in_(later)).returning(DiagnosisRow.session_id)
         return tuple(sorted(self._session.scalars(gone)))
+
+    def look_again(self, unit: int, since: datetime, judged: Collection[str]) -> None:
+        """Diagnoses that are being made, from a date on or of some sessions, are made again with what has changed."""
+        concerned = select(SessionRow.id).where(
+            SessionRow.unit_id == unit, or_(SessionRow.started_at >= since, SessionRow.id.in_(judged))
+        )
+        own = (WorkRow.kind == WorkKind.DIAGNOSIS, WorkRow.key.in_(concerned))
+        self._session.execute(update(WorkRow).where(*own).values(ticket=uuid4().hex))
 
     def forget_diagnosis(self, id: str) -> tuple[str, ...]:
         """The same of one session; none where it has none."""

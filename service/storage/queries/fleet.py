@@ -31,9 +31,9 @@ from service.records.reservation import Reservations
 from service.records.session import StoredSession
 from service.records.state import RecordState
 from service.records.unit import FleetCondition, UnitKnown, UnitSummary
+from service.records.work import WorkKind
 from service.storage.fleet_tables import FleetTallyRow
 from service.storage.outlook_tables import OutlookRow
-from service.storage.pending_tables import FailedDerivationRow, PendingOutlookRow
 from service.storage.queries.accepted import IS_ACCEPTED, IS_BREAK
 from service.storage.queries.base import Queries
 from service.storage.queries.outlooks import outlook_of
@@ -52,6 +52,7 @@ from service.storage.tables import (
     UnitRow,
     UnitTypeRow,
 )
+from service.storage.work_tables import WorkRow
 
 Other = aliased(SessionRow)
 """A session of the unit, beside its latest one."""
@@ -230,6 +231,10 @@ FOUND = (DiagnosisRow.state, DiagnosisRow.summary, DiagnosisRow.reservations)
 """What a line of the fleet tells of the latest session and of its diagnosis; the rest is long, and stays unread."""
 
 
+_Outlook, _Derivation = aliased(WorkRow), aliased(WorkRow)
+"""What is still to be made of a unit."""
+
+
 def _summaries(*, measured: bool = True) -> Summaries:
     """Units with their latest accepted session; those without one too where they need not be measured."""
     return (
@@ -240,8 +245,8 @@ def _summaries(*, measured: bool = True) -> Summaries:
             SessionRow,
             DiagnosisRow,
             OutlookRow.due,
-            PendingOutlookRow.ticket,
-            func.coalesce(PendingOutlookRow.failed, FailedDerivationRow.failed),
+            _Outlook.ticket,
+            func.coalesce(_Outlook.failed, _Derivation.failed),
             OutlookRow.reason,
         )
         .options(load_only(*LAST, raiseload=True), load_only(*FOUND, raiseload=True))
@@ -250,8 +255,8 @@ def _summaries(*, measured: bool = True) -> Summaries:
         .outerjoin(SessionRow, SessionRow.id == ConditionRow.last_session)
         .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
         .outerjoin(OutlookRow, OutlookRow.unit_id == UnitRow.id)
-        .outerjoin(PendingOutlookRow, PendingOutlookRow.unit_id == UnitRow.id)
-        .outerjoin(FailedDerivationRow, FailedDerivationRow.unit_id == UnitRow.id)
+        .outerjoin(_Outlook, (_Outlook.kind == WorkKind.OUTLOOK) & (_Outlook.key == UnitRow.serial))
+        .outerjoin(_Derivation, (_Derivation.kind == WorkKind.DERIVATION) & (_Derivation.key == UnitRow.serial))
     )
 
 

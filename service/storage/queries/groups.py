@@ -3,7 +3,22 @@
 import zlib
 from datetime import datetime
 
-from sqlalchemy import ColumnElement, Select, and_, bindparam, delete, exists, func, or_, select, tuple_, update
+from sqlalchemy import (
+    ColumnElement,
+    Select,
+    String,
+    and_,
+    bindparam,
+    cast,
+    delete,
+    exists,
+    func,
+    literal,
+    or_,
+    select,
+    tuple_,
+    update,
+)
 from sqlalchemy.orm import aliased
 
 from estimator.groups.statistics import FORMAT
@@ -11,11 +26,13 @@ from estimator.session import CALIBRATIONS
 from service.errors import NotFoundError
 from service.records.group import Group, GroupAnswer, Level, Member, Members
 from service.records.state import RecordState
-from service.storage.group_tables import GroupDiagnosisRow, PendingGroupRow, SessionStatisticsRow
+from service.records.work import WorkKind
+from service.storage.group_tables import GroupDiagnosisRow, SessionStatisticsRow
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
 from service.storage.queries.telling import tells_of_stand, tells_of_type
 from service.storage.tables import SessionRow, StandRow, UnitRow, UnitTypeRow
+from service.storage.work_tables import WorkRow
 
 MOST = 60
 """Sessions of a group that are pooled, the newest. An effect of one standard error in each reaches 8, at which it is
@@ -35,10 +52,11 @@ class Groups(Queries):
             raise NotFoundError(f"There is no {WORDS[level]} {name!r}.")
         return Group(level, key, name)
 
-    def by_key(self, level: Level, key: int) -> Group:
-        """A group whose key is known."""
-        name = self._session.scalars(select(CALLED[level]).where(KEYS[level] == key)).one()
-        return Group(level, key, name)
+    def at(self, place: str) -> Group:
+        """A group as the queue of work calls it."""
+        level, key = place.split()
+        name = self._session.scalars(select(CALLED[Level(level)]).where(KEYS[Level(level)] == int(key))).one()
+        return Group(Level(level), int(key), name)
 
     def every(self) -> tuple[Group, ...]:
         """All units, then all unit types, then all stands."""
@@ -86,9 +104,9 @@ class Groups(Queries):
     def known(self, level: Level, name: str) -> tuple[Group, GroupAnswer | None, bool, str]:
         """A group by its name, what is stored of it, whether it is asked for again since, and why that failed; in one
         query."""
-        row, asked, number = GroupDiagnosisRow, PendingGroupRow, KEYS[level]
-        own = (asked.level == level.value, asked.group_id == number)
-        again, failed = select(asked.id).where(*own).exists(), select(func.max(asked.failed)).where(*own)
+        row, number = GroupDiagnosisRow, KEYS[level]
+        own = (WorkRow.kind == WorkKind.GROUP, WorkRow.key == literal(f"{level} ") + cast(number, String))
+        again, failed = select(WorkRow.id).where(*own).exists(), select(func.max(WorkRow.failed)).where(*own)
         stored = and_(row.level == level.value, row.group_id == number)
         query = select(number, row, again, failed.scalar_subquery()).select_from(number.class_).outerjoin(row, stored)
         found = self._session.execute(query.where(CALLED[level] == name)).one_or_none()

@@ -7,10 +7,11 @@ from sqlalchemy.orm import Session
 
 from service.records.derivation import Counted, UnitRecords
 from service.records.state import RecordState
-from service.storage.pending_tables import PendingRow
+from service.records.work import WorkKind
 from service.storage.queries.accepted import IS_BREAK
 from service.storage.state_tables import ReferenceChoiceRow
 from service.storage.tables import DiagnosisRow, ServiceRow, SessionRow
+from service.storage.work_tables import WorkRow
 
 UNIT: BindParameter[int] = bindparam("unit")
 SESSIONS: Select[*tuple[Any, ...]] = (
@@ -18,10 +19,10 @@ SESSIONS: Select[*tuple[Any, ...]] = (
         literal_column("'session'").label("what"), SessionRow.id, SessionRow.block, SessionRow.programme,
         SessionRow.started_at.label("at"), SessionRow.revision.label("number"), SessionRow.is_reference,
         SessionRow.basis, SessionRow.state, DiagnosisRow.session_id.label("diagnosed"),
-        PendingRow.session_id.label("waiting"),
+        WorkRow.key.label("waiting"),
     )
     .outerjoin(DiagnosisRow, DiagnosisRow.session_id == SessionRow.id)
-    .outerjoin(PendingRow, PendingRow.session_id == SessionRow.id)
+    .outerjoin(WorkRow, (WorkRow.kind == WorkKind.DIAGNOSIS.value) & (WorkRow.key == SessionRow.id))
     .where(SessionRow.unit_id == UNIT)
 )  # fmt: skip
 NOTHING = (null(),) * 5

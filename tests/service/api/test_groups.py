@@ -8,12 +8,13 @@ from sqlalchemy import text
 
 from service.app import create_app
 from service.background.bell import Bell
-from service.background.diagnose_waiting import CLAIM
-from service.background.pool_waiting import GROUPS as QUEUE
+from service.background.kinds import GROUPS as QUEUE
 from service.background.read_group import MOST_WAITING, GroupReader
+from service.background.work import LEASE
 from service.flows.receive import upload
 from service.metrics import Metrics
 from service.records.group import Level
+from service.records.work import WorkKind
 from service.settings import Settings
 from service.storage import Storage
 from service.words.group import FAILED
@@ -44,7 +45,7 @@ def test_what_does_not_exist_is_not_found(client: httpx.Client, path: str) -> No
 def test_what_somebody_is_at_is_202_where_too_many_wait_for_it(settings: Settings, storage: Storage) -> None:
     upload(storage, GROUP[0], "a.json", NOW)
     with storage.database.writing() as store:
-        store.pending_groups.claim(store.groups.find(Level.UNIT, "BA-017"), NOW, NOW + CLAIM)
+        store.work(WorkKind.GROUP).claim(store.groups.find(Level.UNIT, "BA-017").place, NOW, NOW + LEASE)
     app = create_app(settings.model_copy(update={"diagnosis_workers": 1}), lambda: NOW)
     for _ in range(MOST_WAITING):
         app.state.application.groups.places.acquire()

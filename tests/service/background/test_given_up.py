@@ -10,12 +10,9 @@ from typing import Any
 import pytest
 
 from service.background.bell import Bell
-from service.background.claimed import Work, work_next
-from service.background.diagnose_waiting import MOST_ATTEMPTS, Diagnosing
 from service.background.helper import Helper, Still
-from service.background.pool_waiting import GROUPS
-from service.background.recompute_waiting import MODELS
-from service.background.refresh_waiting import OUTLOOKS
+from service.background.kinds import GROUPS, MODELS, MOST_ATTEMPTS, OUTLOOKS, Kind
+from service.background.work import Worker, work_next
 from service.flows.guard import AT_FAULT, Failure
 from service.flows.receive import upload
 from service.flows.refresh_group import current
@@ -24,6 +21,7 @@ from service.metrics import Metrics
 from service.records.group import Level
 from service.records.model import Evidence, ModelRevision, Scope
 from service.records.recomputation import Progress
+from service.records.work import WorkKind
 from service.settings import Settings
 from service.storage import Storage
 from service.views.usable import usable
@@ -54,27 +52,26 @@ def two(storage: Storage) -> Storage:
     return storage
 
 
-def killed(helper: Helper, one: object, now: datetime, still: Still) -> Failure | None:
+def killed(helper: Helper, now: datetime, still: Still) -> Failure | None:
     """The process dies at its work, as when the machine has no memory left."""
     helper.start()
     process = helper._process
     assert process is not None
     assert process.pid is not None
     os.kill(process.pid, signal.SIGKILL)
-    return helper.refresh(UNIT, now, still)
+    return helper.make(OUTLOOKS, UNIT, now, still)
 
 
-def tries(own: Diagnosing, helper: Helper, work: Work[Any]) -> int:
+def tries(own: Worker, helper: Helper, kind: Kind[Any]) -> int:
     """How often it is begun until nothing of it waits."""
-    deadly = Work(work.name, work.queue, killed, work.give_up, work.most)
     count = 0
-    while work_next(own, helper, Event(), deadly):
+    while work_next(own, lambda _, __, now, still: killed(helper, now, still), Event(), kind):
         count += 1
     return count
 
 
-def diagnosing(settings: Settings, storage: Storage) -> Diagnosing:
-    return Diagnosing(settings, storage, lambda: NOW, Metrics(), Bell())
+def diagnosing(settings: Settings, storage: Storage) -> Worker:
+    return Worker(settings, storage, lambda: NOW, Metrics(), Bell())
 
 
 @one_engine
@@ -83,20 +80,20 @@ def test_an_outlook_is_given_up_until_its_unit_s_history_changes(
 ) -> None:
     assert tries(diagnosing(settings, two), helper, OUTLOOKS) == MOST_ATTEMPTS + 1
     with two.database.reading() as store:
-        assert not store.pending_outlooks.is_coming(UNIT)
+        assert not store.work(WorkKind.OUTLOOK).is_coming(UNIT)
         assert unit_failed("The process died at the outlook of BA-017.") in usable(store, UNIT, NOW).reservations
     upload(two, GROUP[2], "a.json", NOW, is_dated_later=True)
     with two.database.reading() as store:
-        assert store.pending_outlooks.waiting(NOW, 10) == (UNIT,)
+        assert store.work(WorkKind.OUTLOOK).waiting(NOW, 10) == (UNIT,)
 
 
 @one_engine
 def test_another_start_tries_an_outlook_again(settings: Settings, two: Storage, helper: Helper) -> None:
     tries(diagnosing(settings, two), helper, OUTLOOKS)
     with two.database.writing() as store:
-        assert store.pending_outlooks.waiting(NOW, 10) == ()
-        store.pending_outlooks.try_again()
-        assert store.pending_outlooks.waiting(NOW, 10) == (UNIT,)
+        assert store.work(WorkKind.OUTLOOK).waiting(NOW, 10) == ()
+        store.failures.try_again()
+        assert store.work(WorkKind.OUTLOOK).waiting(NOW, 10) == (UNIT,)
 
 
 @one_engine
@@ -127,7 +124,7 @@ def test_sessions_keep_what_they_had_where_no_process_outlives_their_model(
         assert store.sessions.get(session_id(GROUP[0])).revision == 0
     assert left_in_words(given_up[0]) == GIVEN_UP
     assert retry_failed(two, NOW, "A. Weber") == 1
-    assert work_next(diagnosing(settings, two), helper, Event(), MODELS)
+    assert work_next(diagnosing(settings, two), helper.make, Event(), MODELS)
     with two.database.reading() as store:
         assert [one.state for one in store.recomputations.of(revision.id)] == [Progress.DONE]
 
@@ -144,28 +141,27 @@ def test_a_session_at_fault_is_not_blamed_on_its_group(storage: Storage, two: St
     with two.database.writing() as store:
         group = store.groups.find(Level.UNIT, UNIT)
         for _ in range(2):
-            store.pending_groups.claim(group, NOW, NOW)
-        store.pending_groups.blame_none(group)
-        assert store.pending_groups.claim(group, NOW, NOW) == 1
+            store.work(WorkKind.GROUP).claim(group.place, NOW, NOW)
+        store.work(WorkKind.GROUP).forgive(group.place)
+        assert store.work(WorkKind.GROUP).claim(group.place, NOW, NOW) == 1
 
 
 @one_engine
-def test_what_fails_with_a_word_is_put_off_and_never_given_up(settings: Settings, two: Storage, helper: Helper) -> None:
-    def fails(helper: Helper, one: str, now: datetime, still: Still) -> Failure | None:
+def test_what_fails_with_a_word_is_put_off_and_never_given_up(settings: Settings, two: Storage) -> None:
+    def fails(kind: Kind[str], one: str, now: datetime, still: Still) -> Failure | None:
         return Failure("ValueError", "no")
 
-    failing = Work(OUTLOOKS.name, OUTLOOKS.queue, fails, OUTLOOKS.give_up)
     own = diagnosing(settings, two)
-    assert work_next(own, helper, Event(), failing)
-    assert not work_next(own, helper, Event(), failing)
+    assert work_next(own, fails, Event(), OUTLOOKS)
+    assert not work_next(own, fails, Event(), OUTLOOKS)
 
 
 @one_engine
-def test_what_the_program_fails_at_is_given_up_too(settings: Settings, two: Storage, helper: Helper) -> None:
-    def fails(helper: Helper, one: str, now: datetime, still: Still) -> Failure | None:
+def test_what_the_program_fails_at_is_given_up_too(settings: Settings, two: Storage) -> None:
+    def fails(kind: Kind[str], one: str, now: datetime, still: Still) -> Failure | None:
         return Failure("KeyError", AT_FAULT, is_foreseen=False)
 
-    failing, begun = Work(OUTLOOKS.name, OUTLOOKS.queue, fails, OUTLOOKS.give_up), 0
-    while work_next(diagnosing(settings, two), helper, Event(), failing):
+    begun = 0
+    while work_next(diagnosing(settings, two), fails, Event(), OUTLOOKS):
         begun += 1
     assert begun == MOST_ATTEMPTS + 1

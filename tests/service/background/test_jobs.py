@@ -7,10 +7,9 @@ from threading import Event
 import pytest
 
 from service.background.bell import Bell
-from service.background.claimed import Work, work_next
-from service.background.diagnose_waiting import CLAIM, MOST_ATTEMPTS, Diagnosing
 from service.background.helper import Helper, Still
-from service.background.job_waiting import JOBS, work_on_next
+from service.background.kinds import JOBS, MOST_ATTEMPTS, Kind
+from service.background.work import LEASE, Worker, work_next
 from service.background.work_job import work_piece
 from service.errors import ConflictError
 from service.flows.ask_job import ask_job, cancel_job, drop_outlived, file_of, tell_job
@@ -68,7 +67,7 @@ def helper(settings: Settings) -> Iterator[Helper]:
 
 def claim(storage: Storage, id: int, now: datetime = NOW) -> int | None:
     with storage.database.writing() as store:
-        return store.jobs.claim(id, now, now + CLAIM)
+        return store.jobs.claim(id, now, now + LEASE)
 
 
 def read(storage: Storage, id: int) -> Job:
@@ -86,7 +85,7 @@ def pieces(storage: Storage, id: int, count: int) -> Job:
 
 def test_one_process_claims_it_at_a_time_and_a_dead_one_s_claim_runs_out(three: Storage) -> None:
     id = ask_job(three, AGAIN, NOW).id
-    assert [claim(three, id), claim(three, id), claim(three, id, NOW + CLAIM)] == [1, None, 2]
+    assert [claim(three, id), claim(three, id), claim(three, id, NOW + LEASE)] == [1, None, 2]
 
 
 def test_the_same_asked_for_twice_is_one_job(three: Storage) -> None:
@@ -156,8 +155,8 @@ def test_several_jobs_take_turns(three: Storage) -> None:
 @one_engine
 def test_a_process_of_its_own_does_it(settings: Settings, three: Storage, helper: Helper) -> None:
     again, report = ask_job(three, AGAIN, NOW).id, ask_job(three, REPORT, NOW).id
-    own = Diagnosing(settings, three, lambda: NOW, Metrics(), Bell())
-    while work_on_next(own, helper, Event()):
+    own = Worker(settings, three, lambda: NOW, Metrics(), Bell())
+    while work_next(own, helper.make, Event(), JOBS):
         pass
     assert [read(three, id).state for id in (again, report)] == [JobState.DONE] * 2
     assert file_of(three.files, read(three, report)).startswith(b"PK")
@@ -168,14 +167,13 @@ def test_a_process_of_its_own_does_it(settings: Settings, three: Storage, helper
 
 @one_engine
 def test_a_unit_at_which_the_program_fails_is_listed_and_the_others_follow(settings: Settings, three: Storage) -> None:
-    def fails(helper: Helper, id: int, now: datetime, still: Still) -> Failure | None:
+    def fails(kind: Kind[int], id: int, now: datetime, still: Still) -> Failure | None:
         return Failure("KeyError", AT_FAULT, is_foreseen=False)
 
     id = ask_job(three, AGAIN, NOW).id
-    own = Diagnosing(settings, three, lambda: NOW, Metrics(), Bell())
-    failing = Work(JOBS.name, JOBS.queue, fails, JOBS.give_up)
+    own = Worker(settings, three, lambda: NOW, Metrics(), Bell())
     for _ in range(MOST_ATTEMPTS + 1):
-        assert work_next(own, Helper(settings), Event(), failing)
+        assert work_next(own, fails, Event(), JOBS)
     listed = read(three, id)
     assert (listed.done, [one.subject for one in listed.failures]) == (1, ["B-1"])
     assert pieces(three, id, 3).state is JobState.DONE

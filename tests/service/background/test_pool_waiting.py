@@ -6,14 +6,16 @@ from threading import Event
 
 import pytest
 
+from service.background.asking import ask_for_outdated
 from service.background.bell import Bell
-from service.background.diagnose_waiting import CLAIM, Diagnosing
 from service.background.helper import Helper
-from service.background.pool_waiting import ask_for_outdated, pool_next
+from service.background.kinds import GROUPS
+from service.background.work import LEASE, Worker, work_next
 from service.flows.receive import upload
 from service.flows.refresh_group import current, refresh_group
 from service.metrics import Metrics
 from service.records.group import Group, Level
+from service.records.work import WorkKind
 from service.settings import Settings
 from service.storage import Storage
 from tests.databases import one_engine
@@ -41,15 +43,15 @@ def helper(settings: Settings) -> Iterator[Helper]:
 
 def waiting(storage: Storage, now: datetime = NOW) -> list[Level]:
     with storage.database.reading() as store:
-        return [group.level for group in store.pending_groups.waiting(now, 10)]
+        return [store.groups.at(place).level for place in store.work(WorkKind.GROUP).waiting(now, 10)]
 
 
 @one_engine
 def test_a_process_of_its_own_makes_one_after_another(
     settings: Settings, storage: Storage, unit: Group, helper: Helper
 ) -> None:
-    own = Diagnosing(settings, storage, lambda: NOW, Metrics(), Bell())
-    made = [pool_next(own, helper, Event()) for _ in range(4)]
+    own = Worker(settings, storage, lambda: NOW, Metrics(), Bell())
+    made = [work_next(own, helper.make, Event(), GROUPS) for _ in range(4)]
     assert (made, waiting(storage)) == ([True, True, True, False], [])
     with storage.database.reading() as store:
         answer = current(store, unit)
@@ -60,17 +62,17 @@ def test_a_process_of_its_own_makes_one_after_another(
 def test_one_process_claims_a_group_at_a_time(storage: Storage, unit: Group) -> None:
     for got in (1, None):
         with storage.database.writing() as store:
-            assert store.pending_groups.claim(unit, NOW, NOW + CLAIM) == got
+            assert store.work(WorkKind.GROUP).claim(unit.place, NOW, NOW + LEASE) == got
     assert Level.UNIT not in waiting(storage)
-    assert Level.UNIT in waiting(storage, NOW + CLAIM)
+    assert Level.UNIT in waiting(storage, NOW + LEASE)
 
 
 def test_who_asks_while_it_is_made_is_not_settled_with_it(storage: Storage, unit: Group) -> None:
     with storage.database.reading() as store:
-        asked = store.pending_groups.asked(unit)
+        asked = store.work(WorkKind.GROUP).tickets(unit.place)
     upload(storage, GROUP[2], "a.json", NOW)
     with storage.database.writing() as store:
-        store.pending_groups.settle(asked)
+        store.work(WorkKind.GROUP).settle_each(asked)
     assert Level.UNIT in waiting(storage)
 
 
@@ -79,5 +81,5 @@ def test_groups_without_an_answer_of_now_are_asked_for_once(storage: Storage, un
     assert ask_for_outdated(storage, lambda: NOW) == 0
     with storage.database.writing() as store:
         for group in store.groups.every():
-            store.pending_groups.settle(store.pending_groups.asked(group))
+            store.work(WorkKind.GROUP).settle_each(store.work(WorkKind.GROUP).tickets(group.place))
     assert [ask_for_outdated(storage, lambda: NOW) for _ in range(2)] == [2, 0]

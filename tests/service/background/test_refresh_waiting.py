@@ -9,14 +9,15 @@ import pytest
 
 from service.app import create_app
 from service.background.bell import Bell
-from service.background.diagnose_waiting import CLAIM, Diagnosing
 from service.background.helper import Helper
-from service.background.refresh_waiting import refresh_next
+from service.background.kinds import OUTLOOKS
+from service.background.work import LEASE, Worker, work_next
 from service.flows.receive import upload
 from service.flows.refresh_beside import refresh_beside
 from service.flows.withdraw_session import withdraw_session
 from service.metrics import Metrics
 from service.records.usable import Usable
+from service.records.work import WorkKind
 from service.settings import Settings
 from service.storage import Storage
 from service.views.usable import usable
@@ -48,7 +49,7 @@ def known(storage: Storage) -> dict[str, Any]:
 
 def waiting(storage: Storage) -> tuple[str, ...]:
     with storage.database.reading() as store:
-        return store.pending_outlooks.waiting(NOW, 10)
+        return store.work(WorkKind.OUTLOOK).waiting(NOW, 10)
 
 
 @pytest.fixture
@@ -74,29 +75,29 @@ def test_it_is_what_it_would_be_within_the_upload(storage: Storage) -> None:
 def test_what_changed_meanwhile_is_looked_at_again(storage: Storage) -> None:
     fill(storage, (1, 2))
     with storage.database.reading() as store:
-        before = store.pending_outlooks.ticket(UNIT)
+        before = store.work(WorkKind.OUTLOOK).get(UNIT)
     fill(storage, (3,))
     assert before is not None
     with storage.database.writing() as store:
-        assert not store.pending_outlooks.holds(store.units.key(UNIT), before)
+        assert not store.work(WorkKind.OUTLOOK).holds(UNIT, before.ticket)
 
 
 def test_one_process_claims_it_at_a_time(storage: Storage) -> None:
     fill(storage, (1, 2))
     for got in (1, None):
         with storage.database.writing() as store:
-            assert store.pending_outlooks.claim(UNIT, NOW, NOW + CLAIM) == got
+            assert store.work(WorkKind.OUTLOOK).claim(UNIT, NOW, NOW + LEASE) == got
     with storage.database.writing() as store:
-        assert store.pending_outlooks.claim(UNIT, NOW + CLAIM, NOW + 2 * CLAIM)
+        assert store.work(WorkKind.OUTLOOK).claim(UNIT, NOW + LEASE, NOW + 2 * LEASE)
 
 
 @one_engine
 def test_a_process_of_its_own_works_it_out(settings: Settings, storage: Storage, helper: Helper) -> None:
     fill(storage, (1, 2))
-    own = Diagnosing(settings, storage, lambda: NOW, Metrics(), Bell())
-    assert refresh_next(own, helper, Event())
+    own = Worker(settings, storage, lambda: NOW, Metrics(), Bell())
+    assert work_next(own, helper.make, Event(), OUTLOOKS)
     assert known(storage)["outlook"] is not None
-    assert not refresh_next(own, helper, Event())
+    assert not work_next(own, helper.make, Event(), OUTLOOKS)
 
 
 @one_engine
@@ -113,7 +114,7 @@ def test_whoever_asks_whether_a_unit_may_be_used_waits_for_its_dates(settings: S
 def test_until_its_dates_are_known_it_may_not_be_used_and_says_why(settings: Settings, storage: Storage) -> None:
     fill(storage, (9, 10))
     with storage.database.writing() as store:
-        store.pending_outlooks.claim(UNIT, NOW, NOW + CLAIM)
+        store.work(WorkKind.OUTLOOK).claim(UNIT, NOW, NOW + LEASE)
     worked = settings.model_copy(update={"diagnosis_workers": 1})
     with http_client(create_app(worked, lambda: NOW)) as client:
         page = client.get(f"/units/{UNIT}", headers={"Accept": "text/html"}).text

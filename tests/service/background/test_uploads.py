@@ -9,10 +9,8 @@ from threading import Event
 import pytest
 
 from service.background.bell import Bell
-from service.background.claimed import work_next
-from service.background.diagnose_waiting import Diagnosing
-from service.background.helper import Helper
-from service.background.take_in_waiting import MOST_TRIES, uploads_of
+from service.background.take_in_waiting import MOST_TRIES, UPLOADS, taking_in
+from service.background.work import Worker, work_next
 from service.errors import AwayError, BusyError, ConflictError, NotFoundError
 from service.flows import ask_job
 from service.flows import take_in as flow
@@ -69,8 +67,8 @@ def waiting(storage: Storage) -> list[Path]:
 
 def uploads(storage: Storage, settings: Settings) -> Callable[[], bool]:
     """What works on the next of them; whether there was one."""
-    own = Diagnosing(settings, storage, lambda: NOW, Metrics(), Bell())
-    return lambda: work_next(own, Helper(settings), Event(), uploads_of(own))
+    own = Worker(settings, storage, lambda: NOW, Metrics(), Bell())
+    return lambda: work_next(own, taking_in(own), Event(), UPLOADS)
 
 
 @pytest.fixture

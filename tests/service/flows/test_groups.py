@@ -21,6 +21,7 @@ from service.records.event import NewService
 from service.records.flag import Matter
 from service.records.group import Group, GroupAnswer, Level
 from service.records.model import NewModel, Scope
+from service.records.work import WorkKind
 from service.settings import VERSION
 from service.storage import Storage
 from service.storage.queries.statistics import GIVEN_UP, MOST_ATTEMPTS
@@ -164,7 +165,11 @@ def test_every_change_of_a_record_asks_for_its_groups(storage: Storage) -> None:
         refreshed(storage, level, name)
     withdraw_session(storage, way(storage), session_id(GROUP[0]), step())
     with storage.database.reading() as store:
-        assert {g.name for g in store.pending_groups.waiting(NOW, 10)} == {UNIT, "three", "ODG-1"}
+        assert {store.groups.at(place).name for place in store.work(WorkKind.GROUP).waiting(NOW, 10)} == {
+            UNIT,
+            "three",
+            "ODG-1",
+        }
 
 
 @one_engine

@@ -14,6 +14,7 @@ from service.flows.receive import Reception, receive, receive_all, upload
 from service.metrics import Metrics
 from service.records.received import SentFile
 from service.records.session import Receipt
+from service.records.work import WorkKind
 from service.settings import Settings
 from service.storage import Database, Files, Storage
 from service.storage.tables import (
@@ -155,7 +156,7 @@ def test_a_received_file_is_stored_and_counted_and_its_diagnosis_asked_for(stora
     own = reception(storage, rung)
     receipt = receive(own, SentFile("a.json", session_bytes()), NOW)
     with storage.database.reading() as store:
-        assert store.pending.waiting(NOW, 10) == (receipt.id,)
+        assert store.work(WorkKind.DIAGNOSIS).waiting(NOW, 10) == (receipt.id,)
         assert not store.diagnoses.exists(receipt.id)
     assert rung == [None]
     assert b'imu_health_uploads_total{result="undecidable"} 1.0' in own.metrics.text()

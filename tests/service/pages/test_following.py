@@ -7,10 +7,10 @@ import httpx
 import pytest
 
 from service.app import create_app
-from service.background.diagnose_waiting import CLAIM
+from service.background.work import LEASE
 from service.flows.receive import upload
 from service.pages.follow import LATEST, SOONEST, follow_seconds
-from service.records.pending import Claim
+from service.records.work import WorkKind
 from service.settings import Settings
 from tests.conftest import Holding
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
@@ -49,13 +49,12 @@ def test_a_session_that_is_diagnosed_is_not_followed(holding: Holding) -> None:
 def test_session_and_card_follow_until_the_diagnosis_is_there(settings: Settings) -> None:
     with stores(settings) as storage:
         upload(storage, CONTENT, "a.json", NOW)
-        claim = Claim(ID, "somebody else", NOW + CLAIM)
         with storage.database.writing() as store:
-            store.pending.claim(claim, NOW)
+            store.work(WorkKind.DIAGNOSIS).claim(ID, NOW, NOW + LEASE)
         with http_client(create_app(settings.model_copy(update={"diagnosis_workers": 1}), lambda: NOW)) as client:
             page, card = shown(client, f"/sessions/{ID}"), shown(client, f"/sessions/{ID}/outcome")
             with storage.database.writing() as store:
-                store.pending.put_off(claim, None)
+                store.work(WorkKind.DIAGNOSIS).put_off(ID, None)
             client.get(f"/api/v1/sessions/{ID}/diagnosis").raise_for_status()
             later = shown(client, f"/sessions/{ID}/outcome")
     assert f'http-equiv="refresh" content="{SOONEST}"' in page
@@ -73,8 +72,8 @@ def test_a_part_of_the_page_follows_with_scripts_and_the_page_without(settings: 
     with stores(settings) as storage:
         upload(storage, CONTENT, "a.json", NOW)
         with storage.database.writing() as store:
-            store.pending.claim(Claim(ID, "somebody else", NOW + CLAIM), NOW)
-            store.pending_outlooks.claim("BA-017", NOW, NOW + CLAIM)
+            store.work(WorkKind.DIAGNOSIS).claim(ID, NOW, NOW + LEASE)
+            store.work(WorkKind.OUTLOOK).claim("BA-017", NOW, NOW + LEASE)
         with http_client(create_app(settings.model_copy(update={"diagnosis_workers": 1}), lambda: NOW)) as client:
             text = shown(client, PENDING[page])
     assert re.search(r'<script type="module" src="[^"]*follow', text)

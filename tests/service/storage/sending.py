@@ -5,7 +5,7 @@ from collections.abc import Callable
 from datetime import datetime
 from uuid import uuid4
 
-from service.background.diagnose_waiting import CLAIM
+from service.background.work import LEASE
 from service.flows.receive import Reception, upload
 from service.flows.take_in import ask_upload, take_in
 from service.metrics import Metrics
@@ -43,7 +43,7 @@ def by_a_job(storage: Storage, content: bytes, now: datetime) -> None:
 def go_on(storage: Storage, now: datetime) -> None:
     """What a service does that is started again: jobs that are open are taken up."""
     with storage.database.reading() as store:
-        waiting = store.upload_jobs.waiting(now + CLAIM, 100)
+        waiting = store.upload_jobs.waiting(now + LEASE, 100)
     for id in waiting:
         take_in(Reception(storage, 2.0, Metrics(), lambda: None), id, now)
 

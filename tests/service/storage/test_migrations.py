@@ -10,6 +10,7 @@ from sqlalchemy.exc import DatabaseError
 
 from service.errors import AwayError
 from service.flows.receive import upload
+from service.records.work import WorkKind
 from service.storage import Database, Storage
 from service.storage.engine import open_engine
 from service.storage.schema import downgrade, head_revision, stored_revision, upgrade
@@ -84,3 +85,26 @@ def test_down_to_nothing_and_up_again_with_data(store_url: str, storage: Storage
     upgrade(store_url)
     storage.database.require_ready()
     assert upload(storage, session_bytes(), "a.json", now).created
+
+
+def test_what_waits_is_carried_over_with_why_it_failed(store_url: str, storage: Storage) -> None:
+    now = datetime(2026, 11, 21, tzinfo=UTC)
+    id = upload(storage, session_bytes(), "a.json", now, is_dated_later=True).id
+    with storage.database.writing() as store:
+        store.work(WorkKind.OUTLOOK).give_up("BA-017", "no numbers")
+        store.work(WorkKind.DERIVATION).keep_failed("BA-017", "no reference", now)
+        store.work(WorkKind.DIAGNOSIS).put_off(id, now)
+    with storage.database.reading() as store:
+        places = store.work(WorkKind.GROUP).waiting(now, 10)
+        before = (store.work(WorkKind.DIAGNOSIS).get(id), store.work(WorkKind.OUTLOOK).get("BA-017"))
+        listed = store.failures.listed(now, 10)
+    storage.database.close()
+    downgrade(store_url, "0030")
+    upgrade(store_url)
+    with storage.database.reading() as store:
+        assert before == (store.work(WorkKind.DIAGNOSIS).get(id), store.work(WorkKind.OUTLOOK).get("BA-017"))
+        assert set(store.work(WorkKind.GROUP).waiting(now, 10)) == set(places)
+        assert store.work(WorkKind.OUTLOOK).waiting(now, 10) == ()
+        assert store.failures.listed(now, 10) == listed
+    assert len(places) == 3
+    assert len(listed) == 2

@@ -7,6 +7,7 @@ from sqlalchemy import text
 from service.flows.diagnose import diagnose
 from service.flows.handle_flag import resolve_flag
 from service.flows.withdraw_session import withdraw_session
+from service.records.work import WorkKind
 from service.storage import Storage
 from service.storage.schema import downgrade, upgrade
 from tests.service.dated import upload_and_date
@@ -78,4 +79,4 @@ def test_a_store_from_before_is_counted_when_it_is_brought_up_to_date(storage: S
     assert answers(storage, KEPT) == kept
     assert answers(storage, rates) == before
     with storage.database.reading() as store:
-        assert store.pending_summaries.any()
+        assert store.work(WorkKind.SUMMARY).count()
