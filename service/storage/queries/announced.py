@@ -4,11 +4,12 @@ from sqlalchemy import Subquery, case, func, select
 
 from service.records.announced import Announced
 from service.records.group import FoundTogether, Group, Level
+from service.records.stand import StandCondition
 from service.records.state import Questioned, RecordState
+from service.storage.documents import STORED
 from service.storage.fleet_tables import StandConditionRow
 from service.storage.group_tables import GroupDiagnosisRow, PendingGroupRow
 from service.storage.queries.base import Queries, lists
-from service.storage.stand_document import condition_from_dict
 from service.storage.tables import SessionRow, StandRow, UnitRow, UnitTypeRow
 
 WIDEST = (Level.STAND, Level.TYPE, Level.UNIT)
@@ -33,7 +34,9 @@ class Announcements(Queries):
         own = {name: [row for row in rows if row["list"] == name] for name in ("stands", "questioned", "found")}
         groups = [row for row in own["found"] if row["level"] is not None]
         return Announced(
-            stands=tuple(condition_from_dict(r["document"]) for r in own["stands"] if r["document"] is not None),
+            stands=tuple(
+                STORED.read(StandCondition, r["document"]) for r in own["stands"] if r["document"] is not None
+            ),
             questioned=tuple(Questioned(r["id"], r["serial"], r["started_at"]) for r in own["questioned"] if r["id"]),
             found=tuple(
                 FoundTogether(Group(Level(r["level"]), r["group_id"], r["group_name"]), r["own"]) for r in groups

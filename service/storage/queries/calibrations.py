@@ -13,7 +13,7 @@ from service.errors import NotFoundError
 from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState, DiagnosisSummary
 from service.records.session import StoredSession
-from service.storage.calibration_document import Packed, calibration_from_dict
+from service.storage.calibration_document import Packed
 from service.storage.pending_tables import PendingRow
 from service.storage.queries.base import Queries
 from service.storage.queries.sessions import session_record, session_rows, worst_columns
@@ -113,4 +113,4 @@ _IN_FORCE = (
 @lru_cache(maxsize=AT_HAND)
 def _read(document: bytes) -> Calibration:
     """The calibration that was written; frozen, so that the same one serves whoever reads it."""
-    return calibration_from_dict(json.loads(document))
+    return Calibration.from_dict(json.loads(document))
