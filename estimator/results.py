@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from estimator.codec import DEGREES, RUN, Document, named
 from estimator.coverage import coverage_factor
 from estimator.session import Array
 
@@ -21,15 +22,8 @@ PARAMETERS = ("scale", "bias", "quadratic", "axis")
 """Of a sensor, as people judge them: the axis with both its turns."""
 
 
-def json_numbers(array: Array) -> Any:
-    """Nested lists of an array (R, m), or of any shape, in its unit, SI or none; what is not finite becomes null."""
-    boxed = np.asarray(array, dtype=object)
-    boxed[~np.isfinite(np.asarray(array, dtype=float))] = None
-    return boxed.tolist()
-
-
 @dataclass(frozen=True)
-class Estimate:
+class Estimate(Document, order=("value", "sigma", "repeatability", "dof", "coverage_factor")):
     """A value with its total one-sigma uncertainty.
 
     Both None when the session does not observe it; ``sigma`` None alone when nothing tells the noise.
@@ -46,14 +40,10 @@ class Estimate:
         """The coverage factor that covers of this estimate what ``k`` covers when the noise is known."""
         return coverage_factor(k, self.dof)
 
-    def to_dict(self) -> dict[str, Any]:
-        return {
-            "value": self.value,
-            "sigma": self.sigma,
-            "repeatability": self.repeatability,
-            "dof": self.dof,
-            "coverage_factor": None if self.sigma is None else self.factor(),
-        }
+    @property
+    def coverage_factor(self) -> float | None:
+        """The same of `COVERAGE`; None where sigma is not known."""
+        return None if self.sigma is None else self.factor()
 
 
 @dataclass(frozen=True)
@@ -65,12 +55,21 @@ class KnownCombination:
     sigma: float | None
     """None when nothing tells the noise."""
 
-    def to_dict(self) -> dict[str, Any]:
-        return {"coefficients": self.coefficients, "value": self.value, "sigma": self.sigma}
-
 
 @dataclass(frozen=True, eq=False)
-class SensorCalibration:
+class SensorCalibration(
+    Document,
+    order=(
+        "name", "kind", "scale", "bias", "quadratic", "axis", "axis_sigma_arcsec", "axis_tangents", "axis_covariance",
+        "axis_dof", "axis_coverage_factor", "misalignment", "observable", "known",
+    ),
+    keys={
+        "axis": "axis.value", "axis_sigma_arcsec": "axis.sigma_arcsec", "axis_tangents": "axis.tangents",
+        "axis_covariance": "axis.covariance", "axis_dof": "axis.dof", "axis_coverage_factor": "axis.coverage_factor",
+        "known": "known_combinations",
+    },
+    optional=("misalignment",),
+):  # fmt: skip
     """What the session says of one sensor. Units: see the package page."""
 
     name: str
@@ -100,6 +99,16 @@ class SensorCalibration:
             return None
         return float(np.sqrt(np.trace(self.axis_covariance)))
 
+    @property
+    def axis_sigma_arcsec(self) -> float | None:
+        """The same in arcsec."""
+        return None if self.axis_sigma is None else self.axis_sigma / ARCSEC
+
+    @property
+    def axis_coverage_factor(self) -> float | None:
+        """Of the axis, by `COVERAGE`; None where its sigma is not known."""
+        return None if self.axis_sigma is None else self.factor("axis")
+
     def factor(self, parameter: str, k: float = COVERAGE) -> float:
         """The coverage factor of a parameter that covers what ``k`` covers when the noise is known."""
         if parameter == "axis":
@@ -107,31 +116,9 @@ class SensorCalibration:
         estimate: Estimate | None = getattr(self, parameter)
         return k if estimate is None else estimate.factor(k)
 
-    def to_dict(self) -> dict[str, Any]:
-        sigma = self.axis_sigma
-        tilted = {} if self.misalignment is None else {"misalignment": self.misalignment.to_dict()}
-        return {
-            "name": self.name,
-            "kind": self.kind,
-            "scale": self.scale.to_dict(),
-            "bias": self.bias.to_dict(),
-            "quadratic": self.quadratic.to_dict(),
-            "axis": {
-                "value": None if self.axis is None else self.axis.tolist(),
-                "sigma_arcsec": None if sigma is None else sigma / ARCSEC,
-                "tangents": self.axis_tangents.tolist(),
-                "covariance": json_numbers(self.axis_covariance),
-                "dof": self.axis_dof,
-                "coverage_factor": None if sigma is None else self.factor("axis"),
-            },
-            **tilted,
-            "observable": dict(self.observable),
-            "known_combinations": [k.to_dict() for k in self.known],
-        }
-
 
 @dataclass(frozen=True)
-class Fit:
+class Fit(Document, forms={"weakest": named("parameter", "sigma")}):
     """How well the model fits the readings."""
 
     chi2: float
@@ -161,26 +148,13 @@ class Fit:
         """Whether the parameters take all that the readings tell: nothing is left over to judge the model by."""
         return self.dof < 1
 
-    def to_dict(self) -> dict[str, Any]:
-        return {
-            "chi2": self.chi2,
-            "dof": self.dof,
-            "p_value": self.p_value,
-            "residual_rms": self.residual_rms,
-            "noise": self.noise,
-            "covariance_factor": self.covariance_factor,
-            "rank": self.rank,
-            "parameters": self.parameters,
-            "weakest": {"parameter": self.weakest[0], "sigma": self.weakest[1]},
-            "iterations": self.iterations,
-            "converged": self.converged,
-            "add": [list(direction) for direction in self.add],
-            "positions_to_add": self.positions_to_add,
-        }
-
 
 @dataclass(frozen=True, eq=False)
-class Residuals:
+class Residuals(
+    Document,
+    keys={"beta": "beta_deg", "flipped": "run", "time": "time_s", "temperature": "temperature_c"},
+    forms={"beta": DEGREES, "flipped": RUN},
+):
     """Measured minus modelled, row by row, at the input. R rows of the averaged session, m sensors."""
 
     value: Array
@@ -198,23 +172,21 @@ class Residuals:
     enlarged_by: float | None = None
     """How many times ``sigma`` is the noise as it was stated or, where it was not, estimated; None where unknown."""
 
-    def to_dict(self) -> dict[str, Any]:
-        def listed(column: Any) -> Any:
-            return None if column is None else json_numbers(column)
-
-        return {
-            "value": json_numbers(self.value),
-            "sigma": json_numbers(self.sigma),
-            "beta_deg": None if self.beta is None else np.degrees(self.beta).tolist(),
-            "run": None if self.flipped is None else ["flipped" if f else "direct" for f in self.flipped],
-            "time_s": listed(self.time),
-            "temperature_c": listed(self.temperature),
-            "enlarged_by": self.enlarged_by,
-        }
-
 
 @dataclass(frozen=True, eq=False)
-class Calibration:
+class Calibration(
+    Document,
+    format="imu-calibration/1",
+    order=(
+        "unit", "method", "sensors", "fit", "gauge", "names", "units", "covariance", "repeatability", "residuals",
+        "parity",
+    ),
+    keys={
+        "names": "covariance.names", "units": "covariance.units",
+        "covariance": "covariance.total", "repeatability": "covariance.repeatability",
+    },
+    optional=("parity",),
+):  # fmt: skip
     """The calibration of one block: m sensors, P = 5 m parameters with their joint covariance."""
 
     unit: str
@@ -242,22 +214,3 @@ class Calibration:
             if sensor.name == name:
                 return sensor
         raise KeyError(name)
-
-    def to_dict(self) -> dict[str, Any]:
-        """``imu-calibration/1``."""
-        return {
-            "format": "imu-calibration/1",
-            "unit": self.unit,
-            "method": self.method,
-            "sensors": [s.to_dict() for s in self.sensors],
-            "fit": self.fit.to_dict(),
-            "gauge": self.gauge,
-            "covariance": {
-                "names": list(self.names),
-                "units": list(self.units),
-                "total": json_numbers(self.covariance),
-                "repeatability": json_numbers(self.repeatability),
-            },
-            "residuals": self.residuals.to_dict(),
-            **({} if self.parity is None else {"parity": self.parity}),
-        }

@@ -1,11 +1,11 @@
 """What an alignment and a rate table tell; no algorithms. Units: see the package page."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from estimator.results import Estimate, Fit, json_numbers
+from estimator.codec import DEGREES, Document
+from estimator.results import Estimate, Fit
 from estimator.session import Array
 
 
@@ -29,8 +29,33 @@ class Course:
     """(K,) number of the stop that ends with this step, −1 for all other steps."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class Listed(
+    Estimate,
+    order=("name", "unit", "observable", "value", "sigma", "repeatability", "dof", "coverage_factor"),
+    optional=("observable",),
+):
+    """An estimate with its name, as documents list it."""
+
+    name: str
+    unit: str
+    observable: bool | None = None
+    """None where this is not asked."""
+
+
 @dataclass(frozen=True, eq=False)
-class AlignmentResult:
+class AlignmentResult(
+    Document,
+    format="imu-alignment/1",
+    order=(
+        "unit", "model", "positions", "heading", "attitude", "parameters", "names", "covariance", "fit",
+    ),
+    keys={
+        "positions": "positions_deg", "heading": "heading_deg", "names": "covariance.names",
+        "covariance": "covariance.total",
+    },
+    forms={"positions": DEGREES, "heading": DEGREES},
+):  # fmt: skip
     """Attitude and sensor errors from one multi-position alignment. n states, named as in `sins.STATES`."""
 
     unit: str
@@ -58,31 +83,27 @@ class AlignmentResult:
         return Estimate(float(self.estimate[place]), float(np.sqrt(self.covariance[place, place])))
 
     @property
+    def parameters(self) -> tuple[Listed, ...]:
+        """Those of which it is asked whether the session tells them."""
+        return tuple(
+            Listed(**vars(self.parameter(name)), name=name, unit=unit, observable=self.observable[name])
+            for name, unit in zip(self.names, self.units, strict=True)
+            if name in self.observable
+        )
+
+    @property
     def heading(self) -> float:
         """Direction of the block's Y axis at the end, clockwise from north, rad in (−π, π]."""
         return float(np.arctan2(self.attitude[0, 1], self.attitude[1, 1]))
 
-    def to_dict(self) -> dict[str, Any]:
-        """``imu-alignment/1``; SI."""
-        return {
-            "format": "imu-alignment/1",
-            "unit": self.unit,
-            "model": self.model,
-            "positions_deg": np.degrees(self.positions).tolist(),
-            "heading_deg": float(np.degrees(self.heading)),
-            "attitude": self.attitude.tolist(),
-            "parameters": [
-                {"name": name, "unit": unit, "observable": self.observable[name], **self.parameter(name).to_dict()}
-                for name, unit in zip(self.names, self.units, strict=True)
-                if name in self.observable
-            ],
-            "covariance": {"names": list(self.names), "total": json_numbers(self.covariance)},
-            "fit": self.fit.to_dict(),
-        }
-
 
 @dataclass(frozen=True, eq=False)
-class RateTableResult:
+class RateTableResult(
+    Document,
+    format="imu-rate-table/1",
+    order=("unit", "turns", "rates_deg_s", "parameters", "names", "covariance", "fit"),
+    keys={"names": "covariance.names", "covariance": "covariance.total"},
+):
     """Mounting errors, azimuth scale and biases of a block's gyros from whole turns both ways."""
 
     unit: str
@@ -110,17 +131,18 @@ class RateTableResult:
             return Estimate(None, None)
         return Estimate(float(self.estimate[place]), float(np.sqrt(self.covariance[place, place])))
 
-    def to_dict(self) -> dict[str, Any]:
-        """``imu-rate-table/1``; SI."""
-        return {
-            "format": "imu-rate-table/1",
-            "unit": self.unit,
-            "turns": len(self.turn_rates),
-            "rates_deg_s": sorted({round(float(rate), 6) for rate in np.degrees(self.turn_rates)}),
-            "parameters": [
-                {"name": name, "unit": unit, **self.parameter(name).to_dict()}
-                for name, unit in zip(self.names, self.units, strict=True)
-            ],
-            "covariance": {"names": list(self.names), "total": json_numbers(self.covariance)},
-            "fit": self.fit.to_dict(),
-        }
+    @property
+    def turns(self) -> int:
+        """Number of whole turns."""
+        return len(self.turn_rates)
+
+    @property
+    def rates_deg_s(self) -> list[float]:
+        """The different rates, °/s."""
+        return sorted({round(float(rate), 6) for rate in np.degrees(self.turn_rates)})
+
+    @property
+    def parameters(self) -> tuple[Listed, ...]:
+        """All, with their names."""
+        named = zip(self.names, self.units, strict=True)
+        return tuple(Listed(**vars(self.parameter(name)), name=name, unit=unit) for name, unit in named)

@@ -1,15 +1,13 @@
 """What a record at rest says of its sensors' noise."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from scipy.special import gammaincinv
 
+from estimator.codec import Document
 from estimator.session import Array
 
-FORMAT = "imu-noise/1"
 TERMS = ("quantisation", "white-noise", "bias-instability", "random-walk")
 """Q, N, B and K, in the order of the times at which they show."""
 
@@ -34,7 +32,7 @@ class Term:
 
 
 @dataclass(frozen=True, eq=False)
-class SensorNoise:
+class SensorNoise(Document, keys={"tau": "tau_s", "holds": "holds_s"}):
     """The noise of one sensor at rest."""
 
     name: str
@@ -56,7 +54,7 @@ class SensorNoise:
 
 
 @dataclass(frozen=True, eq=False)
-class BlockNoise:
+class BlockNoise(Document, format="imu-noise/1", keys={"longest": "longest_s", "lasted": "lasted_s"}):
     """The noise of a block at rest."""
 
     rests: int
@@ -65,40 +63,6 @@ class BlockNoise:
     lasted: float
     """s, all rests."""
     sensors: tuple[SensorNoise, ...]
-
-    def to_dict(self) -> dict[str, Any]:
-        """The object imu-noise/1, SI."""
-        return {
-            "format": FORMAT,
-            "rests": self.rests,
-            "longest_s": self.longest,
-            "lasted_s": self.lasted,
-            "sensors": [_as_dict(sensor) for sensor in self.sensors],
-        }
-
-    @staticmethod
-    def from_dict(found: Mapping[str, Any]) -> "BlockNoise":
-        """What was written."""
-        sensors = tuple(map(_from_dict, found["sensors"]))
-        return BlockNoise(found["rests"], found["longest_s"], found["lasted_s"], sensors)
-
-
-def _as_dict(sensor: SensorNoise) -> dict[str, Any]:
-    curve = {"tau_s": sensor.tau, "deviation": sensor.deviation, "freedom": sensor.freedom}
-    return {
-        "name": sensor.name,
-        "kind": sensor.kind,
-        "terms": [vars(term) for term in sensor.terms],
-        **{name: values.tolist() for name, values in curve.items()},
-        "holds_s": sensor.holds,
-    }
-
-
-def _from_dict(found: Mapping[str, Any]) -> SensorNoise:
-    terms = tuple(Term(**term) for term in found["terms"])
-    tau, deviation, freedom = (np.array(found[name]) for name in ("tau_s", "deviation", "freedom"))
-    holds = None if found["holds_s"] is None else (found["holds_s"][0], found["holds_s"][1])
-    return SensorNoise(found["name"], found["kind"], terms, tau, deviation, freedom, holds)
 
 
 def freedom_of(value: float, sigma: float) -> float:

@@ -1,13 +1,18 @@
 """Result types of the diagnosis; no algorithms. The JSON form is ``imu-diagnosis/1``."""
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any
 
-from estimator.results import Calibration
+from estimator.codec import MOMENT, Document
+from estimator.results import Calibration, Residuals
 
 
 @dataclass(frozen=True)
-class Separation:
+class Separation(
+    Document,
+    keys={"now": "separation", "then": "expected_separation"},
+    order=("cause", "sensors", "now", "measurement", "then"),
+):
     """How far a rival cause is from the named one, and what would distinguish them."""
 
     cause: str
@@ -18,15 +23,6 @@ class Separation:
     """What to add, in words; empty when nothing that the planner knows would do."""
     then: float | None
     """Expected separation with that measurement."""
-
-    def to_dict(self) -> dict[str, Any]:
-        return {
-            "cause": self.cause,
-            "sensors": list(self.sensors),
-            "separation": self.now,
-            "measurement": self.measurement,
-            "expected_separation": self.then,
-        }
 
 
 @dataclass(frozen=True)
@@ -39,14 +35,6 @@ class Rival:
     """Share among all causes of the catalogue, given that one of them acts."""
     strength: float
     """Norm of the fitted signature in standard errors of a reading."""
-
-    def to_dict(self) -> dict[str, Any]:
-        return {
-            "cause": self.cause,
-            "sensors": list(self.sensors),
-            "probability": self.probability,
-            "strength": self.strength,
-        }
 
 
 @dataclass(frozen=True)
@@ -62,7 +50,7 @@ class ParitySplit:
 
 
 @dataclass(frozen=True)
-class OverSessions:
+class OverSessions(Document, forms={"since": MOMENT}):
     """The evidence of several sessions of the unit, where one alone does not show an effect."""
 
     sessions: int
@@ -79,8 +67,20 @@ class OverSessions:
     """Probability that this session has it too."""
 
 
+def _of_one_shape(document: dict[str, Any]) -> dict[str, Any]:
+    """Earlier versions stated the shape of the first sensor alone."""
+    return document | {"nonlinear_each": document.get("nonlinear_each") or [document["nonlinear"]]}
+
+
 @dataclass(frozen=True)
-class Finding:
+class Finding(
+    Document,
+    order=(
+        "cause", "sensors", "amplitude", "sigma", "units", "nonlinear", "nonlinear_each", "p_value", "strength",
+        "alternatives", "separations", "ranking", "sentence", "advice", "parity", "new", "over_sessions",
+    ),
+    earlier=_of_one_shape,
+):  # fmt: skip
     """One named cause with its evidence."""
 
     cause: str
@@ -112,27 +112,6 @@ class Finding:
         """Shape parameters of the first sensor."""
         return self.nonlinear_each[0]
 
-    def to_dict(self) -> dict[str, Any]:
-        return {
-            "cause": self.cause,
-            "sensors": list(self.sensors),
-            "amplitude": list(self.amplitude),
-            "sigma": list(self.sigma),
-            "units": list(self.units),
-            "nonlinear": self.nonlinear,
-            "nonlinear_each": list(self.nonlinear_each),
-            "p_value": self.p_value,
-            "strength": self.strength,
-            "alternatives": list(self.alternatives),
-            "separations": [s.to_dict() for s in self.separations],
-            "ranking": [r.to_dict() for r in self.ranking],
-            "sentence": self.sentence,
-            "advice": self.advice,
-            "parity": None if self.parity is None else asdict(self.parity),
-            "new": self.new,
-            "over_sessions": None if self.over_sessions is None else asdict(self.over_sessions),
-        }
-
 
 @dataclass(frozen=True)
 class Course:
@@ -160,7 +139,7 @@ class NoiseScale:
 
 
 @dataclass(frozen=True)
-class Structure:
+class Structure(Document):
     """Structure that no cause of the catalogue explains, and where it lives."""
 
     where: str
@@ -172,16 +151,6 @@ class Structure:
     """Of the applied vector, where it is common to all sensors and in no pattern."""
     of_record: bool = False
     """Whether the record is mixed up: nothing that sensors or stand do looks like it."""
-
-    def to_dict(self) -> dict[str, Any]:
-        return {
-            "where": self.where,
-            "sensors": list(self.sensors),
-            "p_value": self.p_value,
-            "strength": self.strength,
-            "course": None if self.course is None else asdict(self.course),
-            "of_record": self.of_record,
-        }
 
 
 @dataclass(frozen=True)
@@ -196,21 +165,15 @@ class Score:
     rms_by_kind: dict[str, float] = field(default_factory=dict)
     """The same of every kind of sensor, each in its own unit."""
 
-    def to_dict(self) -> dict[str, Any]:
-        return asdict(self)
-
 
 @dataclass(frozen=True)
-class Transfer:
+class Transfer(Document, forms={"started_at": MOMENT}):
     """How well an earlier session agrees with amplitudes found in this one."""
 
     started_at: str | None
     """Of the earlier session."""
     before: Score
     after: Score
-
-    def to_dict(self) -> dict[str, Any]:
-        return {"started_at": self.started_at, "before": self.before.to_dict(), "after": self.after.to_dict()}
 
 
 @dataclass(frozen=True)
@@ -221,20 +184,12 @@ class Gain:
     after: Score
     held_out: str
     """``positions``: those of this session, fold by fold."""
-    session: Transfer | None
+    session: Transfer | None = None
     """The latest earlier session, where a finding can have acted there too."""
-
-    def to_dict(self) -> dict[str, Any]:
-        return {
-            "before": self.before.to_dict(),
-            "after": self.after.to_dict(),
-            "held_out": self.held_out,
-            "session": None if self.session is None else self.session.to_dict(),
-        }
 
 
 @dataclass(frozen=True)
-class Limit:
+class Limit(Document, order=("cause", "amplitude", "units", "visible", "reason")):
     """The smallest effect that this session would have found, or why it cannot see the cause."""
 
     cause: str
@@ -244,18 +199,21 @@ class Limit:
     reason: str
     """Why not visible; empty when visible."""
 
-    def to_dict(self) -> dict[str, Any]:
-        return {
-            "cause": self.cause,
-            "amplitude": None if self.amplitude is None else list(self.amplitude),
-            "units": list(self.units),
-            "visible": self.amplitude is not None,
-            "reason": self.reason,
-        }
+    @property
+    def visible(self) -> bool:
+        """Whether the session can see it."""
+        return self.amplitude is not None
 
 
 @dataclass(frozen=True, eq=False)
-class Diagnosis:
+class Diagnosis(
+    Document,
+    format="imu-diagnosis/1",
+    order=(
+        "unit", "findings", "unexplained", "structures", "gain", "limits", "calibration", "residuals_before", "noise",
+        "notes",
+    ),
+):  # fmt: skip
     """What the simulation gets wrong about a session."""
 
     unit: str
@@ -272,22 +230,11 @@ class Diagnosis:
     notes: tuple[str, ...] = field(default=())
 
     @property
+    def residuals_before(self) -> Residuals:
+        """Under the baseline model."""
+        return self.baseline.residuals
+
+    @property
     def unexplained(self) -> bool:
         """Whether there is structure that no cause explains."""
         return bool(self.structures)
-
-    def to_dict(self) -> dict[str, Any]:
-        """``imu-diagnosis/1``."""
-        return {
-            "format": "imu-diagnosis/1",
-            "unit": self.unit,
-            "findings": [f.to_dict() for f in self.findings],
-            "unexplained": self.unexplained,
-            "structures": [s.to_dict() for s in self.structures],
-            "gain": self.gain.to_dict(),
-            "limits": [limit.to_dict() for limit in self.limits],
-            "calibration": self.calibration.to_dict(),
-            "residuals_before": self.baseline.residuals.to_dict(),
-            "noise": [asdict(n) for n in self.noise],
-            "notes": list(self.notes),
-        }

@@ -42,7 +42,7 @@ def limit_of(pool: Pool, known: Signature, level: str) -> PoolLimit:
                 prior = float(pool.layout.log_prior[w][k])
                 worst.append(_smallest(total[k], first[k], prior))
                 latest.append(_smallest(own[seen[-1]], first[k], prior))
-    return PoolLimit(_limit(known, worst), _limit(known, latest))
+    return PoolLimit(**vars(_limit(known, worst)), one_session=_limit(known, latest).amplitude)
 
 
 def _asked(h: Hypothesis, level: str) -> bool:

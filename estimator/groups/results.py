@@ -1,13 +1,14 @@
 """What a group's sessions show together; no algorithms. The JSON form is ``imu-fleet-diagnosis/1``."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
+from estimator.codec import MOMENT, Document
 from estimator.diagnosis.results import Limit
 
 
 @dataclass(frozen=True)
-class SessionAmplitude:
+class SessionAmplitude(Document, forms={"started_at": MOMENT}):
     """One line of a forest plot."""
 
     started_at: str | None
@@ -38,7 +39,7 @@ class Rival:
 
 
 @dataclass(frozen=True)
-class GroupFinding:
+class GroupFinding(Document, forms={"since": MOMENT}):
     """One lasting effect."""
 
     cause: str
@@ -75,16 +76,6 @@ class GroupFinding:
     picture: dict[str, Any] | None = None
     """Pooled residual of one sensor against what the effect depends on, without and with it; None without sessions."""
 
-    def to_dict(self) -> dict[str, Any]:
-        found = asdict(self)
-        for name in ("sensors", "amplitude", "sigma", "units", "spread", "alternatives"):
-            found[name] = list(found[name])
-        found["rivals"] = [asdict(r) | {"sensors": list(r.sensors)} for r in self.rivals]
-        found["sessions"] = [
-            asdict(s) | {"amplitude": list(s.amplitude), "sigma": list(s.sigma)} for s in self.sessions
-        ]
-        return found
-
 
 @dataclass(frozen=True)
 class GroupStructure:
@@ -95,19 +86,13 @@ class GroupStructure:
     sensors: tuple[str, ...]
     strength: float
 
-    def to_dict(self) -> dict[str, Any]:
-        return asdict(self) | {"sensors": list(self.sensors)}
-
 
 @dataclass(frozen=True)
-class PoolLimit:
+class PoolLimit(Limit, order=("cause", "amplitude", "units", "visible", "reason", "one_session")):
     """What the pool would have found with 95 % power, and what its latest session would."""
 
-    pool: Limit
-    session: Limit
-
-    def to_dict(self) -> dict[str, Any]:
-        return self.pool.to_dict() | {"one_session": self.session.to_dict()["amplitude"]}
+    one_session: tuple[float, ...] | None
+    """The amplitude of the latest session alone; None when it cannot see the cause."""
 
 
 @dataclass(frozen=True)
@@ -134,9 +119,6 @@ class GroupGain:
     chi2_per_dof_before: float
     chi2_per_dof_after: float
     moved: tuple[Moved, ...]
-
-    def to_dict(self) -> dict[str, Any]:
-        return asdict(self) | {"moved": [asdict(m) for m in self.moved]}
 
 
 @dataclass(frozen=True)
@@ -166,15 +148,17 @@ class EmpiricalTerm:
     level: str = ""
     """``unit``, ``type`` or ``stand``: whose it is."""
 
-    def to_dict(self) -> dict[str, Any]:
-        found = asdict(self)
-        for name in ("words", "sensors", "amplitude", "sigma", "units"):
-            found[name] = list(found[name])
-        return found
-
 
 @dataclass(frozen=True)
-class GroupDiagnosis:
+class GroupDiagnosis(
+    Document,
+    format="imu-fleet-diagnosis/1",
+    order=(
+        "level", "subject", "sessions", "first", "last", "findings", "terms", "unexplained", "structures", "limits",
+        "gain", "e_value", "notes",
+    ),
+    keys={"subject": "id"},
+):  # fmt: skip
     """What a group's sessions show together."""
 
     level: str
@@ -198,22 +182,3 @@ class GroupDiagnosis:
     def unexplained(self) -> bool:
         """Whether sessions share structure that no cause explains."""
         return bool(self.structures)
-
-    def to_dict(self) -> dict[str, Any]:
-        """``imu-fleet-diagnosis/1``."""
-        return {
-            "format": "imu-fleet-diagnosis/1",
-            "level": self.level,
-            "id": self.subject,
-            "sessions": self.sessions,
-            "first": self.first,
-            "last": self.last,
-            "findings": [f.to_dict() for f in self.findings],
-            "terms": [t.to_dict() for t in self.terms],
-            "unexplained": self.unexplained,
-            "structures": [s.to_dict() for s in self.structures],
-            "limits": [limit.to_dict() for limit in self.limits],
-            "gain": None if self.gain is None else self.gain.to_dict(),
-            "e_value": self.e_value,
-            "notes": list(self.notes),
-        }

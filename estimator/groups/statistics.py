@@ -13,11 +13,10 @@ import base64
 import zlib
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any
 
 import numpy as np
 
-from estimator.moments import in_utc
+from estimator.codec import MOMENT, Document, Form
 from estimator.session import Array
 
 FORMAT = "imu-session-statistics/2"
@@ -42,12 +41,44 @@ class Block:
     """Time constant, s, or order of a harmonic; None where the cause has no shape."""
     width: int
 
-    def to_list(self) -> list[Any]:
-        return [self.cause, self.sensor, self.kind, self.shape, self.width]
+
+def _packed(kind: str) -> Form:
+    """Of arrays: little-endian bytes of a number type, deflated, as text."""
+    return Form(
+        lambda values: base64.b64encode(zlib.compress(values.astype(kind).tobytes())).decode("ascii"),
+        lambda text: np.frombuffer(zlib.decompress(base64.b64decode(text)), dtype=kind).astype(kind[1:]),
+    )
+
+
+@lru_cache(maxsize=LISTS)
+def shared(blocks: tuple[Block, ...]) -> tuple[Block, ...]:
+    """One list of candidates for all sessions that have the same, so that these are told at a glance."""
+    return blocks
+
+
+FLOATS = (
+    "size", "score", "reach", "shrink", "energy", "freedom", "whole", "whole_freedom", "noise_factor",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
-class SessionStatistics:
+class SessionStatistics(
+    Document,
+    format=FORMAT,
+    order=(
+        "unit", "unit_type", "stand", "started_at", "sensors", "blocks", "put_right", "size", "score", "correlation",
+        "reach", "shrink", "energy", "freedom", "whole", "whole_freedom", "noise_factor",
+    ),
+    forms={
+        "started_at": MOMENT,
+        "blocks": Form(
+            lambda blocks: [list(vars(one).values()) for one in blocks],
+            lambda listed: shared(tuple(Block(*one) for one in listed)),
+        ),
+        "correlation": _packed("<i2"),
+        **dict.fromkeys(FLOATS, _packed("<f8")),
+    },
+):  # fmt: skip
     """One session. D columns of all candidates, m sensors."""
 
     unit: str
@@ -98,51 +129,6 @@ class SessionStatistics:
         low, high = np.minimum(rows, columns), np.maximum(rows, columns)
         return np.asarray(self.correlation[high * (high + 1) // 2 + low] / STEPS)
 
-    def to_dict(self) -> dict[str, Any]:
-        """``imu-session-statistics/2``; arrays are packed."""
-        return {
-            "format": FORMAT,
-            "unit": self.unit,
-            "unit_type": self.unit_type,
-            "stand": self.stand,
-            "started_at": self.started_at,
-            "sensors": list(self.sensors),
-            "blocks": [b.to_list() for b in self.blocks],
-            "put_right": list(self.put_right),
-            **{name: _packed(getattr(self, name), kind) for name, kind in PACKED.items()},
-        }
-
-    @classmethod
-    def from_dict(cls, stored: dict[str, Any]) -> "SessionStatistics":
-        """The record that `to_dict` wrote; ValueError of another format."""
-        if stored.get("format") != FORMAT:
-            raise ValueError(f"statistics of the format {stored.get('format')!r}, not {FORMAT}")
-        return cls(
-            unit=stored["unit"],
-            unit_type=stored["unit_type"],
-            stand=stored["stand"],
-            started_at=in_utc(stored["started_at"]),
-            sensors=tuple(stored["sensors"]),
-            blocks=shared(tuple(Block(*b) for b in stored["blocks"])),
-            put_right=tuple(stored["put_right"]),
-            **{name: _unpacked(stored[name], kind) for name, kind in PACKED.items()},
-        )
-
-
-PACKED = {
-    "size": "<f8",
-    "score": "<f8",
-    "correlation": "<i2",
-    "reach": "<f8",
-    "shrink": "<f8",
-    "energy": "<f8",
-    "freedom": "<f8",
-    "whole": "<f8",
-    "whole_freedom": "<f8",
-    "noise_factor": "<f8",
-}
-"""Arrays and the number type in which each is kept, of little-endian bytes."""
-
 
 def quantised(information: Array, size: Array) -> Array:
     """(D·(D+1)/2,) int16 lower triangle of an information (D, D), SI, in units of ``size`` (D,)."""
@@ -151,22 +137,7 @@ def quantised(information: Array, size: Array) -> Array:
     return np.round(relative[lower(len(size))] * STEPS).astype(np.int16)
 
 
-@lru_cache(maxsize=LISTS)
-def shared(blocks: tuple[Block, ...]) -> tuple[Block, ...]:
-    """One list of candidates for all sessions that have the same, so that these are told at a glance."""
-    return blocks
-
-
 @lru_cache(maxsize=2)
 def lower(size: int) -> tuple[Array, Array]:
     """Rows and columns of the lower triangle of a matrix (size, size), dimensionless; kept for the next session."""
     return np.tril_indices(size)
-
-
-def _packed(values: Array, kind: str) -> str:
-    return base64.b64encode(zlib.compress(values.astype(kind).tobytes())).decode("ascii")
-
-
-def _unpacked(text: str, kind: str) -> Array:
-    values = np.frombuffer(zlib.decompress(base64.b64decode(text)), dtype=kind)
-    return values.astype(values.dtype.newbyteorder("="))

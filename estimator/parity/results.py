@@ -1,10 +1,10 @@
 """What parity found; no algorithms. The JSON form is ``imu-parity/1``."""
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
-from estimator.results import json_numbers
+from estimator.codec import Document
 from estimator.session import Array
 
 BIAS, SCALE, AXIS, SEVERAL = "bias", "scale", "axis", "several"
@@ -68,8 +68,14 @@ class SensorParity:
     axis: Sight
 
 
+def _before_motion(document: dict[str, Any]) -> dict[str, Any]:
+    """What documents lack that were written before motion was allowed for: they took it to do nothing."""
+    unmoved = {"chi2_unmoved": document["chi2"], "p_value_unmoved": document["p_value"]}
+    return {"clipped": {}, "moving": False, "suspects": [], "motion_share": 0.0, **unmoved} | document
+
+
 @dataclass(frozen=True, eq=False)
-class ParityResult:
+class ParityResult(Document, format="imu-parity/1", earlier=_before_motion):
     """A recording of a redundant block beside its reference calibration."""
 
     unit: str
@@ -138,17 +144,3 @@ class ParityResult:
             if sensor.name == name:
                 return sensor
         raise KeyError(name)
-
-    def to_dict(self) -> dict[str, Any]:
-        """``imu-parity/1``."""
-        plain = {k: v for k, v in vars(self).items() if k not in ("sensors", "candidates", "suspects")}
-        for name in ("constant", "slope", "covariance", "excited", "course", "course_sigma", "course_time"):
-            plain[name] = json_numbers(plain[name])
-        return {
-            "format": "imu-parity/1",
-            **plain,
-            "saturated": list(self.saturated),
-            "candidates": [asdict(c) for c in self.candidates],
-            "suspects": [asdict(c) for c in self.suspects],
-            "sensors": [asdict(s) for s in self.sensors],
-        }

@@ -6,11 +6,11 @@ where a sensor points is known well enough from its nominal axis.
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from estimator.calibration.calibrate import averaged
+from estimator.codec import Document, Form
 from estimator.errors import Problem, ScheduleError
 from estimator.planning.expected import expected_sigmas, head_kind, input_noise, planned
 from estimator.planning.orientations import rank_of_orientations
@@ -23,10 +23,14 @@ SAME = 0.25
 MOST = 360
 """Equal steps a run: whole degrees are finer than anybody turns a head by."""
 RUNS = ("direct", "flipped")
+SETTINGS = Form(
+    lambda settings: [{"run": run, "beta_deg": round(float(np.degrees(beta)), 9)} for run, beta in settings],
+    lambda listed: tuple((one["run"], float(np.radians(one["beta_deg"]))) for one in listed),
+)
 
 
 @dataclass(frozen=True)
-class Expected:
+class Expected(Document, order=("sensor", "parameter", "so_far", "complete"), keys={"so_far": "sigma"}):
     """One parameter of one sensor; sigmas are total, relative for scale, SI; None where it is not observed."""
 
     sensor: str
@@ -36,13 +40,15 @@ class Expected:
     complete: float | None
     """With every position of the programme."""
 
-    def to_dict(self) -> dict[str, Any]:
-        """As part of ``imu-missing/1``."""
-        return {"sensor": self.sensor, "parameter": self.parameter, "sigma": self.so_far, "complete": self.complete}
-
 
 @dataclass(frozen=True, eq=False)
-class Missing:
+class Missing(
+    Document,
+    format="imu-missing/1",
+    order=("done", "positions", "is_complete", "settings", "directions", "unseen", "expected"),
+    keys={"is_complete": "complete"},
+    forms={"settings": SETTINGS},
+):
     """What is done and what is to come."""
 
     done: int
@@ -62,19 +68,6 @@ class Missing:
     def is_complete(self) -> bool:
         """Whether nothing is to come."""
         return not self.settings and not len(self.directions)
-
-    def to_dict(self) -> dict[str, Any]:
-        """``imu-missing/1``; angles in degrees."""
-        return {
-            "format": "imu-missing/1",
-            "done": self.done,
-            "positions": self.positions,
-            "complete": self.is_complete,
-            "settings": [{"run": run, "beta_deg": round(float(np.degrees(beta)), 9)} for run, beta in self.settings],
-            "directions": self.directions.tolist(),
-            "unseen": list(self.unseen),
-            "expected": [one.to_dict() for one in self.expected],
-        }
 
 
 def missing(session: CalibrationSession, positions: int | None = None, *, both_runs: bool = True) -> Missing:

@@ -10,7 +10,6 @@ Source: multi-parameter optimisation paper, 13 parameters of four accelerometers
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -18,9 +17,9 @@ from estimator.arrays import unit
 from estimator.calibration.free.completion import LEAST, completion, planned_rows
 from estimator.calibration.free.information import information
 from estimator.calibration.free.knowledge import observed
+from estimator.codec import Document, named
 from estimator.errors import Problem, ScheduleError
 from estimator.parameters import names
-from estimator.results import json_numbers
 from estimator.session import ACCELEROMETER, Array, Sensor
 
 LEADS = 0.35
@@ -29,7 +28,15 @@ that two or three are named and not a dozen."""
 
 
 @dataclass(frozen=True, eq=False)
-class OrientationRank:
+class OrientationRank(
+    Document,
+    format="imu-orientation-plan/1",
+    order=(
+        "orientations", "directions", "rank", "parameters", "full", "weakest", "unseen", "sigma_by_name", "add",
+    ),
+    keys={"sigma_by_name": "sigma"},
+    forms={"weakest": named("parameter", "sigma")},
+):  # fmt: skip
     """What R orientations tell of m accelerometers."""
 
     directions: Array
@@ -48,24 +55,19 @@ class OrientationRank:
     """(k, 3) unit vectors that complete the set; none when it is complete."""
 
     @property
+    def orientations(self) -> int:
+        """Number of directions."""
+        return len(self.directions)
+
+    @property
+    def sigma_by_name(self) -> dict[str, float]:
+        """``sigma`` by the elements' names."""
+        return dict(zip(self.names, self.sigma.tolist(), strict=True))
+
+    @property
     def full(self) -> bool:
         """Whether the set identifies every parameter."""
         return self.rank == self.parameters
-
-    def to_dict(self) -> dict[str, Any]:
-        """``imu-orientation-plan/1``."""
-        return {
-            "format": "imu-orientation-plan/1",
-            "orientations": len(self.directions),
-            "directions": self.directions.tolist(),
-            "rank": self.rank,
-            "parameters": self.parameters,
-            "full": self.full,
-            "weakest": {"parameter": self.weakest[0], "sigma": self.weakest[1]},
-            "unseen": list(self.unseen),
-            "sigma": dict(zip(self.names, json_numbers(self.sigma), strict=True)),
-            "add": self.add.tolist(),
-        }
 
 
 def rank_of_orientations(

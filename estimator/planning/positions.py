@@ -11,12 +11,12 @@ The row's β error counts as independent noise here; the stand's constant errors
 """
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from estimator.applied_vector import stand_geometry
+from estimator.codec import DEGREES, RUN, Document
 from estimator.forward import jacobian, projected, slope
 from estimator.parameters import PLAUSIBLE, nominal
 from estimator.session import Array, CalibrationSession
@@ -34,7 +34,11 @@ SLIGHT = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class OptimalPositions:
+class OptimalPositions(
+    Document,
+    keys={"beta": "beta_deg", "flipped": "run", "efficiency": "equal_steps_efficiency"},
+    forms={"beta": DEGREES, "flipped": RUN},
+):
     """Positions found by exchange. R rows, as many as the equal steps have."""
 
     beta: Array
@@ -45,14 +49,6 @@ class OptimalPositions:
     """D-efficiency of equal steps, 1 when nothing is better."""
     different: int
     """Number of different positions among the rows; repeated ones tell less of causes that the model lacks."""
-
-    def to_dict(self) -> dict[str, Any]:
-        return {
-            "beta_deg": np.degrees(self.beta).tolist(),
-            "run": ["flipped" if f else "direct" for f in self.flipped],
-            "equal_steps_efficiency": self.efficiency,
-            "different": self.different,
-        }
 
 
 def whitened(schedule: CalibrationSession, beta: Array, flipped: Array, sigma: Array) -> Array:

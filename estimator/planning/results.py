@@ -1,13 +1,13 @@
 """What planning is asked and what it answers; no algorithms. SI throughout; scale is relative."""
 
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
+from estimator.codec import DEGREES, RUN, Document
 from estimator.diagnosis.results import Limit
 from estimator.planning.positions import OptimalPositions
-from estimator.results import PARAMETERS, Calibration, json_numbers
+from estimator.results import PARAMETERS, Calibration
 from estimator.session import Array, CalibrationSession
 
 
@@ -67,17 +67,6 @@ class Judged:
     verdict: str
     """``enough`` (U within the share), ``usable`` (U within the tolerance), ``undecidable``, or ``not judged``."""
 
-    def to_dict(self) -> dict[str, Any]:
-        return {
-            "sensor": self.sensor,
-            "kind": self.kind,
-            "parameter": self.parameter,
-            "sigma": self.sigma,
-            "repeatability": self.repeatability,
-            "tolerance": self.tolerance,
-            "verdict": self.verdict,
-        }
-
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
@@ -92,17 +81,21 @@ class Sweep:
     conditioning: Array
     """(k,) ρ."""
 
-    def to_dict(self) -> dict[str, Any]:
-        return {
-            "at": self.at.tolist(),
-            "total": json_numbers(self.total),
-            "repeatability": json_numbers(self.repeatability),
-            "conditioning": json_numbers(self.conditioning),
-        }
-
 
 @dataclass(frozen=True, eq=False)
-class Plan:
+class Plan(
+    Document,
+    format="imu-plan/1",
+    order=(
+        "elevation", "formula_elevation", "positions", "runs", "seconds", "conditioning", "reached", "unseen",
+        "judged", "limits", "optimal", "over_positions", "over_elevation",
+    ),
+    keys={
+        "elevation": "elevation_deg", "formula_elevation": "formula_elevation_deg", "judged": "parameters",
+        "optimal": "optimal_positions",
+    },
+    forms={"elevation": DEGREES, "formula_elevation": DEGREES, "runs": RUN},
+):  # fmt: skip
     """A session proposed or judged before it is measured."""
 
     schedule: CalibrationSession
@@ -127,6 +120,11 @@ class Plan:
     over_elevation: Sweep
 
     @property
+    def runs(self) -> tuple[bool, ...]:
+        """True for flipped."""
+        return self.request.runs
+
+    @property
     def reached(self) -> bool | None:
         """Whether every judged parameter leaves its tolerance the share that was asked for; None where none is."""
         verdicts = {j.verdict for j in self.judged} - {"not judged"}
@@ -136,22 +134,3 @@ class Plan:
     def unseen(self) -> tuple[str, ...]:
         """``A1.quadratic``, …: what the plan does not observe."""
         return tuple(f"{j.sensor}.{j.parameter}" for j in self.judged if j.sigma is None)
-
-    def to_dict(self) -> dict[str, Any]:
-        """``imu-plan/1``."""
-        return {
-            "format": "imu-plan/1",
-            "elevation_deg": float(np.degrees(self.elevation)),
-            "formula_elevation_deg": float(np.degrees(self.formula_elevation)),
-            "positions": self.positions,
-            "runs": ["flipped" if f else "direct" for f in self.request.runs],
-            "seconds": self.seconds,
-            "conditioning": self.conditioning if np.isfinite(self.conditioning) else None,
-            "reached": self.reached,
-            "unseen": list(self.unseen),
-            "parameters": [j.to_dict() for j in self.judged],
-            "limits": [limit.to_dict() for limit in self.limits],
-            "optimal_positions": self.optimal.to_dict(),
-            "over_positions": self.over_positions.to_dict(),
-            "over_elevation": self.over_elevation.to_dict(),
-        }

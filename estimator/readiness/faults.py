@@ -6,6 +6,7 @@ from enum import StrEnum
 import numpy as np
 
 from estimator.applied_vector import STANDARD_GRAVITY
+from estimator.codec import Document
 from estimator.readiness.series import Series, at_input, series_of, times_of
 from estimator.session import ACCELEROMETER, Array, CalibrationSession
 
@@ -44,7 +45,7 @@ HARMLESS = frozenset({FaultKind.GAP, FaultKind.ALONE})
 
 
 @dataclass(frozen=True)
-class Fault:
+class Fault(Document, order=("kind", "sensors", "amount", "blocks")):
     """One thing wrong with a record."""
 
     kind: FaultKind

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
 
+from estimator.codec import Document
 from estimator.readiness.faults import Fault
 from estimator.session import Array
 
@@ -34,7 +34,7 @@ class Kind(StrEnum):
 
 
 @dataclass(frozen=True)
-class Disturbance:
+class Disturbance(Document, keys={"start": "start_s", "stop": "stop_s"}):
     """One reason why the block is not still."""
 
     kind: Kind
@@ -50,7 +50,14 @@ class Disturbance:
 
 
 @dataclass(frozen=True)
-class Outlook:
+class Outlook(
+    Document,
+    order=(
+        "name", "expected", "bound", "allowed", "limit", "chance", "bias_share", "scale_share", "wander", "wait",
+        "needed",
+    ),
+    keys={"wait": "wait_s", "needed": "needed_s"},
+):  # fmt: skip
     """What one sensor, or the thermometer, is still going to do."""
 
     name: str
@@ -79,7 +86,18 @@ class Outlook:
 
 
 @dataclass(frozen=True, eq=False)
-class Readiness:
+class Readiness(
+    Document,
+    format="imu-readiness/1",
+    order=(
+        "unit", "state", "ready", "duration", "recorded", "judged_from", "wait", "needed", "outlooks", "warmed",
+        "temperature", "disturbances", "faults",
+    ),
+    keys={
+        "duration": "duration_s", "recorded": "recorded_s", "judged_from": "judged_from_s", "wait": "wait_s",
+        "needed": "needed_s", "outlooks": "sensors", "warmed": "warmed_k",
+    },
+):  # fmt: skip
     """The answer with its reasons."""
 
     unit: str
@@ -105,6 +123,11 @@ class Readiness:
     """K that the thermometer rose over what was judged."""
 
     @property
+    def ready(self) -> bool:
+        """Whether the measurement may begin."""
+        return self.state is State.READY
+
+    @property
     def wait(self) -> tuple[float, float, float] | None:
         """s more to wait, 5 %, 50 % and 95 %: of whoever needs longest; None where waiting is not the answer."""
         waits = [one.wait for one in self._judged if one.wait is not None]
@@ -124,51 +147,3 @@ class Readiness:
     @property
     def _judged(self) -> tuple[Outlook, ...]:
         return self.outlooks if self.temperature is None else (*self.outlooks, self.temperature)
-
-    def to_dict(self) -> dict[str, Any]:
-        """``imu-readiness/1``; SI, times in s."""
-        return {
-            "format": "imu-readiness/1",
-            "unit": self.unit,
-            "state": self.state.value,
-            "ready": self.state is State.READY,
-            "duration_s": self.duration,
-            "recorded_s": self.recorded,
-            "judged_from_s": self.judged_from,
-            "wait_s": None if self.wait is None else list(self.wait),
-            "needed_s": self.needed,
-            "sensors": [_outlook(one) for one in self.outlooks],
-            "warmed_k": self.warmed,
-            "temperature": None if self.temperature is None else _outlook(self.temperature),
-            "disturbances": [
-                {
-                    "kind": one.kind.value,
-                    "sensors": list(one.sensors),
-                    "start_s": one.start,
-                    "stop_s": one.stop,
-                    "size": one.size,
-                    "passed": one.passed,
-                }
-                for one in self.disturbances
-            ],
-            "faults": [
-                {"kind": one.kind.value, "sensors": list(one.sensors), "amount": one.amount, "blocks": one.blocks}
-                for one in self.faults
-            ],
-        }
-
-
-def _outlook(one: Outlook) -> dict[str, Any]:
-    return {
-        "name": one.name,
-        "expected": one.expected,
-        "bound": one.bound,
-        "allowed": one.allowed,
-        "limit": one.limit,
-        "chance": one.chance,
-        "bias_share": one.bias_share,
-        "scale_share": one.scale_share,
-        "wander": one.wander,
-        "wait_s": None if one.wait is None else list(one.wait),
-        "needed_s": one.needed,
-    }

@@ -14,7 +14,7 @@ from service.commands.console import AsJson, Files, for_each, print_json, proble
 from service.commands.diagnosis_tables import diagnosis_view
 from service.commands.exits import UNUSABLE, say
 from service.ingest import read_file
-from service.storage.diagnosis_document import diagnosis_to_dict, inapplicable_to_dict
+from service.storage.diagnosis_document import inapplicable_to_dict
 
 Result = tuple[CalibrationSession, Diagnosis | None]
 """None of a programme in which no causes are looked for."""
@@ -49,7 +49,7 @@ def _diagnosed(file: Path, earlier: list[CalibrationSession]) -> Result:
 
 def _print_json(result: Result) -> None:
     session, found = result
-    print_json(inapplicable_to_dict(session.unit) if found is None else diagnosis_to_dict(found))
+    print_json(inapplicable_to_dict(session.unit) if found is None else found.to_dict())
 
 
 def _print_view(result: Result) -> None:

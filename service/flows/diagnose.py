@@ -31,8 +31,9 @@ from service.records.state import RecordState
 from service.records.work import WorkKind
 from service.settings import VERSION
 from service.storage import Files, Storage
-from service.storage.diagnosis_document import diagnosis_to_dict, inapplicable_to_dict, read_diagnosis, written
+from service.storage.diagnosis_document import inapplicable_to_dict, read_diagnosis
 from service.storage.files import LOST
+from service.storage.json_text import json_text
 from service.storage.store import Store
 from service.words.diagnosis import NOT_APPLICABLE, cannot_be_diagnosed, fault_of_the_program, summary_of
 from service.words.failed import with_last_try
@@ -120,7 +121,7 @@ def known_of(store: Store, id: str) -> StoredDiagnosis | None:
 def _made(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
     """Reads the stored bytes again and looks for causes, where the programme is one that can show any."""
     if task.session.programme not in DIAGNOSED:
-        nothing = written(inapplicable_to_dict(task.session.unit))
+        nothing = json_text(inapplicable_to_dict(task.session.unit))
         return replace(_nothing_found(task, DiagnosisState.NOT_APPLICABLE, NOT_APPLICABLE, now), document=nothing)
     try:
         return _found(storage, task, now)
@@ -135,7 +136,7 @@ def _found(storage: Storage, task: Task, now: datetime) -> StoredDiagnosis:
     with storage.database.reading() as store:
         kept = kept_before(store, task.session)
     found = find_causes(session, tuple(earlier.values()), records=as_evidence(session, kept, earlier))
-    document = written(diagnosis_to_dict(found))
+    document = json_text(found.to_dict())
     read = read_diagnosis(document)
     with storage.database.reading() as store:
         by = weighing_of(store, task.session.id, session.block)

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from estimator.parity import ParityResult
 from estimator.reading.sensors import PULSES
 from estimator.results import Calibration, Estimate, SensorCalibration
 from estimator.session import CALIBRATIONS
@@ -36,7 +37,6 @@ from service.records.reservation import Reservations
 from service.records.session import ALL_PARAMETERS, StoredSession
 from service.records.session_report import SessionReport
 from service.records.state import RecordState
-from service.storage.parity_document import parity_from_dict
 from service.words.causes import cause_on
 from service.words.conditions import Condition, condition_of
 from service.words.coverage import coverage_in_words
@@ -139,7 +139,7 @@ def session_page(
     parameters = parameters_of(calibration)
     coverage = nominal_factor_of(decisions)
     noise = noise_of(calibration.residuals, calibration)
-    parity = None if calibration.parity is None else parity_from_dict(calibration.parity)
+    parity = None if calibration.parity is None else ParityResult.from_dict(calibration.parity)
     return SessionPage(
         session=report.session,
         condition=condition_of(report.session.verdict, is_reference=report.session.is_reference),

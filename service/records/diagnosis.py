@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from enum import StrEnum
 
+from estimator.codec import Document
 from estimator.diagnosis import Diagnosis, Finding
 from estimator.diagnosis.results import Gain, Limit, NoiseScale, Structure
 from estimator.results import Calibration, Residuals
@@ -48,7 +49,7 @@ class DiagnosisSummary:
 
 
 @dataclass(frozen=True)
-class Diagnosed:
+class Diagnosed(Document, earlier=lambda old: {"structures": [], "noise": [], "notes": []} | old):
     """What imu-diagnosis/1 says; a number that is null there, because it was not finite, is NaN."""
 
     findings: tuple[Finding, ...]

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 
+from estimator.codec import MOMENT, Document, Form
 from estimator.groups.results import EmpiricalTerm, GroupFinding, GroupGain, PoolLimit
 
 
@@ -93,8 +94,12 @@ class FoundTogether:
     own: str
 
 
+STRUCTURES = Form(list, lambda listed: tuple(f"{one['where']} ({one['subject']})" for one in listed))
+"""Read from what the estimator found; never written."""
+
+
 @dataclass(frozen=True)
-class GroupShown:
+class GroupShown(Document, forms={"first": MOMENT, "last": MOMENT, "structures": STRUCTURES}):
     """What imu-fleet-diagnosis/1 says, as pages show it."""
 
     sessions: int

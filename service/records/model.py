@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 
+from estimator.codec import MOMENT, Document
 from estimator.diagnosis.results import Gain
 from estimator.groups.fixed import FixedEffect
 from service.records.answer import answer
@@ -43,7 +44,7 @@ class NewLasting:
 
 
 @dataclass(frozen=True)
-class Pooled:
+class Pooled(Document, forms=dict.fromkeys(("first", "last", "since"), MOMENT)):
     """What a group of sessions told of an effect beside its size: the size is not fitted again in any session."""
 
     sessions: int

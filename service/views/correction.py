@@ -8,8 +8,9 @@ import numpy as np
 
 from estimator.applied_vector import magnitude, stand_geometry
 from estimator.calibration.calibrate import averaged
+from estimator.codec import json_numbers
 from estimator.correction import BlockCorrection, Correction, SensorCorrection, correction_of
-from estimator.results import Calibration, json_numbers
+from estimator.results import Calibration
 from estimator.session import ACCELEROMETER, CALIBRATIONS, TWO_AXIS_STAND, Array, CalibrationSession
 from service.errors import NotFoundError
 from service.ingest import read_upload

@@ -6,6 +6,7 @@ A recording in service is judged by what was kept of its comparison, as it was w
 from collections.abc import Mapping
 from dataclasses import replace
 
+from estimator.parity import ParityResult
 from estimator.results import Calibration
 from estimator.session import IN_SERVICE
 from service.judging.calibrate import Comparison
@@ -14,7 +15,6 @@ from service.judging.reference import reference_of
 from service.records.fleet import FleetQuery
 from service.records.tolerance_preview import LatestSession, TolerancePreview, VerdictChange, WantedTolerances
 from service.records.unit import UnitType
-from service.storage.parity_document import parity_from_dict
 from service.storage.store import Store
 
 MOST = 100
@@ -71,7 +71,7 @@ def _change(
     if own.parity is None:
         found = judge(own, reference, other, coverage_factor)
     else:
-        seen = Comparison(reference, parity_from_dict(own.parity))
+        seen = Comparison(reference, ParityResult.from_dict(own.parity))
         found = judge_recording(own, seen, other, coverage_factor)
     if found.verdict is one.verdict:
         return None

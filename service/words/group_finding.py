@@ -97,7 +97,7 @@ def group_view(answer: GroupAnswer, shown: GroupShown, accepted: Sequence[ModelR
         terms=tuple(term_view(term, accepted) for term in shown.terms),
         gain=gain_in_words(shown.gain),
         notes=tuple(map(with_days, shown.notes)),
-        limits=tuple(_limit(limit) for limit in shown.limits if limit.pool.amplitude),
+        limits=tuple(_limit(limit) for limit in shown.limits if limit.amplitude),
     )
 
 
@@ -140,8 +140,9 @@ def _row(finding: GroupFinding, one: SessionAmplitude) -> ForestRow:
 
 
 def _limit(limit: PoolLimit) -> tuple[str, str, str]:
-    of_one = size_of(limit.session, ACCELEROMETER) if limit.session.amplitude else BLIND
-    return cause_on(limit.pool.cause, ()), size_of(limit.pool, ACCELEROMETER), of_one
+    one = replace(limit, amplitude=limit.one_session)
+    of_one = size_of(one, ACCELEROMETER) if one.amplitude else BLIND
+    return cause_on(limit.cause, ()), size_of(limit, ACCELEROMETER), of_one
 
 
 def with_days(note: str) -> str:

@@ -31,6 +31,7 @@ SERVICE_LAYERS = (
 """A part imports only from parts of earlier lines, never from one beside it."""
 ESTIMATOR_LAYERS = (
     {"errors", "moments", "on_demand", "wording"},
+    {"codec"},
     {"session"},
     {"arrays", "content"},
     {"rotations"},

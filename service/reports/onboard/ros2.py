@@ -8,8 +8,8 @@ from collections.abc import Iterator
 
 import yaml
 
+from estimator.codec import json_numbers
 from estimator.nominal_vector import NominalVector
-from estimator.results import json_numbers
 from service.reports.onboard.given import Given, commented, heading
 
 NODE = "imu_calibration"

@@ -4,12 +4,13 @@ from sqlalchemy import String, Subquery, case, cast, func, literal, select
 
 from service.records.announced import Announced
 from service.records.group import FoundTogether, Group, Level
+from service.records.stand import StandCondition
 from service.records.state import Questioned, RecordState
 from service.records.work import WorkKind
+from service.storage.documents import STORED
 from service.storage.fleet_tables import StandConditionRow
 from service.storage.group_tables import GroupDiagnosisRow
 from service.storage.queries.base import Queries, lists
-from service.storage.stand_document import condition_from_dict
 from service.storage.tables import SessionRow, StandRow, UnitRow, UnitTypeRow
 from service.storage.work_tables import WorkRow
 
@@ -35,7 +36,9 @@ class Announcements(Queries):
         own = {name: [row for row in rows if row["list"] == name] for name in ("stands", "questioned", "found")}
         groups = [row for row in own["found"] if row["level"] is not None]
         return Announced(
-            stands=tuple(condition_from_dict(r["document"]) for r in own["stands"] if r["document"] is not None),
+            stands=tuple(
+                STORED.read(StandCondition, r["document"]) for r in own["stands"] if r["document"] is not None
+            ),
             questioned=tuple(Questioned(r["id"], r["serial"], r["started_at"]) for r in own["questioned"] if r["id"]),
             found=tuple(
                 FoundTogether(Group(Level(r["level"]), r["group_id"], r["group_name"]), r["own"]) for r in groups

@@ -14,7 +14,7 @@ from service.records.decision import Verdict
 from service.records.diagnosis import DiagnosisState, DiagnosisSummary
 from service.records.session import StoredSession
 from service.records.work import WorkKind
-from service.storage.calibration_document import Packed, calibration_from_dict
+from service.storage.calibration_document import Packed
 from service.storage.queries.base import Queries
 from service.storage.queries.sessions import session_record, session_rows, worst_columns
 from service.storage.tables import CalibrationRow, DiagnosisRow, SessionRow
@@ -114,4 +114,4 @@ _IN_FORCE = (
 @lru_cache(maxsize=AT_HAND)
 def _read(document: bytes) -> Calibration:
     """The calibration that was written; frozen, so that the same one serves whoever reads it."""
-    return calibration_from_dict(json.loads(document))
+    return Calibration.from_dict(json.loads(document))

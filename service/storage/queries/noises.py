@@ -29,7 +29,7 @@ class Noises(Queries):
 
     def put_once(self, unit: int, record: StoredSession, found: BlockNoise, version: str, at: datetime) -> None:
         """Stores it with its terms, unless somebody else did meanwhile."""
-        document = zlib.compress(json_text(found.to_dict(), finite=False).encode())
+        document = zlib.compress(json_text(found.to_dict()).encode())
         values = {"document": document, "estimator_version": version, "made_at": at}
         if not self.insert_once(SessionNoiseRow, session_id=record.id, **values):
             return

@@ -9,11 +9,11 @@ from sqlalchemy import Integer, Select, cast, delete, func, select
 from estimator.health.common_motion import SEPARATED
 from service.errors import NotFoundError
 from service.records.stand import STILL, KnownStand, MotionOnStand, StandCondition, StandUse
+from service.storage.documents import STORED
 from service.storage.fleet_tables import StandConditionRow, StandTallyRow
 from service.storage.queries.accepted import IS_ACCEPTED
 from service.storage.queries.base import Queries
 from service.storage.queries.telling import tells_of_stand
-from service.storage.stand_document import condition_from_dict, condition_to_dict
 from service.storage.tables import CommonMotionRow, ConditionRow, SessionRow, StandRow, UnitRow
 
 MOST = 4000
@@ -47,7 +47,7 @@ class Stands(Queries):
     def conditions(self) -> tuple[StandCondition, ...]:
         """Every stand's own health as it was last made, by name."""
         query = select(StandConditionRow.document).join(StandRow, StandRow.id == StandConditionRow.stand_id)
-        return tuple(map(condition_from_dict, self._session.scalars(query.order_by(StandRow.name))))
+        return tuple(STORED.read(StandCondition, one) for one in self._session.scalars(query.order_by(StandRow.name)))
 
     def put_conditions(self, found: Sequence[StandCondition], at: datetime) -> None:
         """Rewrites what is known of all stands."""
@@ -55,7 +55,7 @@ class Stands(Queries):
         known = [keys[one.stand] for one in found]
         self._session.execute(delete(StandConditionRow).where(StandConditionRow.stand_id.not_in(known)))
         for one in sorted(found, key=lambda one: keys[one.stand]):
-            own = {"shifts": len(one.shifts), "document": condition_to_dict(one), "made_at": at}
+            own = {"shifts": len(one.shifts), "document": STORED.written(one), "made_at": at}
             self._session.merge(StandConditionRow(stand_id=keys[one.stand], **own))
         self._session.flush()
 
@@ -103,7 +103,7 @@ def _stands() -> Select[dict[str, Any] | None, str, int, int, datetime | None]:
 
 
 def _known(document: dict[str, Any] | None, *use: Any) -> KnownStand:
-    return KnownStand(StandUse(*use), None if document is None else condition_from_dict(document))
+    return KnownStand(StandUse(*use), None if document is None else STORED.read(StandCondition, document))
 
 
 def _motions(

@@ -1,5 +1,7 @@
 """What sessions tell of their groups: made once, unless another version of the program failed."""
 
+import json
+import zlib
 from collections.abc import Collection
 from typing import Any
 
@@ -8,8 +10,8 @@ from sqlalchemy import delete, select, update
 from estimator.groups import SessionStatistics
 from estimator.groups.statistics import FORMAT
 from service.storage.group_tables import SessionStatisticsRow
+from service.storage.json_text import json_text
 from service.storage.queries.base import Queries
-from service.storage.statistics_document import packed, unpacked
 
 MOST_ATTEMPTS = 3
 """Tries at which the program may fail at one session's, or its process die: two could be a machine in need."""
@@ -37,7 +39,7 @@ class Statistics(Queries):
 
     def keep(self, session: str, record: SessionStatistics) -> None:
         """Stores what was made."""
-        self._put(session, document=packed(record), attempts=0)
+        self._put(session, document=zlib.compress(json_text(record.to_dict()).encode()), attempts=0)
 
     def fail(self, session: str, why: str) -> None:
         """Stores why there are none: this version does not try again."""
@@ -55,7 +57,8 @@ class Statistics(Queries):
             SessionStatisticsRow.format == FORMAT,
             SessionStatisticsRow.document.is_not(None),
         )
-        return {id: unpacked(document) for id, document in self._session.execute(query) if document is not None}
+        kept = {id: packed for id, packed in self._session.execute(query) if packed is not None}
+        return {id: SessionStatistics.from_dict(json.loads(zlib.decompress(packed))) for id, packed in kept.items()}
 
     def _put(self, session: str, **values: Any) -> None:
         own = update(SessionStatisticsRow).where(SessionStatisticsRow.session_id == session)

@@ -59,8 +59,8 @@ def test_the_answer_is_the_agreed_json(sessions: list[CalibrationSession]) -> No
 
 
 def test_the_pool_sees_less_than_one_session(sessions: list[CalibrationSession]) -> None:
-    limits = {x.pool.cause: x for x in diagnose_group(sessions, "unit").limits}
-    pool, one = (np.array(x.amplitude) for x in (limits["beta-scale"].pool, limits["beta-scale"].session))
+    limits = {x.cause: x for x in diagnose_group(sessions, "unit").limits}
+    pool, one = map(np.array, (limits["beta-scale"].amplitude, limits["beta-scale"].one_session))
     assert np.all(pool < one)
 
 

@@ -12,13 +12,12 @@ from estimator.diagnosis.results import Course, NoiseScale, Structure
 from estimator.reading import read_session
 from service.records.diagnosis import Diagnosed
 from service.storage.diagnosis_document import (
-    diagnosis_to_dict,
     evidence_from_dict,
     evidence_to_dict,
     inapplicable_to_dict,
     read_diagnosis,
-    written,
 )
+from service.storage.json_text import json_text
 from service.words.finding import since_together
 from tests.service.diagnosed import ALIASES, TEMPERATURE, UNEXPLAINED, drawn
 from tests.service.findings import earlier_document
@@ -34,7 +33,7 @@ def read(**changes: Any) -> Diagnosed:
 @pytest.mark.parametrize("what", [TEMPERATURE, ALIASES, UNEXPLAINED])
 def test_what_was_found_comes_back(what: tuple[str, tuple[int, ...], str | None]) -> None:
     before = diagnose(read_session(drawn(what).session))
-    after = read_diagnosis(written(diagnosis_to_dict(before)))
+    after = read_diagnosis(json_text(before.to_dict()))
     assert after is not None
     assert (after.findings, after.structures) == (before.findings, before.structures)
     assert (after.gain, after.limits, after.notes) == (before.gain, before.limits, before.notes)
@@ -76,7 +75,7 @@ def test_a_number_that_was_not_finite_is_no_number_again() -> None:
 
 
 def test_a_programme_without_causes_has_no_diagnosis() -> None:
-    assert read_diagnosis(written(inapplicable_to_dict("BA-017"))) is None
+    assert read_diagnosis(json_text(inapplicable_to_dict("BA-017"))) is None
 
 
 def test_evidence_of_an_earlier_version_keeps_all_it_states() -> None:
