@@ -25,6 +25,7 @@ from service.flows.refresh_beside import refresh_beside
 from service.flows.refresh_group import refresh_group
 from service.flows.summarise import summarise
 from service.ingest import limits
+from service.ingest.limits import Limits
 from service.ingest.memory import give_back_large_blocks
 from service.log import write_log
 from service.records.group import Group
@@ -37,6 +38,8 @@ LOOK_EVERY = 0.25
 """Seconds between two looks whether the service is stopping while a diagnosis is made."""
 ANSWERS = multiprocessing.get_context("forkserver")
 """How processes are started."""
+NICENESS = 10
+"""How far they stand back, as `nice` counts: where all cores are busy they leave a request nine tenths of one."""
 
 
 Still = Callable[[], bool]
@@ -82,7 +85,8 @@ class Helper:
         self.end()
         ANSWERS.set_forkserver_preload([__name__])
         ours, theirs = ANSWERS.Pipe()
-        self._process = ANSWERS.Process(target=work, args=(theirs, self._settings), name="diagnoses", daemon=True)
+        own = (theirs, self._settings, limits.in_force())
+        self._process = ANSWERS.Process(target=work, args=own, name="diagnoses", daemon=True)
         self._process.start()
         theirs.close()
         self._pipe = ours
@@ -136,7 +140,7 @@ class Helper:
         assert self._process is not None
         self._process.join()
         if self._process.exitcode == -signal.SIGALRM:
-            return Failure(LATE, too_long(self._settings.work_seconds), is_foreseen=False)
+            return Failure(LATE, too_long(limits.in_force().work), is_foreseen=False)
         return Failure(DIED, f"The process died at the {job} of {of}.", is_foreseen=False)
 
     def end(self) -> None:
@@ -150,18 +154,18 @@ class Helper:
         self._process = self._pipe = None
 
 
-def work(pipe: Connection, settings: Settings) -> None:
+def work(pipe: Connection, settings: Settings, most: Limits) -> None:
     """In the process: makes what is asked for until nobody is there to ask."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # of a terminal; the service decides
     give_back_large_blocks()  # a long log is read whole for its noise
-    os.nice(settings.diagnosis_niceness)  # a request that waits for what it holds leaves it the core
-    limits.use(limits.limits_of(settings))
+    os.nice(NICENESS)  # a request that waits for what it holds leaves it the core
+    limits.use(most)
     write_log()
     storage = open_storage(settings)
     with suppress(EOFError, BrokenPipeError, ConnectionResetError):
         while True:
             job, of, now = pipe.recv()
-            signal.setitimer(signal.ITIMER_REAL, settings.work_seconds)  # ends the process, whatever it is at
+            signal.setitimer(signal.ITIMER_REAL, most.work)  # ends the process, whatever it is at
             answer = _made(storage, job, of, now, settings.coverage_factor)
             signal.setitimer(signal.ITIMER_REAL, 0)
             pipe.send(answer)
