@@ -69,6 +69,8 @@ NAMES = frozenset(
             "engineer",
             "admin",
             "auto",
+            "large",
+            "small",
             "off",
             "none",
             "groups",
