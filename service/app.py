@@ -41,9 +41,12 @@ def utc_now() -> datetime:
     return datetime.now(UTC)
 
 
-def create_app(settings: Settings, clock: Callable[[], datetime] = utc_now) -> FastAPI:
-    """The service on the database and the folder that the settings name; the schema must be up to date."""
-    limits.use(limits.limits_of(settings))
+def create_app(
+    settings: Settings, clock: Callable[[], datetime] = utc_now, most: limits.Limits | None = None
+) -> FastAPI:
+    """The service on the database and the folder that the settings name; the schema must be up to date. ``most``:
+    limits instead of those of the settings' machine, for tests."""
+    limits.use(most or limits.limits_of(settings))
     application = _application(settings, clock)
     app = FastAPI(
         title="imu-health",

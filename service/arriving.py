@@ -14,10 +14,11 @@ from starlette.formparsers import MultiPartException, MultiPartParser
 
 from estimator.errors import Problem
 from service.admission import PersonOf
-from service.dependencies import PlaceOf, SettingsOf, StorageOf, limited
+from service.dependencies import PlaceOf, StorageOf, limited
 from service.errors import RefusedError, TooLargeError
 from service.flows.attach_file import Attaching
 from service.ingest.formats import may_be_log
+from service.ingest.limits import in_force
 from service.records.received import Content
 from service.storage.landing import Landing, Landings
 
@@ -103,14 +104,16 @@ class _Form(MultiPartParser):
             self._current_part.file = LandedFile(self._arriving, given.filename, given.headers)
 
 
-async def _arriving(request: Request, settings: SettingsOf, storage: StorageOf, _: PlaceOf) -> AsyncIterator[Arriving]:
+async def _arriving(request: Request, storage: StorageOf, _: PlaceOf) -> AsyncIterator[Arriving]:
+    most = in_force()
     with storage.files.arriving() as place:
-        yield Arriving(request, place, settings.max_upload_bytes, settings.max_log_bytes)
+        yield Arriving(request, place, most.whole, most.log)
 
 
-async def _attaching(request: Request, settings: SettingsOf, storage: StorageOf, _: PlaceOf) -> AsyncIterator[Arriving]:
+async def _attaching(request: Request, storage: StorageOf, _: PlaceOf) -> AsyncIterator[Arriving]:
+    most = in_force().attached
     with storage.files.arriving() as place:
-        yield Arriving(request, place, settings.max_attachment_bytes, settings.max_attachment_bytes)
+        yield Arriving(request, place, most, most)
 
 
 AttachingOf = Annotated[Arriving, Depends(_attaching, scope="function")]

@@ -16,6 +16,7 @@ from service.background.read_group import GroupReader
 from service.errors import TooLargeError
 from service.flows.receive import Reception
 from service.flows.sign_certificate import Rules
+from service.ingest.limits import in_force
 from service.languages.language import Language, asked
 from service.metrics import Metrics
 from service.records.identity import Person
@@ -51,7 +52,7 @@ StorageOf = Annotated[Storage, Depends(_storage)]
 async def _place(request: Request) -> AsyncIterator[None]:
     """Of a large upload, from before its first byte until it has been worked on."""
     own = application_of(request)
-    with own.places.one_for(request.headers.get("content-length", ""), own.settings.uploads_in_flight):
+    with own.places.one_for(request.headers.get("content-length", ""), in_force().in_flight):
         yield
 
 

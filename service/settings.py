@@ -1,16 +1,19 @@
 """What an operator sets, by environment variables that start with IMU_HEALTH_."""
 
 import os
+from collections.abc import Mapping
 from enum import StrEnum
 from importlib.metadata import version
 from ipaddress import IPv4Network, IPv6Network, ip_address
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 from urllib.parse import urlsplit
 
 from platformdirs import user_data_dir
-from pydantic import Field, field_validator
+from pydantic import Field, field_validator, model_validator
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
+
+from service.errors import ServiceError
 
 VERSION = version("imu-health")
 """Of the program."""
@@ -26,6 +29,28 @@ def cores_left() -> int:
     return max(1, (os.cpu_count() or 1) - 1)
 
 
+PREFIX = "IMU_HEALTH_"
+"""Begins the variables."""
+RETIRED = {
+    "DATABASE_SECONDS": ("DATABASE_LOCK_SECONDS", "DATABASE_STATEMENT_SECONDS", "DATABASE_CONNECT_SECONDS"),
+    "MACHINE": (
+        "MAX_UPLOAD_BYTES", "MAX_LOG_BYTES", "JOB_UPLOAD_BYTES", "MAX_ATTACHMENT_BYTES", "MAX_BODY_BYTES",
+        "MIN_FREE_BYTES", "MAX_ROWS", "MAX_COLUMNS", "MAX_CELLS", "MAX_LOG_CELLS", "MAX_NESTING", "MAX_UNPACKED_BYTES",
+        "MAX_READ_SECONDS", "MAX_READ_BYTES", "READS_AT_ONCE", "UPLOADS_IN_FLIGHT", "WORK_SECONDS",
+    ),
+    "DIAGNOSIS_WORKERS": ("DIAGNOSIS_NICENESS",),
+    "OIDC_ISSUER": ("OIDC_NAME",),
+    "OIDC_ROLES": ("OIDC_NEW_ACCOUNTS",),
+}  # fmt: skip
+"""Variables of earlier versions, under the one that stands in their place: whoever set one relied on it."""
+
+
+def retired(environment: Mapping[str, str]) -> dict[str, str]:
+    """Variables that are set and no longer read, each with its replacement."""
+    new_of = {f"{PREFIX}{old}": f"{PREFIX}{new}" for new, gone in RETIRED.items() for old in gone}
+    return {name: new_of[name] for name in sorted(map(str.upper, environment)) if name in new_of}
+
+
 class Origin(StrEnum):
     """Where the value of a setting comes from."""
 
@@ -38,7 +63,7 @@ class Origin(StrEnum):
 class Settings(BaseSettings):
     """Settings of the service; every one has a default that works on a laptop."""
 
-    model_config = SettingsConfigDict(env_prefix="IMU_HEALTH_", frozen=True)
+    model_config = SettingsConfigDict(env_prefix=PREFIX, frozen=True)
 
     data_folder: Path = Field(
         default_factory=default_data_folder,
@@ -49,14 +74,12 @@ class Settings(BaseSettings):
         description="SQLAlchemy URL: sqlite:///path or postgresql://user:password@host/name. "
         "Default: the file imu-health.sqlite in data_folder.",
     )
-    database_lock_seconds: float = Field(
-        default=10.0, gt=0, le=600, description="Longest wait for a lock or a free connection of the database, s."
-    )
-    database_statement_seconds: float = Field(
-        default=30.0, gt=0, le=3600, description="Longest wait for one statement of PostgreSQL, s."
-    )
-    database_connect_seconds: float = Field(
-        default=5.0, ge=2, le=600, description="Longest wait for a connection to PostgreSQL, s; two at least."
+    database_seconds: float = Field(
+        default=10.0,
+        gt=0,
+        le=600,
+        description="Longest wait for a lock of the database, s; PostgreSQL has thrice that for a statement and half "
+        "of it for a connection.",
     )
     host: str = Field(default="127.0.0.1", description="Address to listen on.")
     port: int = Field(default=8000, ge=0, le=65535, description="Port to listen on.")
@@ -81,7 +104,6 @@ class Settings(BaseSettings):
         pattern=r"^(https?://[^\s?#]+)?$",
         description="OpenID provider that people may sign in at, as it names itself: https://login.example.org.",
     )
-    oidc_name: str = Field(default="", max_length=100, description="What its button is called; default: its host.")
     oidc_client_id: str = Field(default="", max_length=500, description="As the provider knows this service.")
     oidc_client_secret_file: Path | None = Field(default=None, description="File with the secret of that client.")
     oidc_hosts: Annotated[tuple[str, ...], NoDecode] = Field(
@@ -91,38 +113,19 @@ class Settings(BaseSettings):
         default="", max_length=200, description="Claim that gives roles, such as groups; none: an admin gives them."
     )
     oidc_roles: Annotated[tuple[tuple[str, Literal["viewer", "crew", "engineer", "admin"]], ...], NoDecode] = Field(
-        default=(), description="Role of each value of that claim: imu-crew=crew,imu-leads=engineer."
-    )
-    oidc_new_accounts: Literal["nobody", "with-role", "everybody"] = Field(
-        default="with-role",
-        description="Of whom the provider's sign-in makes an account: whom the claim gives a role; everybody that the "
-        "provider knows, as viewer unless the claim says more; nobody: an admin makes it.",
+        default=(),
+        description="Role of each value of that claim: imu-crew=crew,imu-leads=engineer. *=viewer gives that role to "
+        "everybody whom the provider knows; whom none is given to has no account unless an admin makes it.",
     )
     allowed_hosts: Annotated[tuple[str, ...], NoDecode] = Field(
         default=(),
         description="Names that requests may call the service by, beside this machine's own and that of public_url, "
         "separated by commas: imu.example.org, or imu.example.org:8443 for that port only; * allows any.",
     )
-    max_upload_bytes: int = Field(
-        default=64 * 1024 * 1024, gt=0, description="Largest upload that is accepted, but for raw logs, bytes."
-    )
-    max_log_bytes: int = Field(
-        default=2 * 1024**3,
-        gt=0,
-        description="Largest upload of CSV or Parquet, bytes: beyond max_upload_bytes it must be a raw log, which is "
-        "averaged while it is scanned.",
-    )
-    job_upload_bytes: int = Field(
-        default=8 * 1024 * 1024,
-        ge=0,
-        description="Uploads that are larger are received and then worked on beside the requests, where the page or "
-        "the program that sends them asks for that, bytes.",
-    )
-    max_attachment_bytes: int = Field(
-        default=32 * 1024 * 1024, gt=0, description="Largest file that may be attached to a unit or session, bytes."
-    )
-    max_body_bytes: int = Field(
-        default=256 * 1024, gt=0, description="Largest body of any other request, such as a note or a form, bytes."
+    machine: Literal["small", "large"] = Field(
+        default="small",
+        description="What files may hold and cost. small: 64 MiB, raw logs 2 GiB, for 2 GB of memory; large: four "
+        "times as much in four times the memory and time, for 8 GB.",
     )
     client_seconds: float = Field(
         default=10.0,
@@ -134,59 +137,12 @@ class Settings(BaseSettings):
     stop_seconds: float = Field(
         default=30.0, ge=0, le=3600, description="Longest that a stopping service lets requests at hand finish, s."
     )
-    min_free_bytes: int = Field(
-        default=256 * 1024 * 1024,
-        ge=0,
-        description="Room that the disk of uploaded files keeps: with less, uploads are refused, bytes.",
-    )
-    max_rows: int = Field(default=2_000_000, gt=0, description="Most rows of an uploaded table.")
-    max_columns: int = Field(default=10_000, gt=0, description="Most columns of an uploaded table.")
-    max_cells: int = Field(
-        default=2_000_000,
-        gt=0,
-        description="Most cells of an uploaded table, rows × columns. More need more memory: see max_read_bytes.",
-    )
-    max_log_cells: int = Field(
-        default=500_000_000, gt=0, description="Most cells of a raw log that is averaged while it is scanned."
-    )
-    max_nesting: int = Field(default=32, gt=3, description="Most lists and objects within each other in a JSON file.")
-    max_unpacked_bytes: int = Field(
-        default=128 * 1024 * 1024, gt=0, description="Most that the compressed parts of a file unpack to, bytes."
-    )
-    max_read_seconds: int = Field(
-        default=20, gt=0, description="Longest computing that reading a file may take, seconds; by the clock thrice."
-    )
-    max_read_bytes: int = Field(
-        default=224 * 1024 * 1024, gt=0, description="Most memory that reading a file may take in its process, bytes."
-    )
-    reads_at_once: int = Field(
-        default=2, gt=0, description="Binary and large files that are read at once; others wait, then are asked back."
-    )
-    uploads_in_flight: int = Field(
-        default=4,
-        gt=0,
-        description="Large uploads that are received or worked on at once; others are asked back.",
-    )
     diagnosis_workers: int = Field(
         default_factory=cores_left,
         ge=0,
         le=256,
         description="Processes that make diagnoses and outlooks beside the requests. 0: a diagnosis is made when "
         "somebody reads it, an outlook with the upload.",
-    )
-    diagnosis_niceness: int = Field(
-        default=10,
-        ge=0,
-        le=19,
-        description="How far those processes stand back behind requests where all cores are busy, as `nice` counts: 10 "
-        "leaves them about a tenth of a core that requests want too, 0 half of it.",
-    )
-    work_seconds: float = Field(
-        default=600.0,
-        gt=0,
-        le=86_400,
-        description="Longest that one piece of work beside the requests may take, such as a diagnosis: then its "
-        "process is ended, and it counts as failed, s.",
     )
     coverage_factor: float = Field(
         default=2.0, gt=0, le=5, description="k: expanded uncertainty and guard band are k times the standard one."
@@ -219,6 +175,14 @@ class Settings(BaseSettings):
         pattern=r"^(https?://\S+)?$",
         description="Address under which people reach the pages, for labels; default: that of the request.",
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _none_retired(cls, given: Any) -> Any:
+        if gone := retired(os.environ):
+            old, new = ", ".join(gone), ", ".join(sorted(set(gone.values())))
+            raise ServiceError(f"No longer read: {old}. Unset it, and use {new} instead.")
+        return given
 
     @field_validator("oidc_roles", mode="before")
     @classmethod

@@ -27,7 +27,6 @@ from tests.serving import http_client
 from tests.stock import Fill, Stock, stores
 
 os.environ.setdefault("IMU_HEALTH_DIAGNOSIS_WORKERS", "0")
-os.environ.setdefault("IMU_HEALTH_DIAGNOSIS_NICENESS", "0")
 os.environ[WATCHED] = "yes"
 """Diagnoses are made when they are read: a test that looks at none does not pay for it. Those of the processes that
 make them say how many they want."""

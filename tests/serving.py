@@ -5,6 +5,7 @@ import socket
 import ssl
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from threading import Event, Thread
 
 import httpx
@@ -13,6 +14,8 @@ from fastapi import FastAPI
 
 from service.app import create_app
 from service.boundary.server import address_of, server_config
+from service.ingest import limits
+from service.ingest.limits import Limits
 from service.settings import Settings
 from tests.patience import LONG
 
@@ -71,9 +74,21 @@ def running(app: FastAPI) -> Iterator[str]:
 
 
 @contextmanager
-def serving(settings: Settings) -> Iterator[str]:
-    """The address of the service on a database whose schema is up to date."""
-    with running(create_app(settings)) as address:
+def other_limits(**changes: float) -> Iterator[Limits]:
+    """Limits of a smaller machine than there is, in force until the block ends."""
+    usual = limits.in_force()
+    most = replace(usual, **changes)  # type: ignore[arg-type]
+    limits.use(most)
+    try:
+        yield most
+    finally:
+        limits.use(usual)
+
+
+@contextmanager
+def serving(settings: Settings, **changes: float) -> Iterator[str]:
+    """The address of the service on a database whose schema is up to date; ``changes``: of its limits."""
+    with other_limits(**changes) as most, running(create_app(settings, most=most)) as address:
         yield address
 
 
@@ -81,4 +96,11 @@ def serving(settings: Settings) -> Iterator[str]:
 def http_client(app: FastAPI) -> Iterator[httpx.Client]:
     """HTTP to a running application."""
     with running(app) as address, httpx.Client(base_url=address, timeout=LONG, verify=TLS) as client:
+        yield client
+
+
+@contextmanager
+def limited_client(settings: Settings, **changes: float) -> Iterator[httpx.Client]:
+    """HTTP to a service with other limits."""
+    with other_limits(**changes) as most, http_client(create_app(settings, most=most)) as client:
         yield client

@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 from scipy.io import savemat
 
 from benchmarks.files.hostile import csv
-from service.settings import Settings
+from service.ingest.limits import SMALL
 
 SENSORS, ORIENTATIONS = 6, 24
 GRAVITY, SCALE, NOISE = 9.81, 0.12, 1e-5
 """m/s²; V per m/s²; V."""
-MOST_BYTES = Settings.model_fields["max_upload_bytes"].default
-CELLS = Settings.model_fields["max_cells"].default
+MOST_BYTES = SMALL.whole
+CELLS = SMALL.cells
 
 Columns = dict[str, NDArray[Any]]
 

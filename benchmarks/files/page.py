@@ -9,24 +9,30 @@ from benchmarks.files.service import Cost
 from estimator.long_logs.log import MOST_RESTS
 from service.ingest import LONG
 from service.ingest.apart import PACE
+from service.ingest.limits import LARGE, SMALL
 from service.pages.layout_form import MOST_CARRIED
 from service.records.job import KEPT as KEPT_MADE
-from service.settings import Settings
 from service.storage.aside import KEPT, MOST, MOST_BYTES
 from service.storage.landing import IN_MEMORY
 from service.storage.waiting import UNASKED
 
-LIMITS = (
-    "max_upload_bytes", "max_log_bytes", "max_rows", "max_columns", "max_cells", "max_log_cells", "max_nesting",
-    "max_unpacked_bytes",    "max_read_seconds", "max_read_bytes", "reads_at_once", "uploads_in_flight",
-)  # fmt: skip
-ANSWERS = {
-    "max_upload_bytes": "413",
-    "max_log_bytes": "413",
-    "reads_at_once": "503 with `Retry-After`",
-    "uploads_in_flight": "503 with `Retry-After`",
+RETRY = "503 with `Retry-After`"
+LIMITS = {
+    "whole": ("bytes of an upload, but for raw logs", "413"),
+    "log": ("bytes of a raw log, as CSV or Parquet", "413"),
+    "attached": ("bytes of a file that is attached", "413"),
+    "rows": ("rows of a table", "422"),
+    "columns": ("columns of a table", "422"),
+    "cells": ("cells of a table, rows × columns", "422"),
+    "log_cells": ("cells of a raw log that is averaged while it is scanned", "422"),
+    "nesting": ("lists and objects within each other in a JSON file", "422"),
+    "unpacked": ("bytes that the compressed parts of a file unpack to", "422"),
+    "seconds": ("seconds of computing that reading a file takes; by the clock thrice", "422"),
+    "memory": ("bytes of memory that reading a file takes in its process", "422"),
+    "at_once": ("binary and large files that are read at once; others wait, then are asked back", RETRY),
+    "in_flight": ("large uploads that are received or worked on at once; others are asked back", RETRY),
 }
-"""Of the limits that are not answered 422."""
+"""What each is of, and the answer beyond it."""
 MEBIBYTE = 1024**2
 
 
@@ -69,11 +75,9 @@ The process is a fork of one that has the readers loaded. An ordinary file of 24
 
 ## Limits
 
-| setting | default | answer | |
-| --- | --- | --- | --- |
 {_limits()}
 
-Where more cells are allowed, more memory must be: about 60 bytes a cell. Reading may take a second more for every
+A cell takes about 60 bytes of memory. Reading may take a second more for every
 {PACE // 10**6} MB of a file.
 
 {_long(long)}
@@ -151,11 +155,14 @@ written, what was set aside too long ago, and of `waiting` what no open job name
 
 
 def _limits() -> str:
-    fields = Settings.model_fields
-    return "\n".join(
-        f"| `IMU_HEALTH_{name.upper()}` | {fields[name].default:,} | {ANSWERS.get(name, '422')} | "
-        f"{fields[name].description} |"
-        for name in LIMITS
+    head = """`IMU_HEALTH_MACHINE` says how large the machine is: `small` is for 2 GB of memory, `large` for 8 GB.
+
+| at most | `small` | `large` | answer |
+| --- | --- | --- | --- |
+"""
+    return head + "\n".join(
+        f"| {what} | {getattr(SMALL, name):,} | {getattr(LARGE, name):,} | {answer} |"
+        for name, (what, answer) in LIMITS.items()
     )
 
 

@@ -13,9 +13,10 @@ from pydantic import TypeAdapter
 from service.admission import PersonOf
 from service.api.schemas.jobs import JobAnswer, job_answer
 from service.background.job_desk import JobDesk
-from service.dependencies import JobDeskOf, SettingsOf
+from service.dependencies import JobDeskOf
 from service.flows.receive import Reception
 from service.flows.take_in import is_long
+from service.ingest.limits import in_force
 from service.records.identity import Person
 from service.records.received import SentFile
 
@@ -45,10 +46,10 @@ class Later:
         return JSONResponse(JSON.dump_python(job_answer(job), mode="json"), ACCEPTED, headers)
 
 
-def _later(request: Request, settings: SettingsOf, desk: JobDeskOf, person: PersonOf) -> Later:
+def _later(request: Request, desk: JobDeskOf, person: PersonOf) -> Later:
     asked = ",".join(request.headers.getlist(PREFER)).lower().split(",")
     is_asked = any(one.split(";")[0].strip() == ASYNC for one in asked)
-    return Later(is_asked, settings.job_upload_bytes, desk, person)
+    return Later(is_asked, in_force().later, desk, person)
 
 
 LaterOf = Annotated[Later, Depends(_later)]

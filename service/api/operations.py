@@ -10,6 +10,7 @@ from pydantic import BaseModel, Field
 from service.api.schemas.problem import errors
 from service.dependencies import MetricsOf, Now, SettingsOf, StorageOf
 from service.errors import AwayError
+from service.ingest.limits import in_force
 from service.records.failure import FailedKind
 from service.records.work import WorkKind
 from service.storage.space import space_at
@@ -48,7 +49,7 @@ def readiness(storage: StorageOf, settings: SettingsOf, now: Now) -> Readiness:
     storage.database.require_ready()
     with storage.database.reading() as store:
         failed = {kind: number for kind, number in store.failures.counts(now).items() if number}
-    lack = space_at(settings.files, settings.min_free_bytes).too_little
+    lack = space_at(settings.files, in_force().free).too_little
     reasons = [] if lack is None else [lack]
     return Readiness(status="degraded" if reasons else "ready", reasons=reasons, failed=failed)
 
@@ -59,5 +60,5 @@ def metrics(figures: MetricsOf, settings: SettingsOf, storage: StorageOf, now: N
     with suppress(AwayError), storage.database.reading() as store:
         figures.note_pending(store.work(WorkKind.DIAGNOSIS).count())
         figures.note_failed(store.failures.counts(now))
-    figures.note_room(space_at(settings.files, settings.min_free_bytes).free)
+    figures.note_room(space_at(settings.files, in_force().free).free)
     return Response(figures.text(), media_type=CONTENT_TYPE_LATEST)

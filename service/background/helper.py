@@ -18,6 +18,7 @@ from service.background.kinds import KINDS, Kind
 from service.errors import ServiceError
 from service.flows.guard import Failure, ending_here
 from service.ingest import limits
+from service.ingest.limits import Limits
 from service.log import write_log
 from service.records.work import WorkKind
 from service.settings import Settings
@@ -28,6 +29,8 @@ LOOK_EVERY = 0.25
 """Seconds between two looks whether the service is stopping while a diagnosis is made."""
 ANSWERS = multiprocessing.get_context("forkserver")
 """How processes are started."""
+NICENESS = 10
+"""How far they stand back, as `nice` counts: where all cores are busy they leave a request nine tenths of one."""
 
 
 Still = Callable[[], bool]
@@ -56,7 +59,8 @@ class Helper:
         self.end()
         ANSWERS.set_forkserver_preload([__name__])
         ours, theirs = ANSWERS.Pipe()
-        self._process = ANSWERS.Process(target=work, args=(theirs, self._settings), name="diagnoses", daemon=True)
+        own = (theirs, self._settings, limits.in_force())
+        self._process = ANSWERS.Process(target=work, args=own, name="diagnoses", daemon=True)
         self._process.start()
         theirs.close()
         self._pipe = ours
@@ -87,7 +91,7 @@ class Helper:
         assert self._process is not None
         self._process.join()
         if self._process.exitcode == -signal.SIGALRM:
-            return Failure(LATE, too_long(self._settings.work_seconds), is_foreseen=False)
+            return Failure(LATE, too_long(limits.in_force().work), is_foreseen=False)
         return Failure(DIED, f"The process died at the {kind} of {of}.", is_foreseen=False)
 
     def end(self) -> None:
@@ -101,17 +105,17 @@ class Helper:
         self._process = self._pipe = None
 
 
-def work(pipe: Connection, settings: Settings) -> None:
+def work(pipe: Connection, settings: Settings, most: Limits) -> None:
     """In the process: makes what is asked for until nobody is there to ask."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # of a terminal; the service decides
-    os.nice(settings.diagnosis_niceness)  # a request that waits for what it holds leaves it the core
-    limits.use(limits.limits_of(settings))
+    os.nice(NICENESS)  # a request that waits for what it holds leaves it the core
+    limits.use(most)
     write_log()
     storage = open_storage(settings)
     with suppress(EOFError, BrokenPipeError, ConnectionResetError):
         while True:
             kind, of, now = pipe.recv()
-            signal.setitimer(signal.ITIMER_REAL, settings.work_seconds)  # ends the process, whatever it is at
+            signal.setitimer(signal.ITIMER_REAL, most.work)  # ends the process, whatever it is at
             answer = _made(storage, KINDS[kind], of, now, settings.coverage_factor)
             signal.setitimer(signal.ITIMER_REAL, 0)
             pipe.send(answer)

@@ -10,13 +10,14 @@ from service.boundary.hosts import OwnHostOnly, hosts_of
 from service.boundary.origins import OwnSiteOnly
 from service.boundary.room import RoomForUploads
 from service.boundary.stopping import Door, Doorkeeper
+from service.ingest.limits import in_force
 from service.settings import Settings
 
 
 def guard(app: FastAPI, settings: Settings) -> None:
     """Adds the checks, the innermost first."""
-    app.add_middleware(RoomForUploads, folder=settings.files, least=settings.min_free_bytes)
-    app.add_middleware(LimitedBodies, limits=Limits(settings.max_body_bytes, settings.client_seconds))
+    app.add_middleware(RoomForUploads, folder=settings.files, least=in_force().free)
+    app.add_middleware(LimitedBodies, limits=Limits(in_force().body, settings.client_seconds))
     app.add_middleware(OwnSiteOnly, public_url=settings.public_url)
     app.state.door = Door()
     app.add_middleware(Doorkeeper, door=app.state.door)

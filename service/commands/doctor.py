@@ -14,6 +14,7 @@ from service.commands.console import print_json, screen
 from service.commands.examine import Finding, State, contradictions, database, folders, program, variables
 from service.commands.exits import FAILED
 from service.commands.options import DatabaseUrl, DataFolder
+from service.errors import ServiceError
 from service.settings import Settings
 
 COLOURS = {State.OK: "green", State.WARN: "yellow", State.FAIL: "red"}
@@ -42,6 +43,9 @@ def _findings(**options: object) -> Iterator[Finding]:
     yield from variables(os.environ)
     try:
         settings = Settings(**{name: value for name, value in options.items() if value is not None})  # type: ignore[arg-type]
+    except ServiceError as fault:
+        yield Finding("settings", State.FAIL, str(fault))
+        return
     except ValidationError as fault:
         for error in fault.errors():
             name = "IMU_HEALTH_" + "_".join(map(str, error["loc"])).upper()

@@ -16,14 +16,14 @@ from packaging.requirements import Requirement
 
 from service.boundary.hosts import hosts_of
 from service.errors import ServiceError
+from service.ingest.limits import limits_of
 from service.records.work import WorkKind
-from service.settings import VERSION, Settings
+from service.settings import PREFIX, VERSION, Settings, retired
 from service.storage import Database
 from service.storage.engine import shown_url
 from service.storage.space import space_at
 from service.storage.writable import require_writable
 
-PREFIX = "IMU_HEALTH_"
 ELSEWHERE = ("IMU_HEALTH_SERVER", "IMU_HEALTH_TOKEN", "IMU_HEALTH_PICTURES")
 """Variables that are read by commands and tests, not by the service."""
 APART = timedelta(seconds=5)
@@ -89,6 +89,7 @@ def _lacking(wanted: Requirement) -> str:
 def variables(environment: Mapping[str, str]) -> Iterator[Finding]:
     """Variables of the environment that nothing reads, most often because they are misspelt."""
     known = {*(f"{PREFIX}{name.upper()}" for name in Settings.model_fields), *ELSEWHERE}
+    known |= retired(environment).keys()  # a failure of its own, with what stands in their place
     unknown = sorted(name for name in environment if name.upper().startswith(PREFIX) and name.upper() not in known)
     for name in unknown:
         close = difflib.get_close_matches(name.upper(), known, 1)
@@ -128,11 +129,11 @@ def folders(settings: Settings) -> Iterator[Finding]:
         yield Finding("folder", State.FAIL, str(fault))
         return
     yield Finding("folder", State.OK, f"{settings.files} can be written")
-    space = space_at(settings.files, settings.min_free_bytes)
+    space = space_at(settings.files, limits_of(settings).free)
     free = f"{space.free / 2**30:.1f} GiB free"
     if space.too_little:
         yield Finding("disk", State.FAIL, space.too_little, "Make room, or move the data folder.")
-    elif space.free < 4 * settings.min_free_bytes:
+    elif space.free < 4 * space.least:
         yield Finding("disk", State.WARN, f"{free}; uploads stop at {space.least / 2**20:.0f} MiB", "Make room soon.")
     else:
         yield Finding("disk", State.OK, free)

@@ -11,7 +11,7 @@ from datetime import datetime
 from hashlib import sha256
 from importlib import import_module
 from pathlib import Path
-from typing import Literal, Protocol
+from typing import Protocol
 from urllib.parse import urlsplit
 
 from service.errors import ServiceError
@@ -20,6 +20,8 @@ from service.settings import Settings
 
 ROOM = "service.identity.oidc"
 WITHOUT = "A provider to sign in at is set, but a library is missing: {fault}. Run pip install 'imu-health[oidc]'."
+EVERYBODY = "*"
+"""Stands for every value of the claim, and for none."""
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
 """Where a provider may be asked without encryption: nobody listens in between."""
 
@@ -106,7 +108,8 @@ class ProviderSet:
 class Joining:
     """Who of those that the provider knows gets in, and as what."""
 
-    new: Literal["nobody", "with-role", "everybody"]
+    everybody: Role | None
+    """Of all whom the provider knows; None lets only those in who have a role, or an account already."""
     by_claim: bool
     """Whether the role is the provider's to say, at every sign-in."""
     roles: Mapping[str, Role]
@@ -115,16 +118,14 @@ class Joining:
     def role_of(self, groups: tuple[str, ...]) -> Role | None:
         """The furthest-reaching role of somebody's groups."""
         given = [self.roles[group] for group in groups if group in self.roles]
+        given += [] if self.everybody is None else [self.everybody]
         return max(given, key=list(Role).index, default=None)
 
 
 def joining_of(settings: Settings) -> Joining:
     """As the operator set it."""
-    return Joining(
-        settings.oidc_new_accounts,
-        bool(settings.oidc_role_claim),
-        {value: Role(role) for value, role in settings.oidc_roles},
-    )
+    roles = {value: Role(role) for value, role in settings.oidc_roles}
+    return Joining(roles.get(EVERYBODY), bool(settings.oidc_role_claim), roles)
 
 
 def provider_of(settings: Settings) -> Provider | None:
@@ -147,7 +148,7 @@ def provider_of(settings: Settings) -> Provider | None:
         room = import_module(ROOM)
     except ModuleNotFoundError as fault:
         raise ServiceError(WITHOUT.format(fault=fault)) from fault
-    made: Provider = room.OpenIdProvider(own, settings.oidc_name or str(parts.hostname))
+    made: Provider = room.OpenIdProvider(own, str(parts.hostname))
     return made
 
 

@@ -1,43 +1,72 @@
-"""What an upload may hold and cost, so that a small file cannot become a big one in memory.
+"""What requests, files and work may hold and cost, so that a small file cannot become a big one in memory.
 
 Like the limits that an operating system sets a process, these are one set a process: `create_app` takes them from the
-settings, every other program from the environment.
+settings, every other program from the environment. They go together (more cells need more memory and more time), so an
+operator chooses the size of the machine and not each of them.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from estimator.errors import FormatError, Problem
 from estimator.reading import Extent
 from service.settings import Settings
 
+KIBIBYTE, MEBIBYTE, GIBIBYTE = 1024, 1024**2, 1024**3
+
 
 @dataclass(frozen=True)
 class Limits:
-    """Of one file. Every one can be set: see `service.settings`."""
+    """Of one machine; the values are those of a small one."""
 
-    rows: int
-    columns: int
-    cells: int
-    """Rows × columns of a table."""
-    log_cells: int
-    """The same of a raw log that is averaged while it is scanned."""
-    whole: int
-    """Bytes of a file that is read whole."""
-    nesting: int
-    """Lists and objects of JSON within each other."""
-    unpacked: int
+    rows: int = 2_000_000
+    """Of an uploaded table."""
+    columns: int = 10_000
+    """Of a table; an array of a thousand triads has a third."""
+    cells: int = 2_000_000
+    """Rows × columns of a table: about 60 bytes of `memory` each."""
+    log_cells: int = 500_000_000
+    """The same of a raw log that is averaged while it is scanned: an hour of six sensors at 20 kHz."""
+    whole: int = 64 * MEBIBYTE
+    """Bytes of an upload that is read whole: as many cells as JSON."""
+    log: int = 2 * GIBIBYTE
+    """Bytes of an upload of CSV or Parquet; beyond `whole` it must be a raw log."""
+    attached: int = 32 * MEBIBYTE
+    """Bytes of a file that is attached to a unit or a session: a scanned paper has a tenth."""
+    body: int = 256 * KIBIBYTE
+    """Bytes of any other request, such as a note or a form."""
+    later: int = 8 * MEBIBYTE
+    """Bytes of the largest upload that its sender always waits for; larger ones may be read as jobs."""
+    nesting: int = 32
+    """Lists and objects of JSON within each other; a session has five."""
+    unpacked: int = 128 * MEBIBYTE
     """Bytes, of an archive's or a file's compressed parts."""
-    seconds: int
+    seconds: int = 20
     """Of computing; on a busy machine reading may take `WAITING` times as long."""
-    memory: int
-    """Bytes, of the process that reads the file."""
-    at_once: int
+    memory: int = 224 * MEBIBYTE
+    """Bytes, of the process that reads the file: what the cells take, and the reader itself."""
+    at_once: int = 2
     """Files that are read apart at the same time."""
+    in_flight: int = 4
+    """Large uploads that are received or worked on at once; others are asked back."""
+    work: float = 600.0
+    """Seconds that one piece of work beside the requests may take; the largest diagnosis takes tens of them."""
+    free: int = 256 * MEBIBYTE
+    """Bytes that the disk of uploaded files keeps: a database on it needs room to close what is open."""
 
     @property
     def extent(self) -> Extent:
         """What the estimator's reader is told."""
         return Extent(rows=self.rows, columns=self.columns, cells=self.cells, nesting=self.nesting)
+
+
+SMALL = Limits()
+"""For 2 GB of memory: two readers, the service and a diagnosis fit."""
+TIMES = 4
+"""What a large machine allows beside a small one."""
+SCALED = ("rows", "cells", "log_cells", "whole", "log", "attached", "unpacked", "seconds", "memory", "work")
+"""What grows with the machine: the size of one file, and the time and memory that it takes."""
+LARGE = replace(SMALL, **{name: TIMES * getattr(SMALL, name) for name in SCALED})
+"""For 8 GB of memory."""
 
 
 class _InForce:
@@ -47,19 +76,8 @@ class _InForce:
 
 
 def limits_of(settings: Settings) -> Limits:
-    """The part of the settings that concerns files."""
-    return Limits(
-        rows=settings.max_rows,
-        columns=settings.max_columns,
-        cells=settings.max_cells,
-        log_cells=settings.max_log_cells,
-        whole=settings.max_upload_bytes,
-        nesting=settings.max_nesting,
-        unpacked=settings.max_unpacked_bytes,
-        seconds=settings.max_read_seconds,
-        memory=settings.max_read_bytes,
-        at_once=settings.reads_at_once,
-    )
+    """Of the machine that the settings name."""
+    return LARGE if settings.machine == "large" else SMALL
 
 
 def in_force() -> Limits:

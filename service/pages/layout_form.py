@@ -15,9 +15,10 @@ from starlette.datastructures import UploadFile
 
 from estimator.errors import Problem
 from service.admission import PersonOf
-from service.dependencies import Now, PlaceOf, SettingsOf, StorageOf, limited
+from service.dependencies import Now, PlaceOf, StorageOf, limited
 from service.errors import RefusedError
 from service.ingest.layout.understand import run_words, split_unit
+from service.ingest.limits import in_force
 from service.records.received import SentFile, held
 from service.storage.aside import aside, set_aside
 from service.storage.files import Files
@@ -75,10 +76,8 @@ class LayoutForm:
         return self.unit != self.fields.get("was_unit", "")
 
 
-async def _form(
-    request: Request, settings: SettingsOf, storage: StorageOf, person: PersonOf, now: Now, _: PlaceOf
-) -> LayoutForm:
-    most = int(settings.max_upload_bytes * INFLATION)
+async def _form(request: Request, storage: StorageOf, person: PersonOf, now: Now, _: PlaceOf) -> LayoutForm:
+    most = int(in_force().whole * INFLATION)
     body = limited(request, most, is_form=True)
     async with body.form(max_files=1, max_fields=MOST_FIELDS, max_part_size=most) as form:
         file, text = form.get("file"), form.get("content")

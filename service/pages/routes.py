@@ -11,6 +11,7 @@ from service.flows.correct_session import remedies_of
 from service.flows.receive import receive_all
 from service.flows.take_in import is_long
 from service.ingest import is_own_layout
+from service.ingest.limits import in_force
 from service.judging.model_in_force import model_as_of
 from service.judging.standouts import fleet_standouts
 from service.pages.fleet import MOST_STANDOUTS, fleet_page
@@ -104,7 +105,7 @@ def show_unit(
             outlook=dated(report.outlook, now),
             group=group_section(store, Level.UNIT, serial),
             follow=SOONEST if is_judged_later or (is_coming and settings.diagnosis_workers) else None,
-            said=remarks(serial, "", (), report.said.files, settings.max_attachment_bytes),
+            said=remarks(serial, "", (), report.said.files, in_force().attached),
         ),
     )
 
@@ -132,7 +133,7 @@ def show_session(
             id,
             said.notes,
             said.files,
-            settings.max_attachment_bytes,
+            in_force().attached,
         ),
     )
     return render(request, "session.html", page)
@@ -165,7 +166,7 @@ def take_uploads(
     are worked on by jobs."""
     tables = [file for file in files if is_own_layout(where(file.content), file.filename)]
     whole = [file for file in files if file not in tables]
-    long = [file for file in whole if is_long(reception.storage, file, settings.job_upload_bytes)]
+    long = [file for file in whole if is_long(reception.storage, file, in_force().later)]
     sessions = [file for file in whole if file not in long]
     jobs = [job_outcome(desk.take_in(reception, file, person)) for file in long]
     found = receive_all(reception, sessions, now)

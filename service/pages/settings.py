@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from service.settings import VERSION, Origin, Settings
+from service.settings import PREFIX, VERSION, Origin, Settings
 from service.storage.engine import shown_url
 
 HIDDEN = "set, not shown"
@@ -15,7 +15,6 @@ ORIGINS = {
     Origin.ENVIRONMENT: "environment",
     Origin.START: "option at the start",
 }
-PREFIX = "IMU_HEALTH_"
 FILES = "_file"
 """End of the names of settings that say where a secret lies: the place is shown, what lies there is not."""
 
@@ -62,17 +61,7 @@ def _row(settings: Settings, name: str) -> SettingRow:
 def _value(settings: Settings, name: str, value: Any) -> str:
     if name == "database_url":
         return shown_url(settings.database)
-    if name.endswith("_bytes"):
-        return _size(value)
     return _plain(value)
-
-
-def _size(value: int) -> str:
-    """``64 MiB``, to the last byte."""
-    for size, label in ((2**30, "GiB"), (2**20, "MiB"), (2**10, "KiB")):
-        if value and value % size == 0:
-            return f"{value // size:,} {label}"
-    return f"{value:,} bytes"
 
 
 def _plain(value: Any) -> str:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, fields
 
 from estimator.errors import Problem
 from service.errors import RefusedError
+from service.ingest.limits import in_force
 from service.pages.diagnosis_line import DiagnosisLine, diagnosis_line
 from service.pages.layout_form import Carried
 from service.records.diagnosis import DiagnosisSummary
@@ -110,7 +111,7 @@ def outcome_of(session: StoredSession, made: DiagnosisSummary | None) -> Outcome
 def upload_page(outcomes: Sequence[Outcome], settings: Settings, unit_types: Sequence[str] = ()) -> UploadPage:
     """The page before (no outcomes) or after an upload."""
     follows = settings.diagnosis_workers > 0
-    most, log = _limit(settings.max_upload_bytes), _limit(settings.max_log_bytes)
+    most, log = _limit(in_force().whole), _limit(in_force().log)
     return UploadPage(tuple(outcomes), most, log, follows, tuple(unit_types))
 
 

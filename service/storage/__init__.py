@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from service.settings import Settings
 from service.storage.database import Database
 from service.storage.files import Files, ignore
-from service.storage.waits import Waits
+from service.storage.waits import waits_of
 
 
 @dataclass(frozen=True)
@@ -19,10 +19,7 @@ class Storage:
 
 def open_storage(settings: Settings, count: Callable[[str], None] = ignore) -> Storage:
     """The stores that the settings name; ``count`` is told of faults of files."""
-    waits = Waits(
-        settings.database_lock_seconds, settings.database_statement_seconds, settings.database_connect_seconds
-    )
-    return Storage(Database(settings.database, waits), Files(settings.files, count))
+    return Storage(Database(settings.database, waits_of(settings.database_seconds)), Files(settings.files, count))
 
 
 __all__ = ["Database", "Files", "Storage", "open_storage"]

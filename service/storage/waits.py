@@ -26,6 +26,12 @@ class Waits:
     """For a connection."""
 
 
+def waits_of(patience: float) -> Waits:
+    """One patience: a lock is waited for as long as it says, a statement may work thrice that, and whoever does not
+    connect in half of it is away."""
+    return Waits(lock=patience, statement=3 * patience, connect=patience / 2)
+
+
 PATIENT = Waits(lock=600.0, statement=None)
 """For migrations, backups and restoring: another one may be at it, and a large table takes minutes."""
 

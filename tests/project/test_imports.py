@@ -11,7 +11,8 @@ import pytest
 from tests.project.source import PACKAGES, Module, modules
 
 SERVICE_LAYERS = (
-    {"settings", "errors", "languages", "records", "measures", "log", "lock_order"},
+    {"errors", "languages", "records", "measures", "log", "lock_order"},
+    {"settings"},
     {"client", "identity", "metrics", "words"},
     {"ingest", "storage", "planning"},
     {"judging"},

@@ -39,9 +39,9 @@ def _claimed(claims: Claims, joining: Joining) -> Role | None:
     if not joining.by_claim:
         return None
     role = joining.role_of(claims.groups)
-    if role is None and joining.new != "everybody":
+    if role is None:
         raise ForbiddenError(NO_ROLE)
-    return role or Role.VIEWER
+    return role
 
 
 def connect(storage: Storage, login: str, issuer: str, subject: str, now: datetime, *, who: str) -> Account:
@@ -56,9 +56,9 @@ def connect(storage: Storage, login: str, issuer: str, subject: str, now: dateti
 
 def _made(store: Store, claims: Claims, joining: Joining, role: Role | None, now: datetime) -> Account:
     """A new account."""
-    if joining.new == "nobody" or (joining.new == "with-role" and role is None):
+    own = role or joining.everybody
+    if own is None:
         raise ForbiddenError(NOT_INVITED)
-    own = role or Role.VIEWER
     if not store.accounts.any() and own is not Role.ADMIN:
         raise ConflictError(FIRST)
     login = next(one for one in _logins(claims.login) if store.accounts.add(one, claims.name or one, own, now))

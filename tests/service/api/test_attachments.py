@@ -12,7 +12,7 @@ from tests.conftest import Holding, SettingsHolding
 from tests.databases import Databases, one_engine
 from tests.service.identity.staff import NOW
 from tests.service.sessions import session_bytes, session_id
-from tests.serving import http_client
+from tests.serving import http_client, limited_client
 
 ATTACHMENTS = "/api/v1/attachments"
 SESSION = session_bytes()
@@ -85,8 +85,7 @@ def test_what_cannot_be_kept_is_refused(measured: httpx.Client, data: dict[str, 
 
 @one_engine
 def test_an_empty_and_a_large_file_are_refused(settings_holding: SettingsHolding) -> None:
-    settings = settings_holding(SESSION).model_copy(update={"max_attachment_bytes": 400_000})
-    with http_client(create_app(settings)) as client:
+    with limited_client(settings_holding(SESSION), attached=400_000) as client:
         sizes = (0, 400_000, 400_001)
         assert [attach(client, TO_UNIT, content=size * b"a").status_code for size in sizes] == [422, 201, 413]
 

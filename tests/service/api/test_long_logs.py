@@ -11,8 +11,7 @@ import pytest
 
 from estimator.calibration.calibrate import averaged
 from estimator.reading import read_session
-from service.app import create_app
-from service.ingest import limits, read_upload
+from service.ingest import read_upload
 from service.settings import Settings
 from service.storage.landing import ARRIVING
 from tests import builders
@@ -20,7 +19,7 @@ from tests.databases import one_engine
 from tests.estimator.test_reading_csv import csv_of
 from tests.patience import until
 from tests.service.ingest.test_formats import parquet_bytes
-from tests.serving import http_client
+from tests.serving import limited_client
 
 WRITERS = {"csv": csv_of, "parquet": parquet_bytes}
 CELLS = 20_000
@@ -34,12 +33,10 @@ def log(*, labelled=True, **changes):
 
 @pytest.fixture
 def few_cells(settings: Settings) -> Iterator[Callable[..., httpx.Client]]:
-    """A service that holds few cells; the usual limits come back afterwards."""
-    usual = limits.in_force()
+    """A service that holds few cells."""
     with ExitStack() as stack:
-        changed = {"max_cells": CELLS, "max_upload_bytes": 300_000}
-        yield lambda **more: stack.enter_context(http_client(create_app(settings.model_copy(update=changed | more))))
-    limits.use(usual)
+        changed = {"cells": CELLS, "whole": 300_000}
+        yield lambda **more: stack.enter_context(limited_client(settings, **changed | more))
 
 
 def arriving(settings: Settings) -> list[Path]:
@@ -112,7 +109,7 @@ def test_a_json_of_that_length_is_stopped_as_it_comes(few_cells, settings: Setti
 
 
 @one_engine
-@pytest.mark.parametrize(("name", "most", "status"), [("max_log_bytes", 400_000, 413), ("max_log_cells", 50_000, 422)])
+@pytest.mark.parametrize(("name", "most", "status"), [("log", 400_000, 413), ("log_cells", 50_000, 422)])
 def test_a_log_has_limits_too(few_cells, settings: Settings, name: str, most: int, status: int) -> None:
     answer = few_cells(**{name: most}).post("/api/v1/sessions", content=csv_of(log()))
     assert answer.status_code == status

@@ -17,7 +17,7 @@ from service.storage.schema import upgrade
 from service.storage.waiting import FOLDER
 from tests.databases import all_on_one_engine as pytest_generate_tests  # noqa: F401 - pytest calls it
 from tests.service.sessions import session_bytes
-from tests.serving import http_client
+from tests.serving import http_client, limited_client
 
 SESSIONS, UPLOAD = "/api/v1/sessions", {"files": {"file": ("log.json", session_bytes())}}
 LATER = {"Prefer": "handling=strict, respond-async; wait=10"}
@@ -27,7 +27,7 @@ OWN = b"Run;Ch 1, mV\ndirect;437,0\nflipped;-437,2\n"
 @pytest.fixture
 def client(settings: Settings) -> Iterator[httpx.Client]:
     """A service to which every file is a large one."""
-    with http_client(create_app(settings.model_copy(update={"job_upload_bytes": 100}))) as client:
+    with limited_client(settings, later=100) as client:
         yield client
 
 

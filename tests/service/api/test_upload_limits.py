@@ -5,10 +5,9 @@ from collections.abc import Iterator
 import httpx
 import pytest
 
-from service.app import create_app
 from service.settings import Settings
 from tests.databases import one_engine
-from tests.serving import http_client
+from tests.serving import limited_client
 
 LIMIT = 100_000
 
@@ -16,7 +15,7 @@ LIMIT = 100_000
 @pytest.fixture
 def small(settings: Settings) -> Iterator[httpx.Client]:
     """A service that takes small files only."""
-    with http_client(create_app(settings.model_copy(update={"max_upload_bytes": LIMIT}))) as client:
+    with limited_client(settings, whole=LIMIT) as client:
         yield client
 
 

@@ -8,22 +8,21 @@ import httpx
 import pytest
 from sqlalchemy import text
 
-from service.app import create_app
 from service.settings import Settings
 from service.storage import Database
 from service.storage.failed import AT_FAULT
 from service.words.usable import DATES_PENDING
 from tests.databases import one_engine
 from tests.service.sessions import session_bytes, session_id
-from tests.serving import http_client
+from tests.serving import limited_client
 
 DAMAGED, SOUND = "BA-001", "BA-002"
 FIRST = session_bytes(unit=DAMAGED, month=1)
 
 
 @contextmanager
-def served(settings: Settings, workers: int) -> Iterator[httpx.Client]:
-    with http_client(create_app(settings.model_copy(update={"diagnosis_workers": workers}))) as client:
+def served(settings: Settings, workers: int, **limits: float) -> Iterator[httpx.Client]:
+    with limited_client(settings.model_copy(update={"diagnosis_workers": workers}), **limits) as client:
         yield client
 
 
@@ -88,7 +87,7 @@ def test_a_forecast_that_fails_is_told_everywhere(settings: Settings, workers: i
 def test_work_that_takes_too_long_is_ended_and_says_so(settings: Settings) -> None:
     """Whatever it is at: nothing keeps a process beside the requests for ever."""
     id, late = session_id(FIRST), "it was not done within 0.001 s, the longest that it may take"
-    with served(settings.model_copy(update={"work_seconds": 0.001}), 1) as client:
+    with served(settings, 1, work=0.001) as client:
         assert send(client, FIRST) == 201
         diagnosis = client.get(f"/api/v1/sessions/{id}/diagnosis").json()
         outlook = dated_outlook(client, DAMAGED)

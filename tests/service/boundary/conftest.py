@@ -1,8 +1,9 @@
 """A service at an address, on SQLite: nothing here asks the database."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import pytest
@@ -16,11 +17,11 @@ At = Callable[..., str]
 
 @pytest.fixture
 def at(sqlite: Databases, tmp_path: Path) -> Iterator[At]:
-    """The address of an empty service with settings of one's own."""
+    """The address of an empty service with settings and limits of one's own."""
     with ExitStack() as opened:
 
-        def start(**given: Any) -> str:
+        def start(limits: Mapping[str, int] = MappingProxyType({}), **given: Any) -> str:
             settings = Settings(database_url=sqlite.migrated(), data_folder=tmp_path / "data")
-            return opened.enter_context(serving(settings.model_copy(update=given)))
+            return opened.enter_context(serving(settings.model_copy(update=given), **limits))
 
         yield start

@@ -35,7 +35,7 @@ def test_what_is_refused_before_any_route_has_an_id_too(at: At, headers: dict[st
 
 
 def test_a_disk_that_is_filling_up_takes_no_uploads_but_shows_what_is_there(at: At) -> None:
-    address = at(min_free_bytes=MORE_THAN_ANY_DISK)
+    address = at({"free": MORE_THAN_ANY_DISK})
     for answer in (
         httpx.post(f"{address}/api/v1/sessions", content=session_bytes()),
         httpx.post(f"{address}/upload", files={"files": ("a.json", session_bytes())}),

@@ -74,8 +74,19 @@ def _write_later(storage: Storage) -> None:
 
 
 def test_a_misspelt_setting_is_named_with_the_right_one(run: Run, tmp_path: Path) -> None:
-    (found,) = variables({"IMU_HEALTH_MAX_ROW": "3", "IMU_HEALTH_PORT": "1", "HOME": "/"})
-    assert (found.state, found.remedy) == (State.WARN, "Did you mean IMU_HEALTH_MAX_ROWS?")
+    (found,) = variables({"IMU_HEALTH_MACHIN": "large", "IMU_HEALTH_PORT": "1", "HOME": "/"})
+    assert (found.state, found.remedy) == (State.WARN, "Did you mean IMU_HEALTH_MACHINE?")
+
+
+@pytest.mark.parametrize("command", ["serve", "doctor"])
+def test_a_setting_of_an_earlier_version_is_an_error_that_names_its_replacement(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str
+) -> None:
+    monkeypatch.setenv("IMU_HEALTH_MAX_ROWS", "3")
+    ran = run(command, "--data-folder", tmp_path)
+    assert ran.code == 1
+    assert "No longer read: IMU_HEALTH_MAX_ROWS. Unset it, and use IMU_HEALTH_MACHINE instead." in ran.out + ran.err
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_what_cannot_be_is_a_line_each(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -19,7 +19,7 @@ def receiving(sqlite: Databases, stock_of: StockOf, monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(console, "LARGE", 100)
     with (
         stock_of(sqlite).holding() as settings,
-        serving(settings.model_copy(update={"job_upload_bytes": 100})) as address,
+        serving(settings, later=100) as address,
     ):
         yield address
 

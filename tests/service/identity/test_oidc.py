@@ -24,6 +24,8 @@ from tests.service.identity.staff import NOW, Staff, staffed
 from tests.serving import http_client
 
 PAGE = {"Accept": "text/html"}
+ROLES = (("imu-crew", "crew"), ("imu-leads", "engineer"))
+EVERYBODY = ("*", "viewer")
 both = pytest.mark.parametrize("databases", ENGINES, indirect=True)
 
 
@@ -43,7 +45,7 @@ def known(settings: Settings, openid: OpenId, tmp_path: Path) -> Settings:
     """A service that knows the provider."""
     (tmp_path / "secret").write_text(SECRET + "\n")
     own = {"oidc_issuer": openid.issuer, "oidc_client_id": CLIENT, "oidc_client_secret_file": tmp_path / "secret"}
-    return settings.model_copy(update=own | {"oidc_name": "Example", "oidc_new_accounts": "everybody"})
+    return settings.model_copy(update=own | {"oidc_roles": (EVERYBODY,)})
 
 
 @pytest.fixture
@@ -85,7 +87,7 @@ def test_somebody_signs_in_and_out_and_in_again_as_the_same(http: httpx.Client, 
 
 
 def test_the_page_has_the_button_only_where_a_provider_is_set(http: httpx.Client, settings: Settings) -> None:
-    assert 'href="/oidc/start?next=/flags">Sign in with Example' in http.get("/sign-in?next=/flags").text
+    assert 'href="/oidc/start?next=/flags">Sign in with 127.0.0.1' in http.get("/sign-in?next=/flags").text
     with http_client(create_app(settings, clock=lambda: NOW)) as without:
         assert "oidc" not in without.get("/sign-in").text
         assert without.get("/oidc/start").status_code == 404
@@ -228,10 +230,7 @@ def test_the_way_back_leads_nowhere_else(http: httpx.Client) -> None:
 
 def by_claim(known: Settings, **changes: Any) -> Settings:
     """The provider says the roles."""
-    roles = (("imu-crew", "crew"), ("imu-leads", "engineer"))
-    return known.model_copy(
-        update={"oidc_role_claim": "groups", "oidc_roles": roles, "oidc_new_accounts": "with-role"} | changes
-    )
+    return known.model_copy(update={"oidc_role_claim": "groups", "oidc_roles": ROLES} | changes)
 
 
 def test_the_provider_s_groups_give_the_role_at_every_sign_in(
@@ -251,7 +250,7 @@ def test_the_provider_s_groups_give_the_role_at_every_sign_in(
 def test_where_everybody_may_have_an_account_one_without_a_role_is_a_viewer(
     known: Settings, staff: Staff, openid: OpenId
 ) -> None:
-    with http_client(create_app(by_claim(known, oidc_new_accounts="everybody"), clock=lambda: NOW)) as http:
+    with http_client(create_app(by_claim(known, oidc_roles=(*ROLES, EVERYBODY)), clock=lambda: NOW)) as http:
         for groups, role in ((["imu-crew"], "crew"), ([], "viewer")):
             openid.person["groups"] = groups
             assert entered(http).status_code == 303
@@ -259,7 +258,7 @@ def test_where_everybody_may_have_an_account_one_without_a_role_is_a_viewer(
 
 
 def test_nobody_is_made_whom_the_operator_did_not_let_in(known: Settings, staff: Staff, storage: Storage) -> None:
-    own = known.model_copy(update={"oidc_new_accounts": "nobody"})
+    own = known.model_copy(update={"oidc_roles": ()})
     with http_client(create_app(own, clock=lambda: NOW)) as http:
         assert entered(http).status_code == 403
         connect(storage, "crew", own.oidc_issuer, "248289761001", NOW, who="test")

@@ -68,6 +68,8 @@ NAMES = frozenset(
             "engineer",
             "admin",
             "auto",
+            "large",
+            "small",
             "off",
             "none",
             "groups",

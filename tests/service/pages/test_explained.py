@@ -58,9 +58,9 @@ def test_a_call_says_its_role_its_fields_and_what_it_answers(settings: Settings)
 
 def test_settings_say_where_they_come_from(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("IMU_HEALTH_PORT", "8123")
-    monkeypatch.setenv("IMU_HEALTH_MAX_ROWS", "5000")
-    rows = {row.variable: row for row in settings_page(Settings(max_rows=77)).rows}
-    shown = [(rows[f"IMU_HEALTH_{name}"].value, rows[f"IMU_HEALTH_{name}"].origin) for name in ("PORT", "MAX_ROWS")]
+    monkeypatch.setenv("IMU_HEALTH_STOP_SECONDS", "50")
+    rows = {row.variable: row for row in settings_page(Settings(stop_seconds=77)).rows}
+    shown = [(rows[f"IMU_HEALTH_{name}"].value, rows[f"IMU_HEALTH_{name}"].origin) for name in ("PORT", "STOP_SECONDS")]
     assert shown == [("8123", "environment"), ("77", "option at the start")]
     assert (rows["IMU_HEALTH_HOST"].value, rows["IMU_HEALTH_HOST"].origin) == ("127.0.0.1", "default")
     assert Settings(host="::1").origin_of("host") is Origin.START

@@ -16,7 +16,7 @@ from service.pages.assets import asset_url
 from service.settings import Settings
 from tests.databases import one_engine
 from tests.service.sessions import session_bytes
-from tests.serving import http_client, running
+from tests.serving import http_client, limited_client, running
 
 HTML = {"Accept": "text/html"}
 MOST_QUERIES = 12
@@ -68,8 +68,7 @@ def test_unusable_file_is_422_with_its_problems(client: httpx.Client) -> None:
 
 @one_engine
 def test_upload_beyond_the_limit_is_refused(settings: Settings) -> None:
-    small = settings.model_copy(update={"max_upload_bytes": 1000})
-    with http_client(create_app(small)) as client:
+    with limited_client(settings, whole=1000, log=1000) as client:
         assert post(client, b" " * 200_000).status_code == 413
 
 

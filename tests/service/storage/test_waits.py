@@ -54,7 +54,7 @@ def frozen(pid: int) -> Iterator[None]:
 
 
 def test_a_lock_that_another_holds_is_not_waited_for_for_ever(settings: Settings) -> None:
-    short = settings.model_copy(update={"database_lock_seconds": 0.3})
+    short = settings.model_copy(update={"database_seconds": 0.3})
     with http_client(create_app(short)) as client:
         with alone(settings.database) as holder:
             if holder.dialect.name == "postgresql":
