@@ -37,6 +37,7 @@ RETIRED = {
         "MAX_UPLOAD_BYTES", "MAX_LOG_BYTES", "JOB_UPLOAD_BYTES", "MAX_ATTACHMENT_BYTES", "MAX_BODY_BYTES",
         "MIN_FREE_BYTES", "MAX_ROWS", "MAX_COLUMNS", "MAX_CELLS", "MAX_LOG_CELLS", "MAX_NESTING", "MAX_UNPACKED_BYTES",
         "MAX_READ_SECONDS", "MAX_READ_BYTES", "READS_AT_ONCE", "UPLOADS_IN_FLIGHT", "WORK_SECONDS",
+        "CLIENT_SECONDS", "MAX_CONNECTIONS",
     ),
     "DIAGNOSIS_WORKERS": ("DIAGNOSIS_NICENESS",),
     "OIDC_ISSUER": ("OIDC_NAME",),
@@ -127,13 +128,6 @@ class Settings(BaseSettings):
         description="What files may hold and cost. small: 64 MiB, raw logs 2 GiB, for 2 GB of memory; large: four "
         "times as much in four times the memory and time, for 8 GB.",
     )
-    client_seconds: float = Field(
-        default=10.0,
-        gt=0,
-        le=3600,
-        description="Seconds that a client is waited for, beside what a slow line needs for its bytes.",
-    )
-    max_connections: int = Field(default=500, gt=0, description="Connections that may be open at once.")
     stop_seconds: float = Field(
         default=30.0, ge=0, le=3600, description="Longest that a stopping service lets requests at hand finish, s."
     )

@@ -17,7 +17,7 @@ from service.settings import Settings
 def guard(app: FastAPI, settings: Settings) -> None:
     """Adds the checks, the innermost first."""
     app.add_middleware(RoomForUploads, folder=settings.files, least=in_force().free)
-    app.add_middleware(LimitedBodies, limits=Limits(in_force().body, settings.client_seconds))
+    app.add_middleware(LimitedBodies, limits=Limits(in_force().body, in_force().client))
     app.add_middleware(OwnSiteOnly, public_url=settings.public_url)
     app.state.door = Door()
     app.add_middleware(Doorkeeper, door=app.state.door)

@@ -6,6 +6,7 @@ import uvicorn
 from fastapi import FastAPI
 
 from service.boundary.stopping import Door
+from service.ingest.limits import in_force
 from service.settings import Settings
 
 LAST_WORDS = 5
@@ -33,7 +34,7 @@ def server_config(app: FastAPI, settings: Settings) -> uvicorn.Config:
         settings.host,
         settings.port,
         http="h11",
-        limit_concurrency=settings.max_connections + 1,  # which is refused itself
+        limit_concurrency=in_force().connections + 1,  # which is refused itself
         log_config=None,
         access_log=False,
         forwarded_allow_ips=[str(network) for network in settings.trusted_proxies],

@@ -53,6 +53,11 @@ class Limits:
     free: int = 256 * MEBIBYTE
     """Bytes that the disk of uploaded files keeps: a database on it needs room to close what is open."""
 
+    client: float = 10.0
+    """Seconds that a client is waited for, beside what a slow line needs for its bytes."""
+    connections: int = 500
+    """That may be open at once; each costs some 100 kB."""
+
     @property
     def extent(self) -> Extent:
         """What the estimator's reader is told."""

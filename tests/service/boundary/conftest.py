@@ -20,7 +20,7 @@ def at(sqlite: Databases, tmp_path: Path) -> Iterator[At]:
     """The address of an empty service with settings and limits of one's own."""
     with ExitStack() as opened:
 
-        def start(limits: Mapping[str, int] = MappingProxyType({}), **given: Any) -> str:
+        def start(limits: Mapping[str, float] = MappingProxyType({}), **given: Any) -> str:
             settings = Settings(database_url=sqlite.migrated(), data_folder=tmp_path / "data")
             return opened.enter_context(serving(settings.model_copy(update=given), **limits))
 

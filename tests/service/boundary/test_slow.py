@@ -17,7 +17,7 @@ SHORT = 0.4
 
 
 def test_a_body_that_does_not_come_is_said_and_not_waited_for(at: At) -> None:
-    address = at(client_seconds=SHORT)
+    address = at({"client": SHORT})
     for path in ("/api/v1/sessions", "/api/v1/units/B/notes", "/upload", "/flags/1/resolve"):
         form, start = ("multipart/form-data; boundary=x", b"--x") if path == "/upload" else (FORM, b"by=")
         with connected(address, LONG) as connection:
@@ -40,7 +40,7 @@ def test_an_upload_that_is_cut_off_is_no_fault_of_the_service(at: At, written: i
 
 def test_a_slow_but_steady_body_is_taken(at: At) -> None:
     content = session_bytes()
-    with connected(at(client_seconds=30.0)) as connection:
+    with connected(at({"client": 30.0})) as connection:
         connection.sendall(head("POST", "/api/v1/sessions", Content_Length=str(len(content))))
         for start in range(0, len(content), 1000):
             connection.sendall(content[start : start + 1000])
@@ -48,7 +48,7 @@ def test_a_slow_but_steady_body_is_taken(at: At) -> None:
 
 
 def test_more_connections_than_allowed_are_rejected(at: At) -> None:
-    address = at(max_connections=3)
+    address = at({"connections": 3})
     with ExitStack() as opened:
         for _ in range(3):
             opened.enter_context(connected(address))
